@@ -1,0 +1,1 @@
+"""The only place that converts between Blender's data and the solver's."""

@@ -1,0 +1,1 @@
+"""User actions; the only place that words errors to the user."""

@@ -1,0 +1,117 @@
+"""What can be wrong with what the artist gave us, as data. Worded in operators/wording.py only."""
+
+from dataclasses import dataclass
+
+
+class Fault(Exception):
+    """Base of every fault that an artist can mend; each subclass carries where and by how much."""
+
+
+@dataclass
+class NoArmature(Fault):
+    """Nothing to adapt: the object chosen is not an armature (or there is none)."""
+
+    object_name: str | None = None
+
+
+@dataclass
+class NoAction(Fault):
+    """The armature carries no action."""
+
+    armature: str
+
+
+@dataclass
+class NoBones(Fault):
+    """The armature has no bones."""
+
+    armature: str
+
+
+@dataclass
+class ClipTooShort(Fault):
+    """The clip is shorter than the shortest that can hold a jump."""
+
+    seconds: float
+    minimum_s: float
+
+
+@dataclass
+class NoFlight(Fault):
+    """No instant found at which every foot is off the ground."""
+
+    lowest_cm: float
+
+
+@dataclass
+class ZeroLengthBone(Fault):
+    """A bone that must carry mass has no length."""
+
+    bone: str
+
+
+@dataclass
+class MissingPart(Fault):
+    """A body part that the physics needs has no bone."""
+
+    part: str
+    tried: tuple[str, ...] = ()
+
+
+@dataclass
+class NonFiniteKey(Fault):
+    """A key is NaN or infinite."""
+
+    bone: str
+    frame: float
+
+
+@dataclass
+class BadScale(Fault):
+    """The object's scale is not uniform and positive."""
+
+    object_name: str
+    scale: tuple[float, float, float]
+
+
+@dataclass
+class UnreadableClip(Fault):
+    """A motion file that cannot be read; line is 1-based, None where the format has no lines."""
+
+    path: str
+    line: int | None
+    problem: str
+
+
+@dataclass
+class BadRecipe(Fault):
+    """A recipe with an unknown key, bone or phase, or a value of the wrong kind."""
+
+    path: str
+    line: int | None
+    problem: str
+
+
+@dataclass
+class OutputNotWritable(Fault):
+    """The output folder cannot be made or written."""
+
+    path: str
+    problem: str
+
+
+@dataclass
+class ContradictoryPins(Fault):
+    """Two pins that no pose can hold at once."""
+
+    first: str
+    second: str
+    metres: float
+
+
+@dataclass
+class NoSolution(Fault):
+    """The solver ended without meeting every constraint; worst first: (name, violation, unit)."""
+
+    reason: str
+    worst: tuple[tuple[str, float, str], ...] = ()

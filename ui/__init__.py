@@ -1,0 +1,1 @@
+"""Panels, lists and property groups; draw() reads cached text and computes nothing."""
