@@ -115,3 +115,19 @@ class NoSolution(Fault):
 
     reason: str
     worst: tuple[tuple[str, float, str], ...] = ()
+
+
+@dataclass
+class UnseenSupport(Fault):
+    """Nothing touches, yet the body does not fall: something unrecorded carries it (frames)."""
+
+    first: float
+    last: float
+
+
+@dataclass
+class UnknownContactName(Fault):
+    """A correction names a contact that was not found."""
+
+    name: str
+    known: tuple[str, ...]

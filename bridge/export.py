@@ -1,0 +1,102 @@
+"""An action as FBX, and back for checking."""
+
+from __future__ import annotations
+
+import dataclasses
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+
+from ..solver.faults import OutputNotWritable
+from ..solver.recording import FloatArray, Recording
+from . import fcurves, read
+from .poses import evaluated, frames_per_second
+
+
+def export_fbx(armature: bpy.types.Object, action: bpy.types.Action, path: str | Path) -> None:
+    """Write the armature with `action` alone, a key on every frame, as binary FBX.
+
+    Folders are made where missing. The scene is left as it was. Raises OutputNotWritable.
+    """
+    target = Path(path)
+    with tempfile.TemporaryDirectory() as folder, _alone(armature, action):
+        made = Path(folder) / "export.fbx"
+        with bpy.context.temp_override(selected_objects=[armature]):
+            bpy.ops.export_scene.fbx(
+                filepath=str(made),
+                use_selection=True,
+                object_types={"ARMATURE"},
+                add_leaf_bones=False,
+                bake_anim=True,
+                bake_anim_use_all_bones=True,
+                bake_anim_use_nla_strips=False,
+                bake_anim_use_all_actions=False,
+                bake_anim_force_startend_keying=True,
+                bake_anim_simplify_factor=0.0,
+            )
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(made, target)
+        except OSError as error:
+            raise OutputNotWritable(str(target), error.strerror or type(error).__name__) from error
+
+
+def reimport_fbx(path: str | Path, frames: FloatArray) -> Recording:
+    """What an FBX file holds at the seconds at which the scene shows `frames` (T,), as a Recording.
+
+    Read by Blender's own importer; nothing of it stays. `frames` of the result are as given.
+    """
+    render = bpy.context.scene.render
+    seconds = frames / frames_per_second(bpy.context.scene)
+    rate = render.fps, render.fps_base
+    with _removed_afterwards():
+        before = set(bpy.data.objects)
+        bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)
+        # The importer places keys by the whole number of frames per second, whatever the base.
+        imported_frames = seconds * render.fps
+        render.fps, render.fps_base = rate
+        armature = next(o for o in set(bpy.data.objects) - before if o.type == "ARMATURE")
+        recording = read.record(armature, imported_frames)
+    return dataclasses.replace(recording, frames=frames, times=seconds - seconds[0])
+
+
+@contextmanager
+def _alone(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[None]:
+    """The armature evaluated under `action` only, the scene's range that of the action."""
+    scene = bpy.context.scene
+    data = armature.animation_data or armature.animation_data_create()
+    was, slot, nla = data.action, fcurves.slot_identifier(armature), data.use_nla
+    start, end = scene.frame_start, scene.frame_end
+    try:
+        fcurves.assign(armature, action, slot)
+        data.use_nla = False
+        scene.frame_start, scene.frame_end = map(round, action.frame_range)
+        with evaluated(armature):
+            yield
+    finally:
+        scene.frame_start, scene.frame_end = start, end
+        data.use_nla = nla
+        fcurves.assign(armature, was, slot)
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+
+
+@contextmanager
+def _removed_afterwards() -> Iterator[None]:
+    """Remove the objects, armatures and actions made inside; the selection comes back."""
+    kinds = bpy.data.objects, bpy.data.armatures, bpy.data.actions
+    before = [set(kind) for kind in kinds]
+    layer = bpy.context.view_layer
+    active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
+    try:
+        yield
+    finally:
+        for kind, known in zip(kinds, before, strict=True):
+            for block in set(kind) - known:
+                kind.remove(block)
+        layer.objects.active = active
+        for thing in selected:
+            thing.select_set(True)

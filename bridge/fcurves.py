@@ -1,0 +1,165 @@
+"""F-curves of an action, whichever way this Blender stores them.
+
+4.2 and 4.3 keep them in the action. From 4.4 an action has one slot per thing that it animates, and
+the curves are in that slot's channelbag; 5.0 has no other way. Nothing else knows the difference.
+"""
+
+from __future__ import annotations
+
+import re
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+CurveHolder = bpy.types.bpy_struct  # an Action or an ActionChannelbag: .fcurves and .groups
+
+_LINEAR = 1  # values of the enums in foreach_get and foreach_set
+_FREE_HANDLE = 0
+_FLOATS = {"co": 2, "handle_left": 2, "handle_right": 2, "amplitude": 1, "back": 1, "period": 1}
+_ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
+_EPSILON = 1e-4  # frames
+
+
+def holder(owner: bpy.types.ID) -> CurveHolder | None:
+    """What holds the F-curves of the action that animates `owner`; None where nothing does."""
+    data = owner.animation_data
+    action = data.action if data is not None else None
+    if action is None or not hasattr(action, "slots"):
+        return action
+    if data.action_slot is None:
+        return None
+    strips = (strip for layer in action.layers for strip in layer.strips)
+    bags = (strip.channelbag(data.action_slot) for strip in strips)
+    return next((bag for bag in bags if bag is not None), None)
+
+
+def slot_identifier(owner: bpy.types.ID) -> str | None:
+    """Identifier of the slot that `owner` uses; None without one and before Blender 4.4."""
+    slot = getattr(owner.animation_data, "action_slot", None)
+    return slot.identifier if slot is not None else None
+
+
+def assign(owner: bpy.types.ID, action: bpy.types.Action | None, slot: str | None = None) -> None:
+    """Let `action` animate `owner`, through the slot of that identifier where there are slots.
+
+    Without such a slot the first that fits the kind of `owner` is taken.
+    """
+    data = owner.animation_data or owner.animation_data_create()
+    data.action = action
+    if action is None or not hasattr(action, "slots"):
+        return
+    fitting = [s for s in action.slots if s.target_id_type in {owner.id_type, "UNSPECIFIED"}]
+    named = [s for s in fitting if s.identifier == slot]
+    if named or (fitting and data.action_slot is None):
+        data.action_slot = (named or fitting)[0]
+
+
+def bone_of(data_path: str) -> str | None:
+    """Name of the pose bone that a data path animates; None where it animates something else."""
+    match = re.match(r'pose\.bones\["((?:[^"\\]|\\.)*)"\]', data_path)
+    return bpy.utils.unescape_identifier(match[1]) if match else None
+
+
+def keys(curve: bpy.types.FCurve) -> FloatArray:
+    """Frames and values (n, 2) of the keys of a curve."""
+    points = np.empty(2 * len(curve.keyframe_points), np.float32)
+    curve.keyframe_points.foreach_get("co", points)
+    return points.reshape(-1, 2).astype(np.float64)
+
+
+def write_channel(
+    curves: CurveHolder, path: str, index: int, frames: FloatArray, values: FloatArray, group: str
+) -> None:
+    """Make the curve of `path` and `index` these keys (T,) alone, linear in between.
+
+    A new curve goes to the group of that name, which is made where it is missing.
+    """
+    curve = curves.fcurves.find(path, index=index)
+    if curve is None:
+        curve = curves.fcurves.new(path, index=index)
+        curve.group = curves.groups.get(group) or curves.groups.new(group)
+    for modifier in list(curve.modifiers):
+        curve.modifiers.remove(modifier)
+    curve.mute = False
+    curve.extrapolation = "CONSTANT"
+    points = curve.keyframe_points
+    points.clear()
+    points.add(len(frames))
+    points.foreach_set("co", np.column_stack([frames, values]).astype(np.float32).ravel())
+    points.foreach_set("interpolation", np.full(len(frames), _LINEAR, np.int32))
+    curve.update()
+
+
+def crop(curve: bpy.types.FCurve, first: float, last: float) -> None:
+    """Remove the keys outside [first, last]; the values at the frames within stay what they were.
+
+    Where a border cuts between two keys, every whole frame up to the next key within gets a key.
+    Curves with modifiers (a cycle needs its keys) and without keys are left alone.
+    """
+    at = keys(curve)[:, 0]
+    inside = (at > first - _EPSILON) & (at < last + _EPSILON)
+    if inside.all() or len(curve.modifiers) > 0:
+        return
+    added = _cut_frames(at, inside, first, last)
+    values = np.array([curve.evaluate(frame) for frame in added])
+    table = {name: column[inside] for name, column in _table(curve).items()}
+    if inside.any():
+        _free_handles(table)
+    _rewrite(curve, table, added, values)
+
+
+def _cut_frames(at: FloatArray, inside: NDArray[np.bool_], first: float, last: float) -> FloatArray:
+    """Whole frames between the borders and the keys within, on the sides that lose a key."""
+    whole = np.arange(np.ceil(first), np.floor(last) + 1.0)
+    before, after = (at <= first - _EPSILON).any(), (at >= last + _EPSILON).any()
+    if inside.any():
+        left = before & (whole < at[inside].min() - _EPSILON)
+        right = after & (whole > at[inside].max() + _EPSILON)
+        return whole[left | right]
+    return whole if before and after else whole[[0, -1]]
+
+
+def _table(curve: bpy.types.FCurve) -> dict[str, NDArray[np.generic]]:
+    """Everything that the keys of a curve carry, a column (n, …) each."""
+    count = len(curve.keyframe_points)
+    table: dict[str, NDArray[np.generic]] = {}
+    for name, width in _FLOATS.items():
+        table[name] = np.empty((count, width), np.float32)
+    for name in _ENUMS:
+        table[name] = np.empty((count, 1), np.int32)
+    for name, column in table.items():
+        flat = column.ravel()
+        curve.keyframe_points.foreach_get(name, flat)
+        table[name] = flat.reshape(column.shape)
+    return table
+
+
+def _free_handles(table: dict[str, NDArray[np.generic]]) -> None:
+    """Keep the outermost keys' tangents, which Blender would flatten for want of a neighbour."""
+    for name in ("handle_left_type", "handle_right_type"):
+        table[name][[0, -1]] = _FREE_HANDLE
+
+
+def _rewrite(
+    curve: bpy.types.FCurve,
+    table: dict[str, NDArray[np.generic]],
+    frames: FloatArray,
+    values: FloatArray,
+) -> None:
+    """Make the keys of a curve those of `table` and linear ones at `frames` (n,)."""
+    kept, count = len(table["co"]), len(table["co"]) + len(frames)
+    points = curve.keyframe_points
+    points.clear()
+    points.add(count)
+    added = np.column_stack([frames, values]).astype(np.float32)
+    order = np.argsort(np.concatenate([table["co"][:, 0], added[:, 0]]), kind="stable")
+    for name, column in _table(curve).items():
+        column[:kept] = table[name]
+        if name == "co":
+            column[kept:] = added
+        elif name == "interpolation":
+            column[kept:] = _LINEAR
+        points.foreach_set(name, column[order].ravel())
+    curve.update()

@@ -1,0 +1,1 @@
+"""Motion files as plain arrays; no Blender."""

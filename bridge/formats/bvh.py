@@ -1,0 +1,186 @@
+"""Biovision files (.bvh), laid out line by line as Blender's importer wants them."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...solver.recording import FloatArray
+from . import turns
+from .skeleton import Joint, MotionClip
+from .text import Line, Reader, require_finite
+
+_CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
+
+
+@dataclass
+class _Draft:
+    """A joint while its block is read; channels are lower case, in the file's order."""
+
+    name: str
+    parent: int
+    offset: FloatArray = field(default_factory=lambda: np.zeros(3))
+    channels: list[str] = field(default_factory=list)
+    tip: FloatArray | None = None
+
+
+def read_bvh(path: str | Path) -> MotionClip:
+    """The clip in a BVH file.
+
+    A position channel replaces the joint's offset, as in Blender. Rotations are multiplied in the
+    order of the channels. The frame time is the rate's that the printed digits stand for.
+    Raises UnreadableClip (with the line) and NonFiniteKey (frames counted from 1).
+    """
+    reader = Reader(Path(path))
+    drafts = _hierarchy(reader)
+    frame_time, table = _motion(reader, drafts)
+    return MotionClip(
+        reader.path.stem,
+        tuple(Joint(d.name, d.parent, d.offset, d.tip) for d in drafts),
+        *_poses(drafts, table),
+        frame_time,
+    )
+
+
+def _hierarchy(reader: Reader) -> list[_Draft]:
+    first = reader.take("HIERARCHY")
+    if not first.starts("hierarchy"):
+        reader.fail(first.number, "a BVH file begins with HIERARCHY")
+    drafts: list[_Draft] = []
+    while (line := reader.take("ROOT or MOTION")) and not line.starts("motion"):
+        if not line.starts("root"):
+            reader.fail(line.number, f"'{line.words[0]}' where ROOT or MOTION should stand")
+        _joint(reader, line, -1, drafts)
+    if not drafts:
+        reader.fail(line.number, "no ROOT before MOTION")
+    return drafts
+
+
+def _joint(reader: Reader, title: Line, parent: int, drafts: list[_Draft]) -> None:
+    draft = _Draft(_unique_name(reader, title, drafts), parent)
+    index = len(drafts)
+    drafts.append(draft)
+    _open_brace(reader)
+    draft.offset = _offset(reader)
+    draft.channels = _channels(reader)
+    while not (line := reader.take(f"}} of '{draft.name}'")).starts("}"):
+        if line.starts("joint"):
+            _joint(reader, line, index, drafts)
+        elif line.starts("end", "site"):
+            _open_brace(reader)
+            draft.tip = _offset(reader)
+            _close_brace(reader)
+        else:
+            reader.fail(line.number, f"'{line.words[0]}' where JOINT, End Site or }} should stand")
+
+
+def _unique_name(reader: Reader, title: Line, drafts: list[_Draft]) -> str:
+    """The name as Blender spells it: words joined by underscores, doubles numbered."""
+    if len(title.words) < 2:
+        reader.fail(title.number, f"{title.words[0]} without a name")
+    taken = {draft.name for draft in drafts}
+    name = plain = "_".join(title.words[1:])
+    count = 0
+    while name in taken:
+        count += 1
+        name = f"{plain}.{count:03d}"
+    return name
+
+
+def _open_brace(reader: Reader) -> None:
+    line = reader.take("{")
+    if line.words != ["{"]:
+        reader.fail(line.number, "{ should stand here, alone on its line")
+
+
+def _close_brace(reader: Reader) -> None:
+    line = reader.take("}")
+    if line.words != ["}"]:
+        reader.fail(line.number, "} should stand here, alone on its line")
+
+
+def _offset(reader: Reader) -> FloatArray:
+    line = reader.take("OFFSET")
+    if not line.starts("offset"):
+        reader.fail(line.number, f"'{line.words[0]}' where OFFSET should stand")
+    return reader.numbers(line.number, line.words[1:], 3)
+
+
+def _channels(reader: Reader) -> list[str]:
+    line = reader.take("CHANNELS")
+    if not line.starts("channels"):
+        reader.fail(line.number, f"'{line.words[0]}' where CHANNELS should stand")
+    names = [word.lower() for word in line.words[2:]]
+    if line.words[1:2] != [str(len(names))]:
+        reader.fail(line.number, f"{len(names)} channels are named, another number is announced")
+    for name, word in zip(names, line.words[2:], strict=True):
+        if name not in _CHANNELS or names.count(name) > 1:
+            reader.fail(line.number, f"channel '{word}' is unknown or named twice")
+    if sum(name.endswith("rotation") for name in names) not in (0, 3):
+        reader.fail(line.number, "a joint has no rotation channel or three")
+    return names
+
+
+def _motion(reader: Reader, drafts: list[_Draft]) -> tuple[float, FloatArray]:
+    """Frame time, s, and the table (T, C) of channel values, units and degrees."""
+    total = _frame_count(reader)
+    frame_time = _frame_time(reader)
+    owners = [draft.name for draft in drafts for _ in draft.channels]
+    rows = []
+    while (line := reader.peek()) is not None:
+        reader.next += 1
+        rows.append(reader.keys(line.number, line.words, len(owners)))
+    if len(rows) < total:
+        reader.fail(reader.last_line, f"the file ends after {len(rows)} of {total} frames")
+    table = np.array(rows)
+    require_finite(table, owners)
+    return frame_time, table
+
+
+def _frame_count(reader: Reader) -> int:
+    line = reader.take("Frames:")
+    if not line.starts("frames:") or len(line.words) != 2 or not line.words[1].isdecimal():
+        reader.fail(line.number, "'Frames:' and a whole number should stand here")
+    if int(line.words[1]) == 0:
+        reader.fail(line.number, "the file holds no frames")
+    return int(line.words[1])
+
+
+def _frame_time(reader: Reader) -> float:
+    line = reader.take("Frame Time:")
+    if not line.starts("frame", "time:"):
+        reader.fail(line.number, "'Frame Time:' and the seconds should stand here")
+    seconds = reader.numbers(line.number, line.words[2:], 1)[0]
+    if seconds <= 0.0:
+        reader.fail(line.number, "the frame time is not positive")
+    return _unrounded(line.words[2], seconds)
+
+
+def _unrounded(printed: str, seconds: float) -> float:
+    """The time of the whole or television (x/1.001) rate that rounds to what is printed."""
+    digits = printed.lower().partition("e")[0].partition(".")[2]
+    slack = 0.5001 * 10.0 ** -len(digits) if "e" not in printed.lower() else 0.0
+    for second in (1.0, 1.001):
+        rate = round(second / seconds)
+        if rate and abs(second / rate - seconds) <= slack:
+            return second / rate
+    return seconds
+
+
+def _poses(drafts: list[_Draft], table: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Positions (T, J, 3) and rotations (T, J, 3, 3), each in the parent's frame."""
+    frames, joints = len(table), len(drafts)
+    positions = np.empty((frames, joints, 3))
+    matrices = np.empty((frames, joints, 3, 3))
+    column = 0
+    for j, draft in enumerate(drafts):
+        values = table[:, column : column + len(draft.channels)]
+        column += len(draft.channels)
+        spins = [c for c, name in enumerate(draft.channels) if name.endswith("rotation")]
+        moves = [c for c, name in enumerate(draft.channels) if name.endswith("position")]
+        axes = ["xyz".index(name[0]) for name in draft.channels]
+        matrices[:, j] = turns.product([axes[c] for c in spins], np.radians(values[:, spins]))
+        positions[:, j] = 0.0 if moves else draft.offset
+        for c in moves:
+            positions[:, j, axes[c]] = values[:, c]
+    return positions, matrices

@@ -1,0 +1,46 @@
+"""What a motion file leaves unsaid: which way is up, and how long its unit is."""
+
+import numpy as np
+
+from ...solver.recording import FloatArray
+from .skeleton import MotionClip, UpAxis, forward_kinematics, rest_axes
+
+ACCLAIM_UNIT = 0.0254 / 0.45  # an inch over the scale that the CMU recordings carry
+LIKELY_UNITS = (1.0, 0.1, ACCLAIM_UNIT, 0.0254, 0.01, 0.001)  # m
+LIKELY_HEIGHT = 1.7  # m
+SAMPLES = 32
+
+
+def guess_up(clip: MotionClip) -> UpAxis:
+    """The axis along which the head is above the feet; without their names, the tall one."""
+    points = _sampled_points(clip)
+    names = [joint.name.lower() for joint in clip.joints] * 2
+    head = [i for i, name in enumerate(names) if "head" in name]
+    feet = [i for i, name in enumerate(names) if any(w in name for w in ("foot", "toe", "ankle"))]
+    if head and feet:
+        stature = np.mean(points[:, head], axis=(0, 1)) - np.mean(points[:, feet], axis=(0, 1))
+    else:
+        stature = np.median(np.ptp(points, axis=1), axis=0)
+    return "Z" if stature[2] > stature[1] else "Y"
+
+
+def guess_unit(clip: MotionClip, up: UpAxis | None = None) -> float:
+    """Metres per unit: the likely unit that makes the figure nearest in ratio to 1.7 m tall."""
+    vertical = 2 if (up or guess_up(clip)) == "Z" else 1
+    return likely_unit(float(np.median(np.ptp(_sampled_points(clip)[..., vertical], axis=1))))
+
+
+def likely_unit(height: float) -> float:
+    """Metres per unit for a figure of this height in units; 1 where it has no height at all."""
+    if height <= 0.0:
+        return 1.0
+    return min(LIKELY_UNITS, key=lambda unit: abs(np.log(unit * height / LIKELY_HEIGHT)))
+
+
+def _sampled_points(clip: MotionClip) -> FloatArray:
+    """(S, 2J, 3) heads, then tails, at instants spread over the clip."""
+    total = len(clip.positions)
+    frames = np.unique(np.linspace(0, total - 1, min(SAMPLES, total)).astype(int))
+    heads, rotations = forward_kinematics(clip, frames)
+    tails = heads + np.einsum("tjab,jb->tja", rotations, rest_axes(clip))
+    return np.concatenate([heads, tails], axis=1)

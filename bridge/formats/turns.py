@@ -1,0 +1,16 @@
+"""Rotation matrices of whole clips from angles about coordinate axes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...solver.recording import FloatArray
+from ...solver.rotations import axis_rotation
+
+
+def product(axes: Sequence[int], angles: FloatArray) -> FloatArray:
+    """(T, 3, 3): R(axes[0]) R(axes[1]) ..., by the columns of angles (T, len(axes)), rad."""
+    out = np.broadcast_to(np.eye(3), (len(angles), 3, 3)).copy()
+    for column, axis in enumerate(axes):
+        out = out @ axis_rotation(axis, angles[:, column])
+    return out

@@ -1,0 +1,91 @@
+"""The evaluated pose of an armature over time, in Blender's own units and spaces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Bones, parents first, at T instants.
+
+    bones: their names. parents: (B,) indices, -1 for a root. object_to_world: (T, 4, 4).
+    matrices: (T, B, 4, 4), bone to armature. Blender units.
+    """
+
+    bones: tuple[str, ...]
+    parents: tuple[int, ...]
+    object_to_world: FloatArray
+    matrices: FloatArray
+
+
+def metres_per_unit(scene: bpy.types.Scene) -> float:
+    """Length of a Blender unit in m; 1 where the scene has no units."""
+    units = scene.unit_settings
+    return 1.0 if units.system == "NONE" else units.scale_length
+
+
+def frames_per_second(scene: bpy.types.Scene) -> float:
+    """Frame rate of a scene, 1/s."""
+    return scene.render.fps / scene.render.fps_base
+
+
+def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
+    """Evaluate `armature`, constraints and drivers included, at each of `frames` (T,).
+
+    The scene's frame, and whether the armature is seen, are afterwards what they were.
+    """
+    scene = bpy.context.scene
+    bones = _parents_first(armature)
+    columns = [armature.pose.bones.find(bone.name) for bone in bones]
+    names = tuple(bone.name for bone in bones)
+    parents = tuple(names.index(b.parent.name) if b.parent else -1 for b in bones)
+    world = np.empty((len(frames), 4, 4))
+    matrices = np.empty((len(frames), len(bones), 4, 4))
+    flat = np.empty(16 * len(bones), np.float32)
+    with evaluated(armature):
+        for t, frame in enumerate(frames):
+            whole = int(np.floor(frame))
+            scene.frame_set(whole, subframe=frame - whole)
+            posed = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+            world[t] = posed.matrix_world
+            posed.pose.bones.foreach_get("matrix", flat)
+            # Blender stores columns, numpy rows.
+            matrices[t] = flat.reshape(-1, 4, 4).transpose(0, 2, 1)[columns]
+    return Poses(names, parents, world, matrices)
+
+
+@contextmanager
+def evaluated(armature: bpy.types.Object) -> Iterator[None]:
+    """Have Blender evaluate the armature's pose: it skips what is hidden, excluded or at rest.
+
+    On exit these and the scene's frame are what they were.
+    """
+    scene = bpy.context.scene
+    frame, subframe = scene.frame_current, scene.frame_subframe
+    hidden, position = armature.hide_viewport, armature.data.pose_position
+    linked = armature.name in scene.collection.objects
+    armature.hide_viewport = False
+    armature.data.pose_position = "POSE"
+    if not linked:
+        scene.collection.objects.link(armature)
+    try:
+        yield
+    finally:
+        if not linked:
+            scene.collection.objects.unlink(armature)
+        armature.data.pose_position = position
+        armature.hide_viewport = hidden
+        scene.frame_set(frame, subframe=subframe)
+
+
+def _parents_first(armature: bpy.types.Object) -> list[bpy.types.Bone]:
+    return sorted(armature.data.bones, key=lambda bone: len(bone.parent_recursive))

@@ -1,0 +1,72 @@
+"""Meshes of the picture as vertex and face arrays: no Blender."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..solver.recording import FloatArray
+
+IntArray = NDArray[np.int64]
+Mesh = tuple[FloatArray, IntArray]  # (V, 3) vertices m, (F, 4) faces
+
+AROUND, ALONG = 28, 20
+SLENDER = 1.7  # a body this many times longer than wide is drawn as a tapered limb
+
+
+def limb(size: FloatArray, proximal: float, *, head: bool = False) -> Mesh:
+    """A pleasant solid for a box of the given extents (3,).
+
+    Slender boxes become limbs that taper away from the proximal end (+1 or -1 on the longest
+    axis), heads become ellipsoids, the rest rounded blocks.
+    """
+    longest = int(np.argmax(size))
+    slender = size[longest] > SLENDER * np.median(size)
+    if head:
+        return _superellipsoid(size, longest, ends=0.9, section=1.0, taper=0.0)
+    if slender:
+        return _superellipsoid(size, longest, ends=0.42, section=0.95, taper=0.24 * proximal)
+    return _superellipsoid(size, longest, ends=0.5, section=0.75, taper=0.06 * proximal)
+
+
+def ball(radius: float) -> Mesh:
+    """A sphere around the origin."""
+    return _superellipsoid(np.full(3, 2 * radius), 2, ends=1.0, section=1.0, taper=0.0)
+
+
+def block(low: FloatArray, high: FloatArray) -> Mesh:
+    """The box between two corners (3,)."""
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
+    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    return low + corners * (high - low), np.array(faces)
+
+
+def _superellipsoid(
+    size: FloatArray, axis: int, *, ends: float, section: float, taper: float
+) -> Mesh:
+    """Exponents near 0 give boxes, 1 ellipsoids; `taper` widens towards the axis's positive end."""
+    phi, theta = np.meshgrid(
+        np.linspace(-np.pi / 2, np.pi / 2, ALONG + 1),
+        np.linspace(0.0, 2 * np.pi, AROUND, endpoint=False),
+        indexing="ij",
+    )
+    along = _power(np.sin(phi), ends)
+    radius = _power(np.cos(phi), ends) * (1 + taper * along)
+    unit = np.stack(
+        [
+            radius * _power(np.cos(theta), section),
+            radius * _power(np.sin(theta), section),
+            along,
+        ],
+        axis=-1,
+    )
+    # the cyclic order keeps the faces pointing outwards
+    order = [(axis + 1) % 3, (axis + 2) % 3, axis]
+    vertices = np.zeros((unit.shape[0] * unit.shape[1], 3))
+    vertices[:, order] = unit.reshape(-1, 3)
+    ring, step = np.meshgrid(np.arange(ALONG), np.arange(AROUND), indexing="ij")
+    a, b = ring * AROUND + step, ring * AROUND + (step + 1) % AROUND
+    faces = np.stack([a, b, b + AROUND, a + AROUND], axis=-1).reshape(-1, 4)
+    return vertices * size / 2, faces
+
+
+def _power(x: FloatArray, exponent: float) -> FloatArray:
+    return np.sign(x) * np.abs(x) ** exponent

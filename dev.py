@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Hangtime outside Blender: python3 dev.py COMMAND [--blender VERSION] [options of the command]
+
+  demo [--out DIR]                        fetch a real recording, move one hop's landing, adapt it
+  adapt CLIP --recipe RECIPE --out DIR    the same for any clip (BVH, FBX, ASF/AMC)
+  test [pytest arguments]                 run the tests
+  figures --out DIR                       measure everything that the project promises
+  build [--out DIR]                       make and validate the extension's zips
+  lint                                    ruff and mypy
+
+Makes its own environment in .hangtime/ on first use; needs Python alone. Without --blender it takes
+the newest Blender with long-term support that this Python can run.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+from devtools import environment, pythons
+
+# command: module of the package, arguments before the user's, whether it needs dev.txt
+COMMANDS = {
+    "demo": ("devtools.demo", [], False),
+    "adapt": ("operators.cli", ["adapt"], False),
+    "test": ("devtools.testing", [], True),
+    "figures": ("devtools.figures", [], True),
+    "build": ("devtools.build", [], False),
+    "lint": ("devtools.lint", [], True),
+}
+
+
+def split_arguments(argv: list[str]) -> tuple[str, str | None, list[str]]:
+    """The command, the Blender asked for, and the rest, which belongs to the command."""
+    command, rest = argv[0], argv[1:]
+    if command not in COMMANDS:
+        raise environment.SetUpError(f"Unknown command '{command}'; dev.py --help lists them all.")
+    if "--blender" not in rest:
+        return command, None, rest
+    at = rest.index("--blender")
+    if at + 1 == len(rest):
+        raise environment.SetUpError("--blender needs a version, such as 4.5.")
+    return command, rest[at + 1], rest[:at] + rest[at + 2 :]
+
+
+def main(argv: list[str]) -> int:
+    if not argv or argv[0] in ("-h", "--help"):
+        print(__doc__)
+        return 0
+    try:
+        command, wanted, rest = split_arguments(argv)
+        module, leading, tools = COMMANDS[command]
+        blender, python = pythons.choose(wanted)
+        place = environment.prepare(blender, python, tools)
+    except environment.SetUpError as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return run(place, [module, *leading, *rest])
+
+
+def run(place: environment.Place, arguments: list[str]) -> int:
+    """Run a module of the package in the environment; its exit code."""
+    launcher = os.path.join(environment.ROOT, "devtools", "package.py")
+    code = subprocess.call([place.python, launcher, *arguments], env=place.variables())
+    return code if code >= 0 else 128 - code  # a signal, the way shells count it
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        sys.exit(130)

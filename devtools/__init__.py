@@ -1,0 +1,1 @@
+"""What dev.py does; never part of the extension's zip."""

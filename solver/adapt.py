@@ -1,0 +1,188 @@
+"""The implicit solution (thesis 4.4): small steps from the fit to where the artist's pins hold.
+
+The steps start from the fit carried along with the pins: each stance moves rigidly with its
+contacts, and between stances the move is blended. Large edits are made in stages.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from .contacts import ContactSchedule, PhaseKind
+from .fit import ADAPT_PRICES, Fit, dense_instants, greville, refine
+from .motion import Motion
+from .problem import MotionProblem, pinned_places
+from .projection import Outcome, Progress, Status, restore
+from .recording import FloatArray
+from .rotations import axis_rotation
+from .transcription import Transcription
+
+STAGE_SHIFT = 0.5  # m
+STAGE_TURN = np.radians(45.0)
+
+
+@dataclass(frozen=True)
+class Adaptation:
+    """An adapted motion, the fit it came from and how it was found."""
+
+    fit: Fit
+    outcomes: tuple[Outcome, ...]
+    places: FloatArray
+
+    @property
+    def outcome(self) -> Outcome:
+        return self.outcomes[-1]
+
+    @property
+    def motion(self) -> Motion:
+        return Motion(self.outcome.transcription, self.outcome.x, self.places)
+
+    @property
+    def solved(self) -> bool:
+        return self.outcome.status is Status.SOLVED
+
+
+@dataclass(frozen=True)
+class RigidMove:
+    """A stance's move between two instants: turn (rad, about the vertical through pivot), shift."""
+
+    start: float
+    end: float
+    pivot: FloatArray
+    turn: float
+    shift: FloatArray
+
+    def of(self, points: FloatArray) -> FloatArray:
+        """(T, 3) points moved."""
+        return np.asarray(
+            (points - self.pivot) @ axis_rotation(2, self.turn).T + self.pivot + self.shift
+        )
+
+
+def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None) -> Adaptation:
+    """Adapts a fitted performance to the problem's pins.
+
+    Raises UnknownPhase, UnknownContact, ContradictoryPins. A solve that fails is returned with
+    the best motion found and a status that says so.
+    """
+    goal = pinned_places(problem, fit.performance, fit.schedule)
+    motion, outcomes = fit.motion, list[Outcome]()
+    stages = _stage_count(fit.schedule, fit.places, goal)
+    for stage in range(1, stages + 1):
+        places = fit.places + (goal - fit.places) * stage / stages
+        if stages > 1:
+            places = _staged(fit.schedule, fit.places, goal, stage / stages)
+        start = carry(motion, stance_moves(fit.schedule, motion.places, places))
+        outcome = restore(
+            motion.transcription, fit.metric, start, places, stage="adapt", progress=progress
+        )
+        outcomes.append(outcome)
+        motion = Motion(outcome.transcription, outcome.x, places)
+        if outcome.status is not Status.SOLVED:
+            return Adaptation(fit, tuple(outcomes), places)
+    outcomes += refine(outcomes[-1], goal, ADAPT_PRICES, progress=progress)
+    return Adaptation(fit, tuple(outcomes), goal)
+
+
+def stance_moves(
+    schedule: ContactSchedule, before: FloatArray, after: FloatArray
+) -> tuple[RigidMove, ...]:
+    """The rigid move nearest to how each ground phase's contacts go from before to after."""
+    moves = []
+    for phase in schedule.phases:
+        if phase.kind is not PhaseKind.GROUND:
+            continue
+        mine = [
+            i
+            for i, c in enumerate(schedule.contacts)
+            if c.start < phase.end and c.end > phase.start
+        ]
+        if not mine:
+            continue
+        old, new = before[mine], after[mine]
+        pivot, to = old.mean(axis=0), new.mean(axis=0)
+        a, b = old - pivot, new - to
+        turn = np.arctan2(
+            (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(),
+            (a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1]).sum(),
+        )
+        moves.append(RigidMove(phase.start, phase.end, pivot, float(turn), to - pivot))
+    return tuple(moves)
+
+
+def carry(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
+    """Unknowns of a motion whose stances make these moves, blended linearly in between."""
+    t, x = motion.transcription, motion.x.copy()
+    if not moves:
+        return x
+    layout, basis = t.layout, t.basis
+    at = greville(basis)
+    com, _ = _blend(moves, at, x[:, layout.com])
+    x[:, layout.com] = com
+    if any(abs(move.turn) > 1e-6 for move in moves):
+        _turn_root(t, x, moves)
+        _turn_forces(t, x, moves)
+    return x
+
+
+def _blend(
+    moves: tuple[RigidMove, ...], times: FloatArray, points: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """(T, 3) points moved and (T,) turns, at each instant."""
+    middles = [edge for move in moves for edge in (move.start, move.end)]
+    position = np.interp(times, middles, np.repeat(np.arange(len(moves)), 2))
+    low = np.floor(position).astype(int)
+    high = np.minimum(low + 1, len(moves) - 1)
+    share = position - low
+    moved = np.stack([move.of(points) for move in moves])
+    turns = np.array([move.turn for move in moves])
+    each = np.arange(len(times))
+    place = (1 - share)[:, None] * moved[low, each] + share[:, None] * moved[high, each]
+    return place, (1 - share) * turns[low] + share * turns[high]
+
+
+def _turn_root(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) -> None:
+    """Turns the pelvis about the vertical, in place, keeping its angles continuous."""
+    joint = t.character.joints[0]
+    root = slice(t.layout.angles.start + joint.first, t.layout.angles.start + joint.dofs.stop)
+    times = dense_instants(t.basis)
+    was = t.basis.combine(x[:, root], times)
+    turns = _blend(moves, times, np.zeros((len(times), 3)))[1]
+    turned = axis_rotation(2, turns) @ joint.axes.rotation(was)
+    angles = joint.axes.angles(turned)
+    whole = 2 * np.pi * np.round((was[0] - angles[0]) / (2 * np.pi))
+    matrix = t.basis.matrix(times)
+    x[:, root] = np.linalg.lstsq(matrix, angles + whole, rcond=None)[0]
+
+
+def _turn_forces(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) -> None:
+    turns = _blend(moves, greville(t.basis), np.zeros((len(x), 3)))[1]
+    forces = x[:, t.layout.forces].reshape(len(x), t.layout.n_points, 3)
+    turned = np.einsum("kij,kpj->kpi", axis_rotation(2, turns), forces)
+    x[:, t.layout.forces] = turned.reshape(len(x), -1)
+
+
+def _stage_count(schedule: ContactSchedule, before: FloatArray, after: FloatArray) -> int:
+    moves = stance_moves(schedule, before, after)
+    relative = [b.shift - a.shift for a, b in itertools.pairwise(moves)]
+    turns = [b.turn - a.turn for a, b in itertools.pairwise(moves)]
+    furthest = max((float(np.linalg.norm(shift)) for shift in relative), default=0.0)
+    largest = max((abs(turn) for turn in turns), default=0.0)
+    return max(1, int(np.ceil(furthest / STAGE_SHIFT)), int(np.ceil(largest / STAGE_TURN)))
+
+
+def _staged(
+    schedule: ContactSchedule, before: FloatArray, after: FloatArray, share: float
+) -> FloatArray:
+    """Places part of the way: each stance turns and shifts by a share of its whole move."""
+    places = before + share * (after - before)
+    for move in stance_moves(schedule, before, after):
+        part = RigidMove(move.start, move.end, move.pivot, share * move.turn, share * move.shift)
+        back = RigidMove(move.start, move.end, move.pivot + move.shift, -move.turn, -move.shift)
+        for i, contact in enumerate(schedule.contacts):
+            if contact.start < move.end and contact.end > move.start:
+                # What the move leaves over (feet that part) comes in by the same share.
+                rest = back.of(after[i : i + 1]) - before[i]
+                places[i] = part.of(before[i : i + 1] + share * rest)[0]
+    return places

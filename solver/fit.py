@@ -1,0 +1,234 @@
+"""The fit: the physically valid motion nearest to the recording (thesis 4.2).
+
+It is computed once per recording and starts every adaptation.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from .character import Character
+from .closeness import Closeness, Prices, Target, marker_points
+from .contacts import Contact, ContactSchedule
+from .dynamics import GRAVITY, MomentFunction, PointVelocity
+from .kinematics import BodyPoint, pose
+from .linear import BlockBanded
+from .motion import Motion, split, weak_spans
+from .performance import Performance, interpolate
+from .projection import Outcome, Progress, project, restore
+from .recording import FloatArray
+from .splines import Basis, gauss_instants, phase_breaks
+from .transcription import SETTLE, PointContact, Transcription, touching_spans
+
+LONGEST_SPAN = 0.045  # s
+SHORTEST_SPAN = 0.015  # s
+FIT_PRICES = Prices(place=1.0, smooth_s=0.05, force=1e-4)
+# An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
+# priced too: what a person does to jump further is push longer, not only harder.
+ADAPT_PRICES = Prices(shape=1.0, com=0.02, smooth_s=0.05, force=3e-3)
+MOMENT_PROMISE = 5e-4  # BW·m, rms in a span
+DRIFT_PROMISE = 3e-4  # m
+MOST_REFINEMENTS = 3
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted performance: equations, solution and how it was found."""
+
+    performance: Performance
+    schedule: ContactSchedule
+    outcomes: tuple[Outcome, ...]
+    places: FloatArray  # (n_contacts, 3) m
+
+    @property
+    def outcome(self) -> Outcome:
+        return self.outcomes[-1]
+
+    @property
+    def motion(self) -> Motion:
+        return Motion(self.outcome.transcription, self.outcome.x, self.places)
+
+    @cached_property
+    def metric(self) -> BlockBanded:
+        """The norm in which adaptations of this fit are small."""
+        return motion_metric(self.motion, ADAPT_PRICES)
+
+
+def fit(
+    performance: Performance,
+    schedule: ContactSchedule,
+    *,
+    progress: Progress | None = None,
+) -> Fit:
+    """Finds the valid motion nearest to the recording, with its contacts."""
+    transcription = transcribe(performance, schedule)
+    x = first_guess(transcription, performance)
+    places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
+    closeness = Closeness(transcription, recorded_target(transcription, performance, x), FIT_PRICES)
+    near = project(
+        transcription, closeness, x, places, stage="fit", most_steps=8, progress=progress
+    )
+    metric = closeness.expand(near.x)[1]
+    valid = restore(transcription, metric, near.x, places, stage="fit", progress=progress)
+    outcomes = [near, valid, *refine(valid, places, FIT_PRICES, progress=progress)]
+    return Fit(performance, schedule, tuple(outcomes), places)
+
+
+def refine(
+    outcome: Outcome, places: FloatArray, prices: Prices, *, progress: Progress | None = None
+) -> list[Outcome]:
+    """Splits spans until physics and pins hold between the nodes as promised (thesis 6.4)."""
+    outcomes: list[Outcome] = []
+    for _ in range(MOST_REFINEMENTS):
+        motion = Motion(outcome.transcription, outcome.x, places)
+        weak = weak_spans(motion, MOMENT_PROMISE, DRIFT_PROMISE)
+        if not len(weak):
+            break
+        finer = on_finer_basis(motion, weak)
+        metric = motion_metric(finer, prices)
+        outcome = restore(
+            finer.transcription, metric, finer.x, places, stage="refine", progress=progress
+        )
+        outcomes.append(outcome)
+    return outcomes
+
+
+def on_finer_basis(motion: Motion, spans: np.ndarray) -> Motion:
+    """The same motion with some spans split in two."""
+    old = motion.transcription
+    breaks = split(old.basis.breaks, spans)
+    double = np.isin(breaks, old.basis.breaks[old.basis.double])
+    basis = Basis(breaks, double)
+    new = replace(old, basis=basis, released=frozenset())
+    x = np.zeros((basis.n_coefficients, old.layout.n_block))
+    x[:, old.layout.motion] = old.basis.coarse_to(basis, motion.x[:, old.layout.motion])
+    inner = np.arange(basis.n_spans)
+    nodes = basis.force_nodes(inner)
+    middles = 0.5 * (breaks[:-1] + breaks[1:])
+    was = old.basis.spans(middles)
+    values = motion.x[old.basis.force_nodes(was) + 1][:, :, old.layout.forces]
+    for side in range(2):
+        weights = old.basis.force_weights(breaks[inner + side], was)
+        x[nodes[:, side] + 1, old.layout.forces] = np.einsum("tk,tkn->tn", weights, values)
+    x[~new.active] = 0.0
+    return Motion(new, x, motion.places)
+
+
+def motion_metric(motion: Motion, prices: Prices) -> BlockBanded:
+    """The metric W at a motion."""
+    return Closeness(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
+
+
+def motion_target(motion: Motion) -> Target:
+    """A solved motion as a target."""
+    t = motion.transcription
+    com = t.basis.combine(motion.x[:, t.layout.com], t.node_times)
+    q, _, a = t.angles_at_nodes(motion.x)
+    markers = pose(t.character, q).points(marker_points(t.character)) + com[:, None]
+    return Target(markers, com, a, motion.x[:, t.layout.forces])
+
+
+def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcription:
+    """The equations of a performance with its contacts."""
+    character = performance.character
+    points, which = body_points(character, performance, schedule)
+    boundaries = schedule.boundaries
+    contacts: list[PointContact] = []
+    extra: list[float] = []
+    for contact, point in zip(schedule.contacts, which, strict=True):
+        start, end = (
+            _shared_instant(t, boundaries, extra) for t in _pinned(contact, schedule.duration)
+        )
+        contacts.append(PointContact(contact, point, start, end))
+    breaks, double = phase_breaks(boundaries, extra, LONGEST_SPAN)
+    return Transcription(
+        character,
+        Basis(breaks, double),
+        points,
+        tuple(contacts),
+        MomentFunction(character),
+        PointVelocity(character, points) if points else None,
+    )
+
+
+def _pinned(contact: Contact, duration: float) -> tuple[float, float]:
+    """When a contact's point is held still: all of it but a short while at either end."""
+    settle = min(SETTLE, 0.25 * (contact.end - contact.start))
+    start = contact.start if contact.start <= 0.0 else contact.start + settle
+    end = contact.end if contact.end >= duration else contact.end - settle
+    return start, end
+
+
+def _shared_instant(t: float, boundaries: Sequence[float], extra: list[float]) -> float:
+    """A break near t: one that is there already if it is close enough, else t itself, added."""
+    near = min((*boundaries, *extra), key=lambda b: abs(b - t))
+    if abs(near - t) < SHORTEST_SPAN:
+        return near
+    extra.append(t)
+    return t
+
+
+def body_points(
+    character: Character, performance: Performance, schedule: ContactSchedule
+) -> tuple[tuple[BodyPoint, ...], list[int]]:
+    """The distinct points that touch, in their bodies' frames, and each contact's index of one."""
+    recording = performance.recording
+    bodies = {body.bone: i for i, body in enumerate(character.bodies)}
+    names: list[str] = []
+    points: list[BodyPoint] = []
+    which = []
+    for contact in schedule.contacts:
+        if contact.point not in names:
+            bone = recording.bones[recording.index(contact.bone)]
+            names.append(contact.point)
+            points.append(BodyPoint(bodies[contact.bone], bone.rotation @ contact.offset))
+        which.append(names.index(contact.point))
+    return tuple(points), which
+
+
+def first_guess(transcription: Transcription, performance: Performance) -> FloatArray:
+    """The recording's own spline, and forces that share its centre of mass's acceleration."""
+    basis, layout = transcription.basis, transcription.layout
+    x = np.zeros((basis.n_coefficients, layout.n_block))
+    x[:, layout.com] = basis.project(performance.times, performance.com)
+    x[:, layout.angles] = basis.project(performance.times, performance.angles)
+    spans = np.arange(basis.n_spans)
+    middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
+    load = basis.combine(x[:, layout.com], middles, 2)[:, 2] / GRAVITY + 1.0
+    nodes = basis.force_nodes(spans) + 1
+    for contact in transcription.contacts:
+        inside = touching_spans(basis, contact.contact)
+        for side in range(2):
+            at = nodes[inside, side]
+            x[at, layout.force(contact.point).start + 2] = np.clip(load[inside], 0.0, 4.0)
+    vertical = range(layout.forces.start + 2, layout.n_block, 3)
+    together = np.maximum((x[:, vertical] > 0).sum(axis=1, keepdims=True), 1)
+    x[:, vertical] /= together
+    x[~transcription.active] = 0.0
+    return x
+
+
+def recorded_target(
+    transcription: Transcription, performance: Performance, x: FloatArray
+) -> Target:
+    """The recording at the dynamics nodes; accelerations and forces as in the first guess x."""
+    times = transcription.node_times
+    return Target(
+        markers=performance.points(marker_points(performance.character), times),
+        com=interpolate(performance.times, performance.com, times),
+        accelerations=transcription.angles_at_nodes(x)[2],
+        forces=x[:, transcription.layout.forces],
+    )
+
+
+def greville(basis: Basis) -> FloatArray:
+    """(n_coefficients,) the instant that each coefficient stands for."""
+    k = basis.knots
+    return np.asarray((k[1:-3] + k[2:-2] + k[3:-1]) / 3.0)
+
+
+def dense_instants(basis: Basis, per_span: int = 4) -> FloatArray:
+    """Instants that determine a spline on this basis."""
+    return gauss_instants(basis.breaks, per_span)[0]

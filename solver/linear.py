@@ -1,0 +1,79 @@
+"""Cholesky factorisation of block-banded symmetric matrices, with numpy alone.
+
+Splines make every matrix of the method banded in time: coefficients four apart do not meet. So
+the unknowns are ordered by time in K blocks of n, and a block row holds at most three blocks
+left of its diagonal.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .recording import FloatArray
+
+BAND = 3
+
+
+class BlockBanded:
+    """A symmetric block-banded matrix; lower[j][k] is the block in row k + j, column k."""
+
+    def __init__(self, blocks: int, size: int) -> None:
+        self.lower = np.zeros((BAND + 1, blocks, size, size))
+
+    def add_windows(self, first: np.ndarray, windows: FloatArray) -> None:
+        """Adds dense (S, 4, n, 4, n) windows whose first block row is first (S,), all different."""
+        for row in range(BAND + 1):
+            for column in range(row + 1):
+                self.lower[row - column][first + column] += windows[:, row, :, column, :]
+
+    def add_diagonal(self, values: FloatArray) -> None:
+        """Adds (K, n) values to the diagonal."""
+        index = np.arange(values.shape[1])
+        self.lower[0][:, index, index] += values
+
+    def times(self, x: FloatArray) -> FloatArray:
+        """The product with (K, n)."""
+        lower = self.lower
+        y = np.einsum("kij,kj->ki", lower[0], x)
+        for j in range(1, BAND + 1):
+            y[j:] += np.einsum("kij,kj->ki", lower[j][:-j], x[:-j])
+            y[:-j] += np.einsum("kij,ki->kj", lower[j][:-j], x[j:])
+        return np.asarray(y)
+
+    def factor(self) -> "Factor":
+        """Cholesky factor. Raises numpy.linalg.LinAlgError if the matrix is not positive."""
+        lower = self.lower.copy()
+        _, count, n, _ = lower.shape
+        inverse = np.empty((count, n, n))
+        for k in range(count):
+            inverse[k] = np.linalg.inv(np.linalg.cholesky(lower[0][k]))
+            reach = min(BAND, count - 1 - k)
+            panel = lower[1 : reach + 1, k].reshape(reach * n, n) @ inverse[k].T
+            lower[1 : reach + 1, k] = panel.reshape(reach, n, n)
+            update = (panel @ panel.T).reshape(reach, n, reach, n)
+            for row in range(reach):
+                for column in range(row + 1):
+                    lower[row - column][k + 1 + column] -= update[row, :, column, :]
+        return Factor(inverse, lower[1:])
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A Cholesky factor: inverses of its diagonal blocks and the blocks below them."""
+
+    inverse: FloatArray  # (K, n, n)
+    below: FloatArray  # (3, K, n, n)
+
+    def solve(self, b: FloatArray) -> FloatArray:
+        """x (K, n) with matrix times x = b (K, n)."""
+        x = np.array(b)
+        count = len(x)
+        for k in range(count):
+            x[k] = self.inverse[k] @ x[k]
+            for j in range(1, min(BAND, count - 1 - k) + 1):
+                x[k + j] -= self.below[j - 1, k] @ x[k]
+        for k in reversed(range(count)):
+            for j in range(1, min(BAND, count - 1 - k) + 1):
+                x[k] -= self.below[j - 1, k].T @ x[k + j]
+            x[k] = self.inverse[k].T @ x[k]
+        return x

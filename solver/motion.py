@@ -1,0 +1,132 @@
+"""A solved motion as functions of time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .dynamics import GRAVITY
+from .kinematics import Pose, pose
+from .recording import FloatArray, PoseTrack, Recording
+from .rotations import cross_matrix
+from .transcription import PointContact, Transcription
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Unknowns x (K, n_block) of a transcription, with each contact's place (n_contacts, 3) m."""
+
+    transcription: Transcription
+    x: FloatArray
+    places: FloatArray
+
+    @property
+    def duration(self) -> float:
+        return float(self.transcription.basis.breaks[-1])
+
+    def com(self, times: FloatArray, derivative: int = 0) -> FloatArray:
+        """(T, 3) centre of mass, m, or its derivative."""
+        t = self.transcription
+        return t.basis.combine(self.x[:, t.layout.com], times, derivative)
+
+    def angles(self, times: FloatArray, derivative: int = 0) -> FloatArray:
+        """(T, n_angles) joint angles, rad, or their derivative."""
+        t = self.transcription
+        return t.basis.combine(self.x[:, t.layout.angles], times, derivative)
+
+    def forces(self, times: FloatArray) -> FloatArray:
+        """(T, P, 3) force on the body at each touching point, N, world; zero while not in touch."""
+        t = self.transcription
+        spans = t.basis.spans(times)
+        values = self.x[t.basis.force_nodes(spans) + 1][:, :, t.layout.forces]
+        forces = np.einsum("tk,tkn->tn", t.basis.force_weights(times, spans), values)
+        newtons = forces * t.character.mass * GRAVITY
+        return np.asarray(newtons.reshape(len(times), t.layout.n_points, 3))
+
+    def pose(self, times: FloatArray) -> Pose:
+        """The figure relative to its centre of mass."""
+        return pose(self.transcription.character, self.angles(times))
+
+    def joint_centres(self, times: FloatArray) -> FloatArray:
+        """(T, B, 3) m, world."""
+        return np.asarray(self.pose(times).centres + self.com(times)[:, None])
+
+    def contact_points(self, times: FloatArray) -> FloatArray:
+        """(T, P, 3) m, world places of the points that touch at some time."""
+        points = self.transcription.points
+        return np.asarray(self.pose(times).points(points) + self.com(times)[:, None])
+
+    def track(self, recording: Recording) -> PoseTrack:
+        """The bones' poses at the recording's frames."""
+        posed = self.pose(recording.times)
+        bones = [recording.index(b.bone) for b in self.transcription.character.bodies]
+        rest = np.stack([recording.bones[b].rotation for b in bones])
+        return PoseTrack(
+            frames=recording.frames,
+            bones=tuple(recording.bones[b].name for b in bones),
+            rotations=posed.rotations @ rest,
+            root_head=posed.centres[:, 0] + self.com(recording.times),
+        )
+
+    def drift(self, contact: int, times: FloatArray) -> FloatArray:
+        """(T,) distance of a contact's point from its place, m."""
+        at = self.contact_points(times)[:, self.transcription.contacts[contact].point]
+        return np.asarray(np.linalg.norm(at - self.places[contact], axis=1))
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """Root force (T, 3) in body weights and moment (T, 3) in body weights x m that nothing
+    explains, at instants (T,) s."""
+
+    times: FloatArray
+    force: FloatArray
+    moment: FloatArray
+
+
+def unexplained(motion: Motion, times: FloatArray) -> Unexplained:
+    """The equations of motion evaluated between the nodes (by the solver's own functions).
+
+    Quick, for choosing knots; the figures are measured by another engine.
+    """
+    t = motion.transcription
+    weight = t.character.mass * GRAVITY
+    forces = motion.forces(times) / weight
+    total = forces.sum(axis=1)
+    force = motion.com(times, 2) / GRAVITY + np.array([0.0, 0.0, 1.0]) - total
+    rate = t.moment.value(*(motion.angles(times, k) for k in range(3)))
+    if t.points:
+        arms = motion.pose(times).points(t.points)
+        rate = rate - np.einsum("tpij,tpj->ti", cross_matrix(arms), forces)
+    return Unexplained(times, force, rate)
+
+
+def pinned_instants(contact: PointContact, rate: float) -> FloatArray:
+    """Instants at `rate` Hz while a contact's point is pinned."""
+    count = max(2, int(np.ceil((contact.pin_end - contact.pin_start) * rate)))
+    return np.linspace(contact.pin_start, contact.pin_end, count)
+
+
+def weak_spans(motion: Motion, moment: float, drift: float) -> np.ndarray:
+    """Spans in which the motion breaks its promise between the nodes.
+
+    moment: rms moment, BW·m, that a span may leave unexplained. drift: m that a pinned point may
+    wander. Returns span indices.
+    """
+    basis = motion.transcription.basis
+    per = 8
+    inside = (np.arange(per) + 0.5) / per
+    times = (basis.breaks[:-1, None] + np.diff(basis.breaks)[:, None] * inside).ravel()
+    left = (unexplained(motion, times).moment ** 2).sum(axis=1).reshape(-1, per)
+    weak = set(np.flatnonzero(np.sqrt(left.mean(axis=1)) > moment).tolist())
+    for i, contact in enumerate(motion.transcription.contacts):
+        instants = pinned_instants(contact, 500.0)
+        far = motion.drift(i, instants) > drift
+        weak |= set(basis.spans(instants[far]).tolist())
+    return np.array(sorted(weak), dtype=int)
+
+
+def split(breaks: Sequence[float] | FloatArray, spans: np.ndarray) -> FloatArray:
+    """Breaks with the middle of each of the spans added."""
+    at = np.asarray(breaks)
+    return np.sort(np.concatenate([at, 0.5 * (at[spans] + at[spans + 1])]))

@@ -1,0 +1,252 @@
+"""Steps towards a motion that satisfies every equation (thesis 4.2 and 4.4).
+
+Each step solves the linearised problem
+
+    min  g . d + 1/2 d . W d   subject to   C(x) + C_x d = 0
+
+with W the metric of closeness.py. With g the gradient of the distance to a target this *projects*
+the target onto the valid motions (the fit); with g = 0 it is the thesis's minimum-norm step (the
+implicit solution), which converges quadratically and stays near where it began.
+
+The equality problem is solved by an augmented Lagrangian on one banded factor, which also settles
+redundant rows (two feet planted, pins on one rigid foot) without choosing among them.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from .closeness import Closeness
+from .linear import BlockBanded
+from .recording import FloatArray
+from .splines import ORDER
+from .transcription import RowKind, Rows, Transcription
+
+# The largest violation that is let stand, by kind, in the kind's unit.
+TOLERANCE = {
+    RowKind.BALANCE: 1e-5,
+    RowKind.MOMENT: 2e-5,
+    RowKind.PIN: 1e-5,
+    RowKind.PIN_SPEED: 1e-3,
+    RowKind.RELEASE: 1e-4,
+}
+# Speeds are weighed against places by the time in which they would move as far.
+NORM = {RowKind.PIN_SPEED: 30.0}
+PENALTY = 1e2
+MOST_SWEEPS = 8
+PULL_TOLERANCE = 0.01  # BW
+
+
+class Status(Enum):
+    """How a solve ended."""
+
+    SOLVED = "solved"
+    STALLED = "stalled"
+    TOO_MANY_STEPS = "too many steps"
+    CANCELLED = "cancelled"
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: worst violation over its tolerance before the step, and the length taken."""
+
+    stage: str
+    violation: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Where the steps ended: unknowns, equations (some forces may be released), how and why."""
+
+    x: FloatArray
+    transcription: Transcription
+    status: Status
+    steps: tuple[Step, ...]
+    violation: float
+
+
+Progress = Callable[[Step], None]
+
+
+def restore(
+    transcription: Transcription,
+    metric: BlockBanded,
+    x: FloatArray,
+    places: FloatArray,
+    *,
+    stage: str,
+    most_steps: int = 20,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Minimum-norm steps until the equations hold; forces that pull are released on the way.
+
+    metric: W, fixed. places: (n_contacts, 3) m. A line search on the summed squared violation
+    guards the steps (thesis eq. 4.6).
+    """
+    steps: list[Step] = []
+    status = Status.TOO_MANY_STEPS
+    rows = transcription.rows(x, places)
+    while len(steps) < most_steps:
+        violation = worst_violation(rows)
+        if violation <= 1.0:
+            pulling = transcription.pulling(x, PULL_TOLERANCE) - transcription.released
+            if not pulling:
+                status = Status.SOLVED
+                break
+            transcription = replace(transcription, released=transcription.released | pulling)
+            rows = transcription.rows(x, places)
+            violation = worst_violation(rows)
+        d, _ = solve_step(transcription, rows, np.zeros_like(x), metric, None)
+        x, length = _shorten(transcription, x, d, places, rows)
+        steps.append(Step(stage, violation, length))
+        if progress is not None:
+            progress(steps[-1])
+        rows = transcription.rows(x, places)
+        if length == 0.0:
+            status = Status.STALLED
+            break
+    return Outcome(x, transcription, status, tuple(steps), worst_violation(rows))
+
+
+def project(
+    transcription: Transcription,
+    closeness: Closeness,
+    x: FloatArray,
+    places: FloatArray,
+    *,
+    stage: str,
+    most_steps: int,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Steps towards the valid motion nearest to the target; `restore` finishes what they leave.
+
+    Ends when a step changes the distance little; the equations then nearly hold.
+    """
+    steps: list[Step] = []
+    status = Status.TOO_MANY_STEPS
+    multipliers: FloatArray | None = None
+    objective = closeness.value(x)
+    for _ in range(most_steps):
+        rows = transcription.rows(x, places)
+        gradient, metric = closeness.expand(x)
+        d, multipliers = solve_step(transcription, rows, gradient, metric, multipliers)
+        x, length = _search(transcription, closeness, x, d, places, rows, multipliers, objective)
+        steps.append(Step(stage, worst_violation(rows), length))
+        if progress is not None:
+            progress(steps[-1])
+        before, objective = objective, closeness.value(x)
+        if length == 0.0 or (len(steps) > 1 and abs(before - objective) < 0.01 * before):
+            status = Status.SOLVED
+            break
+    violation = worst_violation(transcription.rows(x, places))
+    return Outcome(x, transcription, status, tuple(steps), violation)
+
+
+def worst_violation(rows: Rows) -> float:
+    """The worst violation over its kind's tolerance; at most 1 means that the equations hold."""
+    return float((np.abs(rows.residual) / _by_kind(rows, TOLERANCE)).max())
+
+
+def _by_kind(rows: Rows, sizes: dict[RowKind, float]) -> FloatArray:
+    values = np.ones(len(rows.residual))
+    for kind, size in sizes.items():
+        values[rows.kind == kind] = size
+    return values
+
+
+def solve_step(
+    transcription: Transcription,
+    rows: Rows,
+    gradient: FloatArray,
+    metric: BlockBanded,
+    multipliers: FloatArray | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Step d (K, n_block) and multipliers (R,) of the rows in units of NORM.
+
+    Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)), y += rho (r + J d).
+    """
+    norm = _by_kind(rows, NORM)
+    J = rows.jacobian / norm[:, None, None]
+    r = rows.residual / norm
+    system = BlockBanded(*gradient.shape)
+    system.lower += metric.lower
+    _add_normal(system, transcription, rows.span, J, PENALTY)
+    factor = system.factor()
+    blocks = transcription.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)
+    y = np.zeros(len(r)) if multipliers is None else multipliers
+    d = np.zeros_like(gradient)
+    missing = r
+    for _ in range(MOST_SWEEPS):
+        slope = gradient + metric.times(d)
+        np.add.at(slope, blocks, J * (y + PENALTY * missing)[:, None, None])
+        d = d - factor.solve(slope)
+        missing = r + np.einsum("rkn,rkn->r", J, d[blocks])
+        y = y + PENALTY * missing
+        if np.abs(missing).max() < 1e-7:
+            break
+    return d, y
+
+
+def _add_normal(
+    system: BlockBanded,
+    transcription: Transcription,
+    span: np.ndarray,
+    J: FloatArray,
+    weight: float,
+) -> None:
+    """Adds weight * J'J to a banded matrix, span by span."""
+    spans = transcription.basis.n_spans
+    order = np.argsort(span, kind="stable")
+    counts = np.bincount(span, minlength=spans)
+    first = np.concatenate([[0], np.cumsum(counts)])
+    place = np.arange(len(span)) - first[span[order]]
+    n = J.shape[2]
+    padded = np.zeros((spans, counts.max(), ORDER * n))
+    padded[span[order], place] = J[order].reshape(len(span), ORDER * n)
+    windows = weight * np.swapaxes(padded, 1, 2) @ padded
+    system.add_windows(
+        transcription.basis.first_coefficient, windows.reshape(spans, ORDER, n, ORDER, n)
+    )
+
+
+def _shorten(
+    transcription: Transcription, x: FloatArray, d: FloatArray, places: FloatArray, rows: Rows
+) -> tuple[FloatArray, float]:
+    """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0.0 if none does."""
+    tolerance = _by_kind(rows, TOLERANCE)
+    before = float(((rows.residual / tolerance) ** 2).sum())
+    length = 1.0
+    while length > 1e-3:
+        trial = x + length * d
+        after = float(((transcription.residuals(trial, places) / tolerance) ** 2).sum())
+        if after < (1.0 - 0.1 * length) * before:
+            return trial, length
+        length *= 0.5
+    return x, 0.0
+
+
+def _search(
+    transcription: Transcription,
+    closeness: Closeness,
+    x: FloatArray,
+    d: FloatArray,
+    places: FloatArray,
+    rows: Rows,
+    multipliers: FloatArray,
+    objective: float,
+) -> tuple[FloatArray, float]:
+    """Backtracks on distance plus weighted violation (an exact l1 merit function)."""
+    norm = _by_kind(rows, NORM)
+    weight = 2.0 * float(np.abs(multipliers).max()) + 1e-9
+    before = objective + weight * float(np.abs(rows.residual / norm).sum())
+    length = 1.0
+    while length > 0.1:
+        trial = x + length * d
+        violation = float(np.abs(transcription.residuals(trial, places) / norm).sum())
+        if closeness.value(trial) + weight * violation < before:
+            return trial, length
+        length *= 0.5
+    return x, 0.0

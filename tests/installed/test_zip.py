@@ -1,0 +1,141 @@
+"""The built zip, installed the way an artist installs it, where CasADi is nowhere else.
+
+Slow: builds the zips (fetching the wheels at first) and starts Blender's module several times.
+"""
+
+import json
+import os
+import platform
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hangtime.devtools.build import build
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        (sys.platform, platform.machine()) != ("linux", "x86_64"),
+        reason="the zip under test is the one for Linux on x86-64",
+    ),
+]
+
+ROOT = Path(__file__).resolve().parents[2]
+RECORDINGS = ROOT.parent / "shared" / "mocap"
+SHIPPED = {
+    "LICENSE",
+    "README.md",
+    "__init__.py",
+    "blender_manifest.toml",
+    "bridge",
+    "operators",
+    "solver",
+    "ui",
+    "wheels",
+}
+ABSENT = ("casadi", "scipy", "mujoco")
+OUTPUTS = {"adapted.blend", "adapted.fbx", "sheet.png", "report.json", "trajectory.npz"}
+
+# Both scripts end by os._exit: some versions of bpy crash or hang in an ordinary exit.
+INSTALL = """
+import importlib.util, json, os, sys
+assert importlib.util.find_spec("casadi") is None, "casadi is there before the extension is"
+import bpy
+bpy.ops.extensions.package_install_files(
+    filepath=sys.argv[1], repo="user_default", enable_on_install=True)
+"""
+REPORT_ORIGINS = """
+import casadi, numpy
+enabled = "bl_ext.user_default.hangtime" in bpy.context.preferences.addons
+print("ANSWER", json.dumps(
+    {"casadi": casadi.__file__, "version": casadi.__version__, "numpy": numpy.__file__,
+     "enabled": enabled}), flush=True)
+os._exit(0)
+"""
+ADAPT = """
+from bl_ext.user_default.hangtime.operators import cli
+code = cli.main(["adapt", sys.argv[2], "--recipe", sys.argv[3], "--out", sys.argv[4]])
+print("ANSWER", json.dumps({"code": code}), flush=True)
+os._exit(0)
+"""
+
+
+@pytest.fixture(scope="module")
+def zips(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The built zip of each platform, by the platform's name."""
+    out = tmp_path_factory.mktemp("dist")
+    return {z.stem.split("-")[-1].replace("_", "-"): z for z in build(out)}
+
+
+@pytest.fixture(scope="module")
+def bare_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A Python with Blender's module and what belongs to Blender, but without our dependencies.
+
+    It borrows this environment's packages by links, so that a gigabyte need not be installed twice.
+    """
+    folder = tmp_path_factory.mktemp("bare")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
+    own = Path(sysconfig.get_path("purelib"))
+    borrowed = folder / own.relative_to(sys.prefix)
+    for entry in own.iterdir():
+        if not entry.name.lower().lstrip("_").startswith(ABSENT) and entry.suffix != ".pth":
+            (borrowed / entry.name).symlink_to(entry)
+    return folder / "bin" / "python"
+
+
+def run_installed(python: Path, user: Path, script: str, *arguments: str) -> dict[str, Any]:
+    """Install the zip (the first argument) into an empty user folder, then run `script`."""
+    user.mkdir()
+    done = subprocess.run(
+        [str(python), "-c", INSTALL + script, *arguments],
+        env={**os.environ, "BLENDER_USER_RESOURCES": str(user)},
+        cwd=user,
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+    answers = [x for x in done.stdout.splitlines() if x.startswith("ANSWER ")]
+    assert answers, f"exit code {done.returncode}\n{done.stdout}\n{done.stderr}"
+    answer: dict[str, Any] = json.loads(answers[-1].removeprefix("ANSWER "))
+    return {**answer, "said": done.stdout + done.stderr}
+
+
+@pytest.mark.parametrize("name", ["linux-x64", "windows-x64", "macos-arm64", "macos-x64"])
+def test_a_zip_holds_the_extension_and_its_one_wheel(zips: dict[str, Path], name: str) -> None:
+    with zipfile.ZipFile(zips[name]) as archive:
+        members = [Path(m) for m in archive.namelist()]
+    assert {m.parts[0] for m in members} <= SHIPPED
+    assert {"LICENSE", "__init__.py", "blender_manifest.toml"} <= {str(m) for m in members}
+    wheels = [m.name for m in members if m.suffix == ".whl"]
+    assert [w.split("-")[0] for w in wheels] == ["casadi"]
+    assert {".py", ".toml", ".md", ".whl", ""} >= {m.suffix for m in members}
+
+
+def test_casadi_comes_from_the_extension(
+    zips: dict[str, Path], bare_python: Path, tmp_path: Path
+) -> None:
+    user = tmp_path / "user"
+    answer = run_installed(bare_python, user, REPORT_ORIGINS, str(zips["linux-x64"]))
+    assert answer["enabled"], answer["said"]
+    assert answer["version"] == "3.8.2"
+    assert Path(answer["casadi"]).is_relative_to(user)
+    assert not Path(answer["numpy"]).is_relative_to(user), "numpy is Blender's own"
+
+
+def test_the_installed_extension_does_the_main_job(
+    zips: dict[str, Path], bare_python: Path, tmp_path: Path
+) -> None:
+    clip = RECORDINGS / "cmu_acclaim" / "01_01.amc"
+    if not clip.is_file():
+        pytest.skip(f"needs the recording {clip.name} in {RECORDINGS}")
+    recipe = ROOT / "examples" / "demo_hop.toml"
+    out = tmp_path / "out"
+    given = (str(zips["linux-x64"]), str(clip), str(recipe), str(out))
+    answer = run_installed(bare_python, tmp_path / "user", ADAPT, *given)
+    assert answer["code"] == 0, answer["said"]
+    assert {p.name for p in out.iterdir() if p.stat().st_size > 0} >= OUTPUTS
+    assert "status" in json.loads((out / "report.json").read_text(encoding="utf-8"))
