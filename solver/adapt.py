@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .contacts import ContactSchedule, PhaseKind
-from .fit import ADAPT_PRICES, Fit, dense_instants, greville, refine
+from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, dense_instants, greville, refine
 from .motion import Motion
 from .problem import MotionProblem, pinned_places
 from .projection import Outcome, Progress, Status, restore
@@ -81,7 +81,7 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
         motion = Motion(outcome.transcription, outcome.x, places)
         if outcome.status is not Status.SOLVED:
             return Adaptation(fit, tuple(outcomes), places)
-    outcomes += refine(outcomes[-1], goal, ADAPT_PRICES, progress=progress)
+    outcomes += refine(outcomes[-1], goal, ADAPT_PRICES, ADAPT_PROMISE, progress=progress)
     return Adaptation(fit, tuple(outcomes), goal)
 
 

@@ -90,7 +90,8 @@ class Character:
 
     @property
     def n_angles(self) -> int:
-        return self.joints[-1].dofs.stop
+        last = self.joints[-1]
+        return last.first + last.axes.dofs
 
     @property
     def n_dofs(self) -> int:
@@ -338,7 +339,7 @@ def _body(
 
 def _box_frame(direction: FloatArray, forward: FloatArray) -> FloatArray:
     """Box axes as columns: width (sideways), depth, length."""
-    depth = forward if abs(forward @ direction) < 0.8 else UP
+    depth = forward if abs(float(forward @ direction)) < 0.8 else UP
     width = unit(np.cross(depth, direction))
     return np.stack([width, np.cross(direction, width), direction], axis=1)
 
@@ -350,7 +351,9 @@ def _axes(
     if root:
         return ball_axes(relative, preferred=(UP, sideways))
     along = unit(tip) if np.linalg.norm(tip) > SHORTEST else UP
-    hinge = sideways if abs(sideways @ along) < 0.8 else UP  # arms may point sideways at rest
+    hinge = (
+        sideways if abs(float(sideways @ along)) < 0.8 else UP
+    )  # arms may point sideways at rest
     dofs = DOFS.get(segment.part, 3)
     grow = segment.part in MAY_GROW
     if dofs == 1:

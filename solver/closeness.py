@@ -162,10 +162,11 @@ class Closeness:
         matrix.add_windows(basis.first_coefficient, full)
         matrix.add_diagonal((~t.active).astype(float))  # unknowns that do not exist stay put
         gradient = self._force_windows.times(self._force_error(x))
-        blocks = basis.first_coefficient[t.node_spans][:, None] + np.arange(ORDER)
         local = (weight[:, None] * value)[..., None] * slope[:, None]
         local[..., 3:] += (weight[:, None] * second)[..., None] * bend[:, None]
-        np.add.at(gradient, (blocks, layout.motion), local)
+        summed = local.reshape(spans, per, ORDER, n_motion).sum(axis=1)
+        for k in range(ORDER):
+            gradient[basis.first_coefficient + k, layout.motion] += summed[:, k]
         return gradient, matrix
 
     # -- forces ----------------------------------------------------------------------------

@@ -133,8 +133,8 @@ def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Ax
     poses = np.concatenate([R, prior])
     weight = np.concatenate([np.full(len(R), 1 / len(R)), np.full(len(prior), 0.1 / len(prior))])
     best: tuple[float, FloatArray, FloatArray] | None = None
-    for first, second in ((0, 1), (1, 0)):
-        u, v = mean @ expected[first], expected[second]
+    for fixed, carried in (expected, expected[::-1]):
+        u, v = mean @ fixed, carried
         for _ in range(50):
             moved = poses @ v
             u = np.linalg.eigh(np.einsum("t,ti,tj->ij", weight, moved, moved))[1][:, 0]

@@ -1,10 +1,16 @@
 """What can be wrong with what the artist gave us, as data. Worded in operators/wording.py only."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 
 
+@dataclass
 class Fault(Exception):
     """Base of every fault that an artist can mend; each subclass carries where and by how much."""
+
+    def __reduce__(self) -> tuple[Callable[..., "Fault"], tuple[object, ...]]:
+        """Pickled by its fields: an exception's own way forgets those that were given by name."""
+        return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
 
 @dataclass
@@ -131,3 +137,21 @@ class UnknownContactName(Fault):
 
     name: str
     known: tuple[str, ...]
+
+
+@dataclass
+class WorkerDied(Fault):
+    """The process that solves ended without an answer; detail: what it last said, or its code."""
+
+    detail: str
+
+
+@dataclass
+class ChangedMeanwhile(Fault):
+    """The armature, its action or its keys are no longer what was analysed or sent to be solved.
+
+    while_solving: whether a result had to be thrown away for it.
+    """
+
+    armature: str
+    while_solving: bool

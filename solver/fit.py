@@ -12,13 +12,13 @@ import numpy as np
 from .character import Character
 from .closeness import Closeness, Prices, Target, marker_points
 from .contacts import Contact, ContactSchedule
-from .dynamics import GRAVITY, MomentFunction, PointVelocity
+from .dynamics import GRAVITY, MomentFunction
 from .kinematics import BodyPoint, pose
 from .linear import BlockBanded
-from .motion import Motion, split, weak_spans
+from .motion import Motion, Promise, split, weak_spans
 from .performance import Performance, interpolate
 from .projection import Outcome, Progress, project, restore
-from .recording import FloatArray
+from .recording import FloatArray, IntArray
 from .splines import Basis, gauss_instants, phase_breaks
 from .transcription import SETTLE, PointContact, Transcription, touching_spans
 
@@ -27,10 +27,13 @@ SHORTEST_SPAN = 0.015  # s
 FIT_PRICES = Prices(place=1.0, smooth_s=0.05, force=1e-4)
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
 # priced too: what a person does to jump further is push longer, not only harder.
-ADAPT_PRICES = Prices(shape=1.0, com=0.02, smooth_s=0.05, force=3e-3)
-MOMENT_PROMISE = 5e-4  # BW·m, rms in a span
-DRIFT_PROMISE = 3e-4  # m
+ADAPT_PRICES = Prices(shape=1.0, com=0.02, smooth_s=0.1, force=3e-3)
 MOST_REFINEMENTS = 3
+
+
+# The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
+FIT_PROMISE = Promise(flight=4e-4, ground=1.5e-3, drift=2e-4)
+ADAPT_PROMISE = Promise(flight=1e-3, ground=4e-3, drift=4e-4)
 
 
 @dataclass(frozen=True)
@@ -72,18 +75,23 @@ def fit(
     )
     metric = closeness.expand(near.x)[1]
     valid = restore(transcription, metric, near.x, places, stage="fit", progress=progress)
-    outcomes = [near, valid, *refine(valid, places, FIT_PRICES, progress=progress)]
+    outcomes = [near, valid, *refine(valid, places, FIT_PRICES, FIT_PROMISE, progress=progress)]
     return Fit(performance, schedule, tuple(outcomes), places)
 
 
 def refine(
-    outcome: Outcome, places: FloatArray, prices: Prices, *, progress: Progress | None = None
+    outcome: Outcome,
+    places: FloatArray,
+    prices: Prices,
+    promise: Promise,
+    *,
+    progress: Progress | None = None,
 ) -> list[Outcome]:
     """Splits spans until physics and pins hold between the nodes as promised (thesis 6.4)."""
     outcomes: list[Outcome] = []
     for _ in range(MOST_REFINEMENTS):
         motion = Motion(outcome.transcription, outcome.x, places)
-        weak = weak_spans(motion, MOMENT_PROMISE, DRIFT_PROMISE)
+        weak = weak_spans(motion, promise)
         if not len(weak):
             break
         finer = on_finer_basis(motion, weak)
@@ -95,7 +103,7 @@ def refine(
     return outcomes
 
 
-def on_finer_basis(motion: Motion, spans: np.ndarray) -> Motion:
+def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
     """The same motion with some spans split in two."""
     old = motion.transcription
     breaks = split(old.basis.breaks, spans)
@@ -113,6 +121,10 @@ def on_finer_basis(motion: Motion, spans: np.ndarray) -> Motion:
         weights = old.basis.force_weights(breaks[inner + side], was)
         x[nodes[:, side] + 1, old.layout.forces] = np.einsum("tk,tkn->tn", weights, values)
     x[~new.active] = 0.0
+    idle = np.abs(x[1:-1, old.layout.forces]).reshape(-1, old.layout.n_points, 3).sum(axis=2) < 1e-6
+    alive = new.active[1:-1, old.layout.forces].reshape(-1, old.layout.n_points, 3)[:, :, 0]
+    pairs = zip(*(where.tolist() for where in np.nonzero(idle & alive)), strict=True)
+    new = replace(new, released=frozenset(pairs) if old.released else frozenset())
     return Motion(new, x, motion.places)
 
 
@@ -149,7 +161,6 @@ def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcrip
         points,
         tuple(contacts),
         MomentFunction(character),
-        PointVelocity(character, points) if points else None,
     )
 
 

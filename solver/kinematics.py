@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from .character import Character
-from .recording import FloatArray
+from .recording import FloatArray, IntArray
 from .rotations import cross_matrix
 
 
@@ -69,7 +69,45 @@ class Pose:
         return np.cross(self.axes, carried)
 
 
-def _owner(character: Character) -> np.ndarray:
+def point_velocity(
+    posed: Pose, points: Sequence[BodyPoint], speeds: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Velocities relative to the centre of mass, for joint speeds (N, n_angles) in rad/s.
+
+    Returns velocities (N, P, 3) in m/s and their derivatives by angle and by speed, each
+    (N, P, 3, n_angles). The derivative of a column J_j by an angle k nearer the root is
+    axis_k x J_j, and by one farther out axis_j x J_k (Featherstone 2008, ch. 2.10).
+    """
+    character = posed.character
+    places = [BodyPoint(p.body, p.place) for p in points]
+    places += [BodyPoint(i, body.com) for i, body in enumerate(character.bodies)]
+    moves = _moves(character)[[p.body for p in places]]
+    arm = posed.points(places)[:, :, None] - posed.centres[:, None, _owner(character)]
+    columns = np.cross(posed.axes[:, None], arm) * moves[None, :, :, None]  # (N, P + B, n, 3)
+    carried = columns * speeds[:, None, :, None]
+    outward = np.cumsum(carried[:, :, ::-1], axis=2)[:, :, ::-1]  # sum over j >= k
+    spin = posed.axes[:, None] * speeds[:, None, :, None] * moves[None, :, :, None]
+    before = np.cumsum(spin, axis=2) - spin  # angular velocity of what joint k turns in
+    by_angle = np.cross(posed.axes[:, None], outward) * moves[None, :, :, None]
+    by_angle += np.cross(before, columns)
+    velocity = carried.sum(axis=2)
+    count = len(points)
+    masses = np.array([body.mass for body in character.bodies])
+    share = masses / masses.sum()
+
+    def relative(each: FloatArray) -> FloatArray:
+        return np.asarray(
+            each[:, :count] - np.einsum("b,nb...->n...", share, each[:, count:])[:, None]
+        )
+
+    return (
+        relative(velocity),
+        np.swapaxes(relative(by_angle), -1, -2),
+        np.swapaxes(relative(columns), -1, -2),
+    )
+
+
+def _owner(character: Character) -> IntArray:
     """(n_angles,) the body whose joint each angle belongs to."""
     return np.repeat(
         np.arange(len(character.bodies)), [joint.axes.dofs for joint in character.joints]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .recording import FloatArray
+from .recording import FloatArray, IntArray
 
 BAND = 3
 
@@ -20,7 +20,13 @@ class BlockBanded:
     def __init__(self, blocks: int, size: int) -> None:
         self.lower = np.zeros((BAND + 1, blocks, size, size))
 
-    def add_windows(self, first: np.ndarray, windows: FloatArray) -> None:
+    def copy(self) -> "BlockBanded":
+        """A matrix of its own with the same entries."""
+        twin = BlockBanded(0, 0)
+        twin.lower = self.lower.copy()
+        return twin
+
+    def add_windows(self, first: IntArray, windows: FloatArray) -> None:
         """Adds dense (S, 4, n, 4, n) windows whose first block row is first (S,), all different."""
         for row in range(BAND + 1):
             for column in range(row + 1):

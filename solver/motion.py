@@ -7,9 +7,9 @@ import numpy as np
 
 from .dynamics import GRAVITY
 from .kinematics import Pose, pose
-from .recording import FloatArray, PoseTrack, Recording
+from .recording import FloatArray, IntArray, PoseTrack, Recording
 from .rotations import cross_matrix
-from .transcription import PointContact, Transcription
+from .transcription import PointContact, Transcription, touching_spans
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,9 @@ class Motion:
         return np.asarray(np.linalg.norm(at - self.places[contact], axis=1))
 
 
+SHORTEST_SPLIT = 0.016  # s; shorter spans are not split further
+
+
 @dataclass(frozen=True)
 class Unexplained:
     """Root force (T, 3) in body weights and moment (T, 3) in body weights x m that nothing
@@ -107,26 +110,40 @@ def pinned_instants(contact: PointContact, rate: float) -> FloatArray:
     return np.linspace(contact.pin_start, contact.pin_end, count)
 
 
-def weak_spans(motion: Motion, moment: float, drift: float) -> np.ndarray:
-    """Spans in which the motion breaks its promise between the nodes.
+@dataclass(frozen=True)
+class Promise:
+    """What must hold between the nodes, else knots are added.
 
-    moment: rms moment, BW·m, that a span may leave unexplained. drift: m that a pinned point may
-    wander. Returns span indices.
+    flight, ground: rms moment that a span may leave unexplained, BW·m. drift: how far a pinned
+    point may wander, m.
     """
-    basis = motion.transcription.basis
-    per = 8
+
+    flight: float
+    ground: float
+    drift: float
+
+
+def weak_spans(motion: Motion, promise: Promise) -> IntArray:
+    """Indices of the spans in which the motion breaks a promise between the nodes."""
+    transcription = motion.transcription
+    basis = transcription.basis
+    per = 6
     inside = (np.arange(per) + 0.5) / per
-    times = (basis.breaks[:-1, None] + np.diff(basis.breaks)[:, None] * inside).ravel()
+    length = np.diff(basis.breaks)
+    times = (basis.breaks[:-1, None] + length[:, None] * inside).ravel()
     left = (unexplained(motion, times).moment ** 2).sum(axis=1).reshape(-1, per)
-    weak = set(np.flatnonzero(np.sqrt(left.mean(axis=1)) > moment).tolist())
-    for i, contact in enumerate(motion.transcription.contacts):
-        instants = pinned_instants(contact, 500.0)
-        far = motion.drift(i, instants) > drift
-        weak |= set(basis.spans(instants[far]).tolist())
-    return np.array(sorted(weak), dtype=int)
+    carried = np.zeros(basis.n_spans, dtype=bool)
+    for contact in transcription.contacts:
+        carried[touching_spans(basis, contact.contact)] = True
+    limit = np.where(carried, promise.ground, promise.flight)
+    weak = (np.sqrt(left.mean(axis=1)) > limit) & (length > SHORTEST_SPLIT)
+    for i, contact in enumerate(transcription.contacts):
+        instants = pinned_instants(contact, 240.0)
+        weak[basis.spans(instants[motion.drift(i, instants) > promise.drift])] = True
+    return np.flatnonzero(weak)
 
 
-def split(breaks: Sequence[float] | FloatArray, spans: np.ndarray) -> FloatArray:
+def split(breaks: Sequence[float] | FloatArray, spans: IntArray) -> FloatArray:
     """Breaks with the middle of each of the spans added."""
     at = np.asarray(breaks)
     return np.sort(np.concatenate([at, 0.5 * (at[spans] + at[spans + 1])]))

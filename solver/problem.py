@@ -175,7 +175,7 @@ def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phas
 def _facing(performance: Performance, time: float) -> FloatArray:
     frame = int(np.argmin(np.abs(performance.times - time)))
     width = performance.rotations[frame, 0] @ performance.character.bodies[0].box_rotation[:, 0]
-    return np.cross(width, [0.0, 0.0, 1.0]) * np.array([1.0, 1.0, 0.0])
+    return np.asarray(np.cross(width, [0.0, 0.0, 1.0]) * np.array([1.0, 1.0, 0.0]))
 
 
 def _check_rigid(

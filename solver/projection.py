@@ -20,7 +20,7 @@ import numpy as np
 
 from .closeness import Closeness
 from .linear import BlockBanded
-from .recording import FloatArray
+from .recording import FloatArray, IntArray
 from .splines import ORDER
 from .transcription import RowKind, Rows, Transcription
 
@@ -36,7 +36,10 @@ TOLERANCE = {
 NORM = {RowKind.PIN_SPEED: 30.0}
 PENALTY = 1e2
 MOST_SWEEPS = 8
+SWEEP_GAIN = 1e-3
 PULL_TOLERANCE = 0.01  # BW
+NEAR = 1e3  # times the tolerances: near enough to tell which forces pull
+ENOUGH = 0.05  # of the distance to the target: what a further step must gain
 
 
 class Status(Enum):
@@ -91,20 +94,21 @@ def restore(
     rows = transcription.rows(x, places)
     while len(steps) < most_steps:
         violation = worst_violation(rows)
-        if violation <= 1.0:
+        if violation <= NEAR:
             pulling = transcription.pulling(x, PULL_TOLERANCE) - transcription.released
-            if not pulling:
-                status = Status.SOLVED
-                break
-            transcription = replace(transcription, released=transcription.released | pulling)
-            rows = transcription.rows(x, places)
-            violation = worst_violation(rows)
-        d, _ = solve_step(transcription, rows, np.zeros_like(x), metric, None)
-        x, length = _shorten(transcription, x, d, places, rows)
+            if pulling:
+                released = transcription.released | pulling
+                transcription = replace(transcription, released=released)
+                rows = transcription.rows(x, places)
+                violation = worst_violation(rows)
+        if violation <= 1.0:
+            status = Status.SOLVED
+            break
+        d, _ = solve_step(transcription, rows, None, metric)
+        x, rows, length = _shorten(transcription, x, d, places, rows)
         steps.append(Step(stage, violation, length))
         if progress is not None:
             progress(steps[-1])
-        rows = transcription.rows(x, places)
         if length == 0.0:
             status = Status.STALLED
             break
@@ -138,7 +142,7 @@ def project(
         if progress is not None:
             progress(steps[-1])
         before, objective = objective, closeness.value(x)
-        if length == 0.0 or (len(steps) > 1 and abs(before - objective) < 0.01 * before):
+        if length == 0.0 or (len(steps) > 1 and abs(before - objective) < ENOUGH * before):
             status = Status.SOLVED
             break
     violation = worst_violation(transcription.rows(x, places))
@@ -157,75 +161,108 @@ def _by_kind(rows: Rows, sizes: dict[RowKind, float]) -> FloatArray:
     return values
 
 
+@dataclass(frozen=True)
+class _Windows:
+    """Rows gathered span by span: J (S, R, 4 n), residual (S, R), zero where a span has fewer."""
+
+    J: FloatArray
+    r: FloatArray
+    first: IntArray  # (S,) first block of each span
+    size: int
+
+    def times(self, d: FloatArray) -> FloatArray:
+        """J d, (S, R), of d (K, n)."""
+        local = d[self.first[:, None] + np.arange(ORDER)].reshape(len(self.J), -1, 1)
+        return np.asarray((self.J @ local)[..., 0])
+
+    def transposed(self, y: FloatArray, blocks: int) -> FloatArray:
+        """J' y, (K, n), of y (S, R)."""
+        local = (y[:, None] @ self.J).reshape(len(self.J), ORDER, self.size)
+        total = np.zeros((blocks, self.size))
+        for k in range(ORDER):
+            total[self.first + k] += local[:, k]
+        return total
+
+    def normal(self, weight: float) -> FloatArray:
+        """weight * J'J of each span, (S, 4, n, 4, n)."""
+        squares = np.swapaxes(weight * self.J, 1, 2) @ self.J
+        return np.asarray(squares.reshape(len(self.J), ORDER, self.size, ORDER, self.size))
+
+
+def _gather(transcription: Transcription, rows: Rows) -> tuple[_Windows, IntArray, IntArray]:
+    """The rows in units of NORM by span, and where each row went: its span and place there."""
+    norm = _by_kind(rows, NORM)
+    spans = transcription.basis.n_spans
+    order = np.argsort(rows.span, kind="stable")
+    counts = np.bincount(rows.span, minlength=spans)
+    first = np.concatenate([[0], np.cumsum(counts)])
+    place = np.empty(len(order), dtype=int)
+    place[order] = np.arange(len(order)) - first[rows.span[order]]
+    n = rows.jacobian.shape[2]
+    J = np.zeros((spans, counts.max(), ORDER * n))
+    J[rows.span, place] = rows.jacobian.reshape(len(order), -1) / norm[:, None]
+    r = np.zeros((spans, counts.max()))
+    r[rows.span, place] = rows.residual / norm
+    return _Windows(J, r, transcription.basis.first_coefficient, n), rows.span, place
+
+
 def solve_step(
     transcription: Transcription,
     rows: Rows,
-    gradient: FloatArray,
+    gradient: FloatArray | None,
     metric: BlockBanded,
-    multipliers: FloatArray | None,
+    multipliers: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Step d (K, n_block) and multipliers (R,) of the rows in units of NORM.
 
-    Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)), y += rho (r + J d).
+    Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)), y += rho (r + J d),
+    until the linearised equations hold a thousand times better than before. gradient: g, None
+    for the minimum-norm step.
     """
-    norm = _by_kind(rows, NORM)
-    J = rows.jacobian / norm[:, None, None]
-    r = rows.residual / norm
-    system = BlockBanded(*gradient.shape)
-    system.lower += metric.lower
-    _add_normal(system, transcription, rows.span, J, PENALTY)
+    windows, span, place = _gather(transcription, rows)
+    blocks = transcription.basis.n_coefficients
+    system = metric.copy()
+    system.add_windows(windows.first, windows.normal(PENALTY))
     factor = system.factor()
-    blocks = transcription.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)
-    y = np.zeros(len(r)) if multipliers is None else multipliers
-    d = np.zeros_like(gradient)
-    missing = r
+    y = np.zeros_like(windows.r)
+    if multipliers is not None:
+        y[span, place] = multipliers
+    d = np.zeros((blocks, windows.size))
+    missing = windows.r
+    enough = max(1e-9, SWEEP_GAIN * float(np.abs(missing).max()))
     for _ in range(MOST_SWEEPS):
-        slope = gradient + metric.times(d)
-        np.add.at(slope, blocks, J * (y + PENALTY * missing)[:, None, None])
-        d = d - factor.solve(slope)
-        missing = r + np.einsum("rkn,rkn->r", J, d[blocks])
-        y = y + PENALTY * missing
-        if np.abs(missing).max() < 1e-7:
+        slope = windows.transposed(y + PENALTY * missing, blocks)
+        if d.any():
+            slope += metric.times(d)
+        if gradient is not None:
+            slope += gradient
+        d -= factor.solve(slope)
+        missing = windows.r + windows.times(d)
+        y += PENALTY * missing
+        if np.abs(missing).max() < enough:
             break
-    return d, y
-
-
-def _add_normal(
-    system: BlockBanded,
-    transcription: Transcription,
-    span: np.ndarray,
-    J: FloatArray,
-    weight: float,
-) -> None:
-    """Adds weight * J'J to a banded matrix, span by span."""
-    spans = transcription.basis.n_spans
-    order = np.argsort(span, kind="stable")
-    counts = np.bincount(span, minlength=spans)
-    first = np.concatenate([[0], np.cumsum(counts)])
-    place = np.arange(len(span)) - first[span[order]]
-    n = J.shape[2]
-    padded = np.zeros((spans, counts.max(), ORDER * n))
-    padded[span[order], place] = J[order].reshape(len(span), ORDER * n)
-    windows = weight * np.swapaxes(padded, 1, 2) @ padded
-    system.add_windows(
-        transcription.basis.first_coefficient, windows.reshape(spans, ORDER, n, ORDER, n)
-    )
+    return d, y[span, place]
 
 
 def _shorten(
     transcription: Transcription, x: FloatArray, d: FloatArray, places: FloatArray, rows: Rows
-) -> tuple[FloatArray, float]:
-    """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0.0 if none does."""
+) -> tuple[FloatArray, Rows, float]:
+    """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0.0 if none does.
+
+    Returns the new unknowns, their rows and the length.
+    """
     tolerance = _by_kind(rows, TOLERANCE)
     before = float(((rows.residual / tolerance) ** 2).sum())
     length = 1.0
     while length > 1e-3:
         trial = x + length * d
-        after = float(((transcription.residuals(trial, places) / tolerance) ** 2).sum())
-        if after < (1.0 - 0.1 * length) * before:
-            return trial, length
+        # The full step mostly stands, so its Jacobian is worth having at once.
+        trial_rows = transcription.rows(trial, places) if length == 1.0 else None
+        residual = trial_rows.residual if trial_rows else transcription.residuals(trial, places)
+        if float(((residual / tolerance) ** 2).sum()) < (1.0 - 0.1 * length) * before:
+            return trial, trial_rows or transcription.rows(trial, places), length
         length *= 0.5
-    return x, 0.0
+    return x, rows, 0.0
 
 
 def _search(

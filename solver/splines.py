@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .recording import FloatArray
+from .recording import BoolArray, FloatArray, IntArray
 
 DEGREE = 3
 ORDER = DEGREE + 1
@@ -28,7 +28,7 @@ class Basis:
     """
 
     breaks: FloatArray
-    double: np.ndarray
+    double: BoolArray
 
     @property
     def n_spans(self) -> int:
@@ -45,7 +45,7 @@ class Basis:
         return len(self.knots) - ORDER
 
     @cached_property
-    def first_coefficient(self) -> np.ndarray:
+    def first_coefficient(self) -> IntArray:
         """(n_spans,) index of the first of the four coefficients that act in each span."""
         jumps = np.concatenate([[0], np.cumsum(1 + self.double[1:-1].astype(int))])
         return np.asarray(jumps, dtype=int)
@@ -55,13 +55,13 @@ class Basis:
         """Values of a piecewise linear force: one at a single knot, two at a double knot."""
         return self.n_coefficients - 2
 
-    def spans(self, times: FloatArray) -> np.ndarray:
+    def spans(self, times: FloatArray) -> IntArray:
         """(T,) index of the span of each instant; a break belongs to the span after it."""
         inside = np.searchsorted(self.breaks, times, side="right") - 1
         return np.clip(inside, 0, self.n_spans - 1)
 
     def evaluate(
-        self, times: FloatArray, derivative: int = 0, spans: np.ndarray | None = None
+        self, times: FloatArray, derivative: int = 0, spans: IntArray | None = None
     ) -> FloatArray:
         """(T, 4) values (or derivatives) of the four basis functions of each instant's span.
 
@@ -71,12 +71,12 @@ class Basis:
         last = self.first_coefficient[spans] + DEGREE  # knots[last] <= t < knots[last + 1]
         return _basis_functions(self.knots, last, np.asarray(times, dtype=float), derivative)
 
-    def force_nodes(self, spans: np.ndarray) -> np.ndarray:
+    def force_nodes(self, spans: IntArray) -> IntArray:
         """(S, 2) indices of the force values at the start and end of each span."""
         first = self.first_coefficient[spans]
         return np.stack([first, first + 1], axis=-1)
 
-    def force_weights(self, times: FloatArray, spans: np.ndarray | None = None) -> FloatArray:
+    def force_weights(self, times: FloatArray, spans: IntArray | None = None) -> FloatArray:
         """(T, 2) weights of the two force values of each instant's span."""
         spans = self.spans(times) if spans is None else spans
         start, end = self.breaks[spans], self.breaks[spans + 1]
@@ -114,14 +114,31 @@ class Basis:
         return np.asarray(np.linalg.solve(normal, B.T @ samples))
 
     def coarse_to(self, finer: "Basis", coefficients: FloatArray) -> FloatArray:
-        """Coefficients of the same curve on a finer basis (whose knots contain this one's)."""
-        t = gauss_instants(finer.breaks, 4)[0]
-        B = finer.matrix(t)
-        return np.asarray(np.linalg.lstsq(B, self.combine(coefficients, t), rcond=None)[0])
+        """Coefficients of the same curve on a finer basis (whose knots contain this one's).
+
+        A coefficient is its piece's polar form at three consecutive knots (Ramshaw 1989).
+        """
+        spans = np.searchsorted(finer.first_coefficient, np.arange(finer.n_coefficients), "right")
+        own = np.maximum(spans - 1, 0)  # a finer span in which each coefficient acts
+        start = finer.breaks[own]
+        old = self.spans(0.5 * (start + finer.breaks[own + 1]))
+        blocks = coefficients[self.first_coefficient[old][:, None] + np.arange(ORDER)]
+        p0, p1, p2, p3 = (
+            np.einsum("ck,ckn->cn", self.evaluate(start, k, old), blocks) for k in range(ORDER)
+        )
+        u, v, w = (
+            (finer.knots[k : k + finer.n_coefficients] - start)[:, None] for k in range(1, ORDER)
+        )
+        return np.asarray(
+            p0
+            + p1 * (u + v + w) / 3.0
+            + p2 / 2.0 * (u * v + v * w + u * w) / 3.0
+            + p3 / 6.0 * u * v * w
+        )
 
 
 def _basis_functions(
-    knots: FloatArray, last: np.ndarray, t: FloatArray, derivative: int
+    knots: FloatArray, last: IntArray, t: FloatArray, derivative: int
 ) -> FloatArray:
     """Cox-de Boor recursion for many instants at once (de Boor, A Practical Guide, ch. X)."""
     degree = DEGREE - derivative
@@ -140,7 +157,7 @@ def _basis_functions(
 
 
 def _raise_degree(
-    knots: FloatArray, last: np.ndarray, t: FloatArray, values: FloatArray, p: int
+    knots: FloatArray, last: IntArray, t: FloatArray, values: FloatArray, p: int
 ) -> FloatArray:
     raised = np.zeros((len(t), p + 1))
     for i in range(p):
@@ -151,9 +168,9 @@ def _raise_degree(
     return raised
 
 
-def gauss_instants(breaks: FloatArray, per_span: int) -> tuple[FloatArray, FloatArray, np.ndarray]:
+def gauss_instants(breaks: FloatArray, per_span: int) -> tuple[FloatArray, FloatArray, IntArray]:
     """Gauss-Legendre instants in every span: (times, weights in s, span indices), each flat."""
-    nodes, weights = np.polynomial.legendre.leggauss(per_span)
+    nodes, weights = np.polynomial.legendre.leggauss(per_span)  # type: ignore[no-untyped-call]
     half = 0.5 * np.diff(breaks)
     middle = 0.5 * (breaks[:-1] + breaks[1:])
     times = middle[:, None] + half[:, None] * nodes
@@ -163,7 +180,7 @@ def gauss_instants(breaks: FloatArray, per_span: int) -> tuple[FloatArray, Float
 
 def phase_breaks(
     boundaries: Sequence[float], extra: Sequence[float], longest: float
-) -> tuple[FloatArray, np.ndarray]:
+) -> tuple[FloatArray, BoolArray]:
     """Breaks and double flags: every boundary (double inside) and extra instant, spans <= longest.
 
     boundaries: sorted instants including both ends. extra: instants that are single knots.

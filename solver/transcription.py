@@ -18,12 +18,13 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .character import Character
 from .contacts import Contact
-from .dynamics import GRAVITY, MomentFunction, PointVelocity
-from .kinematics import BodyPoint, pose
-from .recording import FloatArray
+from .dynamics import GRAVITY, MomentFunction
+from .kinematics import BodyPoint, point_velocity, pose
+from .recording import BoolArray, FloatArray, IntArray
 from .rotations import cross_matrix
 from .splines import ORDER, Basis, gauss_instants
 
@@ -91,12 +92,12 @@ class Rows:
     """R equations, each within one span: residual (R,), Jacobian (R, 4, n_block) over the span's
     four blocks, and per row its kind, instant (s) and contact (index or -1)."""
 
-    span: np.ndarray
+    span: IntArray
     residual: FloatArray
     jacobian: FloatArray
-    kind: np.ndarray
+    kind: NDArray[np.object_]
     time: FloatArray
-    contact: np.ndarray
+    contact: IntArray
 
     @staticmethod
     def join(parts: Sequence["Rows"]) -> "Rows":
@@ -116,10 +117,9 @@ class Transcription:
     points: tuple[BodyPoint, ...]
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
-    speed: PointVelocity | None
     released: frozenset[tuple[int, int]] = frozenset()  # (force node, point): held at zero
     layout: Layout = field(init=False)
-    active: np.ndarray = field(init=False)  # (K, n_block) bool, which unknowns exist
+    active: BoolArray = field(init=False)  # (K, n_block) bool, which unknowns exist
 
     def __post_init__(self) -> None:
         self.layout = Layout(self.character.n_angles, len(self.points))
@@ -134,7 +134,7 @@ class Transcription:
     def n_unknowns(self) -> int:
         return int(self.active.sum())
 
-    def _active(self) -> np.ndarray:
+    def _active(self) -> BoolArray:
         """Forces act between a contact's start and end, zero at both (where the clip goes on)."""
         basis, layout = self.basis, self.layout
         active = np.zeros((basis.n_coefficients, layout.n_block), dtype=bool)
@@ -151,10 +151,10 @@ class Transcription:
                 active[nodes[-1, 1] + 1, layout.force(contact.point)] = False
         return active
 
-    def window(self, x: FloatArray, spans: np.ndarray) -> FloatArray:
+    def window(self, x: FloatArray, spans: IntArray) -> FloatArray:
         """(R, 4, n_block) the four blocks that act in each span."""
         blocks = self.basis.first_coefficient[spans][:, None] + np.arange(ORDER)
-        return x[blocks]
+        return np.asarray(x[blocks])
 
     def rows(self, x: FloatArray, places: FloatArray) -> Rows:
         """Every equation at unknowns x (K, n_block), pins at places (n_contacts, 3) m."""
@@ -220,7 +220,7 @@ class Transcription:
         """(N, P, 3) contact forces in body weights at the dynamics nodes."""
         local = self.window(x, self.node_spans)[:, 1:3, self.layout.forces]
         forces = np.einsum("nk,nkj->nj", self._node_force, local)
-        return forces.reshape(len(forces), self.layout.n_points, 3)
+        return np.asarray(forces.reshape(len(forces), self.layout.n_points, 3))
 
     def _moment_residual(self, x: FloatArray) -> FloatArray:
         q, v, a = self.angles_at_nodes(x)
@@ -260,13 +260,14 @@ class Transcription:
 
     # -- pins ------------------------------------------------------------------------------
 
-    def _pin_instants(self, *, speed: bool) -> tuple[np.ndarray, FloatArray]:
+    def _pin_instants(self, *, speed: bool) -> tuple[IntArray, FloatArray]:
         """(contact index, instant) of the pin rows: breaks while pinned, or where speed is zero.
 
         Speed is held at the pin's ends and at double knots inside, where the spline is only
         once differentiable and each side needs its own end condition.
         """
-        index, times = [], []
+        index: list[int] = []
+        times: list[float] = []
         for i, contact in enumerate(self.contacts):
             slack = 1e-9
             breaks = self.basis.breaks
@@ -275,7 +276,7 @@ class Transcription:
                 ends = np.isclose(breaks, contact.pin_start) | np.isclose(breaks, contact.pin_end)
                 inside &= ends | self.basis.double
             index.extend([i] * int(inside.sum()))
-            times.extend(breaks[inside])
+            times.extend(breaks[inside].tolist())
         return np.array(index, dtype=int), np.array(times)
 
     def _pin_residual(self, x: FloatArray, places: FloatArray) -> FloatArray:
@@ -283,7 +284,7 @@ class Transcription:
 
     def _pin_evaluate(
         self, x: FloatArray, places: FloatArray
-    ) -> tuple[FloatArray, np.ndarray, FloatArray, np.ndarray, FloatArray]:
+    ) -> tuple[FloatArray, IntArray, FloatArray, IntArray, FloatArray]:
         index, times = self._pin_instants(speed=False)
         spans = self.basis.spans(times)
         values = self.basis.evaluate(times, 0, spans)
@@ -306,7 +307,6 @@ class Transcription:
         return self._contact_rows(residual, jacobian, index, times, spans, RowKind.PIN)
 
     def _speed_rows(self, x: FloatArray) -> Rows:
-        assert self.speed is not None
         index, times = self._pin_instants(speed=True)
         spans = self.basis.spans(times)
         values, slopes = (self.basis.evaluate(times, k, spans) for k in (0, 1))
@@ -314,11 +314,11 @@ class Transcription:
         angles = self.layout.angles
         q, v = (np.einsum("nk,nkj->nj", B, window[:, :, angles]) for B in (values, slopes))
         each, which = np.arange(len(index)), np.array([self.contacts[i].point for i in index])
-        speeds, by_order = self.speed.jacobian(q, v)
+        speeds, by_angle, by_speed = point_velocity(pose(self.character, q), self.points, v)
         com_speed = np.einsum("nk,nkj->nj", slopes, window[:, :, self.layout.com])
         jacobian = np.zeros((len(index), 3, ORDER, self.layout.n_block))
-        stacked = np.stack([values, slopes], axis=-1)
-        jacobian[..., angles] = np.einsum("nko,niom->nikm", stacked, by_order[each, which])
+        for basis, derivative in ((values, by_angle), (slopes, by_speed)):
+            jacobian[..., angles] += basis[:, None, :, None] * derivative[each, which][:, :, None]
         for axis in range(3):
             jacobian[:, axis, :, axis] = slopes
         residual = com_speed + speeds[each, which]
@@ -357,9 +357,9 @@ class Transcription:
         self,
         residual: FloatArray,
         jacobian: FloatArray,
-        index: np.ndarray,
+        index: IntArray,
         times: FloatArray,
-        spans: np.ndarray,
+        spans: IntArray,
         kind: RowKind,
     ) -> Rows:
         count = 3 * len(index)
@@ -373,7 +373,7 @@ class Transcription:
         )
 
 
-def touching_spans(basis: Basis, contact: Contact) -> np.ndarray:
+def touching_spans(basis: Basis, contact: Contact) -> IntArray:
     """Indices of the spans during which a contact carries force."""
     middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
     return np.flatnonzero((middles > contact.start) & (middles < contact.end))

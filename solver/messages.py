@@ -1,0 +1,164 @@
+"""What the artist's program and the worker process say to each other, and how it is framed.
+
+The parent starts the worker and says Hello; the worker answers Ready. Then the parent makes one
+Request at a time, and the worker tells any number of Progress and one Analysed, Adapted or Failed.
+
+Each message is a length (8 bytes, little-endian) and a pickle. Both ends run the same files of one
+version, under the package names that their importers gave them; what arrives may name nothing but
+this package's data classes and enums and numpy's arrays.
+
+Standard library only: the worker learns where numpy is from the first message.
+"""
+
+from __future__ import annotations
+
+import pickle
+import struct
+from dataclasses import dataclass, is_dataclass
+from enum import Enum
+from importlib import import_module
+from io import BytesIO
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+if TYPE_CHECKING:
+    from .contacts import ContactSchedule
+    from .faults import Fault
+    from .problem import MotionProblem
+    from .recording import FloatArray, PoseTrack, Recording
+
+PROTOCOL = 1
+LARGEST = 1 << 30  # bytes; a longer message is not one
+_LENGTH = struct.Struct("<Q")
+_NUMPY = {
+    ("numpy", "ndarray"),
+    ("numpy", "dtype"),
+    *((f"numpy.{core}.multiarray", name) for core in ("core", "_core") for name in
+      ("_reconstruct", "scalar")),
+    *((f"numpy.{core}.numeric", "_frombuffer") for core in ("core", "_core")),
+}
+
+
+class Kind(Enum):
+    """What a request asks for."""
+
+    ANALYSE = "analyse"
+    ADAPT = "adapt"
+
+
+@dataclass(frozen=True)
+class Hello:
+    """The parent's first word: its protocol and where its Python finds modules."""
+
+    protocol: int
+    path: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The worker's answer to Hello."""
+
+    protocol: int
+
+
+@dataclass(frozen=True)
+class Request:
+    """Something to solve; id comes back with everything that is said about it."""
+
+    id: int
+    kind: Kind
+    recording: Recording
+    problem: MotionProblem
+
+
+@dataclass(frozen=True)
+class Progress:
+    """The stage's step-th step is done; violation: the worst over its tolerance, before it."""
+
+    id: int
+    stage: str
+    step: int
+    violation: float
+
+
+@dataclass(frozen=True)
+class Analysed:
+    """The contacts found.
+
+    height: m, as measured. axes: (3, 3) by ground phase's name, columns forward, left and up.
+    """
+
+    id: int
+    schedule: ContactSchedule
+    height: float
+    axes: dict[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class Adapted:
+    """The adapted motion at the recording's frames, its report and its contacts."""
+
+    id: int
+    track: PoseTrack
+    report: dict[str, Any]
+    schedule: ContactSchedule
+
+
+@dataclass(frozen=True)
+class Failed:
+    """The request cannot be met, and why."""
+
+    id: int
+    fault: Fault
+
+
+Answer = Analysed | Adapted | Failed
+Message = Hello | Ready | Request | Progress | Answer
+
+
+class ProtocolError(Exception):
+    """What arrived is not a message of this version."""
+
+
+def send(stream: BinaryIO, message: Message) -> None:
+    """Writes one message. Raises OSError (BrokenPipeError where nobody listens any more)."""
+    body = pickle.dumps(message, protocol=5)
+    stream.write(_LENGTH.pack(len(body)))
+    stream.write(body)
+    stream.flush()
+
+
+def receive(stream: BinaryIO) -> Message | None:
+    """The next message; None where the stream ends before one. Raises ProtocolError."""
+    head = stream.read(_LENGTH.size)
+    if not head:
+        return None
+    if len(head) < _LENGTH.size:
+        raise ProtocolError("a message breaks off")
+    (length,) = _LENGTH.unpack(head)
+    if length > LARGEST:
+        raise ProtocolError(f"a message of {length} bytes is announced")
+    body = stream.read(length)
+    if len(body) < length:
+        raise ProtocolError("a message breaks off")
+    try:
+        message = _Reader(BytesIO(body)).load()
+    except (pickle.UnpicklingError, ImportError, AttributeError, TypeError, ValueError) as problem:
+        raise ProtocolError(f"a message cannot be read: {problem}") from problem
+    if not isinstance(message, Message):
+        raise ProtocolError(f"{type(message).__name__} is not a message")
+    return message
+
+
+class _Reader(pickle.Unpickler):
+    """Finds this package's classes whatever the sender calls the package, and little else."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        if (module, name) in _NUMPY:
+            return super().find_class(module, name)
+        package = __name__.rpartition(".")[0]
+        below = module.rpartition(".solver.")[2]
+        if module.endswith(f".solver.{below}") and below.isidentifier():
+            found = getattr(import_module(f"{package}.{below}"), name)
+            if isinstance(found, type) and (is_dataclass(found) or issubclass(found, Enum)):
+                return found
+        raise pickle.UnpicklingError(f"{module}.{name} is not expected")
