@@ -192,6 +192,8 @@ class Closeness:
         for row in range(2):
             for column in range(2):
                 full[:, 1 + row, index, 1 + column, index] = each[:, row, column, None]
+        exists = t.active[basis.first_coefficient[:, None] + np.arange(ORDER)]
+        full *= exists[:, :, :, None, None] & exists[:, None, None, :, :]
         matrix = BlockBanded(basis.n_coefficients, layout.n_block)
         matrix.add_windows(basis.first_coefficient, full)
         return matrix

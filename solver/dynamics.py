@@ -7,7 +7,10 @@ and L' depends on the joint angles alone. Forces are in body weights, so L' is i
 (thesis 4.1: scaling).
 """
 
+import itertools
+import os
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +21,8 @@ from .character import Character
 from .recording import FloatArray
 
 GRAVITY = 9.81
+MOST_THREADS = 4
+FEWEST_EACH = 32  # instants worth a thread of their own
 
 
 @dataclass(frozen=True)
@@ -125,15 +130,27 @@ def evaluate(
     """Dense outputs (N, *shape) of a one-input function at every row of x (N, n).
 
     CasADi stores columns first, so a matrix output of r rows and c columns has shape (c, r) here.
-    Buffers hand the memory over as it is, where conversions would cost more than the evaluation.
     """
-    mapped = function.map(len(x))
     inputs = np.ascontiguousarray(x, dtype=float)
     outputs = [np.empty((len(x), *shape)) for shape in shapes]
+    workers = min(MOST_THREADS, os.cpu_count() or 1, len(x) // FEWEST_EACH)
+    if workers < 2:
+        _fill(function, inputs, outputs)
+        return outputs
+    edges = np.linspace(0, len(x), workers + 1).astype(int).tolist()
+    parts = [slice(a, b) for a, b in itertools.pairwise(edges)]
+    # CasADi lets go of Python's lock while it evaluates, so plain threads share the work; its own
+    # threaded map was slower than the serial one.
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(lambda p: _fill(function, inputs[p], [out[p] for out in outputs]), parts))
+    return outputs
+
+
+def _fill(function: ca.Function, inputs: FloatArray, outputs: Sequence[FloatArray]) -> None:
+    """Evaluates into the given memory, without the conversions that would cost more than it."""
     buffer: Any  # CasADi's stubs give its methods C's arguments
-    buffer, run = mapped.buffer()
+    buffer, run = function.map(len(inputs)).buffer()
     buffer.set_arg(0, inputs.data)
     for i, out in enumerate(outputs):
         buffer.set_res(i, out.data)
     run()
-    return outputs

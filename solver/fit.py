@@ -17,10 +17,11 @@ from .kinematics import BodyPoint, pose
 from .linear import BlockBanded
 from .motion import Motion, Promise, split, weak_spans
 from .performance import Performance, interpolate
+from .pins import PointContact
 from .projection import Outcome, Progress, project, restore
 from .recording import FloatArray, IntArray
 from .splines import Basis, gauss_instants, phase_breaks
-from .transcription import SETTLE, PointContact, Transcription, touching_spans
+from .transcription import SETTLE, Transcription, touching_spans
 
 LONGEST_SPAN = 0.045  # s
 SHORTEST_SPAN = 0.015  # s
@@ -124,8 +125,7 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
     idle = np.abs(x[1:-1, old.layout.forces]).reshape(-1, old.layout.n_points, 3).sum(axis=2) < 1e-6
     alive = new.active[1:-1, old.layout.forces].reshape(-1, old.layout.n_points, 3)[:, :, 0]
     pairs = zip(*(where.tolist() for where in np.nonzero(idle & alive)), strict=True)
-    new = replace(new, released=frozenset(pairs) if old.released else frozenset())
-    return Motion(new, x, motion.places)
+    return Motion(new.release(frozenset(pairs)) if old.released else new, x, motion.places)
 
 
 def motion_metric(motion: Motion, prices: Prices) -> BlockBanded:
@@ -137,7 +137,7 @@ def motion_target(motion: Motion) -> Target:
     """A solved motion as a target."""
     t = motion.transcription
     com = t.basis.combine(motion.x[:, t.layout.com], t.node_times)
-    q, _, a = t.angles_at_nodes(motion.x)
+    q, a = (t.angles_at_nodes(motion.x, k) for k in (0, 2))
     markers = pose(t.character, q).points(marker_points(t.character)) + com[:, None]
     return Target(markers, com, a, motion.x[:, t.layout.forces])
 
@@ -229,7 +229,7 @@ def recorded_target(
     return Target(
         markers=performance.points(marker_points(performance.character), times),
         com=interpolate(performance.times, performance.com, times),
-        accelerations=transcription.angles_at_nodes(x)[2],
+        accelerations=transcription.angles_at_nodes(x, 2),
         forces=x[:, transcription.layout.forces],
     )
 

@@ -32,6 +32,11 @@ class Pose:
     centres: FloatArray  # (N, B, 3) joint centres
     axes: FloatArray  # (N, n_angles, 3) world axis that each angle turns about
 
+    def at(self, instants: slice | IntArray) -> "Pose":
+        """The figure at some of the instants."""
+        parts = (self.rotations, self.centres, self.axes)
+        return Pose(self.character, *(part[instants] for part in parts))
+
     @cached_property
     def body_coms(self) -> FloatArray:
         """(N, B, 3) centres of mass of the bodies."""

@@ -7,9 +7,10 @@ import numpy as np
 
 from .dynamics import GRAVITY
 from .kinematics import Pose, pose
+from .pins import PointContact
 from .recording import FloatArray, IntArray, PoseTrack, Recording
 from .rotations import cross_matrix
-from .transcription import PointContact, Transcription, touching_spans
+from .transcription import Transcription, touching_spans
 
 
 @dataclass(frozen=True)
@@ -137,9 +138,13 @@ def weak_spans(motion: Motion, promise: Promise) -> IntArray:
         carried[touching_spans(basis, contact.contact)] = True
     limit = np.where(carried, promise.ground, promise.flight)
     weak = (np.sqrt(left.mean(axis=1)) > limit) & (length > SHORTEST_SPLIT)
-    for i, contact in enumerate(transcription.contacts):
-        instants = pinned_instants(contact, 240.0)
-        weak[basis.spans(instants[motion.drift(i, instants) > promise.drift])] = True
+    if transcription.points:
+        at = motion.contact_points(times)
+        spans = np.repeat(np.arange(basis.n_spans), per)
+        for i, contact in enumerate(transcription.contacts):
+            pinned = (times > contact.pin_start) & (times < contact.pin_end)
+            off = np.linalg.norm(at[:, contact.point] - motion.places[i], axis=1)
+            weak[spans[pinned & (off > promise.drift)]] = True
     return np.flatnonzero(weak)
 
 

@@ -13,7 +13,7 @@ redundant rows (two feet planted, pins on one rigid foot) without choosing among
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 from enum import Enum
 
 import numpy as np
@@ -21,8 +21,9 @@ import numpy as np
 from .closeness import Closeness
 from .linear import BlockBanded
 from .recording import FloatArray, IntArray
+from .rows import RowKind, Rows
 from .splines import ORDER
-from .transcription import RowKind, Rows, Transcription
+from .transcription import Transcription
 
 # The largest violation that is let stand, by kind, in the kind's unit.
 TOLERANCE = {
@@ -97,9 +98,8 @@ def restore(
         if violation <= NEAR:
             pulling = transcription.pulling(x, PULL_TOLERANCE) - transcription.released
             if pulling:
-                released = transcription.released | pulling
-                transcription = replace(transcription, released=released)
-                rows = transcription.rows(x, places)
+                transcription = transcription.release(pulling)
+                rows = transcription.with_released(_plain(rows), x)
                 violation = worst_violation(rows)
         if violation <= 1.0:
             status = Status.SOLVED
@@ -149,6 +149,12 @@ def project(
     return Outcome(x, transcription, status, tuple(steps), violation)
 
 
+def _plain(rows: Rows) -> Rows:
+    """The rows without those that hold released forces at zero."""
+    keep = rows.kind != RowKind.RELEASE
+    return Rows(*(getattr(rows, field.name)[keep] for field in fields(rows)))
+
+
 def worst_violation(rows: Rows) -> float:
     """The worst violation over its kind's tolerance; at most 1 means that the equations hold."""
     return float((np.abs(rows.residual) / _by_kind(rows, TOLERANCE)).max())
@@ -167,6 +173,7 @@ class _Windows:
 
     J: FloatArray
     r: FloatArray
+    counts: IntArray  # (S,) rows of each span
     first: IntArray  # (S,) first block of each span
     size: int
 
@@ -185,7 +192,10 @@ class _Windows:
 
     def normal(self, weight: float) -> FloatArray:
         """weight * J'J of each span, (S, 4, n, 4, n)."""
-        squares = np.swapaxes(weight * self.J, 1, 2) @ self.J
+        scaled = np.sqrt(weight) * self.J
+        squares = np.empty((len(self.J), self.J.shape[2], self.J.shape[2]))
+        for span, count in enumerate(self.counts):  # numpy knows that a.T @ a is symmetric
+            squares[span] = scaled[span, :count].T @ scaled[span, :count]
         return np.asarray(squares.reshape(len(self.J), ORDER, self.size, ORDER, self.size))
 
 
@@ -203,7 +213,8 @@ def _gather(transcription: Transcription, rows: Rows) -> tuple[_Windows, IntArra
     J[rows.span, place] = rows.jacobian.reshape(len(order), -1) / norm[:, None]
     r = np.zeros((spans, counts.max()))
     r[rows.span, place] = rows.residual / norm
-    return _Windows(J, r, transcription.basis.first_coefficient, n), rows.span, place
+    windows = _Windows(J, r, counts, transcription.basis.first_coefficient, n)
+    return windows, rows.span, place
 
 
 def solve_step(

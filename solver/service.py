@@ -1,36 +1,39 @@
 """Answers requests, and keeps the last fits: an adaptation of the same performance starts there."""
 
-import hashlib
 import time
 from collections import Counter, OrderedDict
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from .adapt import adapt
+from .adapt import Adaptation, adapt
 from .contacts import PhaseKind
+from .digest import digest
 from .faults import Fault, NoSolution
 from .fit import Fit, fit
 from .messages import Adapted, Analysed, Answer, Failed, Kind, Progress, Request
 from .problem import MotionProblem, travel_axes
-from .projection import Outcome, Status, Step
-from .recording import Recording
+from .projection import Step
+from .report import Origin, report, worst_constraints
 from .session import Analysis, analyse
+from .stature import scaled_problem, scaled_recording, scaled_schedule, scaled_track
 
 MOST_FITS = 3
+MOST_LISTED = 3  # constraints that a failure names
 
 Tell = Callable[[Progress], None]
 
 
-def digest(recording: Recording) -> str:
-    """A name for a recording's whole content: bones, rest, frames, rate and poses."""
-    content = hashlib.sha256(recording.name.encode())
-    for bone in recording.bones:
-        content.update(f"\0{bone.name}\0{bone.parent}".encode())
-        for rest in (bone.head, bone.tail, bone.rotation):
-            content.update(rest.tobytes())
-    for samples in (recording.frames, recording.times, recording.heads, recording.rotations):
-        content.update(samples.tobytes())
-    return content.hexdigest()
+@dataclass(frozen=True)
+class _Measured:
+    """An analysis in the lengths that the problem's height asks for.
+
+    height: m, as recorded. factor: the figure's height over that one. problem: in its lengths.
+    """
+
+    analysis: Analysis
+    problem: MotionProblem
+    height: float
+    factor: float
 
 
 class Service:
@@ -42,25 +45,29 @@ class Service:
     def answer(self, request: Request, tell: Tell) -> Answer:
         """Meets a request, telling each step; what an artist can mend comes back as Failed."""
         try:
-            analysis = analyse(request.recording, request.problem)
+            measured = _measure(request)
             if request.kind is Kind.ANALYSE:
-                return _analysed(request, analysis)
-            return self._adapted(request, analysis, tell)
+                return _analysed(request, measured)
+            return self._adapted(request, measured, tell)
         except Fault as fault:
             return Failed(request.id, fault)
 
-    def _adapted(self, request: Request, analysis: Analysis, tell: Tell) -> Adapted:
+    def _adapted(self, request: Request, measured: _Measured, tell: Tell) -> Adapted:
         progress = _stepper(request.id, tell)
         began = time.perf_counter()
-        fitted = self._fit(request, analysis, progress)
-        fit_s = time.perf_counter() - began
-        adaptation = adapt(fitted, request.problem, progress=progress)
-        adapt_s = time.perf_counter() - began - fit_s
-        _require_solved(adaptation.outcome)
-        motion = adaptation.motion
-        report = {"status": adaptation.outcome.status.value, "fit_s": fit_s, "adapt_s": adapt_s}
-        track = motion.track(analysis.performance.recording)
-        return Adapted(request.id, track, report, fitted.schedule)
+        fitted = self._fit(request, measured.analysis, progress)
+        fitted_at = time.perf_counter()
+        adaptation = adapt(fitted, measured.problem, progress=progress)
+        seconds = {"fit": fitted_at - began, "adapt": time.perf_counter() - fitted_at}
+        _require_solved(adaptation, measured.problem)
+        track = adaptation.motion.track(measured.analysis.performance.recording)
+        back = 1.0 / measured.factor
+        return Adapted(
+            request.id,
+            scaled_track(track, back),
+            report(adaptation, measured.problem, Origin(request.recording.name), seconds=seconds),
+            scaled_schedule(fitted.schedule, back),
+        )
 
     def _fit(self, request: Request, analysis: Analysis, progress: Callable[[Step], None]) -> Fit:
         """The stored fit of this performance, or a new one, which is then stored."""
@@ -68,18 +75,30 @@ class Service:
         found = self._fits.pop(key, None)
         if found is None:
             found = fit(analysis.performance, analysis.schedule, progress=progress)
-            _require_solved(found.outcome)
         self._fits[key] = found
         while len(self._fits) > MOST_FITS:
             self._fits.popitem(last=False)
         return found
 
 
-def _analysed(request: Request, analysis: Analysis) -> Analysed:
-    schedule, performance = analysis.schedule, analysis.performance
+def _measure(request: Request) -> _Measured:
+    problem = request.problem
+    analysis = analyse(request.recording, problem)
+    height = analysis.performance.character.height
+    if problem.height is None:
+        return _Measured(analysis, problem, height, 1.0)
+    factor = problem.height / height
+    problem = scaled_problem(problem, factor)
+    analysis = analyse(scaled_recording(request.recording, factor), problem)
+    return _Measured(analysis, problem, height, factor)
+
+
+def _analysed(request: Request, measured: _Measured) -> Analysed:
+    schedule, performance = measured.analysis.schedule, measured.analysis.performance
     ground = [p for p in schedule.phases if p.kind is PhaseKind.GROUND]
     axes = {p.name: travel_axes(performance, schedule, p) for p in ground}
-    return Analysed(request.id, schedule, performance.character.height, axes)
+    back = 1.0 / measured.factor
+    return Analysed(request.id, scaled_schedule(schedule, back), measured.height, axes)
 
 
 def _fit_relevant(problem: MotionProblem) -> str:
@@ -98,6 +117,7 @@ def _stepper(request: int, tell: Tell) -> Callable[[Step], None]:
     return progress
 
 
-def _require_solved(outcome: Outcome) -> None:
-    if outcome.status is not Status.SOLVED:
-        raise NoSolution(outcome.status.value)
+def _require_solved(adaptation: Adaptation, problem: MotionProblem) -> None:
+    if not adaptation.solved:
+        worst = worst_constraints(adaptation, problem)[:MOST_LISTED]
+        raise NoSolution(adaptation.outcome.status.value, tuple(worst))

@@ -13,96 +13,23 @@ A contact carries force for a short while before its point has come to rest and 
 to lift (`SETTLE`): shoes and feet give, and a spline cannot stop a foot in no time.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from enum import Enum
+from copy import copy
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .character import Character
 from .contacts import Contact
 from .dynamics import GRAVITY, MomentFunction
-from .kinematics import BodyPoint, point_velocity, pose
+from .kinematics import BodyPoint, Pose, pose
+from .pins import Pins, PointContact
 from .recording import BoolArray, FloatArray, IntArray
 from .rotations import cross_matrix
+from .rows import Layout, RowKind, Rows
 from .splines import ORDER, Basis, gauss_instants
 
 GAUSS = 3  # dynamics nodes a span
 SETTLE = 0.03  # s
-
-
-class RowKind(Enum):
-    """What an equation states. The value is the unit of its violation."""
-
-    BALANCE = "BW"
-    MOMENT = "BW·m"
-    PIN = "m"
-    PIN_SPEED = "m/s"
-    RELEASE = "BW released"  # a force that would pull is held at zero
-
-
-@dataclass(frozen=True)
-class PointContact:
-    """A contact as the equations see it: `point` indexes the transcription's points."""
-
-    contact: Contact
-    point: int
-    pin_start: float
-    pin_end: float
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Where each unknown sits in the array x (K, n_block): centre of mass, angles, forces.
-
-    The forces of force node g sit in block g + 1; those of blocks 0 and K - 1 do not exist.
-    """
-
-    n_angles: int
-    n_points: int
-
-    @property
-    def n_block(self) -> int:
-        return 3 + self.n_angles + 3 * self.n_points
-
-    @property
-    def com(self) -> slice:
-        return slice(0, 3)
-
-    @property
-    def angles(self) -> slice:
-        return slice(3, 3 + self.n_angles)
-
-    @property
-    def motion(self) -> slice:
-        return slice(0, 3 + self.n_angles)
-
-    @property
-    def forces(self) -> slice:
-        return slice(3 + self.n_angles, self.n_block)
-
-    def force(self, point: int) -> slice:
-        first = 3 + self.n_angles + 3 * point
-        return slice(first, first + 3)
-
-
-@dataclass(frozen=True)
-class Rows:
-    """R equations, each within one span: residual (R,), Jacobian (R, 4, n_block) over the span's
-    four blocks, and per row its kind, instant (s) and contact (index or -1)."""
-
-    span: IntArray
-    residual: FloatArray
-    jacobian: FloatArray
-    kind: NDArray[np.object_]
-    time: FloatArray
-    contact: IntArray
-
-    @staticmethod
-    def join(parts: Sequence["Rows"]) -> "Rows":
-        names = ("span", "residual", "jacobian", "kind", "time", "contact")
-        return Rows(*[np.concatenate([getattr(p, name) for p in parts]) for name in names])
 
 
 @dataclass
@@ -129,6 +56,7 @@ class Transcription:
         self._node_basis = [self.basis.evaluate(times, k, self.node_spans) for k in range(3)]
         self._node_force = self.basis.force_weights(times, self.node_spans)
         self._balance = self._balance_rows()
+        self.pins = Pins(self.basis, self.layout, self.contacts)
 
     @property
     def n_unknowns(self) -> int:
@@ -158,24 +86,47 @@ class Transcription:
 
     def rows(self, x: FloatArray, places: FloatArray) -> Rows:
         """Every equation at unknowns x (K, n_block), pins at places (n_contacts, 3) m."""
-        parts = [self._balance_at(x), self._moment_rows(x)]
+        at_nodes, at_pins = self._poses(x)
+        parts = [self._balance_at(x), self._moment_rows(x, at_nodes)]
         if self.contacts:
-            parts += [self._pin_rows(x, places), self._speed_rows(x)]
+            window = self.window(x, self.pins.spans)
+            parts += self.pins.rows(window, at_pins, self.points, places)
+        return self.with_released(self._only_active(Rows.join(parts)), x)
+
+    def residuals(self, x: FloatArray, places: FloatArray) -> FloatArray:
+        """The residuals of `rows` alone, cheaper."""
+        at_nodes, at_pins = self._poses(x)
+        parts = [self._balance_residual(x), self._moment_residual(x, at_nodes).ravel()]
+        if self.contacts:
+            window = self.window(x, self.pins.spans)
+            parts.append(self.pins.residuals(window, at_pins, self.points, places))
         if self.released:
-            parts.append(self._release_rows(x))
-        rows = Rows.join(parts)
+            parts.append(self._release_rows(x, self.released).residual)
+        return np.concatenate(parts)
+
+    def release(self, pairs: frozenset[tuple[int, int]]) -> "Transcription":
+        """These equations with the forces of (force node, point) pairs held at zero as well."""
+        twin = copy(self)
+        twin.released = self.released | pairs
+        return twin
+
+    def with_released(self, rows: Rows, x: FloatArray) -> Rows:
+        """Rows without any release rows, and the release rows."""
+        if not self.released:
+            return rows
+        return Rows.join([rows, self._only_active(self._release_rows(x, self.released))])
+
+    def _only_active(self, rows: Rows) -> Rows:
         blocks = self.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)
         rows.jacobian[~self.active[blocks]] = 0.0
         return rows
 
-    def residuals(self, x: FloatArray, places: FloatArray) -> FloatArray:
-        """The residuals of `rows` alone, cheaper."""
-        parts = [self._balance_at(x).residual, self._moment_residual(x).ravel()]
-        if self.contacts:
-            parts += [self._pin_residual(x, places).ravel(), self._speed_rows(x).residual]
-        if self.released:
-            parts.append(self._release_rows(x).residual)
-        return np.concatenate(parts)
+    def _poses(self, x: FloatArray) -> tuple[Pose, Pose]:
+        """The figure at the dynamics nodes and at the pins' breaks, worked out together."""
+        q = self.angles_at_nodes(x, 0)
+        pinned = self.pins.angles(self.window(x, self.pins.spans))
+        posed = pose(self.character, np.concatenate([q, pinned]))
+        return posed.at(slice(0, len(q))), posed.at(slice(len(q), None))
 
     # -- balance ---------------------------------------------------------------------------
 
@@ -193,28 +144,23 @@ class Transcription:
             jacobian[:, axis, :, axis] = second
             for point in range(layout.n_points):
                 jacobian[each, axis, 1 + side, layout.force(point).start + axis] = -1.0
-        count = 3 * len(span)
-        weight = np.tile([0.0, 0.0, 1.0], len(span))
-        return Rows(
-            np.repeat(span, 3),
-            weight,
-            jacobian.reshape(count, ORDER, layout.n_block),
-            np.full(count, RowKind.BALANCE),
-            np.repeat(times, 3),
-            np.full(count, -1),
-        )
+        weight = np.tile([0.0, 0.0, 1.0], (len(span), 1))
+        return self._only_active(Rows.triples(span, weight, jacobian, RowKind.BALANCE, times))
+
+    def _balance_residual(self, x: FloatArray) -> FloatArray:
+        rows = self._balance
+        local = self.window(x, rows.span)
+        return np.asarray(rows.residual + np.einsum("rkn,rkn->r", rows.jacobian, local))
 
     def _balance_at(self, x: FloatArray) -> Rows:
-        rows = self._balance
-        residual = rows.residual + np.einsum("rkn,rkn->r", rows.jacobian, self.window(x, rows.span))
-        return Rows(rows.span, residual, rows.jacobian.copy(), rows.kind, rows.time, rows.contact)
+        return replace(self._balance, residual=self._balance_residual(x))
 
     # -- moment ----------------------------------------------------------------------------
 
-    def angles_at_nodes(self, x: FloatArray) -> list[FloatArray]:
-        """Joint angles, velocities and accelerations (N, n_angles) at the dynamics nodes."""
+    def angles_at_nodes(self, x: FloatArray, derivative: int) -> FloatArray:
+        """(N, n_angles) joint angles, or their derivative, at the dynamics nodes."""
         local = self.window(x, self.node_spans)[:, :, self.layout.angles]
-        return [np.einsum("nk,nkj->nj", B, local) for B in self._node_basis]
+        return np.asarray(np.einsum("nk,nkj->nj", self._node_basis[derivative], local))
 
     def forces_at_nodes(self, x: FloatArray) -> FloatArray:
         """(N, P, 3) contact forces in body weights at the dynamics nodes."""
@@ -222,22 +168,19 @@ class Transcription:
         forces = np.einsum("nk,nkj->nj", self._node_force, local)
         return np.asarray(forces.reshape(len(forces), self.layout.n_points, 3))
 
-    def _moment_residual(self, x: FloatArray) -> FloatArray:
-        q, v, a = self.angles_at_nodes(x)
-        rate = self.moment.value(q, v, a)
+    def _moment_residual(self, x: FloatArray, posed: Pose) -> FloatArray:
+        rate = self.moment.value(*(self.angles_at_nodes(x, k) for k in range(3)))
         if not self.points:
             return rate
-        arms = pose(self.character, q).points(self.points)
+        arms = posed.points(self.points)
         return np.asarray(rate - np.cross(arms, self.forces_at_nodes(x)).sum(axis=1))
 
-    def _moment_rows(self, x: FloatArray) -> Rows:
+    def _moment_rows(self, x: FloatArray, posed: Pose) -> Rows:
         layout = self.layout
-        q, v, a = self.angles_at_nodes(x)
-        rate, by_order = self.moment.jacobian(q, v, a)
-        count = len(q)
+        rate, by_order = self.moment.jacobian(*(self.angles_at_nodes(x, k) for k in range(3)))
+        count = len(rate)
         jacobian = np.zeros((count, 3, ORDER, layout.n_block))
         if self.points:
-            posed = pose(self.character, q)
             arms, turn = posed.points(self.points), posed.point_jacobian(self.points)
             forces = self.forces_at_nodes(x)
             rate = rate - np.cross(arms, forces).sum(axis=1)
@@ -249,84 +192,13 @@ class Transcription:
                 jacobian[:, :, 1 + side, layout.forces] = weight[:, None, None] * lever
         stacked = np.stack(self._node_basis, axis=-1)  # (N, 4, 3)
         jacobian[..., layout.angles] = np.einsum("nko,niom->nikm", stacked, by_order)
-        return Rows(
-            np.repeat(self.node_spans, 3),
-            rate.ravel(),
-            jacobian.reshape(3 * count, ORDER, layout.n_block),
-            np.full(3 * count, RowKind.MOMENT),
-            np.repeat(self.node_times, 3),
-            np.full(3 * count, -1),
-        )
+        return Rows.triples(self.node_spans, rate, jacobian, RowKind.MOMENT, self.node_times)
 
-    # -- pins ------------------------------------------------------------------------------
+    # -- releases --------------------------------------------------------------------------
 
-    def _pin_instants(self, *, speed: bool) -> tuple[IntArray, FloatArray]:
-        """(contact index, instant) of the pin rows: breaks while pinned, or where speed is zero.
-
-        Speed is held at the pin's ends and at double knots inside, where the spline is only
-        once differentiable and each side needs its own end condition.
-        """
-        index: list[int] = []
-        times: list[float] = []
-        for i, contact in enumerate(self.contacts):
-            slack = 1e-9
-            breaks = self.basis.breaks
-            inside = (breaks >= contact.pin_start - slack) & (breaks <= contact.pin_end + slack)
-            if speed:
-                ends = np.isclose(breaks, contact.pin_start) | np.isclose(breaks, contact.pin_end)
-                inside &= ends | self.basis.double
-            index.extend([i] * int(inside.sum()))
-            times.extend(breaks[inside].tolist())
-        return np.array(index, dtype=int), np.array(times)
-
-    def _pin_residual(self, x: FloatArray, places: FloatArray) -> FloatArray:
-        return self._pin_evaluate(x, places)[0]
-
-    def _pin_evaluate(
-        self, x: FloatArray, places: FloatArray
-    ) -> tuple[FloatArray, IntArray, FloatArray, IntArray, FloatArray]:
-        index, times = self._pin_instants(speed=False)
-        spans = self.basis.spans(times)
-        values = self.basis.evaluate(times, 0, spans)
-        local = np.einsum("nk,nkj->nj", values, self.window(x, spans))
-        which = np.array([self.contacts[i].point for i in index])
-        arms = pose(self.character, local[:, self.layout.angles]).points(self.points)
-        at = local[:, self.layout.com] + arms[np.arange(len(index)), which]
-        return at - places[index], index, times, spans, values
-
-    def _pin_rows(self, x: FloatArray, places: FloatArray) -> Rows:
-        residual, index, times, spans, values = self._pin_evaluate(x, places)
-        local = np.einsum("nk,nkj->nj", values, self.window(x, spans))
-        which = np.array([self.contacts[i].point for i in index])
-        posed = pose(self.character, local[:, self.layout.angles])
-        turn = posed.point_jacobian(self.points)[np.arange(len(index)), which]
-        jacobian = np.zeros((len(index), 3, ORDER, self.layout.n_block))
-        jacobian[..., self.layout.angles] = values[:, None, :, None] * turn[:, :, None]
-        for axis in range(3):
-            jacobian[:, axis, :, axis] = values
-        return self._contact_rows(residual, jacobian, index, times, spans, RowKind.PIN)
-
-    def _speed_rows(self, x: FloatArray) -> Rows:
-        index, times = self._pin_instants(speed=True)
-        spans = self.basis.spans(times)
-        values, slopes = (self.basis.evaluate(times, k, spans) for k in (0, 1))
-        window = self.window(x, spans)
-        angles = self.layout.angles
-        q, v = (np.einsum("nk,nkj->nj", B, window[:, :, angles]) for B in (values, slopes))
-        each, which = np.arange(len(index)), np.array([self.contacts[i].point for i in index])
-        speeds, by_angle, by_speed = point_velocity(pose(self.character, q), self.points, v)
-        com_speed = np.einsum("nk,nkj->nj", slopes, window[:, :, self.layout.com])
-        jacobian = np.zeros((len(index), 3, ORDER, self.layout.n_block))
-        for basis, derivative in ((values, by_angle), (slopes, by_speed)):
-            jacobian[..., angles] += basis[:, None, :, None] * derivative[each, which][:, :, None]
-        for axis in range(3):
-            jacobian[:, axis, :, axis] = slopes
-        residual = com_speed + speeds[each, which]
-        return self._contact_rows(residual, jacobian, index, times, spans, RowKind.PIN_SPEED)
-
-    def _release_rows(self, x: FloatArray) -> Rows:
+    def _release_rows(self, x: FloatArray, released: frozenset[tuple[int, int]]) -> Rows:
         layout, basis = self.layout, self.basis
-        pairs = np.array(sorted(self.released))
+        pairs = np.array(sorted(released))
         block = pairs[:, 0] + 1
         last = basis.first_coefficient + 1  # the block of each span's first force node
         span = np.minimum(np.searchsorted(last, block, side="right") - 1, basis.n_spans - 1)
@@ -338,39 +210,14 @@ class Transcription:
             column = layout.forces.start + 3 * pairs[:, 1] + axis
             jacobian[np.arange(count), axis, local, column] = 1.0
             residual[:, axis] = x[block, column]
-        return Rows(
-            np.repeat(span, 3),
-            residual.ravel(),
-            jacobian.reshape(3 * count, ORDER, layout.n_block),
-            np.full(3 * count, RowKind.RELEASE),
-            np.repeat(basis.breaks[span], 3),
-            np.full(3 * count, -1),
-        )
+        times = basis.breaks[span]
+        return Rows.triples(span, residual, jacobian, RowKind.RELEASE, times)
 
     def pulling(self, x: FloatArray, tolerance: float) -> frozenset[tuple[int, int]]:
         """(force node, point) pairs whose vertical force pulls by more than tolerance (BW)."""
         vertical = x[1:-1, self.layout.forces].reshape(-1, self.layout.n_points, 3)[:, :, 2]
         nodes, points = np.nonzero(vertical < -tolerance)
         return frozenset(zip(nodes.tolist(), points.tolist(), strict=True))
-
-    def _contact_rows(
-        self,
-        residual: FloatArray,
-        jacobian: FloatArray,
-        index: IntArray,
-        times: FloatArray,
-        spans: IntArray,
-        kind: RowKind,
-    ) -> Rows:
-        count = 3 * len(index)
-        return Rows(
-            np.repeat(spans, 3),
-            residual.ravel(),
-            jacobian.reshape(count, ORDER, self.layout.n_block),
-            np.full(count, kind),
-            np.repeat(times, 3),
-            np.repeat(index, 3),
-        )
 
 
 def touching_spans(basis: Basis, contact: Contact) -> IntArray:

@@ -1,0 +1,352 @@
+"""What was found and how well it holds, as numbers with their units in the keys.
+
+bw is the body's weight.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .adapt import Adaptation
+from .contacts import Phase, PhaseKind
+from .dynamics import GRAVITY
+from .fit import Fit
+from .motion import Motion, pinned_instants, unexplained
+from .performance import interpolate
+from .problem import Axes3, MotionProblem, Pin, _chosen, _phase
+from .projection import TOLERANCE, Outcome
+from .recording import FloatArray
+from .trajectory import instants
+from .pins import PointContact
+from .rows import RowKind
+
+RATE = 1000.0  # Hz, of what is measured between the nodes
+SHOWN = {RowKind.PIN: (1000.0, "mm")}  # factor and unit of a violation; else the kind's own
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a recording came from and how it was read; None where nothing had to be settled.
+
+    unit_m: m per unit of length in the file. up: its axis that points up.
+    """
+
+    clip: str
+    unit_m: float | None = None
+    unit_guessed: bool = False
+    up: str | None = None
+    up_guessed: bool = False
+
+
+def report(
+    adaptation: Adaptation,
+    problem: MotionProblem,
+    origin: Origin,
+) -> Json:
+    """Everything about an adaptation that a JSON file can hold; what is not finite is None."""
+    fit, motion = adaptation.fit, adaptation.motion
+    pins = pins_of_contacts(fit, problem)
+    contacts = motion.transcription.contacts
+    content = {
+        "status": adaptation.outcome.status.value,
+        "recording": _recording(fit, origin),
+        "figure": _figure(fit, problem),
+        "pins": [_pin(pin) for pin in problem.pins],
+        "solves": _solves(fit.outcomes, "fit") + _solves(adaptation.outcomes, "adapt"),
+        "unknowns": motion.transcription.n_unknowns,
+        "rows": len(motion.transcription.residuals(motion.x, motion.places)),
+        "equations": [
+            {"name": name, "violation": amount, "unit": unit}
+            for name, amount, unit in worst_constraints(adaptation, problem, least=0.0)
+        ],
+        "contacts": [_contact(motion, fit, i, pins[i]) for i in range(len(contacts))],
+        "between_nodes": dense_residuals(motion, fit.schedule.phases),
+        "forces": _forces(motion, fit),
+        "fit_to_recording": closeness(fit),
+        "jumps": _jumps(fit, motion),
+    }
+    finite: Json = _finite(content)
+    return finite
+
+
+def pins_of_contacts(fit: Fit, problem: MotionProblem) -> list[str | None]:
+    """The artist's name of the pin that moves each contact. Raises UnknownPhase, UnknownContact."""
+    names: list[str | None] = [None] * len(fit.schedule.contacts)
+    for pin in problem.pins:
+        for i in _chosen(pin, _phase(pin, fit.schedule), fit.schedule):
+            names[i] = pin.name
+    return names
+
+
+def worst_constraints(
+    adaptation: Adaptation, problem: MotionProblem, *, least: float = 1.0
+) -> list[tuple[str, float, str]]:
+    """(name, violation, unit) of every contact's pin and every phase's equations, worst first.
+
+    least: how often its tolerance a violation must reach to be listed.
+    """
+    motion = adaptation.motion
+    rows = motion.transcription.rows(motion.x, motion.places)
+    pins = pins_of_contacts(adaptation.fit, problem)
+    phases = adaptation.fit.schedule.phases
+    found: dict[tuple[str, RowKind], float] = {}
+    for kind, time, contact, left in zip(
+        rows.kind, rows.time, rows.contact, np.abs(rows.residual), strict=True
+    ):
+        if contact >= 0:
+            name = motion.transcription.contacts[contact].contact.name
+            name = f"{pins[contact]}: {name}" if pins[contact] else name
+        else:
+            name = _phase_at(phases, time).name
+        found[name, kind] = max(found.get((name, kind), 0.0), float(left))
+    ranked = sorted(
+        ((v / TOLERANCE[kind], name, kind) for (name, kind), v in found.items()),
+        key=lambda each: each[0],
+        reverse=True,
+    )
+    listed = []
+    for share, name, kind in ranked:
+        factor, unit = SHOWN.get(kind, (1.0, kind.value))
+        if share >= least:
+            listed.append((name, share * TOLERANCE[kind] * factor, unit))
+    return listed
+
+
+def _phase_at(phases: Sequence[Phase], time: float) -> Phase:
+    return next((phase for phase in phases if time <= phase.end), phases[-1])
+
+
+# ---------------------------------------------------------------- what went in
+
+
+def _recording(fit: Fit, origin: Origin) -> Json:
+    recording = fit.performance.recording
+    seconds = float(recording.times[-1])
+    return {
+        "clip": origin.clip,
+        "action": recording.name,
+        "first_frame": float(recording.frames[0]),
+        "last_frame": float(recording.frames[-1]),
+        "seconds": seconds,
+        "frames_per_second": _rate(fit),
+        "unit_m": origin.unit_m,
+        "unit_guessed": origin.unit_guessed,
+        "up_axis": origin.up,
+        "up_axis_guessed": origin.up_guessed,
+    }
+
+
+def _figure(fit: Fit, problem: MotionProblem) -> Json:
+    character = fit.performance.character
+    return {
+        "mass_kg": character.mass,
+        "mass_table": problem.mass_table.value,
+        "height_m": character.height,
+        "bodies": len(character.bodies),
+        "degrees_of_freedom": character.n_dofs,
+        "floor_m": fit.schedule.floor_m,
+    }
+
+
+def _pin(pin: Pin) -> Json:
+    axes = "offset_world_m" if pin.axes is Axes3.WORLD else "offset_forward_left_up_m"
+    return {
+        "name": pin.name,
+        "phase": pin.phase,
+        "points": list(pin.touching),
+        axes: list(pin.offset),
+        "place_m": None if pin.place is None else list(pin.place),
+        "turn_deg": math.degrees(pin.turn),
+    }
+
+
+def _rate(fit: Fit) -> float:
+    recording = fit.performance.recording
+    return (len(recording.times) - 1) / float(recording.times[-1])
+
+
+def _frame(fit: Fit, time: float) -> float:
+    """The scene's frame at an instant of the clip."""
+    return round(float(fit.performance.recording.frames[0]) + time * _rate(fit), 3)
+
+
+def _solves(outcomes: Sequence[Outcome], name: str) -> list[Json]:
+    return [
+        {
+            "name": outcome.steps[0].stage if outcome.steps else name,
+            "status": outcome.status.value,
+            "iterations": len(outcome.steps),
+            "violation_over_tolerance": outcome.violation,
+        }
+        for outcome in outcomes
+    ]
+
+
+# ---------------------------------------------------------------- how well it holds
+
+
+def _contact(motion: Motion, fit: Fit, i: int, pin: str | None) -> Json:
+    at = motion.transcription.contacts[i]
+    contact = at.contact
+    pinned = pinned_instants(at, RATE)
+    drift = motion.drift(i, pinned)
+    settling = motion.drift(i, _settling(at))
+    return {
+        "name": contact.name,
+        "pin": pin,
+        "point": contact.point,
+        "bone": contact.bone,
+        "start_s": contact.start,
+        "end_s": contact.end,
+        "start_frame": _frame(fit, contact.start),
+        "end_frame": _frame(fit, contact.end),
+        "pinned_from_s": at.pin_start,
+        "pinned_to_s": at.pin_end,
+        "recorded_place_m": contact.place.tolist(),
+        "place_m": motion.places[i].tolist(),
+        "worst_violation_mm": 1000.0 * float(drift.max()),
+        "worst_violation_frame": _frame(fit, float(pinned[drift.argmax()])),
+        "worst_while_settling_mm": 1000.0 * float(settling.max()),
+    }
+
+
+def _settling(contact: PointContact) -> FloatArray:
+    """Instants at which a contact carries force but may still move, its pinned ends among them."""
+    span = contact.contact
+    before = span.start + instants(contact.pin_start - span.start, RATE)
+    after = contact.pin_end + instants(span.end - contact.pin_end, RATE)
+    return np.concatenate([before, after])
+
+
+def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> Json:
+    """Root force (bw) and moment (bw·m) that nothing explains, between the nodes too."""
+    left = unexplained(motion, (instants(motion.duration, RATE) + 0.5 / RATE)[:-1])
+    force, moment = (np.linalg.norm(part, axis=1) for part in (left.force, left.moment))
+    content: Json = {"rate_hz": RATE}
+    for kind in PhaseKind:
+        inside = np.zeros(len(left.times), dtype=bool)
+        for phase in phases:
+            if phase.kind is kind:
+                inside |= (left.times > phase.start) & (left.times < phase.end)
+        if inside.any():
+            content[kind.value] = {
+                "force_rms_bw": _rms(force[inside]),
+                "force_max_bw": float(force[inside].max()),
+                "moment_rms_bw_m": _rms(moment[inside]),
+                "moment_max_bw_m": float(moment[inside].max()),
+            }
+    return content
+
+
+def _forces(motion: Motion, fit: Fit) -> Json:
+    times = instants(motion.duration, RATE)
+    forces = motion.forces(times) / (motion.transcription.character.mass * GRAVITY)
+    total = np.linalg.norm(forces.sum(axis=1), axis=1)
+    peaks = []
+    for phase in fit.schedule.phases:
+        inside = (times >= phase.start) & (times <= phase.end)
+        if phase.kind is PhaseKind.GROUND and inside.any():
+            at = int(np.argmax(np.where(inside, total, -1.0)))
+            peak = {"peak_bw": float(total[at]), "frame": _frame(fit, float(times[at]))}
+            peaks.append({"phase": phase.name, **peak})
+    smallest = float(forces[:, :, 2].min(initial=0.0))
+    return {"peaks": peaks, "smallest_vertical_force_bw": smallest}
+
+
+def closeness(fit: Fit) -> Json:
+    """How far the fit is from the recording, at the recording's frames."""
+    performance = fit.performance
+    apart = fit.motion.joint_centres(performance.times) - performance.centres
+    lost = [_apex(fit.motion, f) - _recorded_apex(fit, f) for f in _flights(fit)]
+    return {
+        "joint_centres_rms_cm": 100.0 * _rms(np.linalg.norm(apart, axis=2)),
+        "pelvis_apex_difference_cm": 100.0 * max(lost, key=abs, default=0.0),
+    }
+
+
+# ---------------------------------------------------------------- what changed
+
+
+def _jumps(fit: Fit, motion: Motion) -> list[Json]:
+    """Each flight before and after: pelvis heights above the floor, and the flight's reach."""
+    floor = fit.schedule.floor_m
+    jumps = []
+    for flight in _flights(fit):
+        before = [p for p in fit.schedule.phases if p.end <= flight.start + 1e-9]
+        was, now = (
+            {
+                "crouch_pelvis_height_m": _lowest(m, before[-1]) - floor if before else None,
+                "apex_pelvis_height_m": _apex(m, flight) - floor,
+                "flight_length_m": _reach(m, flight),
+            }
+            for m in (fit.motion, motion)
+        )
+        recorded = {"apex_pelvis_height_m": _recorded_apex(fit, flight) - floor}
+        deeper = None
+        if before:
+            deeper = 100.0 * (_lowest(fit.motion, before[-1]) - _lowest(motion, before[-1]))
+        jumps.append(
+            {
+                "flight": flight.name,
+                "take_off_s": flight.start,
+                "landing_s": flight.end,
+                "take_off_frame": _frame(fit, flight.start),
+                "landing_frame": _frame(fit, flight.end),
+                "recorded": recorded,
+                "fit": was,
+                "adapted": now,
+                "crouch_deeper_cm": deeper,
+                "apex_higher_cm": 100.0 * (_apex(motion, flight) - _apex(fit.motion, flight)),
+            }
+        )
+    return jumps
+
+
+def _flights(fit: Fit) -> list[Phase]:
+    return [p for p in fit.schedule.phases if p.kind is PhaseKind.FLIGHT]
+
+
+def _within(phase: Phase) -> FloatArray:
+    return np.linspace(phase.start, phase.end, 2 + int((phase.end - phase.start) * 240.0))
+
+
+def _apex(motion: Motion, flight: Phase) -> float:
+    """The pelvis's greatest height in a flight, m, world."""
+    return float(motion.joint_centres(_within(flight))[:, 0, 2].max())
+
+
+def _recorded_apex(fit: Fit, flight: Phase) -> float:
+    performance = fit.performance
+    heights = performance.centres[:, 0, 2]
+    return float(interpolate(performance.times, heights, _within(flight)).max())
+
+
+def _lowest(motion: Motion, phase: Phase) -> float:
+    """The pelvis's least height in a phase, m, world."""
+    return float(motion.joint_centres(_within(phase))[:, 0, 2].min())
+
+
+def _reach(motion: Motion, flight: Phase) -> float:
+    """How far the centre of mass travels over the ground in a flight, m."""
+    ends = motion.com(np.array([flight.start, flight.end]))
+    return float(np.linalg.norm((ends[1] - ends[0])[:2]))
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _finite(value: Any) -> Any:
+    """The same with plain numbers, and None for those that JSON cannot hold."""
+    match value:
+        case dict():
+            return {key: _finite(each) for key, each in value.items()}
+        case list() | tuple():
+            return [_finite(each) for each in value]
+        case float() | np.floating():
+            return float(value) if math.isfinite(value) else None
+    return value

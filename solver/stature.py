@@ -1,0 +1,47 @@
+"""A figure of another height: the recording scaled for the solver, and what it finds scaled back."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .contacts import ContactSchedule
+from .problem import MotionProblem
+from .recording import PoseTrack, Recording
+
+
+def scaled_recording(recording: Recording, factor: float) -> Recording:
+    """Every length times `factor`, about the world's origin."""
+    bones = tuple(
+        replace(bone, head=factor * bone.head, tail=factor * bone.tail) for bone in recording.bones
+    )
+    return replace(recording, bones=bones, heads=factor * recording.heads)
+
+
+def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
+    """The same edit of a recording scaled by `factor`."""
+
+    def scaled(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+        x, y, z = (factor * value for value in vector)
+        return x, y, z
+
+    pins = (
+        replace(
+            pin, offset=scaled(pin.offset), place=None if pin.place is None else scaled(pin.place)
+        )
+        for pin in problem.pins
+    )
+    return replace(problem, pins=tuple(pins))
+
+
+def scaled_schedule(schedule: ContactSchedule, factor: float) -> ContactSchedule:
+    """Contacts whose places and points are `factor` times as far."""
+    contacts = (
+        replace(c, place=np.asarray(factor * c.place), offset=np.asarray(factor * c.offset))
+        for c in schedule.contacts
+    )
+    return replace(schedule, contacts=tuple(contacts), floor_m=factor * schedule.floor_m)
+
+
+def scaled_track(track: PoseTrack, factor: float) -> PoseTrack:
+    """The same poses with the pelvis `factor` times as far."""
+    return replace(track, root_head=factor * track.root_head)
