@@ -23,7 +23,8 @@ from .recording import FloatArray, IntArray
 from .splines import Basis, gauss_instants, phase_breaks
 from .transcription import SETTLE, Transcription, touching_spans
 
-LONGEST_SPAN = 0.045  # s
+SPANS = (0.08, 0.06, 0.045, 0.035, 0.025)  # s, from which the clip chooses
+FAITHFUL = 0.004  # m; how far a joint may be, rms, from the recording for want of knots
 SHORTEST_SPAN = 0.015  # s
 FIT_PRICES = Prices(place=1.0, smooth_s=0.05, force=1e-4)
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
@@ -154,14 +155,27 @@ def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcrip
             _shared_instant(t, boundaries, extra) for t in _pinned(contact, schedule.duration)
         )
         contacts.append(PointContact(contact, point, start, end))
-    breaks, double = phase_breaks(boundaries, extra, LONGEST_SPAN)
     return Transcription(
         character,
-        Basis(breaks, double),
+        _coarsest_faithful(performance, boundaries, extra),
         points,
         tuple(contacts),
         MomentFunction(character),
     )
+
+
+def _coarsest_faithful(
+    performance: Performance, boundaries: Sequence[float], extra: Sequence[float]
+) -> Basis:
+    """The basis with the fewest knots that follows the recording; physics adds more (`refine`)."""
+    for longest in SPANS:
+        basis = Basis(*phase_breaks(boundaries, extra, longest))
+        angles = basis.project(performance.times, performance.angles)
+        posed = pose(performance.character, basis.combine(angles, performance.times))
+        off = posed.centres - pose(performance.character, performance.angles).centres
+        if np.sqrt((off**2).sum(axis=2).mean(axis=0)).max() < FAITHFUL:
+            break
+    return basis
 
 
 def _pinned(contact: Contact, duration: float) -> tuple[float, float]:
