@@ -3,6 +3,7 @@
 
   demo [--out DIR]                        fetch a real recording, move one hop's landing, adapt it
   adapt CLIP --recipe RECIPE --out DIR    the same for any clip (BVH, FBX, ASF/AMC)
+  analyze CLIP [--write-recipe FILE]      what touches when, and a recipe to start from
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
   build [--out DIR]                       make and validate the extension's zips
@@ -24,6 +25,7 @@ from devtools import environment, pythons
 COMMANDS = {
     "demo": ("devtools.demo", [], False),
     "adapt": ("operators.cli", ["adapt"], False),
+    "analyze": ("operators.cli", ["analyze"], False),
     "test": ("devtools.testing", [], True),
     "figures": ("devtools.figures", [], True),
     "build": ("devtools.build", [], False),

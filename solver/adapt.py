@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .contacts import ContactSchedule, PhaseKind
-from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, dense_instants, greville, refine
+from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, Solved, dense_instants, greville, refine
 from .motion import Motion
 from .problem import MotionProblem, pinned_places
 from .projection import Outcome, Progress, Status, restore
@@ -23,24 +23,10 @@ STAGE_TURN = np.radians(45.0)
 
 
 @dataclass(frozen=True)
-class Adaptation:
-    """An adapted motion, the fit it came from and how it was found."""
+class Adaptation(Solved):
+    """An adapted motion and the fit it came from."""
 
     fit: Fit
-    outcomes: tuple[Outcome, ...]
-    places: FloatArray
-
-    @property
-    def outcome(self) -> Outcome:
-        return self.outcomes[-1]
-
-    @property
-    def motion(self) -> Motion:
-        return Motion(self.outcome.transcription, self.outcome.x, self.places)
-
-    @property
-    def solved(self) -> bool:
-        return self.outcome.status is Status.SOLVED
 
 
 @dataclass(frozen=True)
@@ -80,9 +66,9 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
         outcomes.append(outcome)
         motion = Motion(outcome.transcription, outcome.x, places)
         if outcome.status is not Status.SOLVED:
-            return Adaptation(fit, tuple(outcomes), places)
+            return Adaptation(tuple(outcomes), places, fit)
     outcomes += refine(outcomes[-1], goal, ADAPT_PRICES, ADAPT_PROMISE, progress=progress)
-    return Adaptation(fit, tuple(outcomes), goal)
+    return Adaptation(tuple(outcomes), goal, fit)
 
 
 def stance_moves(

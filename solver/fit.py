@@ -18,7 +18,7 @@ from .linear import BlockBanded
 from .motion import Motion, Promise, split, weak_spans
 from .performance import Performance, interpolate
 from .pins import PointContact
-from .projection import Outcome, Progress, project, restore
+from .projection import Outcome, Progress, Status, project, restore
 from .recording import FloatArray, IntArray
 from .splines import Basis, gauss_instants, phase_breaks
 from .transcription import SETTLE, Transcription, touching_spans
@@ -39,11 +39,9 @@ ADAPT_PROMISE = Promise(flight=1e-3, ground=4e-3, drift=4e-4)
 
 
 @dataclass(frozen=True)
-class Fit:
-    """A fitted performance: equations, solution and how it was found."""
+class Solved:
+    """A motion that was solved for: how each stage ended, and each contact's place."""
 
-    performance: Performance
-    schedule: ContactSchedule
     outcomes: tuple[Outcome, ...]
     places: FloatArray  # (n_contacts, 3) m
 
@@ -54,6 +52,18 @@ class Fit:
     @property
     def motion(self) -> Motion:
         return Motion(self.outcome.transcription, self.outcome.x, self.places)
+
+    @property
+    def solved(self) -> bool:
+        return self.outcome.status is Status.SOLVED
+
+
+@dataclass(frozen=True)
+class Fit(Solved):
+    """A fitted performance."""
+
+    performance: Performance
+    schedule: ContactSchedule
 
     @cached_property
     def metric(self) -> BlockBanded:
@@ -78,7 +88,7 @@ def fit(
     metric = closeness.expand(near.x)[1]
     valid = restore(transcription, metric, near.x, places, stage="fit", progress=progress)
     outcomes = [near, valid, *refine(valid, places, FIT_PRICES, FIT_PROMISE, progress=progress)]
-    return Fit(performance, schedule, tuple(outcomes), places)
+    return Fit(tuple(outcomes), places, performance, schedule)
 
 
 def refine(
