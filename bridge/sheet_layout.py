@@ -9,7 +9,7 @@ is 0.3 m further in the world is 0.3 m further in the picture.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from .sheet import Limb, SheetRow
 
 FIGURES = 10
 SPACING = 0.7  # m between neighbouring figures, where the spread may choose
-CLOSE = 0.2  # m, figures nearer to each other than this hide each other
+CLOSE = 0.35  # m, figures nearer to each other than this hide each other
 SMOOTH = 0.15  # s, over which the spread's speed is averaged: a flight's path stays a parabola
 TOUCHES = 0.04  # m, a limb nearer to a pin than this is held by it
 RAISED = 0.05  # m, a pin this far above the floor stands on a step
@@ -88,8 +88,9 @@ def lay_out(rows: Sequence[SheetRow]) -> Layout:
     turned = [_turn(row, axes) for row in rows]
     lead = turned[0]
     slide = spread(lead, SPACING * (FIGURES - 1))
+    wished = lead.times[instants(lead, lead.com[:, 0] + slide)]
     floor = min(_lowest(row) for row in turned)
-    tiers = tuple(_tier(r, np.interp(r.times, lead.times, slide), floor) for r in turned)
+    tiers = tuple(_tier(r, np.interp(r.times, lead.times, slide), wished, floor) for r in turned)
     reach = np.concatenate([tier.corners()[:, 0] for tier in tiers])
     return Layout(tiers, floor, float(reach.min()), float(reach.max()))
 
@@ -99,8 +100,7 @@ def canvas_axes(rows: Sequence[SheetRow]) -> FloatArray:
     travel = sum((row.com[-1] - row.com[0] for row in rows), np.zeros(3))[:2] / len(rows)
     if np.hypot(*travel) < 0.3:
         trunk = max(rows[0].limbs, key=lambda limb: float(np.prod(limb.size)))
-        across = trunk.rotation[:, :2, 0].mean(axis=0)
-        travel = np.array([-across[1], across[0]])
+        travel = trunk.rotation[:, :2, 1].mean(axis=0)
     if np.hypot(*travel) < 1e-6:
         travel = np.array([1.0, 0.0])
     x, y = travel / np.hypot(*travel)
@@ -140,32 +140,41 @@ def _smooth(x: FloatArray, samples: float) -> FloatArray:
 
 
 def instants(row: SheetRow, x: FloatArray, count: int = FIGURES) -> list[int]:
-    """Indices of the instants shown: key times, ends, lowest and highest, and others between.
+    """Indices of about `count` instants worth showing, x: (T,) m where each would be drawn.
 
-    x: (T,) m, where each instant is drawn; the others are put where the gaps are widest.
-    Ends, lowest and highest give way to a key time beside them.
+    Key times, ends, lowest and highest; the others are put where the gaps are widest.
     """
     z = row.com[:, 2]
-    must = {int(np.abs(row.times - t).argmin()) for t in row.key_times}
-    for i in (0, len(x) - 1, int(z.argmin()), int(z.argmax())):
-        if not any(abs(x[i] - x[j]) < CLOSE for j in must):
-            must.add(i)
-    kept = sorted(must)
+    kept = with_keys(row, x, [0, len(x) - 1, int(z.argmin()), int(z.argmax())])
     along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
     gaps = np.diff(along[kept])
     parts = np.ones(len(gaps), dtype=int)
-    while parts.sum() < count - 1 and np.max(gaps / parts, initial=0.0) > 2 * CLOSE:
+    while parts.sum() < count - 1 and np.max(gaps / parts, initial=0.0) > 1.4 * CLOSE:
         parts[np.argmax(gaps / parts)] += 1
+    shown = set(kept)
     for start, gap, n in zip(along[kept], gaps, parts, strict=False):
         between = start + gap * np.arange(1, n) / n
-        must.update(np.searchsorted(along, between).tolist())
-    return sorted(must)
+        shown.update(np.searchsorted(along, between).tolist())
+    return sorted(shown)
+
+
+def with_keys(row: SheetRow, x: FloatArray, wished: Sequence[int]) -> list[int]:
+    """Indices of the key times, and of those wished for that no other one hides; in order."""
+    kept = {_nearest(row.times, t) for t in row.key_times}
+    for i in wished:
+        if all(abs(x[i] - x[j]) >= CLOSE for j in kept):
+            kept.add(i)
+    return sorted(kept)
+
+
+def _nearest(times: FloatArray, t: float) -> int:
+    return int(np.abs(times - t).argmin())
 
 
 def _turn(row: SheetRow, axes: FloatArray) -> SheetRow:
     limbs = tuple(Limb(m.name, m.size, m.centre @ axes.T, axes @ m.rotation) for m in row.limbs)
     pins = row.pins.reshape(-1, 3) @ axes.T
-    return SheetRow(row.title, row.times, limbs, row.com @ axes.T, pins, row.key_times)
+    return replace(row, limbs=limbs, com=row.com @ axes.T, pins=pins)
 
 
 def _lowest(row: SheetRow) -> float:
@@ -176,14 +185,18 @@ def _lowest(row: SheetRow) -> float:
     return float(np.min(drops))
 
 
-def _tier(row: SheetRow, slide: FloatArray, floor: float) -> Tier:
+def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) -> Tier:
     path = row.com + slide[:, None] * np.array([1.0, 0.0, 0.0])
-    shown = instants(row, path[:, 0])
+    shown = with_keys(row, path[:, 0], [_nearest(row.times, t) for t in wished.tolist()])
     centre = np.stack([limb.centre for limb in row.limbs], axis=1)
     rotation = np.stack([limb.rotation for limb in row.limbs], axis=1)
     sizes = np.array([limb.size for limb in row.limbs])
     aside = (centre[:, :, 1] - row.com[:, None, 1]).mean(axis=0)
-    pins = _pins(row.pins, _distances(row.pins, sizes, centre, rotation), slide, shown)
+    if row.pin_times:
+        away = _out_of_time(row.pin_times, row.times)
+    else:
+        away = _distances(row.pins, sizes, centre, rotation) / TOUCHES
+    pins = _pins(row.pins, away, slide, shown)
     centre[:, :, 0] += slide[:, None]
     figures = tuple(Figure(float(row.times[i]), centre[i], rotation[i], path[i]) for i in shown)
     return Tier(
@@ -224,13 +237,20 @@ def _distances(
     return np.linalg.norm(local.clip(min=0.0), axis=3).min(axis=2)
 
 
-def _pins(
-    pins: FloatArray, distance: FloatArray, slide: FloatArray, shown: list[int]
-) -> FloatArray:
-    """(N, 3) each pin under every figure that it holds, or where the body comes nearest to it."""
+def _out_of_time(spans: Sequence[tuple[float, float]], times: FloatArray) -> FloatArray:
+    """(T, P) zero in the middle of a pin's span, 1 at its ends, more outside it."""
+    first, last = np.array(spans).T
+    return np.abs(times[:, None] - (first + last) / 2) / np.maximum((last - first) / 2, 1e-9)
+
+
+def _pins(pins: FloatArray, away: FloatArray, slide: FloatArray, shown: list[int]) -> FloatArray:
+    """(N, 3) each pin under every figure that it holds; one that holds none of them is left out.
+
+    away: (T, P) from how far the body misses each pin; it is held up to 1.
+    """
     drawn = []
     for p, place in enumerate(pins):
-        held = [i for i in shown if distance[i, p] < TOUCHES] or [int(distance[:, p].argmin())]
+        held = [i for i in shown if away[i, p] <= 1.0 + 1e-6]
         drawn += [place + np.array([slide[i], 0.0, 0.0]) for i in held]
     return np.array(drawn).reshape(-1, 3)
 

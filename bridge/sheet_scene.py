@@ -1,19 +1,16 @@
-"""Draws a sheet's layout with Cycles in a scene of its own and removes whatever that made."""
+"""Puts a sheet's layout into a Blender scene: solids, letters, lines, lamp and camera."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import cos, pi, radians, sin
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..solver.recording import FloatArray
-from . import sheet_solids
+from . import sheet_materials, sheet_solids
 from .sheet_layout import Figure, Layout, Tier
-
-Colour = tuple[float, float, float]
+from .sheet_materials import Colour, mix, srgb
 
 ELEVATION = radians(9.0)
 ACROSS = np.array([1.0, 0.0, 0.0])
@@ -22,20 +19,11 @@ AWAY = np.array([0.0, cos(ELEVATION), -sin(ELEVATION)])  # from the viewer into 
 APART = 80.0  # m between tiers along AWAY: unseen, and they cast no shadow on each other
 
 DEPTH = 0.8  # m, half the depth of the floor
-THICKNESS = 0.05
+THICKNESS, GRID_STEP = 0.05, 0.5
 FOOT = DEPTH * sin(ELEVATION) + THICKNESS + 0.2  # m that floor and labels take below z = floor
 MARGIN, GAP, EDGE = 0.3, 0.14, 0.12  # m beside the figures, between the rows, around it all
 CAPTION, LABEL = 0.17, 0.1  # m, heights of the letters
-PIN, PATH = 0.034, 0.012  # m, radii
-SAMPLES = 8  # for each pixel; the denoiser does the rest
-
-
-def srgb(code: str) -> Colour:
-    """Linear colour of "rrggbb"."""
-    c = np.array([int(code[i : i + 2], 16) for i in (0, 2, 4)]) / 255
-    r, g, b = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).tolist()
-    return r, g, b
-
+PIN, PATH, BEAD = 0.034, 0.012, 0.024  # m, radii
 
 PAPER, FLOOR, GRID, INK = srgb("f7f8fa"), srgb("e9ebef"), srgb("c9ced6"), srgb("39424e")
 RED = srgb("d8202a")
@@ -43,88 +31,33 @@ BODIES = (srgb("7e8c9d"), srgb("3f83c4"), srgb("3a9d86"), srgb("8a6fc0"))  # one
 PATHS = (srgb("2f3a48"), srgb("123f70"), srgb("115445"), srgb("3f2a75"))
 
 
-def render(layout: Layout, path: Path, width: int) -> None:
-    """Render `layout` to the PNG file `path`."""
-    with _clean_scene() as scene:
-        _Painter(scene).draw(layout, width)
-        _render(scene, path)
-
-
-@contextmanager
-def _clean_scene() -> Iterator[Any]:
-    """A new scene; every data-block that appears while it lives is removed at the end."""
-    import bpy
-
-    kinds = [p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION"]
-    before = {kind: set(getattr(bpy.data, kind)) for kind in kinds}
-    scene = bpy.data.scenes.new("Hangtime sheet")
-    try:
-        yield scene
-    finally:
-        made = [block for kind in kinds for block in set(getattr(bpy.data, kind)) - before[kind]]
-        bpy.data.batch_remove(made)
-
-
-@contextmanager
-def _cycles() -> Iterator[None]:
-    """Cycles is enabled inside, and disabled afterwards where the user had it disabled."""
-    import addon_utils
-
-    _, enabled = addon_utils.check("cycles")
-    if not enabled:
-        addon_utils.enable("cycles")
-    try:
-        yield
-    finally:
-        if not enabled:
-            addon_utils.disable("cycles")
-
-
-def _render(scene: Any, path: Path) -> None:
-    import bpy
-
-    with _cycles():
-        settings = scene.render
-        settings.engine = "CYCLES"
-        settings.filepath = str(path)
-        settings.use_file_extension = False
-        settings.image_settings.file_format = "PNG"
-        settings.image_settings.color_mode = "RGB"
-        scene.view_settings.view_transform = "Standard"
-        scene.cycles.device = "CPU"
-        scene.cycles.samples = SAMPLES if _has_denoiser() else 4 * SAMPLES
-        scene.cycles.use_adaptive_sampling = False
-        scene.cycles.use_light_tree = False  # one lamp
-        scene.cycles.max_bounces = 2
-        scene.cycles.use_denoising = _has_denoiser()
-        scene.cycles.denoising_prefilter = "NONE"
-        scene.cycles.denoising_quality = "FAST"
-        bpy.ops.render.render(write_still=True, scene=scene.name)
-
-
-def _has_denoiser() -> bool:
-    import _cycles
-
-    return bool(_cycles.with_openimagedenoise)
-
-
 @dataclass
-class _Painter:
-    """Adds objects to a scene; `origin` is the place of the current tier's canvas origin."""
+class Painter:
+    """Adds objects to a scene, in two collections: `lit` solids, and `flat` letters and lines.
+
+    origin: (3,) m, the place of the current tier's canvas origin.
+    """
 
     scene: Any
     origin: FloatArray = field(default_factory=lambda: np.zeros(3))
 
     def __post_init__(self) -> None:
-        self.solid = _solid_material()
-        self.flat = _flat_material()
+        self.matt, self.plain = sheet_materials.matt(), sheet_materials.plain()
+        self.lit, self.flat = self.collection("lit"), self.collection("flat")
+
+    def collection(self, name: str) -> Any:
+        import bpy
+
+        made = bpy.data.collections.new(name)
+        self.scene.collection.children.link(made)
+        return made
 
     def draw(self, layout: Layout, width: int) -> None:
         left, right = layout.left - MARGIN, layout.right + MARGIN
         ground = np.array([0.0, 0.0, layout.floor])
         bottom = 0.0  # m in the picture, from the first tier's floor
         for k, tier in enumerate(layout.tiers):
-            head = (tier.corners()[1, 2] - layout.floor) * cos(ELEVATION) + 0.08
+            head = (tier.corners()[1, 2] - layout.floor) * cos(ELEVATION) + 0.12
             top = bottom - (head + CAPTION + GAP if k else 0.0)
             self.origin = k * APART * AWAY + top * UP
             self.stage(left, right, layout.floor)
@@ -142,58 +75,69 @@ class _Painter:
         top = np.array([0.0, 0.0, floor])
         low = np.array([left, -DEPTH, -THICKNESS])
         self.mesh(sheet_solids.block(top + low, top + np.array([right, DEPTH, 0.0])), FLOOR)
-        for x in np.arange(np.ceil(left * 2) / 2, right, 0.5):
-            line = np.array([x, 0.0, floor + 0.001])
-            reach = np.array([0.005, DEPTH, 0.0005])
-            self.mesh(sheet_solids.block(line - reach, line + reach), GRID)
-        for y in (-0.5, 0.0, 0.5):
-            line = np.array([0.0, y, floor + 0.001])
-            reach = np.array([0.0, 0.012, 0.0005])
-            ends = np.array([left, 0, 0]), np.array([right, 0, 0])
-            self.mesh(sheet_solids.block(line + ends[0] - reach, line + ends[1] + reach), GRID)
+        for x in np.arange(np.ceil(left / GRID_STEP), right / GRID_STEP) * GRID_STEP:
+            self.line(np.array([x, -DEPTH, floor]), np.array([x, DEPTH, floor]), 0.005)
+        for y in (-GRID_STEP, 0.0, GRID_STEP):
+            self.line(np.array([left, y, floor]), np.array([right, y, floor]), 0.012)
+
+    def line(self, start: FloatArray, end: FloatArray, half_width: float) -> None:
+        """A line on the floor; those across the view are drawn wider, as they are foreshortened."""
+        reach = half_width * np.sign(end - start)[[1, 0, 2]] + [0.0, 0.0, 0.0015]
+        self.mesh(sheet_solids.block(start - reach, end + reach), GRID)
 
     def tier(self, tier: Tier, k: int, floor: float) -> None:
         for step in tier.steps:
             low = np.array([step.left, -DEPTH, floor])
             self.mesh(sheet_solids.block(low, np.array([step.right, DEPTH, step.top])), FLOOR)
         solids = [
-            self.shape(sheet_solids.limb(size, end, head="head" in name.lower()), self.solid)
+            self.shape(sheet_solids.limb(size, end, head="head" in name.lower()), self.matt)
             for size, end, name in zip(tier.sizes, tier.proximal, tier.names, strict=True)
         ]
         colour = BODIES[k % len(BODIES)]
         for age, figure in zip(np.linspace(1, 0, len(tier.figures)), tier.figures, strict=True):
-            self.figure(figure, solids, tier.far, _mix(colour, PAPER, 0.5 * age))
-            self.label(figure, floor)
-        self.path(tier.path, PATHS[k % len(PATHS)])
-        ball = self.shape(sheet_solids.ball(PIN), self.solid)
+            self.figure(figure, solids, tier.far, mix(colour, PAPER, 0.5 * age))
+        self.labels(tier, floor)
+        self.path(tier, PATHS[k % len(PATHS)])
+        ball = self.shape(sheet_solids.ball(PIN), self.matt)
         for pin in tier.pins:
-            self.overlay(self.object(ball, RED, pin - 2 * AWAY))
+            made = self.object(self.lit, ball, RED, pin - 2 * AWAY)  # before the feet
+            made.visible_shadow = made.visible_diffuse = made.visible_glossy = False
 
-    def figure(self, figure: Figure, solids: list[Any], far: FloatArray, colour: Colour) -> None:
-        shade = _mix(colour, (0.0, 0.0, 0.0), 0.35)
+    def figure(
+        self, figure: Figure, solids: list[Any], far: NDArray[np.bool_], colour: Colour
+    ) -> None:
+        shade = mix(colour, (0.0, 0.0, 0.0), 0.35)
         for i, solid in enumerate(solids):
-            made = self.object(solid, shade if far[i] else colour, figure.centre[i])
+            made = self.object(self.lit, solid, shade if far[i] else colour, figure.centre[i])
             made.rotation_mode = "QUATERNION"
             made.rotation_quaternion = _quaternion(figure.rotation[i])
 
-    def label(self, figure: Figure, floor: float) -> None:
-        front = np.array([figure.com[0], -DEPTH, floor - THICKNESS])
-        self.text(f"{figure.time:.2f} s", front - 1.5 * LABEL * UP, LABEL, centred=True)
+    def labels(self, tier: Tier, floor: float) -> None:
+        """The time below each figure, where it does not run into the one before."""
+        end = -np.inf
+        for figure in tier.figures:
+            if figure.com[0] - end > 4.3 * LABEL:
+                end = figure.com[0]
+                front = np.array([end, -DEPTH, floor - THICKNESS])
+                self.text(f"{figure.time:.2f} s", front - 1.5 * LABEL * UP, LABEL, centred=True)
 
-    def path(self, points: FloatArray, colour: Colour) -> None:
-        """A tube through the points, in front of everything."""
+    def path(self, tier: Tier, colour: Colour) -> None:
+        """A tube along the centre of mass with a bead at each figure."""
         import bpy
 
+        bead = self.shape(sheet_solids.ball(BEAD), self.plain)
+        for figure in tier.figures:
+            self.object(self.flat, bead, colour, figure.com)
         curve = bpy.data.curves.new("path", "CURVE")
         curve.dimensions = "3D"
         curve.bevel_depth = PATH
         curve.use_fill_caps = True
         spline = curve.splines.new("POLY")
-        spline.points.add(len(points) - 1)
-        four = np.column_stack([points, np.ones(len(points))])
+        spline.points.add(len(tier.path) - 1)
+        four = np.column_stack([tier.path, np.ones(len(tier.path))])
         spline.points.foreach_set("co", four.astype(np.float32).ravel())
-        curve.materials.append(self.flat)
-        self.overlay(self.object(curve, colour, -1.5 * AWAY))
+        curve.materials.append(self.plain)
+        self.object(self.flat, curve, colour, np.zeros(3))
 
     def text(self, body: str, place: FloatArray, height: float, *, centred: bool = False) -> None:
         import bpy
@@ -202,13 +146,12 @@ class _Painter:
         curve.body = body
         curve.size = height * 1.35  # the font's capitals fill three quarters of its size
         curve.align_x = "CENTER" if centred else "LEFT"
-        curve.materials.append(self.flat)
-        made = self.object(curve, INK, place - AWAY)
+        curve.materials.append(self.plain)
+        made = self.object(self.flat, curve, INK, place)
         made.rotation_euler = (pi / 2 - ELEVATION, 0.0, 0.0)
-        self.overlay(made)
 
     def mesh(self, solid: sheet_solids.Mesh, colour: Colour) -> None:
-        self.object(self.shape(solid, self.solid, smooth=False), colour, np.zeros(3))
+        self.object(self.lit, self.shape(solid, self.matt, smooth=False), colour, np.zeros(3))
 
     def shape(self, solid: sheet_solids.Mesh, material: Any, *, smooth: bool = True) -> Any:
         import bpy
@@ -220,26 +163,23 @@ class _Painter:
         mesh.materials.append(material)
         return mesh
 
-    def object(self, data: Any, colour: Colour, place: FloatArray) -> Any:
+    def object(self, where: Any, data: Any, colour: Colour, place: FloatArray) -> Any:
         import bpy
 
         made = bpy.data.objects.new(data.name, data)
         made.color = (*colour, 1.0)
         made.location = self.origin + place
-        self.scene.collection.objects.link(made)
+        where.objects.link(made)
         return made
-
-    def overlay(self, drawn: Any) -> None:
-        """Seen by the camera alone: no shadow on, no light for, the rest."""
-        drawn.visible_shadow = drawn.visible_diffuse = drawn.visible_glossy = False
 
     def light(self) -> None:
         import bpy
 
         sun = bpy.data.lights.new("sun", "SUN")
         sun.energy, sun.angle = 2.0, radians(25.0)
-        self.object(sun, PAPER, np.zeros(3)).rotation_euler = (radians(32), radians(-22), 0.0)
-        self.scene.world = _world()
+        lamp = self.object(self.scene.collection, sun, PAPER, np.zeros(3))
+        lamp.rotation_euler = (radians(32), radians(-22), 0.0)
+        self.scene.world = sheet_materials.soft_light()
 
     def camera(self, centre: FloatArray, wide: float, high: float, width: int) -> None:
         import bpy
@@ -247,72 +187,14 @@ class _Painter:
         camera = bpy.data.cameras.new("camera")
         camera.type, camera.sensor_fit, camera.ortho_scale = "ORTHO", "HORIZONTAL", wide
         camera.clip_end = 1000.0
-        self.scene.camera = self.object(camera, PAPER, centre - 20 * AWAY)
+        self.scene.camera = self.object(self.scene.collection, camera, PAPER, centre - 20 * AWAY)
         self.scene.camera.rotation_euler = (pi / 2 - ELEVATION, 0.0, 0.0)
         self.scene.render.resolution_percentage = 100
         self.scene.render.resolution_x = width
         self.scene.render.resolution_y = max(round(width * high / wide), 4)
 
 
-def _mix(a: Colour, b: Colour, amount: float) -> Colour:
-    r, g, b_ = (np.array(a) * (1 - amount) + np.array(b) * amount).tolist()
-    return r, g, b_
-
-
 def _quaternion(rotation: FloatArray) -> Any:
     from mathutils import Matrix
 
     return Matrix(rotation.tolist()).to_quaternion()
-
-
-def _solid_material() -> Any:
-    """Matt, in the object's colour."""
-    material, nodes, links = _material("solid")
-    surface = nodes.new("ShaderNodeBsdfPrincipled")
-    surface.inputs["Roughness"].default_value = 0.6
-    links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Base Color"])
-    links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
-    return material
-
-
-def _flat_material() -> Any:
-    """Exactly the object's colour, unlit."""
-    material, nodes, links = _material("flat")
-    surface = nodes.new("ShaderNodeEmission")
-    links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Color"])
-    links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
-    return material
-
-
-def _material(name: str) -> tuple[Any, Any, Any]:
-    import bpy
-
-    material = bpy.data.materials.new(name)
-    return material, *_empty_tree(material)
-
-
-def _empty_tree(owner: Any) -> tuple[Any, Any]:
-    import bpy
-
-    if bpy.app.version < (5, 0):
-        owner.use_nodes = True  # always on, and its setter deprecated, from 5.0
-    owner.node_tree.nodes.clear()
-    return owner.node_tree.nodes, owner.node_tree.links
-
-
-def _world() -> Any:
-    """Soft white light from everywhere; to the camera plain paper."""
-    import bpy
-
-    world = bpy.data.worlds.new("sheet")
-    nodes, links = _empty_tree(world)
-    glow, paper = nodes.new("ShaderNodeBackground"), nodes.new("ShaderNodeBackground")
-    glow.inputs["Color"].default_value = (0.93, 0.96, 1.0, 1.0)
-    glow.inputs["Strength"].default_value = 0.5
-    paper.inputs["Color"].default_value = (*PAPER, 1.0)
-    mix = nodes.new("ShaderNodeMixShader")
-    links.new(nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"], mix.inputs[0])
-    links.new(glow.outputs[0], mix.inputs[1])
-    links.new(paper.outputs[0], mix.inputs[2])
-    links.new(mix.outputs[0], nodes.new("ShaderNodeOutputWorld").inputs["Surface"])
-    return world

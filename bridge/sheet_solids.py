@@ -9,6 +9,7 @@ IntArray = NDArray[np.int64]
 Mesh = tuple[FloatArray, IntArray]  # (V, 3) vertices m, (F, 4) faces
 
 AROUND, ALONG = 28, 20
+FLAT = 0.75  # a body shorter than this share of its width is a slice of the trunk
 SLENDER = 1.7  # a body this many times longer than wide is drawn as a tapered limb
 
 
@@ -16,20 +17,23 @@ def limb(size: FloatArray, proximal: float, *, head: bool = False) -> Mesh:
     """A pleasant solid for a box of the given extents (3,).
 
     Slender boxes become limbs that taper away from the proximal end (+1 or -1 on the longest
-    axis), heads become ellipsoids, the rest rounded blocks.
+    axis), heads ellipsoids of the box's volume, slices of the trunk blobs that overlap their
+    neighbours, the rest rounded blocks.
     """
     longest = int(np.argmax(size))
-    slender = size[longest] > SLENDER * np.median(size)
     if head:
-        return _superellipsoid(size, longest, ends=0.9, section=1.0, taper=0.0)
-    if slender:
+        return _superellipsoid(size * (6 / np.pi) ** (1 / 3), 2, ends=1.0, section=1.0)
+    if size[longest] > SLENDER * np.median(size):
         return _superellipsoid(size, longest, ends=0.42, section=0.95, taper=0.24 * proximal)
+    if size[2] < FLAT * np.sqrt(size[0] * size[1]):
+        blob = size * np.array([0.88, 0.88, 2.1])
+        return _superellipsoid(blob, 2, ends=0.7, section=0.85)
     return _superellipsoid(size, longest, ends=0.5, section=0.75, taper=0.06 * proximal)
 
 
 def ball(radius: float) -> Mesh:
     """A sphere around the origin."""
-    return _superellipsoid(np.full(3, 2 * radius), 2, ends=1.0, section=1.0, taper=0.0)
+    return _superellipsoid(np.full(3, 2 * radius), 2, ends=1.0, section=1.0)
 
 
 def block(low: FloatArray, high: FloatArray) -> Mesh:
@@ -40,7 +44,7 @@ def block(low: FloatArray, high: FloatArray) -> Mesh:
 
 
 def _superellipsoid(
-    size: FloatArray, axis: int, *, ends: float, section: float, taper: float
+    size: FloatArray, axis: int, *, ends: float, section: float, taper: float = 0.0
 ) -> Mesh:
     """Exponents near 0 give boxes, 1 ellipsoids; `taper` widens towards the axis's positive end."""
     phi, theta = np.meshgrid(

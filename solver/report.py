@@ -16,12 +16,12 @@ from .dynamics import GRAVITY
 from .fit import Fit
 from .motion import Motion, pinned_instants, unexplained
 from .performance import interpolate
+from .pins import PointContact
 from .problem import Axes3, MotionProblem, Pin, _chosen, _phase
 from .projection import TOLERANCE, Outcome
 from .recording import FloatArray
-from .trajectory import instants
-from .pins import PointContact
 from .rows import RowKind
+from .trajectory import instants
 
 RATE = 1000.0  # Hz, of what is measured between the nodes
 SHOWN = {RowKind.PIN: (1000.0, "mm")}  # factor and unit of a violation; else the kind's own

@@ -1,4 +1,4 @@
-"""A figure of another height: the recording scaled for the solver, and what it finds scaled back."""
+"""A figure of another height: the recording scaled for the solver, its answer scaled back."""
 
 from dataclasses import replace
 

@@ -1,0 +1,1 @@
+"""Comparisons that are not part of the extension."""

@@ -1,0 +1,68 @@
+"""Colours, materials and light of the picture; imports Blender inside its functions only."""
+
+from typing import Any
+
+import numpy as np
+
+Colour = tuple[float, float, float]  # linear
+
+
+def srgb(code: str) -> Colour:
+    """Linear colour of "rrggbb"."""
+    c = np.array([int(code[i : i + 2], 16) for i in (0, 2, 4)]) / 255
+    r, g, b = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).tolist()
+    return r, g, b
+
+
+def mix(a: Colour, b: Colour, amount: float) -> Colour:
+    r, g, b_ = (np.array(a) * (1 - amount) + np.array(b) * amount).tolist()
+    return r, g, b_
+
+
+def matt() -> Any:
+    """Evenly scattering, in the object's colour."""
+    material, nodes, links = _material("matt")
+    surface = nodes.new("ShaderNodeBsdfDiffuse")
+    links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Color"])
+    links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return material
+
+
+def plain() -> Any:
+    """Exactly the object's colour, unlit."""
+    material, nodes, links = _material("plain")
+    material.cycles.emission_sampling = "NONE"  # letters are no lamps
+    surface = nodes.new("ShaderNodeEmission")
+    links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Color"])
+    links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return material
+
+
+def _material(name: str) -> tuple[Any, Any, Any]:
+    import bpy
+
+    material = bpy.data.materials.new(name)
+    return material, *_empty_tree(material)
+
+
+def _empty_tree(owner: Any) -> tuple[Any, Any]:
+    import bpy
+
+    if bpy.app.version < (5, 0):
+        owner.use_nodes = True  # always on, and its setter deprecated, from 5.0
+    owner.node_tree.nodes.clear()
+    return owner.node_tree.nodes, owner.node_tree.links
+
+
+def soft_light() -> Any:
+    """A world of even, slightly cool light."""
+    import bpy
+
+    world = bpy.data.worlds.new("sheet")
+    world.cycles.sampling_method = "NONE"  # even light needs no aim
+    nodes, links = _empty_tree(world)
+    glow = nodes.new("ShaderNodeBackground")
+    glow.inputs["Color"].default_value = (0.93, 0.96, 1.0, 1.0)
+    glow.inputs["Strength"].default_value = 0.5
+    links.new(glow.outputs[0], nodes.new("ShaderNodeOutputWorld").inputs["Surface"])
+    return world

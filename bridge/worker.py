@@ -1,0 +1,228 @@
+"""Starts, asks and ends the process that solves, so that neither time nor a crash is Blender's.
+
+A request is made and its news gathered by a thread of its own; the thread that Blender runs on
+only looks at what has come (`Job.news`) or waits for it (`Job.wait`).
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from itertools import count
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Thread
+
+from ..solver.faults import WorkerDied
+from ..solver.messages import (
+    PROTOCOL,
+    Answer,
+    Failed,
+    Hello,
+    Kind,
+    Message,
+    Progress,
+    ProtocolError,
+    Ready,
+    Request,
+    receive,
+    send,
+)
+from ..solver.problem import MotionProblem
+from ..solver.recording import Recording
+
+_PROGRAM = Path(__file__).resolve().parents[1] / "solver" / "worker.py"
+# On a busy machine several threads make small factorisations a hundred times slower.
+_ONE_THREAD = dict.fromkeys(
+    (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+        "NUMEXPR_NUM_THREADS",
+    ),
+    "1",
+)
+_KEPT_LINES = 20
+_LAST_WORDS_S = 2.0
+
+
+class Job:
+    """One request on its way; `answer` is set once it has been seen in the news."""
+
+    def __init__(self, request: Request) -> None:
+        self.request = request
+        self.answer: Answer | None = None
+        self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
+
+    def deliver(self, message: Progress | Answer) -> None:
+        """Called by the thread that listens to the worker."""
+        self._arrived.put(message)
+
+    def news(self) -> Iterator[Progress | Answer]:
+        """What has arrived since the last look; never waits."""
+        while self.answer is None:
+            try:
+                yield self._seen(self._arrived.get_nowait())
+            except Empty:
+                return
+
+    def wait(self, told: Callable[[Progress], None] | None = None) -> Answer:
+        """The answer, however long it takes; each progress is told on the way."""
+        while self.answer is None:
+            message = self._seen(self._arrived.get())
+            if told is not None and isinstance(message, Progress):
+                told(message)
+        return self.answer
+
+    def _seen(self, message: Progress | Answer) -> Progress | Answer:
+        if not isinstance(message, Progress):
+            self.answer = message
+        return message
+
+
+class Worker:
+    """The worker process: started when it is needed, kept for the fits that it remembers."""
+
+    def __init__(self) -> None:
+        self._process: _Process | None = None
+        self._job: Job | None = None
+        self._ids = count(1)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request has not had its answer seen."""
+        return self._job is not None and self._job.answer is None
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number while it lives."""
+        alive = self._process is not None and self._process.alive
+        return self._process.pid if alive else None
+
+    def ask(self, kind: Kind, recording: Recording, problem: MotionProblem) -> Job:
+        """Makes a request, in a new process if there is none alive.
+
+        Raises WorkerDied where none can be started, RuntimeError while another is under way.
+        """
+        if self.busy:
+            raise RuntimeError("one request at a time")
+        if self.pid is None:
+            self.close()
+            self._process = _Process()
+        assert self._process is not None
+        self._job = Job(Request(next(self._ids), kind, recording, problem))
+        Thread(target=self._process.converse, args=(self._job,), daemon=True).start()
+        return self._job
+
+    def close(self) -> None:
+        """Ends the process, whatever it is doing; the next request starts another."""
+        process, self._process, self._job = self._process, None, None
+        if process is not None:
+            process.end()
+
+
+@cache
+def shared() -> Worker:
+    """The one worker of this Blender."""
+    return Worker()
+
+
+class _Process:
+    """One run of the worker program and the pipes to it."""
+
+    def __init__(self) -> None:
+        try:
+            self._popen = subprocess.Popen(
+                [sys.executable, "-I", str(_PROGRAM)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                env={**os.environ, **_ONE_THREAD},
+                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            )
+        except OSError as problem:
+            raise WorkerDied(f"{sys.executable} cannot be started: {problem}") from problem
+        self._greeted = False
+        self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
+        self._listener = Thread(target=self._keep_errors, daemon=True)
+        self._listener.start()
+
+    @property
+    def pid(self) -> int:
+        return self._popen.pid
+
+    @property
+    def alive(self) -> bool:
+        return self._popen.poll() is None
+
+    def converse(self, job: Job) -> None:
+        """Makes the job's request and delivers what is said about it, the answer at the last."""
+        try:
+            for message in self._talk(job.request):
+                job.deliver(message)
+        except (OSError, ValueError, EOFError):  # ValueError: the pipe was closed by end()
+            job.deliver(Failed(job.request.id, WorkerDied(self._last_words())))
+        except ProtocolError as problem:
+            self._popen.kill()
+            job.deliver(Failed(job.request.id, WorkerDied(str(problem))))
+        except (
+            BaseException
+        ) as problem:  # a mistake of ours; somebody waits for an answer all the same
+            job.deliver(Failed(job.request.id, WorkerDied(repr(problem))))
+            raise
+
+    def end(self) -> None:
+        """Kills the process and lets go of it."""
+        self._popen.kill()
+        self._popen.wait()
+        self._listener.join(_LAST_WORDS_S)
+        for pipe in (self._popen.stdin, self._popen.stdout, self._popen.stderr):
+            assert pipe is not None
+            with suppress(BrokenPipeError):  # what a broken pipe still held is of no use
+                pipe.close()
+
+    def _talk(self, request: Request) -> Iterator[Progress | Answer]:
+        if not self._greeted:
+            self._greet()
+        assert self._popen.stdin is not None
+        send(self._popen.stdin, request)
+        while True:
+            message = self._hear()
+            if isinstance(message, Hello | Ready | Request) or message.id != request.id:
+                raise ProtocolError(f"{type(message).__name__} was not asked for")
+            yield message
+            if not isinstance(message, Progress):
+                return
+
+    def _greet(self) -> None:
+        assert self._popen.stdin is not None
+        send(self._popen.stdin, Hello(PROTOCOL, tuple(p for p in sys.path if p)))
+        ready = self._hear()
+        if not isinstance(ready, Ready) or ready.protocol != PROTOCOL:
+            raise ProtocolError(f"{ready} is no greeting of version {PROTOCOL}")
+        self._greeted = True
+
+    def _hear(self) -> Message:
+        assert self._popen.stdout is not None
+        message = receive(self._popen.stdout)
+        if message is None:
+            raise EOFError
+        return message
+
+    def _keep_errors(self) -> None:
+        assert self._popen.stderr is not None
+        for line in self._popen.stderr:
+            self._last_lines.append(line.decode(errors="replace").strip())
+
+    def _last_words(self) -> str:
+        """Why it ended: the last line that it wrote to its error stream, and its exit code."""
+        code = self._popen.wait()
+        self._listener.join(_LAST_WORDS_S)
+        said = [line for line in self._last_lines if line]
+        return f"{said[-1]} (exit code {code})" if said else f"exit code {code}"

@@ -1,0 +1,217 @@
+"""Every fault and outcome in the artist's words: what is wrong, where, and what to do."""
+
+from collections.abc import Sequence
+from functools import singledispatch
+from pathlib import Path
+
+from ..solver import faults
+from ..solver.problem import UnknownContact, UnknownPhase
+from ..solver.projection import Status
+
+OUTCOMES = {
+    Status.SOLVED: "Solved: the motion obeys physics and every pin holds.",
+    Status.STALLED: "No motion was found that obeys physics and holds every pin. "
+    "Move the pins less, pin fewer points, or check the contacts' frames.",
+    Status.TOO_MANY_STEPS: "No motion was found within the allowed number of steps. "
+    "Move the pins less, or check the contacts' frames.",
+    Status.CANCELLED: "Cancelled; nothing was changed.",
+}
+
+
+@singledispatch
+def sentence(fault: faults.Fault) -> str:
+    """One or two sentences about a fault. Raises TypeError for a fault without words."""
+    raise TypeError(f"no words for {type(fault).__name__}")
+
+
+@sentence.register
+def _(fault: faults.NoArmature) -> str:
+    if fault.object_name is None:
+        return "No armature is chosen; select the armature that carries the recording."
+    return f"{_quoted(fault.object_name)} is or holds no armature; choose one with a recording."
+
+
+@sentence.register
+def _(fault: faults.NoAction) -> str:
+    return (
+        f"The armature {_quoted(fault.armature)} has no keyframes; "
+        "assign it the action that holds the recording."
+    )
+
+
+@sentence.register
+def _(fault: faults.NoBones) -> str:
+    return f"The armature {_quoted(fault.armature)} has no bones; choose the recorded figure's."
+
+
+@sentence.register
+def _(fault: faults.ClipTooShort) -> str:
+    return (
+        f"Only {fault.seconds:.2f} s of the recording lie in the chosen frames, and a jump needs "
+        f"{fault.minimum_s:g} s at least; choose more frames."
+    )
+
+
+@sentence.register
+def _(fault: faults.NoFlight) -> str:
+    return (
+        "No flight was found: in the chosen frames the feet are never off the ground together "
+        f"(the lower foot comes {max(fault.lowest_cm, 0.0):.1f} cm up at most). "
+        "Choose frames that hold a jump; if they do, check the scale and the up axis."
+    )
+
+
+@sentence.register
+def _(fault: faults.ZeroLengthBone) -> str:
+    return (
+        f"The bone {_quoted(fault.bone)} has no length, so it cannot carry mass; "
+        "give it one in edit mode, or choose another bone for that part of the body."
+    )
+
+
+@sentence.register
+def _(fault: faults.MissingPart) -> str:
+    if len(fault.tried) == 1:
+        tried = f" (no bone {_quoted(fault.tried[0])} is there)"
+    else:
+        tried = f" (looked for {', '.join(fault.tried)})" if fault.tried else ""
+    return f"No bone was found for the {fault.part}{tried}; say which bone it is."
+
+
+@sentence.register
+def _(fault: faults.NonFiniteKey) -> str:
+    return (
+        f"The bone {_quoted(fault.bone)} has a value at frame {fault.frame:g} that is no number; "
+        "delete or mend that key."
+    )
+
+
+@sentence.register
+def _(fault: faults.BadScale) -> str:
+    scale = ", ".join(f"{s:g}" for s in fault.scale)
+    return (
+        f"The scale of {_quoted(fault.object_name)} is ({scale}), but it must be the same, and "
+        "above zero, along all three axes; apply the scale or make it even."
+    )
+
+
+@sentence.register
+def _(fault: faults.UnreadableClip) -> str:
+    line = "" if fault.line is None else f", line {fault.line}"
+    return (
+        f"The recording {fault.path}{line}: {fault.problem}; "
+        "mend the file or export it again from where it came."
+    )
+
+
+@sentence.register
+def _(fault: faults.BadRecipe) -> str:
+    return f"{recipe_place(fault.path, fault.line)}: {fault.problem}. Mend it and run again."
+
+
+@sentence.register
+def _(fault: faults.OutputNotWritable) -> str:
+    return (
+        f"Nothing can be written to {fault.path} ({fault.problem}); "
+        "choose another folder or allow writing there."
+    )
+
+
+@sentence.register
+def _(fault: faults.ContradictoryPins) -> str:
+    return (
+        f"{_quoted(fault.first)} and {_quoted(fault.second)} contradict each other by "
+        f"{_length(fault.metres)}; no pose holds both, so move one of them or move them together."
+    )
+
+
+@sentence.register
+def _(fault: faults.NoSolution) -> str:
+    worst = "; ".join(_missed(*each) for each in fault.worst)
+    return f"{outcome(Status(fault.reason))} {worst + '.' if worst else ''}".strip()
+
+
+@sentence.register
+def _(fault: faults.UnseenSupport) -> str:
+    return (
+        f"From frame {fault.first:g} to {fault.last:g} neither foot touches the ground, yet the "
+        "body does not fall, so something unseen carries it (a box, a rail, a hand); "
+        "choose frames without it."
+    )
+
+
+@sentence.register
+def _(fault: faults.UnknownContactName) -> str:
+    return (
+        f"There is no contact {_quoted(fault.name)} in these frames; "
+        f"there are {_names(fault.known)}."
+    )
+
+
+@sentence.register
+def _(fault: faults.WorkerDied) -> str:
+    return (
+        f"The solver stopped without an answer ({fault.detail}); "
+        "nothing was changed. Try again, and report it if it happens twice."
+    )
+
+
+@sentence.register
+def _(fault: faults.ChangedMeanwhile) -> str:
+    what = "The result was thrown away" if fault.while_solving else "Nothing was done"
+    return (
+        f"{what}, because the armature {_quoted(fault.armature)} or its keys changed since the "
+        "analysis; press Analyze again."
+    )
+
+
+@sentence.register
+def _(fault: UnknownPhase) -> str:
+    return (
+        f"The pin {_quoted(fault.pin)} names the phase {_quoted(fault.phase)}, on which nothing "
+        f"touches the ground; there are {_names(fault.known)}."
+    )
+
+
+@sentence.register
+def _(fault: UnknownContact) -> str:
+    return (
+        f"The pin {_quoted(fault.pin)} names {_quoted(fault.what)}, which does not touch in its "
+        f"phase; what touches is {_names(fault.known)}."
+    )
+
+
+def outcome(status: Status) -> str:
+    """How a solve ended, and what to do about it."""
+    return OUTCOMES[status]
+
+
+def recipe_place(path: str | Path, line: int | None) -> str:
+    """Where in a recipe something is wrong."""
+    return f"Recipe {path}" if line is None else f"Recipe {path}, line {line}"
+
+
+def _missed(name: str, amount: float, unit: str) -> str:
+    """What of a constraint is left, by the unit that it is measured in."""
+    match unit:
+        case "mm":
+            return f"{_quoted(name)} stays {amount:.3g} mm from its place"
+        case "m/s":
+            return f"{_quoted(name)} still slides at {amount:.3g} m/s"
+        case "BW":
+            return f"in {name}, {amount:.3g} of the body's weight is not carried as it must be"
+        case "BW·m":
+            return f"in {name}, the body turns without cause ({amount:.3g} BW·m)"
+    return f"{name}: {amount:.3g} {unit}"
+
+
+def _quoted(name: str) -> str:
+    return f"“{name}”"
+
+
+def _names(names: Sequence[str]) -> str:
+    return ", ".join(names) if names else "none"
+
+
+def _length(metres: float) -> str:
+    return f"{1000 * metres:.0f} mm" if metres < 0.02 else f"{100 * metres:.1f} cm"
