@@ -21,15 +21,17 @@ from ..solver.splines import ORDER
 from ..solver.transcription import Transcription
 
 FloatArray = NDArray[np.float64]
-# What made IPOPT fastest here: no scaling (the rows are in body weights and metres already), and
-# an optimality that the rows' tolerances allow.
+# The fastest of some thirty settings tried on this problem: a start near the bounds, full steps of
+# the multipliers, no second-order corrections; the rows are in body weights and metres already.
 OPTIONS = {
     "print_level": 0,
     "sb": "yes",
-    "nlp_scaling_method": "none",
-    "tol": 1e-4,
-    "constr_viol_tol": 1e-8,
     "hessian_constant": "yes",
+    "nlp_scaling_method": "none",
+    "mu_init": 1e-5,
+    "alpha_for_y": "full",
+    "max_soc": 0,
+    "tol": 1e-4,
 }
 
 
@@ -50,10 +52,9 @@ def solve_by_ipopt(
     fit: Fit, problem: MotionProblem, *, limit_s: float = 60.0, pushing: bool = False
 ) -> PeerResult:
     """Adapts a fit by IPOPT in one go. pushing: also bound vertical forces from below."""
-    motion = fit.motion
-    t = motion.transcription
+    t = fit.motion.transcription
     goal = pinned_places(problem, fit.performance, fit.schedule)
-    start = carry(motion, stance_moves(fit.schedule, motion.places, goal))
+    start = carried(fit, problem)
     equations = _Equations(t, goal, start)
     n = t.n_unknowns
     x = ca.MX.sym("x", n)
@@ -84,15 +85,26 @@ def solve_by_ipopt(
     seconds = time.perf_counter() - begun
     stats = solver.stats()
     solved = equations.unpack(np.asarray(found["x"]).ravel())
-    step = solved - start
     return PeerResult(
         seconds,
         int(stats["iter_count"]),
         str(stats["return_status"]),
         worst_violation(t.rows(solved, goal)),
-        float(np.sqrt((step * fit.metric.times(step)).sum())),
+        distance(fit, problem, solved),
         solved,
     )
+
+
+def carried(fit: Fit, problem: MotionProblem) -> FloatArray:
+    """Where both solvers begin: the fit carried along with the pins, (K, n_block)."""
+    goal = pinned_places(problem, fit.performance, fit.schedule)
+    return carry(fit.motion, stance_moves(fit.schedule, fit.places, goal))
+
+
+def distance(fit: Fit, problem: MotionProblem, x: FloatArray) -> float:
+    """How far unknowns x (K, n_block) are from that start, in the adaptation's metric."""
+    step = x - carried(fit, problem)
+    return float(np.sqrt((step * fit.metric.times(step)).sum()))
 
 
 class _Equations:
@@ -146,10 +158,10 @@ class _Violations(ca.Callback):
         self.equations = equations
         self.construct("rows", {})
 
-    def get_sparsity_in(self, i: int) -> ca.Sparsity:
+    def get_sparsity_in(self, _: int) -> ca.Sparsity:
         return ca.Sparsity.dense(self.equations.t.n_unknowns)
 
-    def get_sparsity_out(self, i: int) -> ca.Sparsity:
+    def get_sparsity_out(self, _: int) -> ca.Sparsity:
         return ca.Sparsity.dense(self.equations.count)
 
     def has_eval_buffer(self) -> bool:

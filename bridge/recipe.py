@@ -57,9 +57,10 @@ def read_recipe_text(path: str | FilePath) -> str:
     try:
         return FilePath(path).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
-        raise BadRecipe(str(path), None, "not a text file in UTF-8") from error
+        raise BadRecipe(str(path), None, "not a text; save it as UTF-8") from error
     except OSError as error:
-        raise BadRecipe(str(path), None, error.strerror or type(error).__name__) from error
+        reason = error.strerror or type(error).__name__
+        raise BadRecipe(str(path), None, f"cannot be read ({reason}); check its path") from error
 
 
 def parse_recipe(text: str, path: str = "recipe") -> Recipe:
@@ -135,9 +136,9 @@ def _parse(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
         message, _, place = str(error).rpartition(" (at ")
         # Past its last character tomllib says "end of document" instead of a line.
         line = place.split()[1].rstrip(",") if place.startswith("line ") else text.count("\n") + 1
-        raise BadRecipe(path, int(line), f"not TOML: {message}") from error
+        raise BadRecipe(path, int(line), f"not TOML ({message}); correct the line") from error
     except _ABSURD as error:
-        raise BadRecipe(path, None, "not TOML that can be read") from error
+        raise BadRecipe(path, None, "not TOML that can be read; see the examples") from error
     return values, dict(toml_lines(text))
 
 
@@ -145,13 +146,13 @@ def _parse_json(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
     try:
         values = json.loads(text)
     except json.JSONDecodeError as error:
-        raise BadRecipe(path, error.lineno, f"not JSON: {error.msg}") from error
+        raise BadRecipe(path, error.lineno, f"not JSON ({error.msg}); correct the line") from error
     except _ABSURD as error:
-        raise BadRecipe(path, None, "not JSON that can be read") from error
+        raise BadRecipe(path, None, "not JSON that can be read; see the examples") from error
     lines: dict[Path, int] = {}
     for place, line in json_lines(text):
         if place in lines:
-            raise BadRecipe(path, line, f'"{place[-1]}" is there twice')
+            raise BadRecipe(path, line, f'"{place[-1]}" is there twice; keep one')
         lines[place] = line
     return values, lines
 
@@ -183,7 +184,7 @@ def _pins(tables: Iterable[Table]) -> tuple[Pin, ...]:
     for i, table in enumerate(tables):
         pin = _pin(table, _default_name(i))
         if any(pin.name == other.name for other in pins):
-            table.refuse("name", f'a second pin called "{pin.name}"')
+            table.refuse("name", f'a second pin called "{pin.name}"; give it its own name')
         pins.append(pin)
     return tuple(pins)
 

@@ -95,7 +95,7 @@ class Table:
         word = self.word(key)
         if word is None:
             what = f"a {self.place[0]}" if self.place else "the recipe"
-            self.source.refuse(self.place, f'{what} without "{key}"')
+            self.source.refuse(self.place, f'{what} without "{key}"; add it')
         return word
 
     def words(self, key: str) -> tuple[str, ...]:

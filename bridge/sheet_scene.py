@@ -76,7 +76,8 @@ class Painter:
         low = np.array([left, -DEPTH, -THICKNESS])
         self.mesh(sheet_solids.block(top + low, top + np.array([right, DEPTH, 0.0])), FLOOR)
         for x in np.arange(np.ceil(left / GRID_STEP), right / GRID_STEP) * GRID_STEP:
-            self.line(np.array([x, -DEPTH, floor]), np.array([x, DEPTH, floor]), 0.005)
+            reach = np.array([0.0, DEPTH - 0.005, 0.0])  # clear of the front of a step
+            self.line(np.array([x, 0.0, floor]) - reach, np.array([x, 0.0, floor]) + reach, 0.005)
         for y in (-GRID_STEP, 0.0, GRID_STEP):
             self.line(np.array([left, y, floor]), np.array([right, y, floor]), 0.012)
 

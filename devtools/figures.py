@@ -81,8 +81,13 @@ def measure(clip: "Clip", *, peer: bool) -> Iterator[Figure]:
     fitted, seconds = timed(lambda: fit(analysis.performance, analysis.schedule))
     _say(clip.name, f"fitted in {seconds:.2f} s")
     yield figure("fit", seconds, clip.name, "fit")
-    for name, value in [*closeness(fitted), *physics(fitted.motion), *still(armature, recording, fitted.motion)]:
-        yield figure(name, value, clip.name, "fit")
+    for part in (
+        closeness(fitted),
+        physics(fitted.motion),
+        still(armature, recording, fitted.motion),
+    ):
+        for name, value in part:
+            yield figure(name, value, clip.name, "fit")
     for edit in EDITS:
         for name, value in measure_edit(clip, edit, fitted, armature, recording, peer=peer):
             yield figure(name, value, clip.name, edit)

@@ -73,9 +73,7 @@ def _point(contact: Contact, recording: Recording, shown: Recording) -> FloatArr
     return np.asarray(shown.heads[:, bone] + shown.rotations[:, bone] @ local)
 
 
-def _instants(
-    contact: Contact, times: FloatArray
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _instants(contact: Contact, times: FloatArray) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Frames in which the point is held, and those in which it may settle or roll."""
     slack = 1e-6
     touching = (times > contact.start - slack) & (times < contact.end + slack)

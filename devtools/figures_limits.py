@@ -74,7 +74,7 @@ def figure(name: str, value: float, clip: str, edit: str) -> Figure:
 
 
 def table(figures: Sequence[Figure]) -> str:
-    """For every figure its worst value over clips and edits, with where that was, and the misses."""
+    """Every figure's worst value over clips and edits, where that was, and the misses."""
     lines = [f"{'figure':58}{'worst':>10}  {'unit':8}{'must':>8}{'aim':>8}  where"]
     for name, limit in LIMITS.items():
         mine = [f for f in figures if f.name == name]
@@ -85,7 +85,9 @@ def table(figures: Sequence[Figure]) -> str:
         where = f"{worst.clip}, {worst.edit}"
         missed = sum(not f.ok for f in mine)
         note = f"  MISSED in {missed} of {len(mine)}" if missed else ""
-        lines.append(f"{name:58}{worst.value:10.3g}  {limit.unit:8}{must:>8}{aim:>8}  {where}{note}")
+        lines.append(
+            f"{name:58}{worst.value:10.3g}  {limit.unit:8}{must:>8}{aim:>8}  {where}{note}"
+        )
     return "\n".join(lines)
 
 

@@ -71,7 +71,7 @@ def inverse_dynamics(
 
 
 def root_wrench(
-    model: mujoco.MjModel, qpos: FloatArray, generalised: FloatArray, com: FloatArray
+    qpos: FloatArray, generalised: FloatArray, com: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Root force (T, 3) N and moment (T, 3) N·m about the centre of mass, world axes.
 
@@ -95,7 +95,7 @@ def check_motion(motion: Motion, rate: float = RATE) -> tuple[Residual, FloatArr
     model = mujoco.MjModel.from_xml_string(mjcf(t.character, t.points))
     state = motion_state(motion, times)
     generalised, com = inverse_dynamics(model, state, motion.forces(times))
-    force, moment = root_wrench(model, state[0], generalised, com)
+    force, moment = root_wrench(state[0], generalised, com)
     weight = float(np.linalg.norm(model.opt.gravity)) * float(model.body_mass.sum())
     touching = np.zeros(count, dtype=bool)
     for contact in t.contacts:
@@ -119,10 +119,13 @@ def check_npz(path: str | Path) -> Residual:
     centre = np.einsum("b,tbi->ti", share, com)
     inner = slice(2, -2)
     acceleration = _second(com, step)
-    omega = _omega(data["rotation"], step)
-    inertia = data["rotation"] @ data["inertia"] @ np.swapaxes(data["rotation"], -1, -2)
+    turn = data["rotation"]
+    back = np.swapaxes(turn, -1, -2)[inner]
+    # With R^T from the right R' becomes [omega] and R'' [alpha] + [omega][omega], whose last term is symmetric.
+    omega, alpha = (_axial(d(turn, step) @ back) for d in (_first, _second))
+    inertia = turn[inner] @ data["inertia"] @ back
     spin = np.einsum("tbij,tbj->tbi", inertia, omega)
-    spin_rate = _first(spin, step)
+    spin_rate = np.einsum("tbij,tbj->tbi", inertia, alpha) + np.cross(omega, spin)
     push, at = data["contact_force"][inner], data["contact_point"][inner]
     force = np.einsum("b,tbi->ti", mass, acceleration - data["gravity"]) - push.sum(axis=1)
     arms = com[inner] - centre[inner, None]
@@ -136,6 +139,12 @@ def check_npz(path: str | Path) -> Residual:
     return Residual(
         data["time"][inner][whole], force[whole] / weight, moment[whole] / weight, flying[whole]
     )
+
+
+def _axial(m: FloatArray) -> FloatArray:
+    """(..., 3) vectors whose cross matrices are the skew parts of (..., 3, 3)."""
+    skew = 0.5 * (m - np.swapaxes(m, -1, -2))
+    return np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=-1)
 
 
 def _first(x: FloatArray, step: float) -> FloatArray:

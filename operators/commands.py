@@ -156,7 +156,7 @@ def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:
     path: Path | None = options.clip
     if path is None:
         if recipe is None or recipe.clip is None:
-            problem = 'neither the recipe ("clip = ...") nor the command names a recording'
+            problem = 'no recording; name one on the command line, or here as clip = "..."'
             raise BadRecipe(str(options.recipe), None, problem)
         path = options.recipe.parent / recipe.clip
     return Clip(path, options.unit, options.up, options.rate, options.asf)

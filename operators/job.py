@@ -98,9 +98,9 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> Loaded:
 
 
 def no_solution(adaptation: Adaptation, problem: MotionProblem) -> NoSolution:
-    """Why a solve failed: its status and the three worst constraints."""
-    worst = worst_constraints(adaptation, problem)[:3]
-    return NoSolution(adaptation.outcome.status.value, tuple(worst))
+    """Why a solve failed: its status and the three worst constraints, places before physics."""
+    missed = sorted(worst_constraints(adaptation, problem), key=lambda each: each[2] != "mm")
+    return NoSolution(adaptation.outcome.status.value, tuple(missed[:3]))
 
 
 # ---------------------------------------------------------------- in
@@ -152,9 +152,19 @@ def _open(path: Path) -> "bpy.types.Object":
 def _analyse(armature: "bpy.types.Object", problem: MotionProblem) -> Analysis:
     from ..bridge.read import read_recording
 
-    ends = problem.frames or (-np.inf, np.inf)
-    first, last = (end if np.isfinite(end) else None for end in ends)
+    first, last = _recorded_frames(armature, problem)
     return analyse(read_recording(armature, first=first, last=last), problem)
+
+
+def _recorded_frames(
+    armature: "bpy.types.Object", problem: MotionProblem
+) -> tuple[float | None, float | None]:
+    """The problem's frames as far as the recording goes: beyond, Blender holds the last pose."""
+    action = armature.animation_data.action if armature.animation_data else None
+    if problem.frames is None or action is None:
+        return None, None
+    start, end = action.frame_range
+    return max(problem.frames[0], start), min(problem.frames[1], end)
 
 
 def _scale(armature: "bpy.types.Object", factor: float) -> None:

@@ -6,6 +6,8 @@ from ..solver.projection import Status
 from ..solver.report import Json
 from .wording import outcome
 
+BEARABLE = 12.0  # times the body's weight; the hardest landings of gymnasts
+
 
 def as_text(report: Json) -> str:
     """A report of solver/report.py in plain words, some twenty lines."""
@@ -54,9 +56,10 @@ def _changes(report: Json) -> Iterator[str]:
             way = "deeper" if deeper >= 0.0 else "less deep"
             yield f"            the crouch before it is {abs(deeper):.1f} cm {way}"
     for peak in report["forces"]["peaks"]:
+        beyond = ": more than people can bear" if peak["peak_bw"] > BEARABLE else ""
         yield (
             f"{peak['phase'].capitalize():<11} the ground pushes with at most "
-            f"{peak['peak_bw']:.1f} times the body's weight (frame {peak['frame']:.0f})"
+            f"{peak['peak_bw']:.1f} times the body's weight (frame {peak['frame']:.0f}){beyond}"
         )
 
 

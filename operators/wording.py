@@ -106,7 +106,8 @@ def _(fault: faults.UnreadableClip) -> str:
 
 @sentence.register
 def _(fault: faults.BadRecipe) -> str:
-    return f"{recipe_place(fault.path, fault.line)}: {fault.problem}. Mend it and run again."
+    end = "" if fault.problem.endswith("?") else "."
+    return f"{recipe_place(fault.path, fault.line)}: {fault.problem}{end}"
 
 
 @sentence.register
@@ -128,7 +129,7 @@ def _(fault: faults.ContradictoryPins) -> str:
 @sentence.register
 def _(fault: faults.NoSolution) -> str:
     worst = "; ".join(_missed(*each) for each in fault.worst)
-    return f"{outcome(Status(fault.reason))} {worst + '.' if worst else ''}".strip()
+    return outcome(Status(fault.reason)) + (f" Furthest off: {worst}." if worst else "")
 
 
 @sentence.register

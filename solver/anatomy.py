@@ -108,7 +108,9 @@ def map_anatomy(
     for label, bone_name in (chosen or {}).items():
         if bone_name not in index:
             raise MissingPart(label, (bone_name,))
-        found[_key(label)] = index[bone_name]
+        mine = index[bone_name]
+        found = {key: bone for key, bone in found.items() if bone != mine}
+        found[_key(label)] = mine
     for part in NEEDED:
         for side in (Side.LEFT, Side.RIGHT):
             if (part, side) not in found:

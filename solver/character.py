@@ -223,8 +223,8 @@ def _tip(
     chain = [k for k in children if follow is None or segments[k].part in follow]
     if chain:
         # Some rigs hang neck and shoulders on the chest's own head: then it reaches to the next.
-        short = np.linalg.norm(offsets[chain[0]]) < 0.01 * height
-        after = _children(parents, chain[0]) if short else []
+        short = float(np.linalg.norm(offsets[chain[0]])) < 0.01 * height
+        after = _children(parents, chain[0]) if short and part is Part.SPINE else []
         return offsets[chain[0]] + (offsets[after[0]] if after else 0.0)
     bone = recording.bones[segments[i].bone]
     end = _farthest(recording, segments[i].bone)

@@ -175,7 +175,7 @@ def qpos(motion: Motion, times: FloatArray) -> FloatArray:
 
 
 def qvel(motion: Motion, times: FloatArray) -> FloatArray:
-    """(T, n_angles + 3) MuJoCo velocities: root's in world m/s, its turn in its own axes, hinges."""
+    """(T, n_angles + 3) MuJoCo velocities: root's in world m/s, its turn in its own axes, angles."""
     return motion_state(motion, times)[1]
 
 

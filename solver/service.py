@@ -58,14 +58,19 @@ class Service:
         fitted = self._fit(request, measured.analysis, progress)
         fitted_at = time.perf_counter()
         adaptation = adapt(fitted, measured.problem, progress=progress)
-        seconds = {"fit": fitted_at - began, "adapt": time.perf_counter() - fitted_at}
+        adapted_at = time.perf_counter()
         _require_solved(adaptation, measured.problem)
         track = adaptation.motion.track(measured.analysis.performance.recording)
+        content = report(adaptation, measured.problem, Origin(request.recording.name))
+        content["stages"] = [
+            {"name": "Fitting the physics", "seconds": fitted_at - began},
+            {"name": "Adapting", "seconds": adapted_at - fitted_at},
+        ]
         back = 1.0 / measured.factor
         return Adapted(
             request.id,
             scaled_track(track, back),
-            report(adaptation, measured.problem, Origin(request.recording.name), seconds=seconds),
+            content,
             scaled_schedule(fitted.schedule, back),
         )
 

@@ -42,9 +42,9 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     )
     performance = perform(recording, character)
     schedule = _corrected(find_contacts(performance), problem.contacts, performance)
-    require_flight(schedule, contact_points(performance))
     for gap in schedule.unseen:
         raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
+    require_flight(schedule, contact_points(performance))
     return Analysis(performance, schedule)
 
 

@@ -1,0 +1,117 @@
+"""The sidebar's tab in the 3D viewport. Drawing shows what is stored and computes nothing."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..bridge.stances import active_contact, active_stance
+from ..operators.common import chosen_armature
+from .names import CATEGORY, ListId, OperatorId, PanelId
+
+
+class _SidebarPanel:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = CATEGORY
+
+
+class HANGTIME_PT_character(_SidebarPanel, bpy.types.Panel):
+    bl_idname = PanelId.CHARACTER
+    bl_label = "Recording"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        armature = chosen_armature(context)
+        active = armature.name if armature is not None else ""
+        layout.prop(context.scene.hangtime, "armature", placeholder=active)
+        if armature is not None:
+            _draw_figure(layout, armature.hangtime)
+        layout.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
+
+
+def _draw_figure(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    layout.prop(settings, "mass")
+    layout.prop(settings, "mass_table")
+    if settings.measured_height > 0.0:
+        layout.label(text=f"Measured height: {settings.measured_height:.2f} m")
+    height = layout.row(heading="Own Height")
+    height.prop(settings, "use_height", text="")
+    value = height.row()
+    value.active = settings.use_height
+    value.prop(settings, "height", text="")
+    span = layout.row(heading="Frame Range")
+    span.prop(settings, "use_range", text="")
+    frames = span.row(align=True)
+    frames.active = settings.use_range
+    frames.prop(settings, "first_frame", text="")
+    frames.prop(settings, "last_frame", text="")
+
+
+class HANGTIME_PT_contacts(_SidebarPanel, bpy.types.Panel):
+    bl_idname = PanelId.CONTACTS
+    bl_label = "Contacts"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and len(armature.hangtime.contacts) > 0
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        settings = chosen_armature(context).hangtime
+        layout.template_list(
+            ListId.CONTACTS, "", settings, "contacts", settings, "active_contact", rows=8
+        )
+        layout.prop(settings, "whole_stance")
+        row, stance = active_contact(settings), active_stance(settings)
+        if row is not None:
+            _draw_contact(layout.box(), row)
+        if stance is not None:
+            _draw_stance(layout.box(), stance)
+
+
+def _draw_contact(box: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+    box.label(text=f"{row.name} ({row.bone})")
+    box.use_property_split = True
+    box.use_property_decorate = False
+    frames = box.column(align=True)
+    frames.prop(row, "start_frame")
+    frames.prop(row, "end_frame")
+    box.column(align=True).prop(row, "place")
+    box.prop(row, "empty")
+    box.operator(OperatorId.PLACE_BY_EMPTY, icon="EMPTY_AXIS")
+
+
+def _draw_stance(box: bpy.types.UILayout, stance: bpy.types.PropertyGroup) -> None:
+    box.label(text=f"Move {stance.name}")
+    box.use_property_split = True
+    box.use_property_decorate = False
+    column = box.column(align=True)
+    for name in ("forward", "left", "up", "turn"):
+        column.prop(stance, name)
+    box.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
+
+
+class HANGTIME_PT_adapt(_SidebarPanel, bpy.types.Panel):
+    bl_idname = PanelId.ADAPT
+    bl_label = "Adapted Motion"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return chosen_armature(context) is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        adapt = layout.row()
+        adapt.scale_y = 1.5
+        adapt.operator(OperatorId.ADAPT, icon="PLAY")
+        takes = layout.row(align=True)
+        takes.operator(OperatorId.SHOW_RECORDING)
+        takes.operator(OperatorId.SHOW_ADAPTED)
+        for line in chosen_armature(context).hangtime.status.splitlines():
+            layout.label(text=line)
+
+
+CLASSES = (HANGTIME_PT_character, HANGTIME_PT_contacts, HANGTIME_PT_adapt)

@@ -1,0 +1,175 @@
+"""What the extension stores in the artist's file: on the scene, on armatures and on actions.
+
+Lengths are in Blender units, world; frames are the scene's; angles in rad.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from ..bridge import stances
+from ..solver.body_tables import MassTable
+
+_HIDDEN = {"HIDDEN"}
+_TABLES = {
+    MassTable.THESIS: ("Boxes", "Mass fractions of the thesis, each segment a uniform box"),
+    MassTable.DE_LEVA: ("De Leva 1996", "Mass, centres and radii of gyration measured on men"),
+}
+
+
+def _is_armature(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    return bool(candidate.type == "ARMATURE")
+
+
+def _is_empty(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    return bool(candidate.type == "EMPTY")
+
+
+class ContactRow(bpy.types.PropertyGroup):
+    """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2")."""
+
+    point: bpy.props.StringProperty(options=_HIDDEN)
+    bone: bpy.props.StringProperty(name="Bone", options=_HIDDEN)
+    phase: bpy.props.StringProperty(name="Phase", options=_HIDDEN)
+    found_start: bpy.props.FloatProperty(options=_HIDDEN)
+    found_end: bpy.props.FloatProperty(options=_HIDDEN)
+    found_at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
+    at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
+
+    used: bpy.props.BoolProperty(
+        name="Touches", description="Whether this contact counts; off removes it", default=True
+    )
+    start_frame: bpy.props.FloatProperty(
+        name="Start", description="Frame at which the point begins to carry", precision=1, step=100
+    )
+    end_frame: bpy.props.FloatProperty(
+        name="End", description="Frame at which the point ceases to carry", precision=1, step=100
+    )
+    place: bpy.props.FloatVectorProperty(
+        name="Place",
+        description="Where the point shall touch, in the world. Its whole stance moves along "
+        "while Move Whole Stance is on",
+        size=3,
+        subtype="TRANSLATION",
+        unit="LENGTH",
+        get=lambda row: row.at,
+        set=lambda row, to: stances.place(row.id_data.hangtime, row, to),
+    )
+    empty: bpy.props.PointerProperty(
+        name="Empty",
+        description="Where this empty is, the point shall touch",
+        type=bpy.types.Object,
+        poll=_is_empty,
+    )
+
+
+def _shift(axis: int) -> dict[str, object]:
+    """Callbacks of a stance's shift along one of its axes."""
+
+    def get(stance: StanceRow) -> float:
+        return float(stance.shifted[axis])
+
+    def put(stance: StanceRow, to: float) -> None:
+        shifted = list(stance.shifted)
+        shifted[axis] = to
+        stances.shift_stance(stance.id_data.hangtime, stance, shifted)
+
+    return {"get": get, "set": put, "unit": "LENGTH", "subtype": "DISTANCE", "step": 1}
+
+
+class StanceRow(bpy.types.PropertyGroup):
+    """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2")."""
+
+    forward_axis: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
+    shifted: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
+    turned: bpy.props.FloatProperty(options=_HIDDEN)
+
+    forward: bpy.props.FloatProperty(
+        name="Forward", description="Move the stance along the jump's travel", **_shift(0)
+    )
+    left: bpy.props.FloatProperty(
+        name="Left", description="Move the stance to the left of the jump's travel", **_shift(1)
+    )
+    up: bpy.props.FloatProperty(name="Up", description="Raise or lower the stance", **_shift(2))
+    turn: bpy.props.FloatProperty(
+        name="Turn",
+        description="Turn the stance about the vertical, counter-clockwise seen from above",
+        subtype="ANGLE",
+        get=lambda stance: stance.turned,
+        set=lambda stance, to: stances.turn_stance(stance.id_data.hangtime, stance, to),
+    )
+
+
+class HangtimeSettings(bpy.types.PropertyGroup):
+    """An armature's edit; of an empty that marks a contact, whose contact it marks."""
+
+    marks: bpy.props.PointerProperty(type=bpy.types.Object, options=_HIDDEN, poll=_is_armature)
+
+    mass: bpy.props.FloatProperty(
+        name="Mass (kg)", description="The performer's mass", default=70.0, min=10.0, max=300.0
+    )
+    mass_table: bpy.props.EnumProperty(
+        name="Mass Table",
+        description="How the mass is shared among the parts of the body",
+        items=[(table.name, *words) for table, words in _TABLES.items()],
+        default=MassTable.THESIS.name,
+    )
+    measured_height: bpy.props.FloatProperty(options=_HIDDEN)  # m, 0 before an analysis
+    use_height: bpy.props.BoolProperty(
+        name="Own Height", description="State the performer's height instead of the measured one"
+    )
+    height: bpy.props.FloatProperty(
+        name="Height (m)",
+        description="The performer's true height; the physics takes place at this size",
+        default=1.75,
+        min=0.5,
+        max=3.0,
+    )
+    use_range: bpy.props.BoolProperty(
+        name="Frame Range", description="Adapt some frames only instead of the whole action"
+    )
+    first_frame: bpy.props.IntProperty(
+        name="First", description="First frame that counts", default=1
+    )
+    last_frame: bpy.props.IntProperty(
+        name="Last", description="Last frame that counts", default=250
+    )
+
+    analysed: bpy.props.StringProperty(options=_HIDDEN)  # digest of the recording
+    contacts: bpy.props.CollectionProperty(type=ContactRow)
+    active_contact: bpy.props.IntProperty(options=_HIDDEN)
+    stances: bpy.props.CollectionProperty(type=StanceRow)
+    whole_stance: bpy.props.BoolProperty(
+        name="Move Whole Stance",
+        description="Moving a contact moves every contact of its phase, so that heels and toes "
+        "stay as far apart as the feet are long",
+        default=True,
+    )
+
+    adapted: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
+    status: bpy.props.StringProperty(options=_HIDDEN)  # lines, ready to be drawn
+
+
+class HangtimeScene(bpy.types.PropertyGroup):
+    """Which armature the sidebar is about."""
+
+    armature: bpy.props.PointerProperty(
+        name="Armature",
+        description="The armature that carries the recording; the active one where none is chosen",
+        type=bpy.types.Object,
+        poll=_is_armature,
+    )
+
+
+class HangtimeAction(bpy.types.PropertyGroup):
+    """Of an adapted action: the recording that it was made from."""
+
+    recording: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
+
+
+CLASSES = (ContactRow, StanceRow, HangtimeSettings, HangtimeScene, HangtimeAction)
+CARRIERS = {
+    bpy.types.Scene: HangtimeScene,
+    bpy.types.Object: HangtimeSettings,
+    bpy.types.Action: HangtimeAction,
+}

@@ -1,0 +1,66 @@
+"""Everything that enabling the extension adds to Blender, in order, and how it is taken back."""
+
+from __future__ import annotations
+
+import atexit
+from collections.abc import Callable
+from contextlib import ExitStack
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..bridge import stances, worker
+from ..operators import adapt, analyze, place_by_empty, put_back, show
+from . import lists, names, panels, properties
+
+CLASSES = (
+    *properties.CLASSES,
+    *analyze.CLASSES,
+    *adapt.CLASSES,
+    *place_by_empty.CLASSES,
+    *put_back.CLASSES,
+    *show.CLASSES,
+    *lists.CLASSES,
+    *panels.CLASSES,
+)
+
+
+def register() -> Callable[[], None]:
+    """Adds everything, or nothing where a part fails, whose failure is then raised.
+
+    Returns what takes it all back, in reverse.
+    """
+    with ExitStack() as undo:
+        _add_worker(undo)
+        for cls in CLASSES:
+            bpy.utils.register_class(cls)
+            undo.callback(bpy.utils.unregister_class, cls)
+        for carrier, group in properties.CARRIERS.items():
+            setattr(carrier, names.ATTRIBUTE, bpy.props.PointerProperty(type=group))
+            undo.callback(delattr, carrier, names.ATTRIBUTE)
+        bpy.app.handlers.depsgraph_update_post.append(_follow_empties)
+        undo.callback(bpy.app.handlers.depsgraph_update_post.remove, _follow_empties)
+        command = bpy.utils.register_cli_command(names.COMMAND, _run_command)
+        undo.callback(bpy.utils.unregister_cli_command, command)
+        return undo.pop_all().close
+
+
+def _add_worker(undo: ExitStack) -> None:
+    """The worker starts with the first request; it must not outlive Blender."""
+    end = worker.shared().close
+    atexit.register(end)
+    undo.callback(atexit.unregister, end)
+    undo.callback(end)
+
+
+@persistent
+def _follow_empties(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    for update in depsgraph.updates:
+        if update.is_updated_transform and isinstance(update.id, bpy.types.Object):
+            stances.follow(update.id.original)
+
+
+def _run_command(arguments: list[str]) -> int:
+    from ..operators import cli  # most sessions never run it
+
+    return int(cli.command(arguments))
