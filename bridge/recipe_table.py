@@ -50,10 +50,11 @@ class Table:
         self.source.refuse((*self.place, key), problem)
 
     def not_both(self, key: str, others: Sequence[str]) -> None:
-        """Refuses `key` beside any of the others."""
+        """Refuses `key` beside any of the others, where the later of the two stands."""
         for other in others:
             if key in self.values and other in self.values:
-                self.refuse(key, f'"{key}" and "{other}" exclude each other; keep one')
+                later = max(key, other, key=list(self.values).index)
+                self.refuse(later, f'"{key}" and "{other}" exclude each other; keep one')
 
     def number(self, key: str) -> float | None:
         """A finite number, None where absent."""

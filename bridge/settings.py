@@ -21,7 +21,7 @@ from .poses import frames_per_second, metres_per_unit
 from .stances import place
 
 if TYPE_CHECKING:
-    from ..ui.properties import ContactRow, HangtimeSettings
+    from ..ui.properties import HangtimeContact, HangtimeSettings
 
 _UNMOVED = 1e-5  # Blender units
 _SAME_START = 2.0  # frames; how far apart two analyses may see the same contact begin
@@ -88,12 +88,12 @@ def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, .
     return tuple(pins)
 
 
-def moved(row: ContactRow) -> bool:
+def moved(row: HangtimeContact) -> bool:
     """Whether a contact is to be elsewhere than recorded."""
     return any(abs(a - b) > _UNMOVED for a, b in zip(row.at, row.found_at, strict=True))
 
 
-def _bare_contact(row: ContactRow, first: float, rate: float, duration: float) -> Contact:
+def _bare_contact(row: HangtimeContact, first: float, rate: float, duration: float) -> Contact:
     """When a row's point touches, after the artist's correction; nowhere in particular."""
     start = max((row.start_frame - first) / rate, 0.0)
     end = min((row.end_frame - first) / rate, duration)
@@ -119,13 +119,13 @@ class _Edit:
     empty: bpy.types.Object | None
 
     @staticmethod
-    def of(row: ContactRow) -> _Edit:
+    def of(row: HangtimeContact) -> _Edit:
         start = row.start_frame if row.start_frame != row.found_start else None
         end = row.end_frame if row.end_frame != row.found_end else None
         at, found = tuple(row.at), tuple(row.found_at)
         return _Edit(row.point, row.found_start, found, at, row.used, start, end, row.empty)
 
-    def meant(self, row: ContactRow) -> bool:
+    def meant(self, row: HangtimeContact) -> bool:
         """Whether the row is the contact that was edited."""
         apart = max(abs(a - b) for a, b in zip(row.found_at, self.found_at, strict=True))
         near = abs(row.found_start - self.found_start) < _SAME_START and apart < _SAME_PLACE
@@ -170,4 +170,3 @@ def _restore(settings: HangtimeSettings, edits: list[_Edit]) -> None:
         by = [now - was for now, was in zip(edit.at, edit.found_at, strict=True)]
         place(settings, row, [a + b for a, b in zip(row.found_at, by, strict=True)])
     settings.whole_stance = whole
-

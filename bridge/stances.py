@@ -15,12 +15,12 @@ from mathutils import Matrix, Vector
 if TYPE_CHECKING:
     import bpy
 
-    from ..ui.properties import ContactRow, HangtimeSettings, StanceRow
+    from ..ui.properties import HangtimeContact, HangtimeSettings, HangtimeStance
 
 _SAME = 1e-6  # Blender units
 
 
-def place(settings: HangtimeSettings, row: ContactRow, to: Sequence[float]) -> None:
+def place(settings: HangtimeSettings, row: HangtimeContact, to: Sequence[float]) -> None:
     """Puts a contact somewhere; with `whole_stance` its whole stance makes the same move."""
     shift = Vector(to) - Vector(row.at)
     moving = stance_contacts(settings, row.phase) if settings.whole_stance else [row]
@@ -29,7 +29,7 @@ def place(settings: HangtimeSettings, row: ContactRow, to: Sequence[float]) -> N
     _remember(settings, row.phase)
 
 
-def shift_stance(settings: HangtimeSettings, stance: StanceRow, to: Sequence[float]) -> None:
+def shift_stance(settings: HangtimeSettings, stance: HangtimeStance, to: Sequence[float]) -> None:
     """Moves a stance so that it stands (forward, left, up) of where it was recorded."""
     shift = _axes(stance) @ (Vector(to) - Vector(stance.shifted))
     for contact in stance_contacts(settings, stance.name):
@@ -37,7 +37,7 @@ def shift_stance(settings: HangtimeSettings, stance: StanceRow, to: Sequence[flo
     stance.shifted = to
 
 
-def turn_stance(settings: HangtimeSettings, stance: StanceRow, to: float) -> None:
+def turn_stance(settings: HangtimeSettings, stance: HangtimeStance, to: float) -> None:
     """Turns a stance about the vertical through its middle, to `to` from as recorded."""
     contacts = stance_contacts(settings, stance.name)
     if not contacts:
@@ -49,7 +49,7 @@ def turn_stance(settings: HangtimeSettings, stance: StanceRow, to: float) -> Non
     stance.turned = to
 
 
-def put_back(settings: HangtimeSettings, stance: StanceRow) -> None:
+def put_back(settings: HangtimeSettings, stance: HangtimeStance) -> None:
     """Puts a stance's contacts where they were recorded."""
     for contact in stance_contacts(settings, stance.name):
         _put(contact, Vector(contact.found_at))
@@ -57,18 +57,18 @@ def put_back(settings: HangtimeSettings, stance: StanceRow) -> None:
     stance.turned = 0.0
 
 
-def stance_contacts(settings: HangtimeSettings, phase: str) -> list[ContactRow]:
+def stance_contacts(settings: HangtimeSettings, phase: str) -> list[HangtimeContact]:
     """The contacts of a ground phase by its name."""
     return [row for row in settings.contacts if row.phase == phase]
 
 
-def active_contact(settings: HangtimeSettings) -> ContactRow | None:
+def active_contact(settings: HangtimeSettings) -> HangtimeContact | None:
     """The contact chosen in the list."""
     index = settings.active_contact
     return settings.contacts[index] if 0 <= index < len(settings.contacts) else None
 
 
-def active_stance(settings: HangtimeSettings) -> StanceRow | None:
+def active_stance(settings: HangtimeSettings) -> HangtimeStance | None:
     """The stance of the contact chosen in the list."""
     row = active_contact(settings)
     return settings.stances.get(row.phase) if row is not None else None
@@ -86,7 +86,7 @@ def follow(empty: bpy.types.Object) -> None:
             place(settings, row, to)
 
 
-def _put(row: ContactRow, to: Vector) -> None:
+def _put(row: HangtimeContact, to: Vector) -> None:
     row.at = to
     if row.empty is None or (row.empty.matrix_world.translation - to).length <= _SAME:
         return
@@ -115,7 +115,7 @@ def _middle(points: Sequence[Sequence[float]]) -> Vector:
     return sum((Vector(p) for p in points), Vector()) / len(points)
 
 
-def _axes(stance: StanceRow) -> Matrix:
+def _axes(stance: HangtimeStance) -> Matrix:
     """Columns forward, left and up, world."""
     forward, up = Vector(stance.forward_axis), Vector((0.0, 0.0, 1.0))
     return Matrix((forward, up.cross(forward), up)).transposed()

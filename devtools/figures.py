@@ -78,9 +78,12 @@ def measure(clip: "Clip", *, peer: bool) -> Iterator[Figure]:
     armature, recording = open_clip(clip)
     problem = clip.problem(next(iter(EDITS)))
     analysis = analyse(recording, problem)
+    busy = time.process_time()
     fitted, seconds = timed(lambda: fit(analysis.performance, analysis.schedule))
+    busy = time.process_time() - busy
     _say(clip.name, f"fitted in {seconds:.2f} s")
     yield figure("fit", seconds, clip.name, "fit")
+    yield figure("fit, processor's time", busy, clip.name, "fit")
     for part in (
         closeness(fitted),
         physics(fitted.motion),
@@ -107,11 +110,15 @@ def measure_edit(
 
     problem = clip.problem(edit)
     _ = fitted.metric  # part of the stored fit
+    busy = time.process_time()
     runs = [timed(lambda: adapt(fitted, problem)) for _ in range(RUNS)]
+    busy = (time.process_time() - busy) / RUNS
     adaptation, seconds = runs[0][0], median(seconds for _, seconds in runs)
     _say(clip.name, f"{edit}: adapted in {seconds:.2f} s")
     yield "solved", float(adaptation.solved)
     yield "adaptation from the stored fit", seconds
+    yield "adaptation from the stored fit, processor's time", busy
+    yield "steps of the adaptation", sum(len(o.steps) for o in adaptation.outcomes)
     yield from physics(adaptation.motion)
     yield from still(armature, recording, adaptation.motion)
     if peer:

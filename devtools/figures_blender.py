@@ -50,27 +50,25 @@ def drifts(
         export_fbx(armature, action, fbx)
     back = reimport_fbx(fbx, recording.frames)
     bpy.data.actions.remove(action)
-    return drift(motion, recording, written), drift(motion, recording, back)
+    return drift(motion, written), drift(motion, back)
 
 
-def drift(motion: Motion, recording: Recording, shown: Recording) -> Drift:
+def drift(motion: Motion, shown: Recording) -> Drift:
     """Of every contact's point, fixed in its bone, in what Blender shows."""
     contacts = [c.contact for c in motion.transcription.contacts]
     held, ends = [0.0], [0.0]
     for contact, place in zip(contacts, motion.places, strict=True):
-        off = np.linalg.norm(_point(contact, recording, shown) - place, axis=1)
+        off = np.linalg.norm(_point(contact, shown) - place, axis=1)
         inside, settling = _instants(contact, shown.times)
         held.extend(off[inside])
         ends.extend(off[settling])
     return Drift(float(max(held)), float(max(ends)))
 
 
-def _point(contact: Contact, recording: Recording, shown: Recording) -> FloatArray:
-    """(T, 3) m. The offset is turned by the rest pose, for an FBX may come back with other axes."""
-    rest = recording.bones[recording.index(contact.bone)].rotation
+def _point(contact: Contact, shown: Recording) -> FloatArray:
+    """(T, 3) m. Bones keep their own axes through FBX, though not their rest pose."""
     bone = shown.index(contact.bone)
-    local = shown.bones[bone].rotation.T @ rest @ contact.offset
-    return np.asarray(shown.heads[:, bone] + shown.rotations[:, bone] @ local)
+    return np.asarray(shown.heads[:, bone] + shown.rotations[:, bone] @ contact.offset)
 
 
 def _instants(contact: Contact, times: FloatArray) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

@@ -121,7 +121,7 @@ def check_npz(path: str | Path) -> Residual:
     acceleration = _second(com, step)
     turn = data["rotation"]
     back = np.swapaxes(turn, -1, -2)[inner]
-    # With R^T from the right R' becomes [omega] and R'' [alpha] + [omega][omega], whose last term is symmetric.
+    # R' R^T = [omega] and R'' R^T = [alpha] + [omega][omega], the last of which is symmetric.
     omega, alpha = (_axial(d(turn, step) @ back) for d in (_first, _second))
     inertia = turn[inner] @ data["inertia"] @ back
     spin = np.einsum("tbij,tbj->tbi", inertia, omega)
@@ -142,7 +142,7 @@ def check_npz(path: str | Path) -> Residual:
 
 
 def _axial(m: FloatArray) -> FloatArray:
-    """(..., 3) vectors whose cross matrices are the skew parts of (..., 3, 3)."""
+    """(..., 3) vectors whose cross matrices are the skew parts of (..., 3, 3) matrices."""
     skew = 0.5 * (m - np.swapaxes(m, -1, -2))
     return np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=-1)
 

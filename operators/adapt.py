@@ -29,7 +29,7 @@ class Asked:
     job: Job
 
 
-class HANGTIME_OT_adapt(FaultyOperator, bpy.types.Operator):
+class AdaptOperator(FaultyOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADAPT
     bl_label = "Adapt"
     bl_description = (
@@ -55,7 +55,7 @@ class HANGTIME_OT_adapt(FaultyOperator, bpy.types.Operator):
         finally:
             if asked.job.answer is None:  # interrupted
                 shared().close()
-        self.report({"INFO"}, finish(context, asked))
+        self.report({"INFO"}, finish(asked))
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -88,7 +88,7 @@ class HANGTIME_OT_adapt(FaultyOperator, bpy.types.Operator):
             return {"PASS_THROUGH"}
         self._end_waiting(context)
         try:
-            self.report({"INFO"}, finish(context, self._asked))
+            self.report({"INFO"}, finish(self._asked))
         except Fault as fault:
             self.report({"ERROR"}, said(fault))
             return {"CANCELLED"}
@@ -117,7 +117,7 @@ def ask(context: bpy.types.Context) -> Asked:
     return Asked(armature.name, content, job)
 
 
-def finish(context: bpy.types.Context, asked: Asked) -> str:
+def finish(asked: Asked) -> str:
     """Writes the answer as a new action; says how it went. Raises any Fault, writing nothing."""
     answer = asked.job.answer
     if isinstance(answer, Failed):
@@ -164,4 +164,4 @@ def progress_text(message: Progress) -> str:
     )
 
 
-CLASSES = (HANGTIME_OT_adapt,)
+CLASSES = (AdaptOperator,)

@@ -14,7 +14,7 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
     """Figure, phases and contacts; frames are the scene's."""
     recording, figure = analysis.performance.recording, analysis.performance.character
     lines = [
-        f"{origin.clip}: frames {recording.frames[0]:g} to {recording.frames[-1]:g}, "
+        f"{origin.clip}: frames {recording.frames[0] + 0.0:g} to {recording.frames[-1]:g}, "
         f"{recording.times[-1]:.2f} s at {_rate(analysis):.4g} frames a second",
         f"figure: {figure.height:.2f} m tall, {figure.mass:g} kg, {len(figure.bodies)} bodies, "
         f"{figure.n_dofs} degrees of freedom; floor at {analysis.schedule.floor_m:.3f} m",
@@ -72,7 +72,7 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
         [
             "# What to change in a recorded jump. Metres, degrees, the scene's frames.",
             f"clip = {_quoted(_relative(clip, recipe))}",
-            f"frames = [{recording.frames[0]:g}, {recording.frames[-1]:g}]",
+            f"frames = [{recording.frames[0] + 0.0:g}, {recording.frames[-1]:g}]",
             f"mass = {problem.mass:g}  # kg",
             f"# height = {analysis.performance.character.height:.2f}  # m, as measured; "
             "another one scales the figure",

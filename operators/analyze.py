@@ -12,7 +12,7 @@ from ..ui.names import OperatorId
 from .common import FaultyOperator, chosen_armature, hindrance
 
 
-class HANGTIME_OT_analyze(FaultyOperator, bpy.types.Operator):
+class AnalyzeOperator(FaultyOperator, bpy.types.Operator):
     bl_idname = OperatorId.ANALYZE
     bl_label = "Analyze"
     bl_description = (
@@ -44,4 +44,4 @@ class HANGTIME_OT_analyze(FaultyOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (HANGTIME_OT_analyze,)
+CLASSES = (AnalyzeOperator,)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..solver.adapt import Adaptation, adapt
-from ..solver.faults import NoArmature, NoSolution, OutputNotWritable, UnreadableClip
+from ..solver.faults import NoArmature, NoFit, NoSolution, OutputNotWritable, UnreadableClip
 from ..solver.fit import fit
-from ..solver.problem import MotionProblem
+from ..solver.problem import MotionProblem, pinned_places
 from ..solver.report import Json, Origin, report, worst_constraints
 from ..solver.session import Analysis, analyse
 from ..solver.trajectory import save
@@ -70,14 +70,14 @@ def run(job: Job, stages: Stages) -> list[Path]:
         with stages.stage("Fitting the physics"):
             fitted = fit(performance, loaded.analysis.schedule, progress=stages.step)
             stages.ended(fitted.outcome.violation)
+        if not fitted.solved:
+            unmoved = Adaptation(fitted.outcomes[-1:], fitted.places, fitted)
+            raise _reported(NoFit, unmoved, job, loaded, outbox, stages)
         with stages.stage("Adapting"):
             adaptation = adapt(fitted, job.problem, progress=stages.step)
             stages.ended(adaptation.outcome.violation)
         if not adaptation.solved:
-            content = report(adaptation, job.problem, loaded.origin)
-            _write_report(content | {"stages": stages.as_json()}, outbox)
-            outbox.deliver()
-            raise no_solution(adaptation, job.problem)
+            raise _reported(NoSolution, adaptation, job, loaded, outbox, stages)
         _write_results(job, loaded, adaptation, outbox, stages)
         return outbox.deliver()
 
@@ -94,13 +94,24 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> Loaded:
         if problem.height is not None:
             _scale(armature, problem.height / analysis.performance.character.height)
             analysis = _analyse(armature, problem)
+        # Wrong pins are said before the fit takes its seconds.
+        pinned_places(problem, analysis.performance, analysis.schedule)
     return Loaded(armature, origin, analysis)
 
 
-def no_solution(adaptation: Adaptation, problem: MotionProblem) -> NoSolution:
-    """Why a solve failed: its status and the three worst constraints, places before physics."""
-    missed = sorted(worst_constraints(adaptation, problem), key=lambda each: each[2] != "mm")
-    return NoSolution(adaptation.outcome.status.value, tuple(missed[:3]))
+def _reported(
+    kind: type[NoSolution],
+    adaptation: Adaptation,
+    job: Job,
+    loaded: Loaded,
+    outbox: Outbox,
+    stages: Stages,
+) -> NoSolution:
+    """Why a solve failed, places before physics, once the report is written."""
+    _write_report(_measured(job, loaded, adaptation, stages), outbox)
+    outbox.deliver()
+    missed = sorted(worst_constraints(adaptation, job.problem), key=lambda each: each[2] != "mm")
+    return kind(adaptation.outcome.status.value, tuple(missed[:3]))
 
 
 # ---------------------------------------------------------------- in
@@ -198,8 +209,14 @@ def _write_results(
             save(adaptation.motion, outbox.path("trajectory.npz"))
         except OSError as error:
             raise not_writable(job.out / "trajectory.npz", error) from error
-        content = report(adaptation, job.problem, loaded.origin)
-    _write_report(content | {"stages": stages.as_json()}, outbox)
+        content = _measured(job, loaded, adaptation, stages)
+    _write_report(content, outbox)
+
+
+def _measured(job: Job, loaded: Loaded, adaptation: Adaptation, stages: Stages) -> Json:
+    """The report, with the stages that have ended."""
+    content = report(adaptation, job.problem, loaded.origin)
+    return content | {"stages": stages.as_json()}
 
 
 def _write_report(content: Json, outbox: Outbox) -> None:

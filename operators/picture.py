@@ -19,14 +19,14 @@ def draw(adaptation: Adaptation, problem: MotionProblem, path: Path) -> None:
     bodies, times = performance.character.bodies, performance.times
     posed, com = motion.pose(times), motion.com(times)
     edit = "; ".join(map(caption, problem.pins)) or "made to obey physics"
-    schedule, keys = adaptation.fit.schedule, key_times(adaptation)
-    spans = tuple((c.start, c.end) for c in schedule.contacts)
+    contacts, keys = adaptation.fit.schedule.contacts, key_times(adaptation)
+    spans = tuple((c.start, c.end) for c in contacts)
     recorded = SheetRow(
         f"Recording: {performance.recording.name}",
         times,
         tuple(limbs(bodies, performance.rotations, performance.centres)),
         performance.com,
-        np.array([c.place for c in schedule.contacts]).reshape(-1, 3),
+        np.array([c.place for c in contacts]).reshape(-1, 3),
         keys,
         spans,
     )

@@ -13,7 +13,7 @@ SIZE = 0.05  # m
 NO_CONTACT = "Choose a contact in the list first"
 
 
-class HANGTIME_OT_place_by_empty(bpy.types.Operator):
+class PlaceByEmptyOperator(bpy.types.Operator):
     bl_idname = OperatorId.PLACE_BY_EMPTY
     bl_label = "Place by Empty"
     bl_description = "Add an empty at the contact's place; where you move it, the point shall touch"
@@ -52,4 +52,4 @@ def _new_empty(context: bpy.types.Context, row: bpy.types.PropertyGroup) -> bpy.
     return empty
 
 
-CLASSES = (HANGTIME_OT_place_by_empty,)
+CLASSES = (PlaceByEmptyOperator,)

@@ -10,7 +10,7 @@ from .common import chosen_armature
 from .place_by_empty import NO_CONTACT
 
 
-class HANGTIME_OT_put_back(bpy.types.Operator):
+class PutBackOperator(bpy.types.Operator):
     bl_idname = OperatorId.PUT_BACK
     bl_label = "Put Back"
     bl_description = "Put every contact of the chosen phase where it was recorded"
@@ -30,4 +30,4 @@ class HANGTIME_OT_put_back(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (HANGTIME_OT_put_back,)
+CLASSES = (PutBackOperator,)

@@ -9,7 +9,7 @@ from ..ui.names import OperatorId
 from .common import chosen_armature
 
 
-class HANGTIME_OT_show_recording(bpy.types.Operator):
+class ShowRecordingOperator(bpy.types.Operator):
     bl_idname = OperatorId.SHOW_RECORDING
     bl_label = "Show Recording"
     bl_description = "Go back to the recording's action; the adapted one is kept"
@@ -29,7 +29,7 @@ class HANGTIME_OT_show_recording(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class HANGTIME_OT_show_adapted(bpy.types.Operator):
+class ShowAdaptedOperator(bpy.types.Operator):
     bl_idname = OperatorId.SHOW_ADAPTED
     bl_label = "Show Adapted"
     bl_description = "Go to the action that was adapted last"
@@ -52,4 +52,4 @@ class HANGTIME_OT_show_adapted(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (HANGTIME_OT_show_recording, HANGTIME_OT_show_adapted)
+CLASSES = (ShowRecordingOperator, ShowAdaptedOperator)

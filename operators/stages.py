@@ -66,7 +66,7 @@ class Stages:
         if self._current is not None:
             self._current.violation = violation
 
-    def as_json(self) -> list[dict[str, str | float]]:
+    def as_json(self) -> list[dict[str, object]]:
         """Every stage that has ended: name, seconds, and the solver's iterations where it ran."""
         return [
             {"name": s.name, "seconds": s.seconds} | ({"iterations": s.steps} if s.steps else {})

@@ -128,8 +128,20 @@ def _(fault: faults.ContradictoryPins) -> str:
 
 @sentence.register
 def _(fault: faults.NoSolution) -> str:
+    return outcome(Status(fault.reason)) + _furthest_off(fault)
+
+
+@sentence.register
+def _(fault: faults.NoFit) -> str:
+    return (
+        "The recording's own contacts cannot be held by a motion that obeys physics. "
+        "Choose frames that begin earlier and end later, or correct the contacts' frames."
+    ) + _furthest_off(fault)
+
+
+def _furthest_off(fault: faults.NoSolution) -> str:
     worst = "; ".join(_missed(*each) for each in fault.worst)
-    return outcome(Status(fault.reason)) + (f" Furthest off: {worst}." if worst else "")
+    return f" Furthest off: {worst}." if worst else ""
 
 
 @sentence.register

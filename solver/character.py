@@ -348,8 +348,9 @@ def _axes(
     segment: Segment, relative: FloatArray, tip: FloatArray, forward: FloatArray, *, root: bool
 ) -> Axes:
     sideways = np.cross(UP, forward)
+    frame = np.stack([sideways, forward, UP], axis=1)
     if root:
-        return ball_axes(relative, preferred=(UP, sideways))
+        return ball_axes(relative, (UP, sideways), frame)
     along = unit(tip) if np.linalg.norm(tip) > SHORTEST else UP
     hinge = (
         sideways if abs(float(sideways @ along)) < 0.8 else UP
@@ -366,4 +367,4 @@ def _axes(
         axes = universal_axes(relative, (hinge, unit(other)))
         if not grow or residual_angle(axes, relative) < FOLLOWED:
             return axes
-    return ball_axes(relative)
+    return ball_axes(relative, frame=frame)

@@ -67,15 +67,20 @@ def middle_sine(R: FloatArray, u: FloatArray, w: FloatArray) -> float:
     return float(np.abs((R @ w) @ u).max())
 
 
-def ball_axes(R: FloatArray, preferred: tuple[FloatArray, FloatArray] | None = None) -> Axes:
+def ball_axes(
+    R: FloatArray,
+    preferred: tuple[FloatArray, FloatArray] | None = None,
+    frame: FloatArray | None = None,
+) -> Axes:
     """Axes of a 3-DOF joint that keep far from gimbal lock over (T, 3, 3) rotations.
 
-    preferred: (u, w), taken if the middle angle stays below 45 degrees with it.
+    preferred: (u, w), taken if the middle angle stays below 45 degrees with it. frame: (3, 3)
+    the figure's own directions as columns, so that the choice does not depend on where it faces.
     """
     if preferred is not None and middle_sine(R, *preferred) < GOOD_SINE:
         u, w = preferred
     else:
-        u, w = _search(R)
+        u, w = _search(R, np.eye(3) if frame is None else frame)
     mean = mean_rotation(R)
     along = mean @ w
     third = along - u * (u @ along)
@@ -85,9 +90,9 @@ def ball_axes(R: FloatArray, preferred: tuple[FloatArray, FloatArray] | None = N
     return Axes(3, before, (before @ middle).T @ mean)
 
 
-def _search(R: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _search(R: FloatArray, frame: FloatArray) -> tuple[FloatArray, FloatArray]:
     sample = R[:: max(1, len(R) // 80)]
-    directions = _half_sphere(180)
+    directions = _half_sphere(180) @ frame.T
     turned = np.einsum("tij,wj->twi", sample, directions)
     worst = np.zeros((len(directions), len(directions)))
     for block in turned:

@@ -26,7 +26,7 @@ FEWEST_EACH = 32  # instants worth a thread of their own
 
 
 @dataclass(frozen=True)
-class _Moving:
+class Moving:
     """A body's frame as expressions: rotation, angular velocity and acceleration, and of its
     joint's centre position, velocity and acceleration relative to the pelvis's centre."""
 
@@ -38,7 +38,7 @@ class _Moving:
     a: ca.SX
 
 
-def _carried(frame: _Moving, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+def carried(frame: Moving, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
     """Position, velocity, acceleration of a point fixed in a moving body."""
     arm = frame.R @ local
     swing = ca.cross(frame.omega, arm)
@@ -49,14 +49,14 @@ def _carried(frame: _Moving, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
     )
 
 
-def _frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[_Moving]:
+def body_frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[Moving]:
     """Kinematics from the root outwards (Featherstone 2008, ch. 5.3, forward pass)."""
     zero = ca.SX.zeros(3)
-    ground = _Moving(ca.SX.eye(3), zero, zero, zero, zero, zero)
-    frames: list[_Moving] = []
+    ground = Moving(ca.SX.eye(3), zero, zero, zero, zero, zero)
+    frames: list[Moving] = []
     for joint in character.joints:
         parent = frames[joint.parent] if joint.parent >= 0 else ground
-        x, xv, xa = _carried(parent, ca.SX(joint.offset))
+        x, xv, xa = carried(parent, ca.SX(joint.offset))
         R = parent.R @ ca.SX(joint.axes.before)
         omega, alpha = parent.omega, parent.alpha
         for k in range(joint.axes.dofs):
@@ -64,12 +64,13 @@ def _frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[_Moving]
             axis = R[:, k]
             alpha = alpha + axis * a[i] + ca.cross(omega, axis * v[i])
             omega = omega + axis * v[i]
-            R = _turned(R, k, q[i])
-        frames.append(_Moving(R @ ca.SX(joint.axes.after), omega, alpha, x, xv, xa))
+            R = turned(R, k, q[i])
+        frames.append(Moving(R @ ca.SX(joint.axes.after), omega, alpha, x, xv, xa))
     return frames
 
 
-def _turned(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
+def turned(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
+    """R times the rotation by `angle` about coordinate axis `axis`: mixes two columns."""
     c, s = ca.cos(angle), ca.sin(angle)
     columns = [R[:, 0], R[:, 1], R[:, 2]]
     i, j = (axis + 1) % 3, (axis + 2) % 3
@@ -109,11 +110,11 @@ class MomentFunction:
 
 def momentum_rate(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
     """(3,) rate of change of the angular momentum about the centre of mass, N·m."""
-    frames = _frames(character, q, v, a)
+    frames = body_frames(character, q, v, a)
     moving = []
     centre = ca.SX.zeros(3)
     for frame, body in zip(frames, character.bodies, strict=True):
-        x, _, acceleration = _carried(frame, ca.SX(body.com))
+        x, _, acceleration = carried(frame, ca.SX(body.com))
         moving.append((x, acceleration))
         centre += body.mass / character.mass * x
     rate = ca.SX.zeros(3)

@@ -124,6 +124,11 @@ class NoSolution(Fault):
 
 
 @dataclass
+class NoFit(NoSolution):
+    """The same for the recording's own motion, before any pin has moved."""
+
+
+@dataclass
 class UnseenSupport(Fault):
     """Nothing touches, yet the body does not fall: something unrecorded carries it (frames)."""
 

@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from .character import Character
-from .dynamics import GRAVITY, _carried, _frames, _turned, evaluate
+from .dynamics import GRAVITY, body_frames, carried, evaluate, turned
 from .kinematics import BodyPoint
 from .motion import Motion
 from .recording import FloatArray
@@ -71,8 +71,8 @@ class InverseDynamics:
 
     def of(self, motion: Motion, times: FloatArray) -> Efforts:
         """Of a motion that touches at the same points, at (T,) s."""
-        angles = [motion.angles(times, k) for k in range(3)]
-        return self(*angles, motion.com(times, 2), motion.forces(times))
+        q, v, a = (motion.angles(times, k) for k in range(3))
+        return self(q, v, a, motion.com(times, 2), motion.forces(times))
 
 
 def _efforts(
@@ -84,8 +84,8 @@ def _efforts(
     fall: ca.SX,
     forces: ca.SX,
 ) -> ca.SX:
-    frames = _frames(character, q, v, a)
-    moving = [_carried(f, ca.SX(b.com)) for f, b in zip(frames, character.bodies, strict=True)]
+    frames = body_frames(character, q, v, a)
+    moving = [carried(f, ca.SX(b.com)) for f, b in zip(frames, character.bodies, strict=True)]
     shares = [body.mass / character.mass for body in character.bodies]
     com = sum((s * m[0] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
     sway = sum((s * m[2] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
@@ -97,7 +97,7 @@ def _efforts(
         wrenches.append(_Wrench(frame.x, force, spin + ca.cross(x - frame.x, force)))
     for p, point in enumerate(points):
         held = wrenches[point.body]
-        at = _carried(frames[point.body], ca.SX(point.place))[0]
+        at = carried(frames[point.body], ca.SX(point.place))[0]
         push = _Wrench(at, -forces[:, p], ca.SX.zeros(3))
         wrenches[point.body] = _sum(held, push)
     torques = ca.SX.zeros(character.n_angles)
@@ -106,7 +106,7 @@ def _efforts(
         R = frames[joint.parent].R @ ca.SX(joint.axes.before)
         for k in range(joint.axes.dofs):
             torques[joint.first + k] = ca.dot(R[:, k], wrenches[i].moment)
-            R = _turned(R, k, q[joint.first + k])
+            R = turned(R, k, q[joint.first + k])
         wrenches[joint.parent] = _sum(wrenches[joint.parent], wrenches[i])
     return ca.vertcat(wrenches[0].force, wrenches[0].about(com), torques[3:])
 

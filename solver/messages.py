@@ -3,9 +3,9 @@
 The parent starts the worker and says Hello; the worker answers Ready. Then the parent makes one
 Request at a time, and the worker tells any number of Progress and one Analysed, Adapted or Failed.
 
-Each message is a length (8 bytes, little-endian) and a pickle. Both ends run the same files of one
-version, under the package names that their importers gave them; what arrives may name nothing but
-this package's data classes and enums and numpy's arrays.
+Each message is a length (8 bytes, little-endian), a checksum (4 bytes) and a pickle. Both ends run
+the same files of one version, under the package names that their importers gave them; what arrives
+whole may name nothing but this package's data classes and enums and numpy's arrays.
 
 Standard library only: the worker learns where numpy is from the first message.
 """
@@ -19,6 +19,7 @@ from enum import Enum
 from importlib import import_module
 from io import BytesIO
 from typing import TYPE_CHECKING, Any, BinaryIO
+from zlib import crc32
 
 if TYPE_CHECKING:
     from .contacts import ContactSchedule
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 PROTOCOL = 1
 LARGEST = 1 << 30  # bytes; a longer message is not one
-_LENGTH = struct.Struct("<Q")
+_HEAD = struct.Struct("<QI")  # length and CRC-32 of the pickle
 _NUMPY = {
     ("numpy", "ndarray"),
     ("numpy", "dtype"),
@@ -39,6 +40,18 @@ _NUMPY = {
     ),
     *((f"numpy.{core}.numeric", "_frombuffer") for core in ("core", "_core")),
 }
+# What unpickling raises on nonsense.
+_UNREADABLE = (
+    pickle.UnpicklingError,
+    AttributeError,
+    EOFError,
+    ImportError,
+    LookupError,
+    MemoryError,
+    OverflowError,
+    TypeError,
+    ValueError,
+)
 
 
 class Kind(Enum):
@@ -125,27 +138,29 @@ class ProtocolError(Exception):
 def send(stream: BinaryIO, message: Message) -> None:
     """Writes one message. Raises OSError (BrokenPipeError where nobody listens any more)."""
     body = pickle.dumps(message, protocol=5)
-    stream.write(_LENGTH.pack(len(body)))
+    stream.write(_HEAD.pack(len(body), crc32(body)))
     stream.write(body)
     stream.flush()
 
 
 def receive(stream: BinaryIO) -> Message | None:
     """The next message; None where the stream ends before one. Raises ProtocolError."""
-    head = stream.read(_LENGTH.size)
+    head = stream.read(_HEAD.size)
     if not head:
         return None
-    if len(head) < _LENGTH.size:
+    if len(head) < _HEAD.size:
         raise ProtocolError("a message breaks off")
-    (length,) = _LENGTH.unpack(head)
+    length, checksum = _HEAD.unpack(head)
     if length > LARGEST:
         raise ProtocolError(f"a message of {length} bytes is announced")
     body = stream.read(length)
     if len(body) < length:
         raise ProtocolError("a message breaks off")
+    if crc32(body) != checksum:
+        raise ProtocolError("a message arrived damaged")
     try:
         message = _Reader(BytesIO(body)).load()
-    except (pickle.UnpicklingError, ImportError, AttributeError, TypeError, ValueError) as problem:
+    except _UNREADABLE as problem:
         raise ProtocolError(f"a message cannot be read: {problem}") from problem
     if not isinstance(message, Message):
         raise ProtocolError(f"{type(message).__name__} is not a message")

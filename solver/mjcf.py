@@ -15,7 +15,7 @@ from .character import Character
 from .dynamics import GRAVITY
 from .kinematics import BodyPoint, pose
 from .motion import Motion
-from .recording import FloatArray
+from .recording import FloatArray, IntArray
 
 ROOT_SIZE = 6  # velocities of the free joint
 AXES = ("1 0 0", "0 1 0", "0 0 1")
@@ -71,7 +71,7 @@ def _text(numbers: Sequence[float] | FloatArray) -> str:
     return " ".join(repr(float(x)) for x in numbers)
 
 
-def hinge_order(character: Character) -> np.ndarray:
+def hinge_order(character: Character) -> IntArray:
     """(n_angles - 3,) the joint angle that each hinge of the MJCF document turns."""
     children: list[list[int]] = [[] for _ in character.joints]
     for i, joint in enumerate(character.joints):
@@ -175,7 +175,7 @@ def qpos(motion: Motion, times: FloatArray) -> FloatArray:
 
 
 def qvel(motion: Motion, times: FloatArray) -> FloatArray:
-    """(T, n_angles + 3) MuJoCo velocities: root's in world m/s, its turn in its own axes, angles."""
+    """(T, n_angles + 3) MuJoCo velocities: root's in world axes, its turn in its own, hinges."""
     return motion_state(motion, times)[1]
 
 

@@ -42,7 +42,8 @@ def sample(motion: Motion, rate: float = 1000.0) -> dict[str, NDArray[Any]]:
 
 def instants(duration: float, rate: float) -> FloatArray:
     """Every 1 / rate s from 0 while within [0, duration]."""
-    return np.arange(int(np.floor(duration * rate + 1e-6)) + 1) / rate
+    # The last may be the duration itself, which rounding must not let it pass.
+    return np.minimum(np.arange(int(np.floor(duration * rate + 1e-6)) + 1) / rate, duration)
 
 
 def save(motion: Motion, path: Path, rate: float = 1000.0) -> None:

@@ -91,7 +91,9 @@ class Transcription:
         if self.contacts:
             window = self.window(x, self.pins.spans)
             parts += self.pins.rows(window, at_pins, self.points, places)
-        return self.with_released(self._only_active(Rows.join(parts)), x)
+        if self.released:
+            parts.append(self._release_rows(x))
+        return self._only_active(Rows.join(parts))
 
     def residuals(self, x: FloatArray, places: FloatArray) -> FloatArray:
         """The residuals of `rows` alone, cheaper."""
@@ -101,7 +103,7 @@ class Transcription:
             window = self.window(x, self.pins.spans)
             parts.append(self.pins.residuals(window, at_pins, self.points, places))
         if self.released:
-            parts.append(self._release_rows(x, self.released).residual)
+            parts.append(self._release_rows(x).residual)
         return np.concatenate(parts)
 
     def release(self, pairs: frozenset[tuple[int, int]]) -> "Transcription":
@@ -109,12 +111,6 @@ class Transcription:
         twin = copy(self)
         twin.released = self.released | pairs
         return twin
-
-    def with_released(self, rows: Rows, x: FloatArray) -> Rows:
-        """Rows without any release rows, and the release rows."""
-        if not self.released:
-            return rows
-        return Rows.join([rows, self._only_active(self._release_rows(x, self.released))])
 
     def _only_active(self, rows: Rows) -> Rows:
         blocks = self.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)
@@ -196,9 +192,9 @@ class Transcription:
 
     # -- releases --------------------------------------------------------------------------
 
-    def _release_rows(self, x: FloatArray, released: frozenset[tuple[int, int]]) -> Rows:
+    def _release_rows(self, x: FloatArray) -> Rows:
         layout, basis = self.layout, self.basis
-        pairs = np.array(sorted(released))
+        pairs = np.array(sorted(self.released))
         block = pairs[:, 0] + 1
         last = basis.first_coefficient + 1  # the block of each span's first force node
         span = np.minimum(np.searchsorted(last, block, side="right") - 1, basis.n_spans - 1)

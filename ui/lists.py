@@ -7,7 +7,7 @@ import bpy
 from .names import ListId
 
 
-class HANGTIME_UL_contacts(bpy.types.UIList):
+class ContactList(bpy.types.UIList):
     bl_idname = ListId.CONTACTS
 
     def draw_item(
@@ -33,4 +33,4 @@ class HANGTIME_UL_contacts(bpy.types.UIList):
         frames.prop(row, "end_frame", text="", emboss=False)
 
 
-CLASSES = (HANGTIME_UL_contacts,)
+CLASSES = (ContactList,)

@@ -15,7 +15,7 @@ class _SidebarPanel:
     bl_category = CATEGORY
 
 
-class HANGTIME_PT_character(_SidebarPanel, bpy.types.Panel):
+class CharacterPanel(_SidebarPanel, bpy.types.Panel):
     bl_idname = PanelId.CHARACTER
     bl_label = "Recording"
 
@@ -49,7 +49,7 @@ def _draw_figure(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
     frames.prop(settings, "last_frame", text="")
 
 
-class HANGTIME_PT_contacts(_SidebarPanel, bpy.types.Panel):
+class ContactsPanel(_SidebarPanel, bpy.types.Panel):
     bl_idname = PanelId.CONTACTS
     bl_label = "Contacts"
 
@@ -94,7 +94,7 @@ def _draw_stance(box: bpy.types.UILayout, stance: bpy.types.PropertyGroup) -> No
     box.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
 
 
-class HANGTIME_PT_adapt(_SidebarPanel, bpy.types.Panel):
+class AdaptPanel(_SidebarPanel, bpy.types.Panel):
     bl_idname = PanelId.ADAPT
     bl_label = "Adapted Motion"
 
@@ -114,4 +114,4 @@ class HANGTIME_PT_adapt(_SidebarPanel, bpy.types.Panel):
             layout.label(text=line)
 
 
-CLASSES = (HANGTIME_PT_character, HANGTIME_PT_contacts, HANGTIME_PT_adapt)
+CLASSES = (CharacterPanel, ContactsPanel, AdaptPanel)

@@ -5,6 +5,8 @@ Lengths are in Blender units, world; frames are the scene's; angles in rad.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import bpy
 
 from ..bridge import stances
@@ -25,7 +27,19 @@ def _is_empty(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> b
     return bool(candidate.type == "EMPTY")
 
 
-class ContactRow(bpy.types.PropertyGroup):
+# Blender evaluates a class's annotations apart from this module's names, so that a lambda among
+# them would not find any: callbacks are functions.
+
+
+def _get_place(row: HangtimeContact) -> Sequence[float]:
+    return row.at
+
+
+def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
+    stances.place(row.id_data.hangtime, row, to)
+
+
+class HangtimeContact(bpy.types.PropertyGroup):
     """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2")."""
 
     point: bpy.props.StringProperty(options=_HIDDEN)
@@ -52,8 +66,8 @@ class ContactRow(bpy.types.PropertyGroup):
         size=3,
         subtype="TRANSLATION",
         unit="LENGTH",
-        get=lambda row: row.at,
-        set=lambda row, to: stances.place(row.id_data.hangtime, row, to),
+        get=_get_place,
+        set=_set_place,
     )
     empty: bpy.props.PointerProperty(
         name="Empty",
@@ -66,10 +80,10 @@ class ContactRow(bpy.types.PropertyGroup):
 def _shift(axis: int) -> dict[str, object]:
     """Callbacks of a stance's shift along one of its axes."""
 
-    def get(stance: StanceRow) -> float:
+    def get(stance: HangtimeStance) -> float:
         return float(stance.shifted[axis])
 
-    def put(stance: StanceRow, to: float) -> None:
+    def put(stance: HangtimeStance, to: float) -> None:
         shifted = list(stance.shifted)
         shifted[axis] = to
         stances.shift_stance(stance.id_data.hangtime, stance, shifted)
@@ -77,7 +91,15 @@ def _shift(axis: int) -> dict[str, object]:
     return {"get": get, "set": put, "unit": "LENGTH", "subtype": "DISTANCE", "step": 1}
 
 
-class StanceRow(bpy.types.PropertyGroup):
+def _get_turn(stance: HangtimeStance) -> float:
+    return float(stance.turned)
+
+
+def _set_turn(stance: HangtimeStance, to: float) -> None:
+    stances.turn_stance(stance.id_data.hangtime, stance, to)
+
+
+class HangtimeStance(bpy.types.PropertyGroup):
     """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2")."""
 
     forward_axis: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
@@ -95,8 +117,8 @@ class StanceRow(bpy.types.PropertyGroup):
         name="Turn",
         description="Turn the stance about the vertical, counter-clockwise seen from above",
         subtype="ANGLE",
-        get=lambda stance: stance.turned,
-        set=lambda stance, to: stances.turn_stance(stance.id_data.hangtime, stance, to),
+        get=_get_turn,
+        set=_set_turn,
     )
 
 
@@ -136,9 +158,9 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     )
 
     analysed: bpy.props.StringProperty(options=_HIDDEN)  # digest of the recording
-    contacts: bpy.props.CollectionProperty(type=ContactRow)
+    contacts: bpy.props.CollectionProperty(type=HangtimeContact)
     active_contact: bpy.props.IntProperty(options=_HIDDEN)
-    stances: bpy.props.CollectionProperty(type=StanceRow)
+    stances: bpy.props.CollectionProperty(type=HangtimeStance)
     whole_stance: bpy.props.BoolProperty(
         name="Move Whole Stance",
         description="Moving a contact moves every contact of its phase, so that heels and toes "
@@ -167,7 +189,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     recording: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
 
 
-CLASSES = (ContactRow, StanceRow, HangtimeSettings, HangtimeScene, HangtimeAction)
+CLASSES = (HangtimeContact, HangtimeStance, HangtimeSettings, HangtimeScene, HangtimeAction)
 CARRIERS = {
     bpy.types.Scene: HangtimeScene,
     bpy.types.Object: HangtimeSettings,

@@ -1,6 +1,7 @@
 """Names of bones in the wild, and the body parts that they stand for."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -145,7 +146,7 @@ def check_tree(bones: Sequence[Bone], segments: Sequence[Segment]) -> None:
     for side in (Side.LEFT, Side.RIGHT):
         for limb in (LIMBS[:3], LIMBS[3:]):
             bone = [place[part, side] for part in limb if (part, side) in place]
-            for upper, lower in zip(bone, bone[1:], strict=False):
+            for upper, lower in pairwise(bone):
                 above = bones[lower].parent
                 while above > upper:
                     above = bones[above].parent

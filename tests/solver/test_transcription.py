@@ -45,7 +45,7 @@ def test_rows_and_residuals_agree() -> None:
     t, x = released(), random_state(9)
     rows = t.rows(x, places())
     assert rows.residual == pytest.approx(t.residuals(x, places()), abs=1e-12)
-    assert {k for k in RowKind} == set(rows.kind)  # every kind is covered by these tests
+    assert set(RowKind) == set(rows.kind)  # every kind is covered by these tests
 
 
 def test_unknowns_that_do_not_exist_have_no_slopes() -> None:

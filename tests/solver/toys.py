@@ -89,5 +89,3 @@ def random_state(seed: int, size: float = 0.2) -> np.ndarray:
     x[:, t.layout.forces] += np.tile([0.0, 0.0, 0.5], t.layout.n_points)
     x[~t.active] = 0.0
     return x
-
-

@@ -1,0 +1,188 @@
+"""The worker as a process: answers, what it remembers, how it ends."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hangtime.bridge.worker import Kind, Worker
+from hangtime.solver.faults import ClipTooShort, NoFlight, UnknownContactName, WorkerDied
+from hangtime.solver.messages import Adapted, Analysed, Failed, Progress
+from hangtime.solver.problem import ContactEdit, MotionProblem, Pin
+from hangtime.solver.recording import Recording
+from hangtime.tests.clips import load_recording
+
+JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+SPAN = (73.0, 325.0)
+UP = MotionProblem(frames=SPAN, pins=(Pin("up", "ground 2", offset=(0.0, 0.0, 0.05)),))
+AHEAD = MotionProblem(frames=SPAN, pins=(Pin("ahead", "ground 2", offset=(0.05, 0.0, 0.0)),))
+
+# Starts a worker, prints its number and dies without ending it.
+ORPHAN = """
+import os, runpy, sys
+runpy.run_path(sys.argv[1])["load"]()
+from hangtime.bridge.worker import Kind, Worker
+from hangtime.tests.clips import load_recording
+from hangtime.solver.problem import MotionProblem
+worker = Worker()
+worker.ask(Kind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
+print(worker.pid, flush=True)
+os._exit(0)
+"""
+
+
+@pytest.fixture(scope="module")
+def jump() -> Recording:
+    return load_recording(JUMP)
+
+
+@pytest.fixture
+def worker() -> Iterator[Worker]:
+    worker = Worker()
+    yield worker
+    worker.close()
+
+
+def gone(pid: int) -> bool:
+    """Whether a process ends within 5 s (a zombie has ended)."""
+    status = Path(f"/proc/{pid}/stat")
+    for _ in range(100):
+        if not status.exists() or status.read_text().rpartition(")")[2].split()[0] == "Z":
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_the_second_adaptation_starts_from_the_stored_fit(worker: Worker, jump: Recording) -> None:
+    stages: list[set[str]] = []
+    for problem in (UP, AHEAD):
+        told: list[Progress] = []
+        answer = worker.ask(Kind.ADAPT, jump, problem).wait(told.append)
+        assert isinstance(answer, Adapted)
+        assert answer.report["pins"][0]["name"] == problem.pins[0].name
+        np.testing.assert_array_equal(answer.track.frames, np.arange(SPAN[0], SPAN[1] + 1))
+        stages.append({progress.stage for progress in told})
+    assert "fit" in stages[0]
+    assert "fit" not in stages[1]
+    assert "adapt" in stages[1]
+
+
+def test_a_fault_is_an_answer_and_the_worker_lives_on(worker: Worker, jump: Recording) -> None:
+    asked: list[tuple[MotionProblem, type[Exception]]] = [
+        (MotionProblem(frames=(1.0, 5.0)), ClipTooShort),
+        (MotionProblem(frames=(73.0, 150.0)), NoFlight),
+        (MotionProblem(frames=SPAN, contacts=(ContactEdit("Nose 1"),)), UnknownContactName),
+    ]
+    numbers = set()
+    for problem, fault in asked:
+        answer = worker.ask(Kind.ANALYSE, jump, problem).wait()
+        assert isinstance(answer, Failed)
+        assert type(answer.fault) is fault
+        numbers.add(worker.pid)
+    assert len(numbers) == 1
+    assert None not in numbers
+
+
+def test_the_stated_height_leaves_places_in_the_recordings_lengths(
+    worker: Worker, jump: Recording
+) -> None:
+    measured, stated = (
+        worker.ask(Kind.ANALYSE, jump, MotionProblem(frames=SPAN, height=height)).wait()
+        for height in (None, 1.75)
+    )
+    assert isinstance(measured, Analysed)
+    assert isinstance(stated, Analysed)
+    assert measured.height == pytest.approx(stated.height) != pytest.approx(1.75, abs=0.01)
+    places = {contact.name: contact.place for contact in measured.schedule.contacts}
+    assert places.keys() == {contact.name for contact in stated.schedule.contacts}
+    for contact in stated.schedule.contacts:
+        np.testing.assert_allclose(contact.place, places[contact.name], atol=0.01)
+
+
+def test_a_worker_that_is_killed_answers_so_and_another_takes_over(
+    worker: Worker, jump: Recording
+) -> None:
+    job = worker.ask(Kind.ADAPT, jump, UP)
+    assert worker.busy
+    job.wait(lambda progress: kill(worker) if progress.step == 1 else None)
+    assert isinstance(job.answer, Failed)
+    assert isinstance(job.answer.fault, WorkerDied)
+    assert job.answer.fault.detail == "exit code -9"
+    assert not worker.busy
+    assert isinstance(worker.ask(Kind.ANALYSE, jump, UP).wait(), Analysed)
+
+
+def kill(worker: Worker) -> None:
+    assert worker.pid is not None
+    os.kill(worker.pid, 9)
+
+
+def test_what_a_worker_said_last_is_told(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    program = tmp_path / "broken.py"
+    program.write_text("raise SystemExit('the disk is upside down')")
+    monkeypatch.setattr("hangtime.bridge.worker._PROGRAM", program)
+    answer = worker.ask(Kind.ANALYSE, jump, UP).wait()
+    assert isinstance(answer, Failed)
+    assert answer.fault == WorkerDied("the disk is upside down (exit code 1)")
+
+
+def test_a_worker_that_talks_nonsense_is_not_believed(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    program = tmp_path / "babbling.py"
+    program.write_text("print('Hello, this is more than a length', flush=True); input()")
+    monkeypatch.setattr("hangtime.bridge.worker._PROGRAM", program)
+    answer = worker.ask(Kind.ANALYSE, jump, UP).wait()
+    assert isinstance(answer, Failed)
+    assert isinstance(answer.fault, WorkerDied)
+    assert "bytes is announced" in answer.fault.detail
+
+
+def test_without_a_python_there_is_a_fault(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "no python"))
+    with pytest.raises(WorkerDied) as caught:
+        worker.ask(Kind.ANALYSE, jump, UP)
+    assert "no python" in caught.value.detail
+
+
+def test_one_request_at_a_time(worker: Worker, jump: Recording) -> None:
+    worker.ask(Kind.ADAPT, jump, UP)
+    with pytest.raises(RuntimeError, match="one request"):
+        worker.ask(Kind.ANALYSE, jump, UP)
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
+def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recording) -> None:
+    job = worker.ask(Kind.ADAPT, jump, UP)
+    pid = worker.pid
+    assert pid is not None
+    while not list(job.news()):
+        time.sleep(0.01)
+    worker.close()
+    assert worker.pid is None
+    assert not worker.busy
+    assert gone(pid)
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
+def test_the_worker_ends_with_its_parent(jump: Recording) -> None:
+    assert len(jump.frames) > 0  # skips where there are no recordings
+    loader = Path(__file__).parents[2] / "devtools" / "package.py"
+    done = subprocess.run(
+        [sys.executable, "-c", ORPHAN, str(loader), JUMP],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    assert gone(int(done.stdout))
