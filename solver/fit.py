@@ -32,6 +32,7 @@ FIT_PRICES = Prices(place=1.0, smooth_s=0.05, force=1e-4)
 ADAPT_PRICES = Prices(shape=1.0, com=0.02, smooth_s=0.1, force=3e-3)
 MOST_REFINEMENTS = 3
 MOST_RESETTLINGS = 4
+SWING = 1e-9  # weight against third derivatives when the recording is made a spline
 
 
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
@@ -89,12 +90,12 @@ def fit(
     metric = closeness.expand(near.x)[1]
     outcomes, last = [near], near
     for _ in range(1 + MOST_RESETTLINGS):
-        places = reached_places(Motion(last.transcription, last.x, places))
         last = restore(transcription, metric, last.x, places, stage="fit", progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
             outcomes += refine(last, places, FIT_PRICES, FIT_PROMISE, progress=progress)
             break
+        places = reached_places(Motion(last.transcription, last.x, places))
     settled = tuple(
         replace(contact, place=place)
         for contact, place in zip(schedule.contacts, places, strict=True)
@@ -106,7 +107,7 @@ def reached_places(motion: Motion) -> FloatArray:
     """(n_contacts, 3) m: where each pinned point is on average.
 
     Places read off a recording contradict each other by millimetres where heel and toe of one foot
-    are both down; where the projection brought them they agree.
+    are both down; where the steps brought them they agree better.
     """
     places = motion.places.copy()
     for i, contact in enumerate(motion.transcription.contacts):
@@ -132,9 +133,12 @@ def refine(
             break
         finer = on_finer_basis(motion, weak)
         metric = motion_metric(finer, prices)
-        outcome = restore(
+        finer_outcome = restore(
             finer.transcription, metric, finer.x, places, stage="refine", progress=progress
         )
+        if finer_outcome.status is not Status.SOLVED:
+            break  # what was solved for stands; its residual between the nodes is reported
+        outcome = finer_outcome
         outcomes.append(outcome)
     return outcomes
 
@@ -204,7 +208,7 @@ def _coarsest_faithful(
     """The basis with the fewest knots that follows the recording; physics adds more (`refine`)."""
     for longest in SPANS:
         basis = Basis(*phase_breaks(boundaries, extra, longest))
-        angles = basis.project(performance.times, performance.angles)
+        angles = recorded_spline(basis, performance, performance.angles)
         posed = pose(performance.character, basis.combine(angles, performance.times))
         off = posed.centres - pose(performance.character, performance.angles).centres
         if np.sqrt((off**2).sum(axis=2).mean(axis=0)).max() < FAITHFUL:
@@ -251,8 +255,8 @@ def first_guess(transcription: Transcription, performance: Performance) -> Float
     """The recording's own spline, and forces that share its centre of mass's acceleration."""
     basis, layout = transcription.basis, transcription.layout
     x = np.zeros((basis.n_coefficients, layout.n_block))
-    x[:, layout.com] = basis.project(performance.times, performance.com)
-    x[:, layout.angles] = basis.project(performance.times, performance.angles)
+    x[:, layout.com] = recorded_spline(basis, performance, performance.com)
+    x[:, layout.angles] = recorded_spline(basis, performance, performance.angles)
     spans = np.arange(basis.n_spans)
     middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
     load = basis.combine(x[:, layout.com], middles, 2)[:, 2] / GRAVITY + 1.0
@@ -267,6 +271,16 @@ def first_guess(transcription: Transcription, performance: Performance) -> Float
     x[:, vertical] /= together
     x[~transcription.active] = 0.0
     return x
+
+
+def recorded_spline(basis: Basis, performance: Performance, samples: FloatArray) -> FloatArray:
+    """(n_coefficients, n) the spline nearest to samples (T, n) at the recording's frames.
+
+    Fitted between the frames too: a short span may hold no frame, and a spline that nothing holds
+    there would swing.
+    """
+    times = np.union1d(dense_instants(basis), performance.times)
+    return basis.project(times, interpolate(performance.times, samples, times), SWING)
 
 
 def recorded_target(

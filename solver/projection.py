@@ -19,7 +19,7 @@ from enum import Enum
 import numpy as np
 
 from .closeness import Closeness
-from .linear import BlockBanded
+from .linear import BlockBanded, Factor
 from .recording import FloatArray, IntArray
 from .rows import RowKind, Rows
 from .splines import ORDER
@@ -39,7 +39,8 @@ PENALTY = 1e2
 MOST_SWEEPS = 8
 SWEEP_GAIN = 1e-3
 CHORD_GAIN = 0.03
-SHORTEST_STEP = 0.02
+RIDGE = 1e-8
+SHORTEST_STEP = 0.005
 PULL_TOLERANCE = 0.01  # BW
 NEAR = 1e3  # times the tolerances: near enough to tell which forces pull
 ENOUGH = 0.05  # of the distance to the target: what a further step must gain
@@ -205,6 +206,15 @@ class _Windows:
         return np.asarray(squares.reshape(len(self.J), ORDER, self.size, ORDER, self.size))
 
 
+def _factor(system: BlockBanded) -> Factor:
+    """Cholesky; far from any motion rounding can spoil it, and a small ridge mends that."""
+    try:
+        return system.factor()
+    except np.linalg.LinAlgError:
+        system.add_diagonal(RIDGE * np.diagonal(system.lower[0], axis1=1, axis2=2))
+        return system.factor()
+
+
 class Linearised:
     """Rows linearised at one point, with the factor of W + rho J'J, ready for steps."""
 
@@ -217,7 +227,7 @@ class Linearised:
         self._gather(transcription)
         system = metric.copy()
         system.add_windows(self._windows.first, self._windows.normal(PENALTY))
-        self._factor = system.factor()
+        self._factor = _factor(system)
 
     def _gather(self, transcription: Transcription) -> None:
         """Sorts the rows, in units of NORM, by span."""

@@ -206,7 +206,7 @@ def _contact(motion: Motion, fit: Fit, i: int, pin: str | None) -> Json:
         "end_frame": _frame(fit, contact.end),
         "pinned_from_s": at.pin_start,
         "pinned_to_s": at.pin_end,
-        "recorded_place_m": contact.place.tolist(),
+        "fitted_place_m": fit.places[i].tolist(),
         "place_m": motion.places[i].tolist(),
         "worst_violation_mm": 1000.0 * float(drift.max()),
         "worst_violation_frame": _frame(fit, float(pinned[drift.argmax()])),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from .adapt import Adaptation, adapt
 from .contacts import PhaseKind
 from .digest import digest
-from .faults import Fault, NoSolution
+from .faults import Fault, NoFit, NoSolution
 from .fit import Fit, fit
 from .messages import Adapted, Analysed, Answer, Failed, Kind, Progress, Request
 from .problem import MotionProblem, travel_axes
@@ -56,10 +56,14 @@ class Service:
         progress = _stepper(request.id, tell)
         began = time.perf_counter()
         fitted = self._fit(request, measured.analysis, progress)
+        if not fitted.solved:
+            unmoved = Adaptation(fitted.outcomes[-1:], fitted.places, fitted)
+            raise _unsolved(NoFit, unmoved, measured.problem)
         fitted_at = time.perf_counter()
         adaptation = adapt(fitted, measured.problem, progress=progress)
         adapted_at = time.perf_counter()
-        _require_solved(adaptation, measured.problem)
+        if not adaptation.solved:
+            raise _unsolved(NoSolution, adaptation, measured.problem)
         track = adaptation.motion.track(measured.analysis.performance.recording)
         content = report(adaptation, measured.problem, Origin(request.recording.name))
         content["stages"] = [
@@ -122,7 +126,6 @@ def _stepper(request: int, tell: Tell) -> Callable[[Step], None]:
     return progress
 
 
-def _require_solved(adaptation: Adaptation, problem: MotionProblem) -> None:
-    if not adaptation.solved:
-        worst = worst_constraints(adaptation, problem)[:MOST_LISTED]
-        raise NoSolution(adaptation.outcome.status.value, tuple(worst))
+def _unsolved(kind: type[NoSolution], adaptation: Adaptation, problem: MotionProblem) -> NoSolution:
+    worst = worst_constraints(adaptation, problem)[:MOST_LISTED]
+    return kind(adaptation.outcome.status.value, tuple(worst))

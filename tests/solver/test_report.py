@@ -98,7 +98,7 @@ def test_pins_hold_and_the_worst_frame_is_while_pinned() -> None:
 
 def test_the_landing_moved_as_asked() -> None:
     for contact in content()["contacts"]:
-        moved = np.subtract(contact["place_m"], contact["recorded_place_m"])
+        moved = np.subtract(contact["place_m"], contact["fitted_place_m"])
         expected = (0.3, 0.2) if contact["pin"] else (0.0, 0.0)
         assert (np.hypot(*moved[:2]), moved[2]) == pytest.approx(expected, abs=1e-9)
 
