@@ -7,12 +7,13 @@ only looks at what has come (`Job.news`) or waits for it (`Job.wait`).
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from functools import cache
+from io import BufferedReader, RawIOBase
 from itertools import count
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -143,11 +144,16 @@ class _Process:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
+                bufsize=0,  # nothing is left for closing to write
                 env={**os.environ, **_ONE_THREAD},
                 creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
             )
         except OSError as problem:
             raise WorkerDied(f"{sys.executable} cannot be started: {problem}") from problem
+        assert self._popen.stdin is not None
+        assert isinstance(self._popen.stdout, RawIOBase)
+        self._to_worker = self._popen.stdin
+        self._from_worker = BufferedReader(self._popen.stdout)
         self._greeted = False
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
@@ -162,7 +168,11 @@ class _Process:
         return self._popen.poll() is None
 
     def converse(self, job: Job) -> None:
-        """Makes the job's request and delivers what is said about it, the answer at the last."""
+        """Makes the job's request and delivers what is said about it, the answer at the last.
+
+        To be run on a thread of its own.
+        """
+        _survive_broken_pipes()
         try:
             for message in self._talk(job.request):
                 job.deliver(message)
@@ -182,16 +192,14 @@ class _Process:
         self._popen.kill()
         self._popen.wait()
         self._listener.join(_LAST_WORDS_S)
-        for pipe in (self._popen.stdin, self._popen.stdout, self._popen.stderr):
+        for pipe in (self._to_worker, self._from_worker, self._popen.stderr):
             assert pipe is not None
-            with suppress(BrokenPipeError):  # what a broken pipe still held is of no use
-                pipe.close()
+            pipe.close()
 
     def _talk(self, request: Request) -> Iterator[Progress | Answer]:
         if not self._greeted:
             self._greet()
-        assert self._popen.stdin is not None
-        send(self._popen.stdin, request)
+        send(self._to_worker, request)
         while True:
             message = self._hear()
             if isinstance(message, Hello | Ready | Request) or message.id != request.id:
@@ -201,16 +209,14 @@ class _Process:
                 return
 
     def _greet(self) -> None:
-        assert self._popen.stdin is not None
-        send(self._popen.stdin, Hello(PROTOCOL, tuple(p for p in sys.path if p)))
+        send(self._to_worker, Hello(PROTOCOL, tuple(p for p in sys.path if p)))
         ready = self._hear()
         if not isinstance(ready, Ready) or ready.protocol != PROTOCOL:
             raise ProtocolError(f"{ready} is no greeting of version {PROTOCOL}")
         self._greeted = True
 
     def _hear(self) -> Message:
-        assert self._popen.stdout is not None
-        message = receive(self._popen.stdout)
+        message = receive(self._from_worker)
         if message is None:
             raise EOFError
         return message
@@ -226,3 +232,12 @@ class _Process:
         self._listener.join(_LAST_WORDS_S)
         said = [line for line in self._last_lines if line]
         return f"{said[-1]} (exit code {code})" if said else f"exit code {code}"
+
+
+def _survive_broken_pipes() -> None:
+    """Have this thread get an error where the worker no longer listens.
+
+    Blender, unlike Python by itself, leaves the signal for it as it is, which ends the program.
+    """
+    if hasattr(signal, "pthread_sigmask"):  # Windows has no such signal
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})

@@ -6,6 +6,7 @@ from ..solver.projection import Status
 from ..solver.report import Json
 from .wording import outcome
 
+GRIPPING = 1.2  # friction coefficient of sports shoes on a good floor, at most
 BEARABLE = 12.0  # times the body's weight; the hardest landings of gymnasts
 
 
@@ -61,6 +62,9 @@ def _changes(report: Json) -> Iterator[str]:
             f"{peak['phase'].capitalize():<11} the ground pushes with at most "
             f"{peak['peak_bw']:.1f} times the body's weight (frame {peak['frame']:.0f}){beyond}"
         )
+        grip = peak["friction_coefficient_needed"]
+        if grip > GRIPPING:
+            yield f"            it must grip with a friction of {grip:.1f}: more than shoes have"
 
 
 def _quality(report: Json) -> Iterator[str]:

@@ -138,8 +138,9 @@ class ProtocolError(Exception):
 def send(stream: BinaryIO, message: Message) -> None:
     """Writes one message. Raises OSError (BrokenPipeError where nobody listens any more)."""
     body = pickle.dumps(message, protocol=5)
-    stream.write(_HEAD.pack(len(body), crc32(body)))
-    stream.write(body)
+    rest = memoryview(_HEAD.pack(len(body), crc32(body)) + body)
+    while rest:
+        rest = rest[stream.write(rest) :]  # a bare pipe takes what it has room for
     stream.flush()
 
 

@@ -24,6 +24,7 @@ from .rows import RowKind
 from .trajectory import instants
 
 RATE = 1000.0  # Hz, of what is measured between the nodes
+LIGHTEST = 0.2  # BW
 SHOWN = {RowKind.PIN: (1000.0, "mm")}  # factor and unit of a violation; else the kind's own
 Json = dict[str, Any]
 
@@ -245,14 +246,19 @@ def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> Json:
 def _forces(motion: Motion, fit: Fit) -> Json:
     times = instants(motion.duration, RATE)
     forces = motion.forces(times) / (motion.transcription.character.mass * GRAVITY)
-    total = np.linalg.norm(forces.sum(axis=1), axis=1)
+    ground = forces.sum(axis=1)
+    total = np.linalg.norm(ground, axis=1)
+    # Where the ground hardly carries, a shoe may slip a little; that is no need of friction.
+    carried = np.where(ground[:, 2] > LIGHTEST, ground[:, 2], np.inf)
+    grip = np.linalg.norm(ground[:, :2], axis=1) / carried
     peaks = []
     for phase in fit.schedule.phases:
         inside = (times >= phase.start) & (times <= phase.end)
         if phase.kind is PhaseKind.GROUND and inside.any():
             at = int(np.argmax(np.where(inside, total, -1.0)))
             peak = {"peak_bw": float(total[at]), "frame": _frame(fit, float(times[at]))}
-            peaks.append({"phase": phase.name, **peak})
+            needed = {"friction_coefficient_needed": float(grip[inside].max())}
+            peaks.append({"phase": phase.name, **peak, **needed})
     smallest = float(forces[:, :, 2].min(initial=0.0))
     return {"peaks": peaks, "smallest_vertical_force_bw": smallest}
 

@@ -22,6 +22,7 @@ JUMP = "cmu_bvh/forward_jump_116cm.bvh"
 SPAN = (73.0, 325.0)
 UP = MotionProblem(frames=SPAN, pins=(Pin("up", "ground 2", offset=(0.0, 0.0, 0.05)),))
 AHEAD = MotionProblem(frames=SPAN, pins=(Pin("ahead", "ground 2", offset=(0.05, 0.0, 0.0)),))
+LOADER = str(Path(__file__).parents[2] / "devtools" / "package.py")
 
 # Starts a worker, prints its number and dies without ending it.
 ORPHAN = """
@@ -34,6 +35,32 @@ worker = Worker()
 worker.ask(Kind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
 print(worker.pid, flush=True)
 os._exit(0)
+"""
+
+# As in Blender's own program, where writing to a pipe that nobody reads ends the process.
+PIPES_KILL = """
+import runpy, signal, sys
+from pathlib import Path
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+runpy.run_path(sys.argv[1])["load"]()
+from hangtime.bridge import worker
+from hangtime.tests.clips import load_recording
+from hangtime.solver.problem import MotionProblem
+worker._PROGRAM = Path(sys.argv[3])
+one = worker.Worker()
+answer = one.ask(worker.Kind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
+one.close()
+print(answer.fault)
+"""
+
+# Greets and goes without reading what it is asked.
+DEAF = """
+import runpy, sys
+runpy.run_path({loader!r})["load"]()
+from hangtime.solver.messages import PROTOCOL, Ready, receive, send
+receive(sys.stdin.buffer)
+send(sys.stdout.buffer, Ready(PROTOCOL))
+raise SystemExit("cannot hear you")
 """
 
 
@@ -177,12 +204,22 @@ def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recordi
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
 def test_the_worker_ends_with_its_parent(jump: Recording) -> None:
     assert len(jump.frames) > 0  # skips where there are no recordings
-    loader = Path(__file__).parents[2] / "devtools" / "package.py"
-    done = subprocess.run(
-        [sys.executable, "-c", ORPHAN, str(loader), JUMP],
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert done.returncode == 0, done.stderr
-    assert gone(int(done.stdout))
+    assert gone(int(output_of(ORPHAN, JUMP)))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
+def test_a_worker_that_does_not_listen_does_not_take_blender_along(
+    jump: Recording, tmp_path: Path
+) -> None:
+    assert len(jump.frames) > 0
+    program = tmp_path / "deaf.py"
+    program.write_text(DEAF.format(loader=LOADER))
+    assert output_of(PIPES_KILL, JUMP, str(program)) == "cannot hear you (exit code 1)"
+
+
+def output_of(script: str, *arguments: str) -> str:
+    """What a script says in a Python of its own; its first argument loads the package."""
+    command = [sys.executable, "-c", script, LOADER, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, (done.returncode, done.stderr)
+    return done.stdout.strip()
