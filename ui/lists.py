@@ -6,13 +6,15 @@ import bpy
 
 from .names import ListId
 
+WIDE = 400  # px; a sidebar in which the places find room too
+
 
 class ContactList(bpy.types.UIList):
     bl_idname = ListId.CONTACTS
 
     def draw_item(
         self,
-        _context: bpy.types.Context,
+        context: bpy.types.Context,
         layout: bpy.types.UILayout,
         _settings: bpy.types.PropertyGroup,
         row: bpy.types.PropertyGroup,
@@ -24,13 +26,13 @@ class ContactList(bpy.types.UIList):
         line.prop(row, "used", text="")
         line = line.row(align=True)
         line.active = row.used
-        names = line.split(factor=0.36, align=True)
-        names.label(text=row.name)
-        names = names.split(factor=0.38, align=True)
-        names.label(text=row.phase)
-        frames = names.row(align=True)
-        frames.prop(row, "start_frame", text="", emboss=False)
-        frames.prop(row, "end_frame", text="", emboss=False)
+        x, y, z = row.at
+        line = line.split(factor=0.4, align=True)
+        line.label(text=row.name)
+        line.label(text=row.phase)
+        line.label(text=f"{row.start_frame:.0f} – {row.end_frame:.0f}")
+        if context.region.width > WIDE * context.preferences.system.ui_scale:
+            line.label(text=f"{x:.2f}, {y:.2f}, {z:.2f}")
 
 
 CLASSES = (ContactList,)

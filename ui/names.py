@@ -23,6 +23,8 @@ class PanelId(StrEnum):
 
     CHARACTER = "HANGTIME_PT_character"
     CONTACTS = "HANGTIME_PT_contacts"
+    STANCE = "HANGTIME_PT_stance"
+    CONTACT = "HANGTIME_PT_contact"
     ADAPT = "HANGTIME_PT_adapt"
 
 

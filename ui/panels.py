@@ -65,33 +65,56 @@ class ContactsPanel(_SidebarPanel, bpy.types.Panel):
             ListId.CONTACTS, "", settings, "contacts", settings, "active_contact", rows=8
         )
         layout.prop(settings, "whole_stance")
-        row, stance = active_contact(settings), active_stance(settings)
-        if row is not None:
-            _draw_contact(layout.box(), row)
-        if stance is not None:
-            _draw_stance(layout.box(), stance)
 
 
-def _draw_contact(box: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
-    box.label(text=f"{row.name} ({row.bone})")
-    box.use_property_split = True
-    box.use_property_decorate = False
-    frames = box.column(align=True)
-    frames.prop(row, "start_frame")
-    frames.prop(row, "end_frame")
-    box.column(align=True).prop(row, "place")
-    box.prop(row, "empty")
-    box.operator(OperatorId.PLACE_BY_EMPTY, icon="EMPTY_AXIS")
+class StancePanel(_SidebarPanel, bpy.types.Panel):
+    bl_idname = PanelId.STANCE
+    bl_parent_id = PanelId.CONTACTS
+    bl_label = ""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return active_stance(chosen_armature(context).hangtime) is not None
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.label(text=f"Move {active_stance(chosen_armature(context).hangtime).name}")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        stance = active_stance(chosen_armature(context).hangtime)
+        column = layout.column(align=True)
+        for name in ("forward", "left", "up", "turn"):
+            column.prop(stance, name)
+        layout.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
 
 
-def _draw_stance(box: bpy.types.UILayout, stance: bpy.types.PropertyGroup) -> None:
-    box.label(text=f"Move {stance.name}")
-    box.use_property_split = True
-    box.use_property_decorate = False
-    column = box.column(align=True)
-    for name in ("forward", "left", "up", "turn"):
-        column.prop(stance, name)
-    box.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
+class ContactPanel(_SidebarPanel, bpy.types.Panel):
+    bl_idname = PanelId.CONTACT
+    bl_parent_id = PanelId.CONTACTS
+    bl_label = ""
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads a set
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return active_contact(chosen_armature(context).hangtime) is not None
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        row = active_contact(chosen_armature(context).hangtime)
+        self.layout.label(text=f"{row.name} ({row.bone})")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        row = active_contact(chosen_armature(context).hangtime)
+        frames = layout.column(align=True)
+        frames.prop(row, "start_frame")
+        frames.prop(row, "end_frame")
+        layout.column(align=True).prop(row, "place")
+        layout.prop(row, "empty")
+        layout.operator(OperatorId.PLACE_BY_EMPTY, icon="EMPTY_AXIS")
 
 
 class AdaptPanel(_SidebarPanel, bpy.types.Panel):
@@ -114,4 +137,4 @@ class AdaptPanel(_SidebarPanel, bpy.types.Panel):
             layout.label(text=line)
 
 
-CLASSES = (CharacterPanel, ContactsPanel, AdaptPanel)
+CLASSES = (CharacterPanel, ContactsPanel, StancePanel, ContactPanel, AdaptPanel)

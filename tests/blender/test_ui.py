@@ -25,7 +25,7 @@ from hangtime.solver.session import analyse  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.blender.test_read_write import curves_of, snapshot  # noqa: E402
 from hangtime.tests.clips import mocap_path  # noqa: E402
-from hangtime.ui.names import ATTRIBUTE, OperatorId, PanelId  # noqa: E402
+from hangtime.ui.names import ATTRIBUTE, ListId, OperatorId, PanelId  # noqa: E402
 
 JUMP = "cmu_bvh/forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
@@ -97,12 +97,16 @@ class SceneState:
         )
 
 
+def every_name() -> set[str]:
+    """The identifiers of all the extension's classes."""
+    groups = {f"Hangtime{g}" for g in ("Contact", "Stance", "Settings", "Scene", "Action")}
+    operators = {o.replace("hangtime.", "HANGTIME_OT_") for o in OperatorId}
+    return groups | operators | set(PanelId) | set(ListId)
+
+
 def names_in_blender() -> set[str]:
-    """Every class of the extension's that Blender knows, by its identifier."""
-    groups = ("Contact", "Stance", "Settings", "Scene", "Action")
-    candidates = {"HANGTIME_UL_contacts", *PanelId, *(f"Hangtime{g}" for g in groups)}
-    candidates |= {o.replace(".", "_OT_").replace("hangtime", "HANGTIME") for o in OperatorId}
-    return {name for name in candidates if known(name)}
+    """Those of them that Blender knows."""
+    return {name for name in every_name() if known(name)}
 
 
 def known(name: str) -> bool:
@@ -154,7 +158,7 @@ def test_registering_five_times_leaves_nothing_behind(monkeypatch: pytest.Monkey
     before = handlers()
     for _ in range(5):
         hangtime.register()
-        assert len(names_in_blender()) == 15
+        assert names_in_blender() == every_name()
         assert len(commands) == 1
         hangtime.unregister()
         assert names_in_blender() == set()
