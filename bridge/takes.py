@@ -44,6 +44,7 @@ def write_take(armature: bpy.types.Object, track: PoseTrack) -> bpy.types.Action
     with _showing(armature, recorded):
         action = write_action(armature, track, name=f"{recorded.name} adapted")
         action.hangtime.recording = recorded
+        action.use_fake_user = True  # the next adaptation must not cost the artist this one
         slot = fcurves.slot_identifier(armature)
     show(armature, action, slot)
     armature.hangtime.adapted = action

@@ -70,7 +70,7 @@ class AdaptOperator(FaultyOperator, bpy.types.Operator):
         manager = context.window_manager
         self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
         self._workspace = context.workspace
-        self._workspace.status_text_set("Hangtime: reading the recording (Esc cancels)")
+        self._workspace.status_text_set("Hangtime: starting (Esc cancels)")
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from ..solver.projection import Status
 from ..solver.report import Json
+from ..solver.status import Status
 from .wording import outcome
 
 GRIPPING = 1.2  # friction coefficient of sports shoes on a good floor, at most

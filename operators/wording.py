@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..solver import faults
 from ..solver.problem import UnknownContact, UnknownPhase
-from ..solver.projection import Status
+from ..solver.status import Status
 
 OUTCOMES = {
     Status.SOLVED: "Solved: the motion obeys physics and every pin holds.",

@@ -13,9 +13,10 @@ from .contacts import ContactSchedule, PhaseKind
 from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, Solved, dense_instants, greville, refine
 from .motion import Motion
 from .problem import MotionProblem, pinned_places
-from .projection import Outcome, Progress, Status, restore
+from .projection import Outcome, Progress, restore
 from .recording import FloatArray
 from .rotations import axis_rotation
+from .status import Status
 from .transcription import Transcription
 
 STAGE_SHIFT = 0.5  # m

@@ -18,9 +18,10 @@ from .linear import BlockBanded
 from .motion import Motion, Promise, pinned_instants, split, weak_spans
 from .performance import Performance, interpolate
 from .pins import PointContact
-from .projection import Outcome, Progress, Status, project, restore
+from .projection import Outcome, Progress, project, restore
 from .recording import FloatArray, IntArray
 from .splines import Basis, gauss_instants, phase_breaks
+from .status import Status
 from .transcription import SETTLE, Transcription, touching_spans
 
 SPANS = (0.08, 0.06, 0.045, 0.035, 0.025)  # s, from which the clip chooses

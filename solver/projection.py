@@ -14,7 +14,6 @@ redundant rows (two feet planted, pins on one rigid foot) without choosing among
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from .linear import BlockBanded, Factor
 from .recording import FloatArray, IntArray
 from .rows import RowKind, Rows
 from .splines import ORDER
+from .status import Status
 from .transcription import Transcription
 
 # The largest violation that is let stand, by kind, in the kind's unit.
@@ -44,15 +44,6 @@ SHORTEST_STEP = 0.005
 PULL_TOLERANCE = 0.01  # BW
 NEAR = 1e3  # times the tolerances: near enough to tell which forces pull
 ENOUGH = 0.05  # of the distance to the target: what a further step must gain
-
-
-class Status(Enum):
-    """How a solve ended."""
-
-    SOLVED = "solved"
-    STALLED = "stalled"
-    TOO_MANY_STEPS = "too many steps"
-    CANCELLED = "cancelled"
 
 
 @dataclass(frozen=True)

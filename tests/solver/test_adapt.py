@@ -5,8 +5,9 @@ import pytest
 from hangtime.solver.adapt import Adaptation, adapt
 from hangtime.solver.fit import fit
 from hangtime.solver.problem import Axes3, MotionProblem, Pin, pinned_places
-from hangtime.solver.projection import Status, Step
+from hangtime.solver.projection import Step
 from hangtime.solver.session import analyse
+from hangtime.solver.status import Status
 from hangtime.tests.clips import load_recording
 from hangtime.tests.solver.jumps import fitted_hop
 from hangtime.tests.solver.measures import assert_valid

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hangtime.solver.fit import Fit, fit, on_finer_basis, transcribe
 from hangtime.solver.problem import MotionProblem
-from hangtime.solver.projection import Status
 from hangtime.solver.recording import Bone, Recording
 from hangtime.solver.rotations import axis_rotation
 from hangtime.solver.session import analyse
+from hangtime.solver.status import Status
 from hangtime.tests.clips import load_recording
 from hangtime.tests.solver.jumps import HOP, HOPS, fitted_hop, frames_of
 from hangtime.tests.solver.measures import assert_valid, joint_error

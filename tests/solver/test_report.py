@@ -10,8 +10,8 @@ import pytest
 from hangtime.operators.report_text import as_text
 from hangtime.solver.adapt import Adaptation, adapt
 from hangtime.solver.problem import MotionProblem, Pin
-from hangtime.solver.projection import Status
 from hangtime.solver.report import Origin, report, worst_constraints
+from hangtime.solver.status import Status
 from hangtime.solver.trajectory import instants, sample, save
 from hangtime.tests.solver.jumps import fitted_hop
 

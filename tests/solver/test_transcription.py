@@ -5,9 +5,10 @@ import pytest
 from hangtime.solver.closeness import Closeness, Prices
 from hangtime.solver.fit import motion_target
 from hangtime.solver.motion import Motion, unexplained
-from hangtime.solver.projection import Status, restore
+from hangtime.solver.projection import restore
 from hangtime.solver.rows import RowKind
 from hangtime.solver.splines import ORDER
+from hangtime.solver.status import Status
 from hangtime.solver.transcription import Transcription
 from hangtime.tests.solver.toys import DURATION, LIFT, places, random_state, standing
 

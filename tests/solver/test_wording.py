@@ -9,7 +9,7 @@ import hangtime.solver
 import pytest
 from hangtime.operators.wording import OUTCOMES, sentence
 from hangtime.solver.faults import BadRecipe, Fault, NoSolution
-from hangtime.solver.projection import Status
+from hangtime.solver.status import Status
 
 
 def all_faults() -> list[type[Fault]]:

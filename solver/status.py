@@ -1,0 +1,12 @@
+"""How a solve ends; apart, so that it can be worded where CasADi is missing."""
+
+from enum import Enum
+
+
+class Status(Enum):
+    """How a solve ended."""
+
+    SOLVED = "solved"
+    STALLED = "stalled"
+    TOO_MANY_STEPS = "too many steps"
+    CANCELLED = "cancelled"
