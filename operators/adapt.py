@@ -12,8 +12,8 @@ from ..bridge.worker import Job, Kind, shared
 from ..solver.digest import digest
 from ..solver.faults import ChangedMeanwhile, Fault
 from ..solver.messages import Adapted, Failed, Progress
-from ..ui.names import OperatorId
 from .common import FaultyOperator, chosen_armature, hindrance, said
+from .names import OperatorId
 
 LOOK_EVERY = 0.05  # s
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"

@@ -8,8 +8,8 @@ from ..bridge.settings import problem_of, wanted_range, write_analysis
 from ..bridge.takes import read_take
 from ..bridge.worker import Kind, shared
 from ..solver.messages import Analysed, Failed
-from ..ui.names import OperatorId
 from .common import FaultyOperator, chosen_armature, hindrance
+from .names import OperatorId
 
 
 class AnalyzeOperator(FaultyOperator, bpy.types.Operator):

@@ -6,8 +6,8 @@ import bpy
 
 from ..bridge.poses import metres_per_unit
 from ..bridge.stances import active_contact
-from ..ui.names import OperatorId
 from .common import chosen_armature
+from .names import OperatorId
 
 SIZE = 0.05  # m
 NO_CONTACT = "Choose a contact in the list first"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import bpy
 
 from ..bridge.stances import active_stance, put_back
-from ..ui.names import OperatorId
 from .common import chosen_armature
+from .names import OperatorId
 from .place_by_empty import NO_CONTACT
 
 

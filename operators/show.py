@@ -5,8 +5,8 @@ from __future__ import annotations
 import bpy
 
 from ..bridge.takes import current_action, recorded_action, show
-from ..ui.names import OperatorId
 from .common import chosen_armature
+from .names import OperatorId
 
 
 class ShowRecordingOperator(bpy.types.Operator):

@@ -14,7 +14,6 @@ OUTCOMES = {
     "Move the pins less, pin fewer points, or check the contacts' frames.",
     Status.TOO_MANY_STEPS: "No motion was found within the allowed number of steps. "
     "Move the pins less, or check the contacts' frames.",
-    Status.CANCELLED: "Cancelled; nothing was changed.",
 }
 
 

@@ -8,17 +8,7 @@ from numpy.typing import NDArray
 
 from .contacts import Contact, ContactPoint, ContactSchedule, Flight, gaps, numbered
 from .faults import NoFlight
-from .feet import FootTracks, floor_height, foot_points
 from .recording import FloatArray
-
-__all__ = [
-    "ContactPoint",
-    "FootTracks",
-    "detect_contacts",
-    "floor_height",
-    "foot_points",
-    "require_flight",
-]
 
 BoolArray = NDArray[np.bool_]
 

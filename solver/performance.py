@@ -6,14 +6,9 @@ import numpy as np
 
 from .anatomy import Part, Side
 from .character import Character, body_rotations
-from .contacts import ContactSchedule, snap
-from .detection import (
-    ContactPoint,
-    FootTracks,
-    detect_contacts,
-    floor_height,
-    foot_points,
-)
+from .contacts import ContactPoint, ContactSchedule, PointKind, snap
+from .detection import detect_contacts
+from .feet import FootTracks, floor_height, foot_points
 from .kinematics import BodyPoint
 from .recording import FloatArray, Recording
 
@@ -85,12 +80,9 @@ def perform(recording: Recording, character: Character) -> Performance:
 
 
 def find_contacts(performance: Performance) -> ContactSchedule:
-    """Heels and toes that touch, their instants snapped so that no span is needlessly short."""
-    times = performance.times
-    feet = [_foot(performance, side) for side in (Side.LEFT, Side.RIGHT)]
-    floor_m = floor_height(times, feet)
-    points = foot_points(times, feet, floor_m)
-    schedule = detect_contacts(times, points, floor_m=floor_m, com=performance.com)
+    """What of feet and hands touches, instants snapped so that no span is needlessly short."""
+    points, floor_m = contact_points(performance)
+    schedule = detect_contacts(performance.times, points, floor_m=floor_m, com=performance.com)
     return snap(schedule, snap_tolerance(performance))
 
 
@@ -100,11 +92,24 @@ def snap_tolerance(performance: Performance) -> float:
     return max(SNAP_FRAMES * frame, SNAP_LEAST)
 
 
-def contact_points(performance: Performance) -> dict[str, ContactPoint]:
-    """The points that may touch: heel and toe of each foot, by name."""
-    times = performance.times
+def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], float]:
+    """The points that may touch, by name (heel and toe of each foot, hands), and the floor, m."""
     feet = [_foot(performance, side) for side in (Side.LEFT, Side.RIGHT)]
-    return foot_points(times, feet, floor_height(times, feet))
+    floor_m = floor_height(performance.times, feet)
+    points = foot_points(performance.times, feet, floor_m)
+    for side in (Side.LEFT, Side.RIGHT):
+        hand = performance.character.body(Part.HAND, side)
+        if hand is not None:
+            points[f"{side.value.capitalize()} hand"] = _palm(performance, hand)
+    return points, floor_m
+
+
+def _palm(performance: Performance, hand: int) -> ContactPoint:
+    body, recording = performance.character.bodies[hand], performance.recording
+    place = 0.5 * body.tip
+    track = performance.centres[:, hand] + performance.rotations[:, hand] @ place
+    rest = recording.bones[recording.index(body.bone)].rotation
+    return ContactPoint(PointKind.HAND, body.bone, rest.T @ place, track)
 
 
 def _foot(performance: Performance, side: Side) -> FootTracks:

@@ -44,7 +44,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     schedule = _corrected(find_contacts(performance), problem.contacts, performance)
     for gap in schedule.unseen:
         raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
-    require_flight(schedule, contact_points(performance))
+    require_flight(schedule, contact_points(performance)[0])
     return Analysis(performance, schedule)
 
 

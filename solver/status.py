@@ -9,4 +9,3 @@ class Status(Enum):
     SOLVED = "solved"
     STALLED = "stalled"
     TOO_MANY_STEPS = "too many steps"
-    CANCELLED = "cancelled"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .names import ListId
+from ..operators.names import ListId
 
 WIDE = 400  # px; a sidebar in which the places find room too
 

@@ -6,7 +6,7 @@ import bpy
 
 from ..bridge.stances import active_contact, active_stance
 from ..operators.common import chosen_armature
-from .names import CATEGORY, ListId, OperatorId, PanelId
+from ..operators.names import CATEGORY, ListId, OperatorId, PanelId
 
 
 class _SidebarPanel:

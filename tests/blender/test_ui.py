@@ -20,12 +20,12 @@ from hangtime.bridge.import_clip import import_clip  # noqa: E402
 from hangtime.bridge.read import read_recording  # noqa: E402
 from hangtime.bridge.settings import problem_of  # noqa: E402
 from hangtime.bridge.takes import read_take  # noqa: E402
+from hangtime.operators.names import ATTRIBUTE, ListId, OperatorId, PanelId  # noqa: E402
 from hangtime.solver.problem import MotionProblem, Pin  # noqa: E402
 from hangtime.solver.session import analyse  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.blender.test_read_write import curves_of, snapshot  # noqa: E402
 from hangtime.tests.clips import mocap_path  # noqa: E402
-from hangtime.ui.names import ATTRIBUTE, ListId, OperatorId, PanelId  # noqa: E402
 
 JUMP = "cmu_bvh/forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325

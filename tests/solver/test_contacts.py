@@ -306,13 +306,13 @@ def test_many_hops() -> None:
 def test_no_flight_in_a_dance_whose_floor_drifts() -> None:
     p = performance(DANCE)
     with pytest.raises(NoFlight):
-        require_flight(find_contacts(p), contact_points(p))
+        require_flight(find_contacts(p), contact_points(p)[0])
 
 
 @pytest.mark.parametrize("clip", ["cmu_bvh/forward_jump_116cm.bvh", "cmu_bvh/high_jump.bvh"])
 def test_feet_stand_on_the_floor_and_stay_there(clip: str) -> None:
     p = performance(clip)
-    points, found = contact_points(p), find_contacts(p)
+    points, found = contact_points(p)[0], find_contacts(p)
     assert found.floor_m == 0.0
     for c in found.contacts:
         track = points[c.point].track[(p.times > c.start + 0.03) & (p.times < c.end - 0.03)]
@@ -323,7 +323,8 @@ def test_feet_stand_on_the_floor_and_stay_there(clip: str) -> None:
             )  # a heel that rises slowly
     first, last = found.phases[0], found.phases[-1]
     for phase in (first, last):
-        assert {c.point for c in found.of_phase(phase)} == set(points)
+        touching = {c.point for c in found.of_phase(phase)}
+        assert touching == {name for name in points if "hand" not in name}
     for side in ("Left", "Right"):
         heel, toe = (
             [c for c in found.contacts if c.point == f"{side} {e}"] for e in ("heel", "toe")
