@@ -10,8 +10,8 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bridge import stances, worker
-from ..operators import adapt, analyze, place_by_empty, put_back, show
-from . import lists, names, panels, properties
+from ..operators import adapt, analyze, names, place_by_empty, put_back, show
+from . import lists, panels, properties
 
 CLASSES = (
     *properties.CLASSES,
