@@ -5,6 +5,7 @@ contacts, and between stances the move is blended. Large edits are made in stage
 """
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,11 +56,12 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     """
     goal = pinned_places(problem, fit.performance, fit.schedule)
     motion, outcomes = fit.motion, list[Outcome]()
-    stages = _stage_count(fit.schedule, fit.places, goal)
+    whole = stance_moves(fit.schedule, fit.places, goal, _wanted_turns(problem))
+    stages = _stage_count(whole)
     for stage in range(1, stages + 1):
-        places = fit.places + (goal - fit.places) * stage / stages
-        if stages > 1:
-            places = _staged(fit.schedule, fit.places, goal, stage / stages)
+        places = goal
+        if stage < stages:
+            places = _staged(fit.schedule, fit.places, goal, whole, stage / stages)
         start = carry(motion, stance_moves(fit.schedule, motion.places, places))
         outcome = restore(
             motion.transcription, fit.metric, start, places, stage="adapt", progress=progress
@@ -72,10 +74,25 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     return Adaptation(tuple(outcomes), goal, fit)
 
 
+def _wanted_turns(problem: MotionProblem) -> dict[str, float]:
+    """The turn that the pins ask of each phase, rad."""
+    turns: dict[str, float] = {}
+    for pin in problem.pins:
+        turns[pin.phase] = turns.get(pin.phase, 0.0) + pin.turn
+    return turns
+
+
 def stance_moves(
-    schedule: ContactSchedule, before: FloatArray, after: FloatArray
+    schedule: ContactSchedule,
+    before: FloatArray,
+    after: FloatArray,
+    wanted: Mapping[str, float] | None = None,
 ) -> tuple[RigidMove, ...]:
-    """The rigid move nearest to how each ground phase's contacts go from before to after."""
+    """The rigid move nearest to how each ground phase's contacts go from before to after.
+
+    wanted: turns by phase, rad. Places alone cannot tell a half turn left from one right, nor a
+    whole turn from none.
+    """
     moves = []
     for phase in schedule.phases:
         if phase.kind is not PhaseKind.GROUND:
@@ -94,6 +111,8 @@ def stance_moves(
             (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(),
             (a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1]).sum(),
         )
+        asked = (wanted or {}).get(phase.name, 0.0)
+        turn += 2 * np.pi * np.round((asked - turn) / (2 * np.pi))
         moves.append(RigidMove(phase.start, phase.end, pivot, float(turn), to - pivot))
     return tuple(moves)
 
@@ -150,8 +169,7 @@ def _turn_forces(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) 
     x[:, t.layout.forces] = turned.reshape(len(x), -1)
 
 
-def _stage_count(schedule: ContactSchedule, before: FloatArray, after: FloatArray) -> int:
-    moves = stance_moves(schedule, before, after)
+def _stage_count(moves: tuple[RigidMove, ...]) -> int:
     relative = [b.shift - a.shift for a, b in itertools.pairwise(moves)]
     turns = [b.turn - a.turn for a, b in itertools.pairwise(moves)]
     furthest = max((float(np.linalg.norm(shift)) for shift in relative), default=0.0)
@@ -160,11 +178,15 @@ def _stage_count(schedule: ContactSchedule, before: FloatArray, after: FloatArra
 
 
 def _staged(
-    schedule: ContactSchedule, before: FloatArray, after: FloatArray, share: float
+    schedule: ContactSchedule,
+    before: FloatArray,
+    after: FloatArray,
+    moves: tuple[RigidMove, ...],
+    share: float,
 ) -> FloatArray:
     """Places part of the way: each stance turns and shifts by a share of its whole move."""
     places = before + share * (after - before)
-    for move in stance_moves(schedule, before, after):
+    for move in moves:
         part = RigidMove(move.start, move.end, move.pivot, share * move.turn, share * move.shift)
         back = RigidMove(move.start, move.end, move.pivot + move.shift, -move.turn, -move.shift)
         for i, contact in enumerate(schedule.contacts):

@@ -103,6 +103,21 @@ def test_a_quarter_turn_of_the_landing(degrees: float) -> None:
     assert turned == pytest.approx(degrees, abs=25.0)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("degrees", [180.0, -180.0])
+def test_a_half_turn_goes_the_way_that_was_asked(degrees: float) -> None:
+    """Places alone cannot tell left from right here."""
+    adaptation = adapted(Pin("turned", LANDING, turn=np.radians(degrees)))
+    assert adaptation.outcome.status is Status.SOLVED
+    root = adaptation.motion.transcription.character.joints[0].first
+    ends = np.array([0.0, adaptation.motion.duration])
+    was, now = (
+        float(np.diff(motion.angles(ends)[:, root])[0])
+        for motion in (fitted_hop().motion, adaptation.motion)
+    )
+    assert np.degrees(now - was) == pytest.approx(degrees, abs=40.0)
+
+
 def finite(adaptation: Adaptation) -> bool:
     times = np.linspace(0.0, adaptation.motion.duration, 50)
     centres = adaptation.motion.joint_centres(times)
