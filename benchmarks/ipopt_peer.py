@@ -22,7 +22,7 @@ from ..solver.transcription import Transcription
 
 FloatArray = NDArray[np.float64]
 Buffers = tuple[memoryview, ...]
-# The fastest of some thirty settings tried on this problem: a start near the bounds, full steps of
+# The fastest of about twenty settings tried on this problem: a start near the bounds, full steps of
 # the multipliers, no second-order corrections; the rows are in body weights and metres already.
 OPTIONS: dict[str, str | int | float] = {
     "print_level": 0,

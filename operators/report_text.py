@@ -6,6 +6,7 @@ from ..solver.report import Json
 from ..solver.status import Status
 from .wording import outcome
 
+LEFT_AT_MOST = {"flight": 0.001, "ground": 0.02}  # BW·m, rms; what the project promises
 GRIPPING = 1.2  # friction coefficient of sports shoes on a good floor, at most
 BEARABLE = 12.0  # times the body's weight; the hardest landings of gymnasts
 
@@ -80,6 +81,9 @@ def _quality(report: Json) -> Iterator[str]:
                 f"Physics     {kind}: unexplained force {left['force_rms_bw']:.1e} of the weight, "
                 f"moment {left['moment_rms_bw_m']:.1e} of weight × metre (rms)"
             )
+            if left["moment_rms_bw_m"] > LEFT_AT_MOST[kind]:
+                yield "            more than it should be between the solver's nodes: choose fewer"
+                yield "            frames, or correct contacts whose feet slide"
 
 
 def _contacts(report: Json) -> Iterator[str]:

@@ -205,3 +205,12 @@ def test_a_saved_trajectory_loads_without_pickles(tmp_path) -> None:
     with np.load(tmp_path / "trajectory.npz", allow_pickle=False) as saved:
         assert set(saved) == set(trajectory())
         assert len(saved["time"]) == len(instants(further().motion.duration, 50.0))
+
+
+def test_physics_that_fails_between_the_nodes_is_said() -> None:
+    """The equations may hold at the nodes, where the solver drove them to zero, alone."""
+    good = content() | {"stages": []}
+    assert "more than it should be" not in as_text(good)
+    flight = good["between_nodes"]["flight"] | {"moment_rms_bw_m": 0.002}
+    bad = good | {"between_nodes": good["between_nodes"] | {"flight": flight}}
+    assert "more than it should be" in as_text(bad)
