@@ -10,6 +10,7 @@ from .contacts import ContactSchedule, Phase, PhaseKind
 from .faults import ContradictoryPins, Fault
 from .performance import Performance
 from .recording import FloatArray
+from .requests import Requests
 
 SAME_BODY_SLACK = 0.003  # m
 SAME_FOOT_SLACK = 0.02  # m; toes bend
@@ -80,6 +81,7 @@ class MotionProblem:
     bones: dict[str, str] = field(default_factory=dict)  # part -> bone, the artist's choice
     contacts: tuple[ContactEdit, ...] = ()
     pins: tuple[Pin, ...] = ()
+    requests: Requests = field(default_factory=Requests)
 
 
 def pinned_places(
