@@ -17,28 +17,39 @@ turn = 90                       # degrees, counter-clockwise from above
 [[contact]]                     # corrects a contact that the analysis found
 name = "Left toe 2"
 start_frame = 183.5             # and / or end_frame; or remove = true
+
+What may be asked for beside is in recipe_requests.py.
 """
 
 import json
-import math
 import tomllib
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path as FilePath
 from typing import Any
 
 from ..solver.anatomy import SIDED
 from ..solver.body_tables import MassTable
-from ..solver.faults import BadRecipe, ContradictoryPins, Fault, MissingPart, UnknownContactName
-from ..solver.problem import Axes3, ContactEdit, MotionProblem, Pin, UnknownContact, UnknownPhase
-from .recipe_table import Source, Table, listed
+from ..solver.faults import (
+    BadDimensions,
+    BadRecipe,
+    DependentRows,
+    Fault,
+    MissingPart,
+    UnknownContactName,
+    UnknownReductionBone,
+    WrongWeights,
+)
+from ..solver.problem import Axes3, ContactEdit, MotionProblem, Pin
+from .recipe_items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
+from .recipe_requests import NAMED, REQUEST_KEYS, read_requests, request_texts
+from .recipe_table import ABOVE_ZERO, Source, Table
+from .recipe_write import entries
 from .source_lines import Path, json_lines, toml_lines
 
-TOP_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact")
-WHICH_KEYS = ("name", "phase", "points", "bones")
-TRAVEL_KEYS = ("forward", "left", "up")
-PIN_KEYS = (*WHICH_KEYS, *TRAVEL_KEYS, "offset", "place", "turn")
-CONTACT_KEYS = ("name", "start_frame", "end_frame", "remove")
+OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact")
+TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
+REDUCTION = ("solution", "reduction")
+CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
 PARTS = ("pelvis", "head", *(f"{side} {p.value}" for p in SIDED for side in ("left", "right")))
 
 _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 brackets
@@ -72,13 +83,15 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
     table = Table(Source(path, lines), (), values, TOP_KEYS)
     problem = MotionProblem(
         frames=_frames(table),
-        mass=table.positive("mass") or MotionProblem.mass,
-        height=table.positive("height"),
-        mass_table=_mass_table(table),
+        mass=_mass(table),
+        height=table.number("height", ABOVE_ZERO),
+        mass_table=table.choice("mass_table", MassTable) or MotionProblem.mass_table,
         bones=_bones(table.table("bones", PARTS, "part of the body")),
-        contacts=tuple(map(_contact, table.tables("contact", CONTACT_KEYS))),
-        pins=_pins(table.tables("pin", PIN_KEYS)),
+        contacts=CONTACT.read_all(table),
+        pins=PIN.read_all(table),
+        requests=read_requests(table),
     )
+    _refuse_same_names(table)
     return Recipe(problem, table.word("clip"))
 
 
@@ -94,33 +107,43 @@ def locate(text: str, fault: Fault) -> int | None:
 def _places(values: dict[str, Any], fault: Fault) -> list[Path]:
     """Where in a recipe a fault may come from, best first."""
     match fault:
-        case UnknownPhase():
-            return [("pin", i, "phase") for i in _called(values, "pin", fault.pin)]
-        case UnknownContact():
-            return [
-                ("pin", i, key, values["pin"][i][key].index(fault.what))
-                for i in _called(values, "pin", fault.pin)
-                for key in ("points", "bones")
-                if fault.what in values["pin"][i].get(key, ())
-            ]
         case UnknownContactName():
-            return [("contact", i, "name") for i in _called(values, "contact", fault.name)]
-        case ContradictoryPins():
-            pins = _called(values, "pin", fault.second) + _called(values, "pin", fault.first)
-            return [("pin", i) for i in pins]
+            contacts = enumerate(values.get("contact", ()))
+            return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
         case MissingPart():
             return [("bones", fault.part)]
-    return []
+        case UnknownReductionBone() | WrongWeights():
+            return [(*REDUCTION, "matrix", fault.row - 1)]
+        case DependentRows():
+            return [(*REDUCTION, "matrix")]
+        case BadDimensions():
+            return [(*REDUCTION, "dimensions"), REDUCTION]
+    named = [getattr(fault, field) for field in CULPRITS if hasattr(fault, field)]
+    places = [place for name in named for place, called in _names(values) if called == name]
+    return [inner for place in places for inner in _inside(values, place, fault)]
 
 
-def _called(values: dict[str, Any], kind: str, name: str) -> list[int]:
-    """Indices of the pins or contacts that are called so."""
-    entries = enumerate(values.get(kind, []))
-    return [i for i, entry in entries if entry.get("name", _default_name(i)) == name]
+def _names(values: dict[str, Any]) -> list[tuple[Path, str]]:
+    """Where each pin and each request is, and what it is called."""
+    return [
+        ((kind.header, i), entry.get("name", kind.default_name(i)))
+        for kind in (PIN, *NAMED)
+        for i, entry in enumerate(values.get(kind.header, ()))
+    ]
 
 
-def _default_name(i: int) -> str:
-    return f"Pin {i + 1}"
+def _inside(values: dict[str, Any], place: Path, fault: Fault) -> list[Path]:
+    """The keys and elements of a record that a fault quotes, then the record itself."""
+    header, i = place
+    texts = [getattr(fault, field.name) for field in fields(fault) if field.name not in CULPRITS]
+    quoted = [text for text in texts if isinstance(text, str)]
+    found: list[Path] = []
+    for key, held in values[header][i].items():
+        if isinstance(held, list):
+            found += [(*place, key, j) for j, element in enumerate(held) if element in quoted]
+        elif key != "name" and held in quoted:
+            found.append((*place, key))
+    return [*found, place]
 
 
 # ---------------------------------------------------------------- reading
@@ -167,53 +190,77 @@ def _frames(table: Table) -> tuple[float, float] | None:
     return first, last
 
 
-def _mass_table(table: Table) -> MassTable:
-    name = table.word("mass_table") or MotionProblem.mass_table.value
-    known = [t.value for t in MassTable]
-    if name not in known:
-        table.refuse("mass_table", f'unknown mass table "{name}"; known: {listed(known)}')
-    return MassTable(name)
+def _mass(table: Table) -> float:
+    if isinstance(table.values.get("mass"), list):
+        table.refuse("mass", '"mass" is of the body, in kg; what is carried is a [[load]]')
+    return table.number("mass", ABOVE_ZERO) or MotionProblem.mass
 
 
 def _bones(table: Table) -> dict[str, str]:
     return {part: table.needed_word(part) for part in table.values}
 
 
-def _pins(tables: Iterable[Table]) -> tuple[Pin, ...]:
-    pins: list[Pin] = []
-    for i, table in enumerate(tables):
-        pin = _pin(table, _default_name(i))
-        if any(pin.name == other.name for other in pins):
-            table.refuse("name", f'a second pin called "{pin.name}"; give it its own name')
-        pins.append(pin)
-    return tuple(pins)
+def _refuse_same_names(top: Table) -> None:
+    """Refuses a name that a pin or request before it in the text has already."""
+    lines = top.source.lines
+    taken: set[str] = set()
+    for place, name in sorted(_names(top.values), key=lambda named: lines.get(named[0], 0)):
+        if name in taken:
+            problem = f'another pin or request is called "{name}", too; give each its own name'
+            top.source.refuse((*place, "name"), problem)
+        taken.add(name)
 
 
-def _pin(table: Table, default_name: str) -> Pin:
+def _read_offset(table: Table) -> Values:
     table.not_both("offset", TRAVEL_KEYS)
-    table.not_both("points", ("bones",))
-    forward, left, up = (table.number(key) or 0.0 for key in TRAVEL_KEYS)
     offset = table.numbers("offset", "[x, y, z]")
-    place = table.numbers("place", "[x, y, z]")
-    return Pin(
-        name=table.word("name") or default_name,
-        phase=table.needed_word("phase"),
-        touching=table.words("points") + table.words("bones"),
-        offset=(forward, left, up) if offset is None else (offset[0], offset[1], offset[2]),
-        axes=Axes3.TRAVEL if offset is None else Axes3.WORLD,
-        place=None if place is None else (place[0], place[1], place[2]),
-        turn=math.radians(table.number("turn") or 0.0),
-    )
+    if offset is not None:
+        return {"offset": offset, "axes": Axes3.WORLD}
+    return {"offset": tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)}
 
 
-def _contact(table: Table) -> ContactEdit:
+def _write_offset(pin: Pin) -> Values:
+    if pin.axes is Axes3.WORLD:
+        return {"offset": pin.offset}
+    return {key: amount or None for key, amount in zip(TRAVEL_KEYS, pin.offset, strict=True)}
+
+
+def _read_correction(table: Table) -> Values:
     table.not_both("remove", ("start_frame", "end_frame"))
-    name, remove = table.needed_word("name"), table.flag("remove")
     start, end = table.number("start_frame"), table.number("end_frame")
     if start is not None and end is not None and start >= end:
         table.refuse("end_frame", f"the end, {end:g}, must come after the start, {start:g}")
-    return ContactEdit(name, start, end, remove)
+    return {"start_frame": start, "end_frame": end, "remove": table.flag("remove")}
 
+
+def _write_correction(edit: ContactEdit) -> Values:
+    if edit.remove:
+        return {"remove": True}
+    return {"start_frame": edit.start_frame, "end_frame": edit.end_frame}
+
+
+PIN = Kind(
+    "pin",
+    Pin,
+    (
+        word("phase"),
+        TOUCHING,
+        Item((*TRAVEL_KEYS, "offset"), _read_offset, _write_offset),
+        vector("place"),
+        angle("turn"),
+    ),
+    needs=(("phase",),),
+)
+CONTACT = Kind(
+    "contact",
+    ContactEdit,
+    (
+        word("name"),
+        Item(("start_frame", "end_frame", "remove"), _read_correction, _write_correction),
+    ),
+    needs=(("name",),),
+    named=False,
+)
 
 # ---------------------------------------------------------------- writing
 
@@ -227,65 +274,8 @@ def write_recipe(problem: MotionProblem, *, clip: str | None = None) -> str:
         "height": problem.height,
         "mass_table": problem.mass_table.value,
     }
-    parts = [_entries(top)]
+    parts = [entries(top)]
     if problem.bones:
-        parts.append("[bones]\n" + _entries(problem.bones))
-    parts += ["[[pin]]\n" + _entries(_pin_values(pin)) for pin in problem.pins]
-    parts += ["[[contact]]\n" + _entries(_contact_values(edit)) for edit in problem.contacts]
-    return "\n".join(parts)
-
-
-def _pin_values(pin: Pin) -> dict[str, object]:
-    values: dict[str, object] = {"name": pin.name, "phase": pin.phase}
-    values["points"] = pin.touching or None
-    if pin.axes is Axes3.WORLD:
-        values["offset"] = pin.offset
-    else:
-        pairs = zip(TRAVEL_KEYS, pin.offset, strict=True)
-        values |= {key: amount for key, amount in pairs if amount}
-    return values | {"place": pin.place, "turn": _degrees(pin.turn) if pin.turn else None}
-
-
-def _contact_values(edit: ContactEdit) -> dict[str, object]:
-    if edit.remove:
-        return {"name": edit.name, "remove": True}
-    return {"name": edit.name, "start_frame": edit.start_frame, "end_frame": edit.end_frame}
-
-
-def _entries(values: Any) -> str:
-    """Lines `key = value`; what is None is left out."""
-    pairs = [(k, v) for k, v in values.items() if v is not None]
-    return "".join(f"{_key(key)} = {_value(value)}\n" for key, value in pairs)
-
-
-def _key(key: str) -> str:
-    return key if key.replace("_", "").isalnum() and key.isascii() else _text(key)
-
-
-def _value(value: object) -> str:
-    match value:
-        case bool():
-            return str(value).lower()
-        case str():
-            return _text(value)
-        case int() | float():
-            return _number(float(value))
-        case tuple():
-            return f"[{', '.join(map(_value, value))}]"
-    raise TypeError(value)
-
-
-def _text(text: str) -> str:
-    # JSON's escapes are TOML's, but for the one control character that JSON lets stand.
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _number(number: float) -> str:
-    return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
-
-
-def _degrees(angle: float) -> float:
-    """The roundest number of degrees that is read as this angle again."""
-    degrees = math.degrees(angle)
-    rounded = (round(degrees, digits) for digits in range(13))
-    return next((r for r in rounded if math.radians(r) == angle), degrees)
+        parts.append("[bones]\n" + entries(problem.bones))
+    parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)
+    return "\n".join(parts + request_texts(problem.requests))

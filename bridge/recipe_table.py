@@ -2,12 +2,28 @@
 
 import difflib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from enum import Enum
+from typing import Any, NoReturn, TypeVar
 
 from ..solver.faults import BadRecipe
 from .source_lines import Path
+
+Word = TypeVar("Word", bound=Enum)
+
+
+@dataclass(frozen=True)
+class Span:
+    """Which numbers are allowed, and how that is said: "must be ..."."""
+
+    words: str
+    holds: Callable[[float], bool]
+
+
+ANY_NUMBER = Span("a number", lambda _: True)
+ABOVE_ZERO = Span("above zero", lambda value: value > 0.0)
+NOT_NEGATIVE = Span("zero or more", lambda value: value >= 0.0)
 
 
 @dataclass(frozen=True)
@@ -18,10 +34,12 @@ class Source:
     lines: Mapping[Path, int]
 
     def refuse(self, place: Path, problem: str) -> NoReturn:
-        """Raises BadRecipe at the innermost part of the place that has a line."""
+        """Raises BadRecipe at the innermost part of the place that has a line, or what is in it."""
         for length in range(len(place), 0, -1):
-            if place[:length] in self.lines:
-                raise BadRecipe(self.path, self.lines[place[:length]], problem)
+            outer = place[:length]
+            within = [line for at, line in self.lines.items() if at[:length] == outer]
+            if within:
+                raise BadRecipe(self.path, self.lines.get(outer, min(within)), problem)
         raise BadRecipe(self.path, None, problem)
 
 
@@ -56,21 +74,23 @@ class Table:
                 later = max(key, other, key=list(self.values).index)
                 self.refuse(later, f'"{key}" and "{other}" exclude each other; keep one')
 
-    def number(self, key: str) -> float | None:
-        """A finite number, None where absent."""
+    def needs(self, keys: Sequence[str]) -> None:
+        """Refuses the table where it has none of the keys."""
+        if not any(key in self.values for key in keys):
+            what = next((p for p in reversed(self.place) if isinstance(p, str)), "recipe")
+            wanted = " or ".join(f'"{key}"' for key in keys)
+            self.source.refuse(self.place, f"this {what} has no {wanted}; add it")
+
+    def number(self, key: str, span: Span = ANY_NUMBER) -> float | None:
+        """A finite number that is allowed, None where absent."""
         if key not in self.values:
             return None
         value = self.values[key]
         if not _is_number(value):
             self.refuse(key, f'"{key}" must be a number, not {shown(value)}')
+        if not span.holds(float(value)):
+            self.refuse(key, f'"{key}" must be {span.words}, not {value:g}')
         return float(value)
-
-    def positive(self, key: str) -> float | None:
-        """A number above zero, None where absent."""
-        value = self.number(key)
-        if value is not None and value <= 0.0:
-            self.refuse(key, f'"{key}" must be above zero, not {value:g}')
-        return value
 
     def numbers(self, key: str, form: str) -> tuple[float, ...] | None:
         """As many finite numbers as `form`, such as "[x, y, z]", has; None where absent."""
@@ -80,6 +100,13 @@ class Table:
         right = isinstance(value, list) and len(value) == form.count(",") + 1
         if not right or not all(map(_is_number, value)):
             self.refuse(key, f'"{key}" must be {form} in finite numbers, not {shown(value)}')
+        return tuple(map(float, value))
+
+    def all_numbers(self, key: str) -> tuple[float, ...]:
+        """Any number of finite numbers, but not none."""
+        value = self.values[key]
+        if not isinstance(value, list) or not value or not all(map(_is_number, value)):
+            self.refuse(key, f'"{key}" must be finite numbers in brackets, not {shown(value)}')
         return tuple(map(float, value))
 
     def word(self, key: str) -> str | None:
@@ -93,11 +120,17 @@ class Table:
 
     def needed_word(self, key: str) -> str:
         """A text that must be there."""
+        self.needs((key,))
+        return self.word(key) or ""
+
+    def choice(self, key: str, of: type[Word]) -> Word | None:
+        """The member of an enum whose value is written, None where absent."""
         word = self.word(key)
-        if word is None:
-            what = f"a {self.place[0]}" if self.place else "the recipe"
-            self.source.refuse(self.place, f'{what} without "{key}"; add it')
-        return word
+        members = {str(member.value): member for member in of}
+        if word is not None and word not in members:
+            what = key.replace("_", " ")
+            self.refuse(key, f'unknown {what} "{word}"; known: {listed(list(members))}')
+        return None if word is None else members[word]
 
     def words(self, key: str) -> tuple[str, ...]:
         """Texts, none where absent."""
@@ -126,10 +159,16 @@ class Table:
 
     def tables(self, key: str, known: Sequence[str]) -> list["Table"]:
         """The tables of an array, none where absent."""
-        value = self.values.get(key, [])
-        if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
-            self.refuse(key, f"write every {key} as a table of its own, under [[{key}]]")
-        return [Table(self.source, (*self.place, key, i), v, known) for i, v in enumerate(value)]
+        header = ".".join(str(p) for p in (*self.place, key) if isinstance(p, str))
+        form = f"write every {key} as a table of its own, under [[{header}]]"
+        return self.inner((key,), self.values.get(key, []), known, form)
+
+    def inner(self, place: Path, values: object, known: Sequence[str], form: str) -> list["Table"]:
+        """The tables of an array at a place inside; form: how it is to be written."""
+        place = (*self.place, *place)
+        if not isinstance(values, list) or not all(isinstance(v, dict) for v in values):
+            self.source.refuse(place, form)
+        return [Table(self.source, (*place, i), v, known) for i, v in enumerate(values)]
 
 
 def _is_number(value: object) -> bool:

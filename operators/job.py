@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..solver.adapt import Adaptation, adapt
+from ..solver.adapt import Adaptation, adapt, unadapted
 from ..solver.faults import NoArmature, NoFit, NoSolution, OutputNotWritable, UnreadableClip
 from ..solver.fit import fit
 from ..solver.problem import MotionProblem, pinned_places
@@ -71,8 +71,7 @@ def run(job: Job, stages: Stages) -> list[Path]:
             fitted = fit(performance, loaded.analysis.schedule, progress=stages.step)
             stages.ended(fitted.outcome.violation)
         if not fitted.solved:
-            unmoved = Adaptation(fitted.outcomes[-1:], fitted.places, fitted)
-            raise _reported(NoFit, unmoved, job, loaded, outbox, stages)
+            raise _reported(NoFit, unadapted(fitted), job, loaded, outbox, stages)
         with stages.stage("Adapting"):
             adaptation = adapt(fitted, job.problem, progress=stages.step)
             stages.ended(adaptation.outcome.violation)
@@ -232,7 +231,7 @@ def _write_actions(loaded: Loaded, adaptation: Adaptation) -> "bpy.types.Action"
 
     performance = adaptation.fit.performance
     recorded = loaded.armature.animation_data.action
-    track = adaptation.motion.track(performance.recording)
+    track = adaptation.track
     adapted = write_action(loaded.armature, track, name=f"{recorded.name} adapted")
     x, y = (performance.com[-1] - performance.com[0])[:2]
     far = float(np.hypot(x, y))

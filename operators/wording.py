@@ -161,6 +161,54 @@ def _(fault: faults.UnknownContactName) -> str:
 
 
 @sentence.register
+def _(fault: faults.UnknownBone) -> str:
+    return (
+        f"{_quoted(fault.request)} names the bone {_quoted(fault.bone)}, which the armature does "
+        "not have; choose one of its bones."
+    )
+
+
+@sentence.register
+def _(fault: faults.NotAboveZero) -> str:
+    return (
+        f"{_quoted(fault.request)} asks for a mass or a factor of {fault.amount:g}; "
+        "give it one above zero."
+    )
+
+
+@sentence.register
+def _(fault: faults.UnknownPhaseIn) -> str:
+    return (
+        f"{_quoted(fault.request)} is about the phase {_quoted(fault.phase)}, which the clip does "
+        f"not have; it has {_names(fault.known)}."
+    )
+
+
+@sentence.register
+def _(fault: faults.StillBone) -> str:
+    return (
+        f"{_quoted(fault.request)} names the bone {_quoted(fault.bone)}, which is none of those "
+        f"that physics moves; choose one of {_names(fault.known)}."
+    )
+
+
+@sentence.register
+def _(fault: faults.BadTiming) -> str:
+    return (
+        f"{_quoted(fault.request)} would last {fault.seconds:.3f} s, or lies outside the clip; "
+        "change its frames, phase or duration."
+    )
+
+
+@sentence.register
+def _(fault: faults.RootHasNoJoint) -> str:
+    return (
+        f"{_quoted(fault.request)} limits the joint of {_quoted(fault.bone)}, but that is the root, "
+        "which has no joint; choose a bone that hangs on another."
+    )
+
+
+@sentence.register
 def _(fault: faults.WorkerDied) -> str:
     return (
         f"The solver stopped without an answer ({fault.detail}); "
@@ -174,6 +222,38 @@ def _(fault: faults.ChangedMeanwhile) -> str:
     return (
         f"{what}, because the armature {_quoted(fault.armature)} or its keys changed since the "
         "analysis; press Analyze again."
+    )
+
+
+@sentence.register
+def _(fault: faults.BadDimensions) -> str:
+    return (
+        f"The figure cannot be reduced to {fault.given} dimensions; "
+        f"choose from 1 to {fault.most}, or leave them out to have them chosen."
+    )
+
+
+@sentence.register
+def _(fault: faults.UnknownReductionBone) -> str:
+    return (
+        f"Row {fault.row} of the reduction's matrix names {_quoted(fault.bone)}, whose joint "
+        f"cannot be tied to others; those that can are {_names(fault.known)}."
+    )
+
+
+@sentence.register
+def _(fault: faults.WrongWeights) -> str:
+    return (
+        f"Row {fault.row} of the reduction's matrix gives {_quoted(fault.bone)} a list of "
+        f"{fault.given} weights, but its joint has {fault.needed} angles; give one weight each."
+    )
+
+
+@sentence.register
+def _(fault: faults.DependentRows) -> str:
+    return (
+        f"Of the {fault.rows} rows of the reduction's matrix only {fault.rank} say something that "
+        "the others do not; leave out the empty and the repeated ones."
     )
 
 

@@ -1,197 +1,151 @@
-"""The implicit solution (thesis 4.4): small steps from the fit to where the artist's pins hold.
+"""The implicit solution (thesis 4.4): small steps from the fit to where every request is met."""
 
-The steps start from the fit carried along with the pins: each stance moves rigidly with its
-contacts, and between stances the move is blended. Large edits are made in stages.
-"""
+from dataclasses import dataclass, replace
 
-import itertools
-from collections.abc import Mapping
-from dataclasses import dataclass
-
-import numpy as np
-
-from .contacts import ContactSchedule, PhaseKind
-from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, Solved, dense_instants, greville, refine
+from .arrange import Arrangement, arrange
+from .carry import carry, stage_count, staged, stance_moves
+from .condition import exchange
+from .explicit import explicit
+from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, Solved, motion_metric, refine
 from .motion import Motion
-from .problem import MotionProblem, pinned_places
-from .projection import Outcome, Progress, restore
-from .recording import FloatArray
-from .rotations import axis_rotation
-from .status import Status
-from .transcription import Transcription
+from .problem import MotionProblem
+from .projection import Outcome, Progress, restore, worst_violation
+from .recording import PoseTrack
+from .requests import Method, Objective
 
-STAGE_SHIFT = 0.5  # m
-STAGE_TURN = np.radians(45.0)
+MOST_RETRIES = 3  # with twice as many stages each
+MOST_STEPS = 60  # after which there is no further try
+MOST_EXCHANGES = 4
 
 
 @dataclass(frozen=True)
 class Adaptation(Solved):
-    """An adapted motion and the fit it came from."""
+    """An adapted motion, the fit it came from, and how the problem was set up.
+
+    stuck: where the steps failed, None where they did not; the motion is then the last on the way
+    that obeys physics, `reached` the share of the way that it went.
+    """
 
     fit: Fit
+    plan: Arrangement
+    stuck: Outcome | None = None
+    reached: float = 1.0
+
+    @property
+    def track(self) -> PoseTrack:
+        """The bones' poses, frame by frame."""
+        return self.motion.track(self.plan.recording)
 
 
-@dataclass(frozen=True)
-class RigidMove:
-    """A stance's move between two instants: turn (rad, about the vertical through pivot), shift."""
-
-    start: float
-    end: float
-    pivot: FloatArray
-    turn: float
-    shift: FloatArray
-
-    def of(self, points: FloatArray) -> FloatArray:
-        """(T, 3) points moved."""
-        return np.asarray(
-            (points - self.pivot) @ axis_rotation(2, self.turn).T + self.pivot + self.shift
-        )
+def unadapted(fit: Fit) -> Adaptation:
+    """A fit as it ended, for reports on one that failed."""
+    plan = arrange(fit, MotionProblem())
+    return Adaptation(fit.outcomes[-1:], fit.places, fit, plan, fit.outcome, 0.0)
 
 
 def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None) -> Adaptation:
-    """Adapts a fitted performance to the problem's pins.
+    """Adapts a fitted performance to what the problem asks for.
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins. A solve that fails is returned with
-    the best motion found and a status that says so.
+    Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults. A solve
+    that fails is returned with the best motion found and a status that says so.
     """
-    goal = pinned_places(problem, fit.performance, fit.schedule)
-    motion, outcomes = fit.motion, list[Outcome]()
-    whole = stance_moves(fit.schedule, fit.places, goal, _wanted_turns(problem))
-    stages = _stage_count(whole)
+    plan = arrange(fit, problem)
+    outcomes: list[Outcome] = []
+    for harder in range(MOST_RETRIES):
+        way = _in_stages(plan, 2**harder, progress)
+        outcomes += way.outcomes
+        if way.arrived or sum(len(o.steps) for o in outcomes) > MOST_STEPS:
+            break
+    if not way.arrived:
+        return _failed(way, outcomes, fit, plan)
+    outcomes += finish(outcomes[-1], plan, progress)
+    weights = dict[Objective, float]()
+    if problem.requests.solution.method is Method.EXPLICIT:
+        weights = dict(problem.requests.solution.objectives)
+    if outcomes[-1].solved and (weights or problem.requests.preferred):
+        better = explicit(outcomes[-1], plan, weights, progress)
+        outcomes += better + (finish(better[-1], plan, progress) if better else [])
+    stuck = None if outcomes[-1].solved else outcomes[-1]
+    return Adaptation(tuple(outcomes), plan.goal, fit, plan, stuck)
+
+
+@dataclass(frozen=True)
+class _Way:
+    """How far the stages led: their outcomes, and how many there were to be."""
+
+    outcomes: tuple[Outcome, ...]
+    stages: int
+
+    @property
+    def arrived(self) -> bool:
+        return len(self.outcomes) == self.stages and self.outcomes[-1].solved
+
+
+def _failed(way: _Way, outcomes: list[Outcome], fit: Fit, plan: Arrangement) -> Adaptation:
+    """The last motion on the way that obeys physics, marked as short of the goal."""
+    stuck, solved = way.outcomes[-1], [o for o in way.outcomes if o.solved]
+    best = solved[-1] if solved else stuck
+    t = plan.start.transcription
+    left = worst_violation(t.rows(best.x, plan.goal))
+    outcomes.append(Outcome(best.x, t, stuck.status, (), left))
+    return Adaptation(tuple(outcomes), plan.goal, fit, plan, stuck, len(solved) / way.stages)
+
+
+def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way:
+    """Solves in as many stages as the pins' moves ask for, times `times`; bounds ease in."""
+    motion, schedule = plan.start, plan.schedule
+    before = motion.places
+    whole = stance_moves(schedule, before, plan.goal, plan.turns)
+    stages = times * stage_count(whole)
+    outcomes: list[Outcome] = []
     for stage in range(1, stages + 1):
-        places = goal
+        places = plan.goal
+        transcription = plan.start.transcription
         if stage < stages:
-            places = _staged(fit.schedule, fit.places, goal, whole, stage / stages)
-        start = carry(motion, stance_moves(fit.schedule, motion.places, places))
+            places = staged(schedule, before, plan.goal, whole, stage / stages)
+        start = carry(motion, stance_moves(schedule, motion.places, places))
+        if stage < stages:
+            transcription = transcription.eased(start, 1.0 / (stages - stage + 1))
         outcome = restore(
-            motion.transcription, fit.metric, start, places, stage="adapt", progress=progress
+            transcription,
+            plan.metric,
+            start,
+            places,
+            stage="adapt",
+            basis=plan.basis,
+            progress=progress,
         )
         outcomes.append(outcome)
         motion = Motion(outcome.transcription, outcome.x, places)
-        if outcome.status is not Status.SOLVED:
-            return Adaptation(tuple(outcomes), places, fit)
-    outcomes += refine(outcomes[-1], goal, ADAPT_PRICES, ADAPT_PROMISE, progress=progress)
-    return Adaptation(tuple(outcomes), goal, fit)
+        if not outcome.solved:
+            break
+    return _Way(tuple(outcomes), stages)
 
 
-def _wanted_turns(problem: MotionProblem) -> dict[str, float]:
-    """The turn that the pins ask of each phase, rad."""
-    turns: dict[str, float] = {}
-    for pin in problem.pins:
-        turns[pin.phase] = turns.get(pin.phase, 0.0) + pin.turn
-    return turns
-
-
-def stance_moves(
-    schedule: ContactSchedule,
-    before: FloatArray,
-    after: FloatArray,
-    wanted: Mapping[str, float] | None = None,
-) -> tuple[RigidMove, ...]:
-    """The rigid move nearest to how each ground phase's contacts go from before to after.
-
-    wanted: turns by phase, rad. Places alone cannot tell a half turn left from one right, nor a
-    whole turn from none.
-    """
-    moves = []
-    for phase in schedule.phases:
-        if phase.kind is not PhaseKind.GROUND:
-            continue
-        mine = [
-            i
-            for i, c in enumerate(schedule.contacts)
-            if c.start < phase.end and c.end > phase.start
-        ]
-        if not mine:
-            continue
-        old, new = before[mine], after[mine]
-        pivot, to = old.mean(axis=0), new.mean(axis=0)
-        a, b = old - pivot, new - to
-        turn = np.arctan2(
-            (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(),
-            (a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1]).sum(),
+def finish(outcome: Outcome, plan: Arrangement, progress: Progress | None) -> list[Outcome]:
+    """Refines knots and instants until equations and bounds hold between them as promised."""
+    outcomes: list[Outcome] = []
+    for _ in range(MOST_EXCHANGES):
+        outcomes += refine(
+            outcome, plan.goal, ADAPT_PRICES, ADAPT_PROMISE, basis=plan.basis, progress=progress
         )
-        asked = (wanted or {}).get(phase.name, 0.0)
-        turn += 2 * np.pi * np.round((asked - turn) / (2 * np.pi))
-        moves.append(RigidMove(phase.start, phase.end, pivot, float(turn), to - pivot))
-    return tuple(moves)
-
-
-def carry(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
-    """Unknowns of a motion whose stances make these moves, blended linearly in between."""
-    t, x = motion.transcription, motion.x.copy()
-    if not moves:
-        return x
-    layout, basis = t.layout, t.basis
-    at = greville(basis)
-    com, _ = _blend(moves, at, x[:, layout.com])
-    x[:, layout.com] = com
-    if any(abs(move.turn) > 1e-6 for move in moves):
-        _turn_root(t, x, moves)
-        _turn_forces(t, x, moves)
-    return x
-
-
-def _blend(
-    moves: tuple[RigidMove, ...], times: FloatArray, points: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """(T, 3) points moved and (T,) turns, at each instant."""
-    middles = [edge for move in moves for edge in (move.start, move.end)]
-    position = np.interp(times, middles, np.repeat(np.arange(len(moves)), 2))
-    low = np.floor(position).astype(int)
-    high = np.minimum(low + 1, len(moves) - 1)
-    share = position - low
-    moved = np.stack([move.of(points) for move in moves])
-    turns = np.array([move.turn for move in moves])
-    each = np.arange(len(times))
-    place = (1 - share)[:, None] * moved[low, each] + share[:, None] * moved[high, each]
-    return place, (1 - share) * turns[low] + share * turns[high]
-
-
-def _turn_root(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) -> None:
-    """Turns the pelvis about the vertical, in place, keeping its angles continuous."""
-    joint = t.character.joints[0]
-    root = slice(t.layout.angles.start + joint.first, t.layout.angles.start + joint.dofs.stop)
-    times = dense_instants(t.basis)
-    was = t.basis.combine(x[:, root], times)
-    turns = _blend(moves, times, np.zeros((len(times), 3)))[1]
-    turned = axis_rotation(2, turns) @ joint.axes.rotation(was)
-    angles = joint.axes.angles(turned)
-    whole = 2 * np.pi * np.round((was[0] - angles[0]) / (2 * np.pi))
-    matrix = t.basis.matrix(times)
-    x[:, root] = np.linalg.lstsq(matrix, angles + whole, rcond=None)[0]
-
-
-def _turn_forces(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) -> None:
-    turns = _blend(moves, greville(t.basis), np.zeros((len(x), 3)))[1]
-    forces = x[:, t.layout.forces].reshape(len(x), t.layout.n_points, 3)
-    turned = np.einsum("kij,kpj->kpi", axis_rotation(2, turns), forces)
-    x[:, t.layout.forces] = turned.reshape(len(x), -1)
-
-
-def _stage_count(moves: tuple[RigidMove, ...]) -> int:
-    relative = [b.shift - a.shift for a, b in itertools.pairwise(moves)]
-    turns = [b.turn - a.turn for a, b in itertools.pairwise(moves)]
-    furthest = max((float(np.linalg.norm(shift)) for shift in relative), default=0.0)
-    largest = max((abs(turn) for turn in turns), default=0.0)
-    return max(1, int(np.ceil(furthest / STAGE_SHIFT)), int(np.ceil(largest / STAGE_TURN)))
-
-
-def _staged(
-    schedule: ContactSchedule,
-    before: FloatArray,
-    after: FloatArray,
-    moves: tuple[RigidMove, ...],
-    share: float,
-) -> FloatArray:
-    """Places part of the way: each stance turns and shifts by a share of its whole move."""
-    places = before + share * (after - before)
-    for move in moves:
-        part = RigidMove(move.start, move.end, move.pivot, share * move.turn, share * move.shift)
-        back = RigidMove(move.start, move.end, move.pivot + move.shift, -move.turn, -move.shift)
-        for i, contact in enumerate(schedule.contacts):
-            if contact.start < move.end and contact.end > move.start:
-                # What the move leaves over (feet that part) comes in by the same share.
-                rest = back.of(after[i : i + 1]) - before[i]
-                places[i] = part.of(before[i : i + 1] + share * rest)[0]
-    return places
+        outcome = outcomes[-1] if outcomes else outcome
+        t = outcome.transcription
+        added = tuple(exchange(c, t.character, t.basis, t.layout, outcome.x) for c in t.conditions)
+        if all(new is old for new, old in zip(added, t.conditions, strict=True)):
+            break
+        motion = Motion(replace(t, conditions=added), outcome.x, plan.goal)
+        same = t.basis is plan.start.transcription.basis
+        outcome = restore(
+            motion.transcription,
+            plan.metric if same else motion_metric(motion, ADAPT_PRICES),
+            motion.x,
+            plan.goal,
+            stage="bounds",
+            basis=plan.basis,
+            progress=progress,
+        )
+        outcomes.append(outcome)
+        if not outcome.solved:
+            break
+    return outcomes

@@ -78,11 +78,13 @@ class Character:
     """Bodies and joints, one joint a body, parents first; the root is body 0.
 
     Configuration: centre of mass (3,) m and joint angles (n_angles,) rad, the root's three first.
+    gravity: m/s², of the world that the figure is in.
     """
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     height: float
+    gravity: float = 9.81
 
     @property
     def mass(self) -> float:

@@ -145,6 +145,22 @@ class UnknownContactName(Fault):
 
 
 @dataclass
+class UnknownBone(Fault):
+    """A request names a bone that the armature does not have."""
+
+    request: str
+    bone: str
+
+
+@dataclass
+class NotAboveZero(Fault):
+    """A request's mass, or factor on a length or a mass, is zero, negative or not given."""
+
+    request: str
+    amount: float
+
+
+@dataclass
 class WorkerDied(Fault):
     """The process that solves ended without an answer; detail: what it last said, or its code."""
 
@@ -160,3 +176,72 @@ class ChangedMeanwhile(Fault):
 
     armature: str
     while_solving: bool
+
+
+@dataclass
+class BadDimensions(Fault):
+    """A model reduction to no dimension at all, or to more than the joints have."""
+
+    given: int
+    most: int
+
+
+@dataclass
+class UnknownReductionBone(Fault):
+    """A row (1-based) of the reduction's matrix names a bone whose joint it cannot tie."""
+
+    row: int
+    bone: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class WrongWeights(Fault):
+    """A row (1-based) of the reduction's matrix has more or fewer weights than a joint angles."""
+
+    row: int
+    bone: str
+    given: int
+    needed: int
+
+
+@dataclass
+class DependentRows(Fault):
+    """Rows of the reduction's matrix that say the same, or nothing: fewer count than there are."""
+
+    rows: int
+    rank: int
+
+
+@dataclass
+class UnknownPhaseIn(Fault):
+    """A request names a phase that the clip does not have."""
+
+    request: str
+    phase: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class StillBone(Fault):
+    """A request names a bone that the figure's bodies do not move."""
+
+    request: str
+    bone: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class BadTiming(Fault):
+    """A request's time is empty, too short, or outside the clip; seconds: how long it would be."""
+
+    request: str
+    seconds: float
+
+
+@dataclass
+class RootHasNoJoint(Fault):
+    """A joint's limit or torque was asked of the root bone, which has no joint to a parent."""
+
+    request: str
+    bone: str

@@ -16,12 +16,14 @@ from .dynamics import GRAVITY, MomentFunction
 from .kinematics import BodyPoint, pose
 from .linear import BlockBanded
 from .motion import Motion, Promise, pinned_instants, split, weak_spans
+from .objectives import torque_metric
 from .performance import Performance, interpolate
 from .pins import PointContact
 from .projection import Outcome, Progress, project, restore
-from .recording import FloatArray, IntArray
+from .recording import FloatArray, IntArray, Recording
 from .splines import Basis, gauss_instants, phase_breaks
 from .status import Status
+from .torque import TorqueFunction, every_torque
 from .transcription import SETTLE, Transcription, touching_spans
 
 SPANS = (0.08, 0.06, 0.045, 0.035, 0.025)  # s, from which the clip chooses
@@ -52,7 +54,7 @@ class Solved:
     def outcome(self) -> Outcome:
         return self.outcomes[-1]
 
-    @property
+    @cached_property
     def motion(self) -> Motion:
         return Motion(self.outcome.transcription, self.outcome.x, self.places)
 
@@ -72,6 +74,16 @@ class Fit(Solved):
     def metric(self) -> BlockBanded:
         """The norm in which adaptations of this fit are small."""
         return motion_metric(self.motion, ADAPT_PRICES)
+
+    @cached_property
+    def torques(self) -> TorqueFunction:
+        """The torques of every joint."""
+        return every_torque(self.motion.transcription)
+
+    @cached_property
+    def torque_metric(self) -> BlockBanded:
+        """What changes of the fit's torques cost; see objectives.torque_metric."""
+        return torque_metric(self.motion, self.torques)
 
 
 def fit(
@@ -123,6 +135,7 @@ def refine(
     prices: Prices,
     promise: Promise,
     *,
+    basis: FloatArray | None = None,
     progress: Progress | None = None,
 ) -> list[Outcome]:
     """Splits spans until physics and pins hold between the nodes as promised (thesis 6.4)."""
@@ -135,7 +148,13 @@ def refine(
         finer = on_finer_basis(motion, weak)
         metric = motion_metric(finer, prices)
         finer_outcome = restore(
-            finer.transcription, metric, finer.x, places, stage="refine", progress=progress
+            finer.transcription,
+            metric,
+            finer.x,
+            places,
+            stage="refine",
+            basis=basis,
+            progress=progress,
         )
         if finer_outcome.status is not Status.SOLVED:
             break  # what was solved for stands; its residual between the nodes is reported
@@ -150,7 +169,7 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
     breaks = split(old.basis.breaks, spans)
     double = np.isin(breaks, old.basis.breaks[old.basis.double])
     basis = Basis(breaks, double)
-    new = replace(old, basis=basis, released=frozenset())
+    new = replace(old, basis=basis)
     x = np.zeros((basis.n_coefficients, old.layout.n_block))
     x[:, old.layout.motion] = old.basis.coarse_to(basis, motion.x[:, old.layout.motion])
     inner = np.arange(basis.n_spans)
@@ -162,10 +181,7 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
         weights = old.basis.force_weights(breaks[inner + side], was)
         x[nodes[:, side] + 1, old.layout.forces] = np.einsum("tk,tkn->tn", weights, values)
     x[~new.active] = 0.0
-    idle = np.abs(x[1:-1, old.layout.forces]).reshape(-1, old.layout.n_points, 3).sum(axis=2) < 1e-6
-    alive = new.active[1:-1, old.layout.forces].reshape(-1, old.layout.n_points, 3)[:, :, 0]
-    pairs = zip(*(where.tolist() for where in np.nonzero(idle & alive)), strict=True)
-    return Motion(new.release(frozenset(pairs)) if old.released else new, x, motion.places)
+    return Motion(new, x, motion.places)
 
 
 def motion_metric(motion: Motion, prices: Prices) -> BlockBanded:
@@ -185,22 +201,31 @@ def motion_target(motion: Motion) -> Target:
 def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcription:
     """The equations of a performance with its contacts."""
     character = performance.character
-    points, which = body_points(character, performance, schedule)
-    boundaries = schedule.boundaries
+    points, which = body_points(character, performance.recording, schedule)
+    contacts, extra = point_contacts(schedule, which)
+    return Transcription(
+        character,
+        _coarsest_faithful(performance, schedule.boundaries, extra),
+        points,
+        contacts,
+        MomentFunction(character),
+    )
+
+
+def point_contacts(
+    schedule: ContactSchedule, which: Sequence[int]
+) -> tuple[tuple[PointContact, ...], list[float]]:
+    """The contacts with the instants between which their points (which) are held still, and those
+    of the instants that are no boundaries."""
     contacts: list[PointContact] = []
     extra: list[float] = []
     for contact, point in zip(schedule.contacts, which, strict=True):
         start, end = (
-            _shared_instant(t, boundaries, extra) for t in _pinned(contact, schedule.duration)
+            _shared_instant(t, schedule.boundaries, extra)
+            for t in _pinned(contact, schedule.duration)
         )
         contacts.append(PointContact(contact, point, start, end))
-    return Transcription(
-        character,
-        _coarsest_faithful(performance, boundaries, extra),
-        points,
-        tuple(contacts),
-        MomentFunction(character),
-    )
+    return tuple(contacts), extra
 
 
 def _coarsest_faithful(
@@ -235,10 +260,9 @@ def _shared_instant(t: float, boundaries: Sequence[float], extra: list[float]) -
 
 
 def body_points(
-    character: Character, performance: Performance, schedule: ContactSchedule
+    character: Character, recording: Recording, schedule: ContactSchedule
 ) -> tuple[tuple[BodyPoint, ...], list[int]]:
     """The distinct points that touch, in their bodies' frames, and each contact's index of one."""
-    recording = performance.recording
     bodies = {body.bone: i for i, body in enumerate(character.bodies)}
     names: list[str] = []
     points: list[BodyPoint] = []

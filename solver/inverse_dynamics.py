@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from .character import Character
-from .dynamics import GRAVITY, body_frames, carried, evaluate, turned
+from .dynamics import body_frames, carried, evaluate, turned
 from .kinematics import BodyPoint
 from .motion import Motion
 from .recording import FloatArray
@@ -51,9 +51,9 @@ class InverseDynamics:
         q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
         fall = ca.SX.sym("fall", 3)
         forces = ca.SX.sym("forces", 3, len(points))
-        efforts = _efforts(character, points, q, v, a, fall, forces)
+        every = efforts(character, points, q, v, a, fall, forces)
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))
-        self._function = ca.Function("efforts", [x], [ca.densify(ca.cse(efforts))])
+        self._function = ca.Function("efforts", [x], [ca.densify(ca.cse(every))])
 
     def __call__(
         self,
@@ -75,7 +75,7 @@ class InverseDynamics:
         return self(q, v, a, motion.com(times, 2), motion.forces(times))
 
 
-def _efforts(
+def efforts(
     character: Character,
     points: Sequence[BodyPoint],
     q: ca.SX,
@@ -91,7 +91,7 @@ def _efforts(
     sway = sum((s * m[2] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
     wrenches: list[_Wrench] = []  # that each body and all beyond it need, about its joint
     for frame, body, (x, _, acceleration) in zip(frames, character.bodies, moving, strict=True):
-        force = body.mass * (fall - sway + acceleration + ca.SX([0.0, 0.0, GRAVITY]))
+        force = body.mass * (fall - sway + acceleration + ca.SX([0.0, 0.0, character.gravity]))
         inertia = frame.R @ ca.SX(body.inertia) @ frame.R.T
         spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
         wrenches.append(_Wrench(frame.x, force, spin + ca.cross(x - frame.x, force)))

@@ -12,7 +12,6 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from .character import Character
-from .dynamics import GRAVITY
 from .kinematics import BodyPoint, pose
 from .motion import Motion
 from .recording import FloatArray, IntArray
@@ -28,7 +27,7 @@ def mjcf(character: Character, points: Sequence[BodyPoint] = ()) -> str:
     """
     root = ET.Element("mujoco", model="character")
     ET.SubElement(root, "compiler", angle="radian", autolimits="false")
-    ET.SubElement(root, "option", gravity=_text([0.0, 0.0, -GRAVITY]))
+    ET.SubElement(root, "option", gravity=_text([0.0, 0.0, -character.gravity]))
     bodies = [ET.SubElement(root, "worldbody")]
     for i, (body, joint) in enumerate(zip(character.bodies, character.joints, strict=True)):
         parent = bodies[joint.parent + 1]

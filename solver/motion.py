@@ -58,15 +58,21 @@ class Motion:
         return np.asarray(self.pose(times).points(points) + self.com(times)[:, None])
 
     def track(self, recording: Recording) -> PoseTrack:
-        """The bones' poses at the recording's frames."""
-        posed = self.pose(recording.times)
+        """The bones' poses at the recording's frames, or as many as this motion lasts."""
+        times, frames = recording.times, recording.frames
+        if abs(times[-1] - self.duration) > 1e-6:
+            rate = (len(times) - 1) / float(times[-1])
+            times = np.arange(int(self.duration * rate + 1e-6) + 1) / rate
+            step = (frames[-1] - frames[0]) / (len(frames) - 1)
+            frames = frames[0] + step * np.arange(len(times))
+        posed = self.pose(times)
         bones = [recording.index(b.bone) for b in self.transcription.character.bodies]
         rest = np.stack([recording.bones[b].rotation for b in bones])
         return PoseTrack(
-            frames=recording.frames,
+            frames=frames,
             bones=tuple(recording.bones[b].name for b in bones),
             rotations=posed.rotations @ rest,
-            root_head=posed.centres[:, 0] + self.com(recording.times),
+            root_head=posed.centres[:, 0] + self.com(times),
         )
 
     def drift(self, contact: int, times: FloatArray) -> FloatArray:
@@ -95,9 +101,10 @@ def unexplained(motion: Motion, times: FloatArray) -> Unexplained:
     """
     t = motion.transcription
     weight = t.character.mass * GRAVITY
+    fall = t.character.gravity / GRAVITY
     forces = motion.forces(times) / weight
     total = forces.sum(axis=1)
-    force = motion.com(times, 2) / GRAVITY + np.array([0.0, 0.0, 1.0]) - total
+    force = motion.com(times, 2) / GRAVITY + np.array([0.0, 0.0, fall]) - total
     rate = t.moment.value(*(motion.angles(times, k) for k in range(3)))
     if t.points:
         arms = motion.pose(times).points(t.points)

@@ -1,39 +1,80 @@
-"""The equations that hold touching points still (thesis 3.3.2).
+"""The equations that hold touching points still, or on what carries them (thesis 3.3.2).
 
 While a point is pinned its place is fixed at every break; its speed is zero at the pin's ends and
 at double knots inside, where the spline is only once differentiable and each side needs its own
-end condition. These are as many rows as a cubic has freedom, so they stay independent.
+end condition. These are as many rows as a cubic has freedom, so they stay independent. A place may
+move (a lift, a swing), and a point may slide along a surface: then only its height is held.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from .contacts import Contact
 from .kinematics import BodyPoint, Pose, point_velocity
-from .recording import FloatArray, IntArray
+from .recording import BoolArray, FloatArray, IntArray
 from .rows import Layout, RowKind, Rows
 from .splines import ORDER, Basis
+
+FRICTION = 1.0  # of a rubber sole on a hall's floor
+STEP = 1e-3  # s, of the differences that give a moving place its speed
+
+
+@dataclass(frozen=True)
+class Track:
+    """A place that moves: (T,) s and displacements (T, 3) m from the contact's place."""
+
+    times: FloatArray
+    moves: FloatArray
+
+    def at(self, times: FloatArray) -> FloatArray:
+        """(U, 3) m, linear between the instants."""
+        columns = [np.interp(times, self.times, self.moves[:, k]) for k in range(3)]
+        return np.stack(columns, axis=1)
+
+    def speed(self, times: FloatArray) -> FloatArray:
+        """(U, 3) m/s."""
+        first, last = self.times[0], self.times[-1]
+        before, after = (np.clip(times + step, first, last) for step in (-STEP, STEP))
+        return np.asarray((self.at(after) - self.at(before)) / (after - before)[:, None])
 
 
 @dataclass(frozen=True)
 class PointContact:
-    """A contact as the equations see it: `point` indexes the transcription's points."""
+    """A contact as the equations see it: `point` indexes the transcription's points.
+
+    held: (k, 3) unit directions in which the point is held; None in all. track: how its place
+    moves. friction: coefficient, None for a grip, which may pull as well as push. normal: (3,) of
+    what it touches. pyramid: whether the friction cone is four planes inside the round one.
+    """
 
     contact: Contact
     point: int
     pin_start: float
     pin_end: float
+    held: FloatArray | None = None
+    track: Track | None = None
+    friction: float | None = FRICTION
+    normal: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    pyramid: bool = False
 
 
 @dataclass(frozen=True)
 class _Held:
-    """Which contact is held at which of the pins' breaks, as M pairs; point: what it holds."""
+    """Which contact is held at which of the pins' breaks, as M pairs; point: what it holds.
+
+    axes: (M, 3, 3) rows the directions in which it may be held; moves: (M, 3) how far its place
+    is from where it began, or how fast that moves; kept: (3 M,) which directions are held.
+    """
 
     contact: IntArray
     at: IntArray
     point: IntArray
+    axes: FloatArray
+    moves: FloatArray
+    kept: BoolArray
+    turned: bool
 
 
 class Pins:
@@ -46,33 +87,51 @@ class Pins:
             [
                 (basis.breaks >= c.pin_start - slack) & (basis.breaks <= c.pin_end + slack)
                 for c in contacts
-            ]
+            ],
+            dtype=bool,
         ).reshape(len(contacts), len(basis.breaks))
         ends = np.array(
             [
                 np.isclose(basis.breaks, c.pin_start) | np.isclose(basis.breaks, c.pin_end)
                 for c in contacts
-            ]
+            ],
+            dtype=bool,
         ).reshape(pinned.shape)
         used = np.flatnonzero(pinned.any(axis=0))
         self.times = basis.breaks[used]
         self.spans = basis.spans(self.times)
-        self.values, self.slopes = (basis.evaluate(self.times, k, self.spans) for k in (0, 1))
-        points = np.array([c.point for c in contacts], dtype=int)
-        self._place = _held(pinned[:, used], points)
-        self._speed = _held((pinned & (ends | basis.double))[:, used], points)
+        self._basis = [basis.evaluate(self.times, k, self.spans) for k in (0, 1)]
+        self._place = self._held(pinned[:, used], contacts, speed=False)
+        self._speed = self._held((pinned & (ends | basis.double))[:, used], contacts, speed=True)
+
+    def _held(self, which: BoolArray, contacts: Sequence[PointContact], *, speed: bool) -> _Held:
+        contact, at = np.nonzero(which)
+        axes, kept = np.tile(np.eye(3), (len(contact), 1, 1)), np.ones((len(contact), 3), bool)
+        moves = np.zeros((len(contact), 3))
+        for i, each in enumerate(contacts):
+            mine = contact == i
+            if each.track is not None:
+                times = self.times[at[mine]]
+                moves[mine] = each.track.speed(times) if speed else each.track.at(times)
+            if each.held is not None:
+                count = len(each.held)
+                axes[mine, :count], kept[mine, count:] = each.held, False
+        point = np.array([c.point for c in contacts], dtype=int)[contact]
+        turned = any(c.held is not None for c in contacts)
+        return _Held(contact, at, point, axes, moves, kept.ravel(), turned)
 
     def angles(self, window: FloatArray) -> FloatArray:
         """(U, n_angles) joint angles at the pins' breaks, from the unknowns' windows there."""
-        return np.asarray(np.einsum("uk,ukj->uj", self.values, window[:, :, self.layout.angles]))
+        return np.asarray(np.einsum("uk,ukj->uj", self._basis[0], window[:, :, self.layout.angles]))
 
-    def residuals(
+    def values(
         self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint], places: FloatArray
     ) -> FloatArray:
-        """The residuals of `rows`, in their order."""
+        """The values of `rows`, in their order."""
         speeds = point_velocity(posed, points, self._angle_speeds(window))[0]
-        off = self._off(window, posed, points, places)
-        return np.concatenate([off.ravel(), self._drift(window, speeds).ravel()])
+        off = self._off(window, posed, points, places).ravel()[self._place.kept]
+        drift = self._drift(window, speeds[self._speed.at, self._speed.point])
+        return np.concatenate([off, drift.ravel()[self._speed.kept]])
 
     def rows(
         self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint], places: FloatArray
@@ -87,28 +146,30 @@ class Pins:
         self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint], places: FloatArray
     ) -> FloatArray:
         held = self._place
-        com = np.einsum("uk,ukj->uj", self.values, window[:, :, self.layout.com])
+        com = np.einsum("uk,ukj->uj", self._basis[0], window[:, :, self.layout.com])
         at = com[held.at] + posed.points(points)[held.at, held.point]
-        return np.asarray(at - places[held.contact])
+        return np.asarray(
+            np.einsum("mij,mj->mi", held.axes, at - places[held.contact] - held.moves)
+        )
 
     def _drift(self, window: FloatArray, speeds: FloatArray) -> FloatArray:
         held = self._speed
-        com = np.einsum("uk,ukj->uj", self.slopes, window[:, :, self.layout.com])
-        return np.asarray(com[held.at] + speeds[held.at, held.point])
+        com = np.einsum("uk,ukj->uj", self._basis[1], window[:, :, self.layout.com])
+        return np.asarray(np.einsum("mij,mj->mi", held.axes, com[held.at] + speeds - held.moves))
 
     def _angle_speeds(self, window: FloatArray) -> FloatArray:
-        return np.asarray(np.einsum("uk,ukj->uj", self.slopes, window[:, :, self.layout.angles]))
+        return np.asarray(np.einsum("uk,ukj->uj", self._basis[1], window[:, :, self.layout.angles]))
 
     def _place_rows(
         self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint], places: FloatArray
     ) -> Rows:
         held = self._place
-        values = self.values[held.at]
+        value = self._basis[0][held.at]
         turn = posed.point_jacobian(points)[held.at, held.point]
         jacobian = self._empty(held)
-        jacobian[..., self.layout.angles] = values[:, None, :, None] * turn[:, :, None]
+        jacobian[..., self.layout.angles] = value[:, None, :, None] * turn[:, :, None]
         for axis in range(3):
-            jacobian[:, axis, :, axis] = values
+            jacobian[:, axis, :, axis] = value
         off = self._off(window, posed, points, places)
         return self._rows(held, off, jacobian, RowKind.PIN)
 
@@ -119,23 +180,21 @@ class Pins:
         found = point_velocity(few, points, self._angle_speeds(window)[some])
         each = (back, held.point)
         jacobian = self._empty(held)
-        for basis, derivative in ((self.values, found[1]), (self.slopes, found[2])):
+        for basis, derivative in zip(self._basis, found[1:], strict=True):
             jacobian[..., self.layout.angles] += (
                 basis[held.at][:, None, :, None] * derivative[each][:, :, None]
             )
         for axis in range(3):
-            jacobian[:, axis, :, axis] = self.slopes[held.at]
-        com = np.einsum("uk,ukj->uj", self.slopes, window[:, :, self.layout.com])
-        return self._rows(held, com[held.at] + found[0][each], jacobian, RowKind.PIN_SPEED)
+            jacobian[:, axis, :, axis] = self._basis[1][held.at]
+        drift = self._drift(window, found[0][each])
+        return self._rows(held, drift, jacobian, RowKind.PIN_SPEED)
 
     def _empty(self, held: _Held) -> FloatArray:
         return np.zeros((len(held.at), 3, ORDER, self.layout.n_block))
 
-    def _rows(self, held: _Held, residual: FloatArray, jacobian: FloatArray, kind: RowKind) -> Rows:
+    def _rows(self, held: _Held, value: FloatArray, jacobian: FloatArray, kind: RowKind) -> Rows:
+        if held.turned:
+            jacobian = np.einsum("mij,mjkn->mikn", held.axes, jacobian)
         spans, times = self.spans[held.at], self.times[held.at]
-        return Rows.triples(spans, residual, jacobian, kind, times, held.contact)
-
-
-def _held(which: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], points: IntArray) -> _Held:
-    contact, at = np.nonzero(which)
-    return _Held(contact, at, points[contact])
+        rows = Rows.of(spans, value, jacobian, kind, times, held.contact)
+        return rows.some(held.kept) if held.turned else rows

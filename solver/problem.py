@@ -94,8 +94,8 @@ def pinned_places(
     places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
     moved_by: dict[int, Pin] = {}
     for pin in problem.pins:
-        phase = _phase(pin, schedule)
-        chosen = _chosen(pin, phase, schedule)
+        phase = phase_of(pin, schedule)
+        chosen = chosen_contacts(pin, phase, schedule)
         target = _moved(pin, phase, chosen, performance, schedule)
         for i, place in zip(chosen, target, strict=True):
             if i in moved_by:
@@ -108,7 +108,8 @@ def pinned_places(
     return places
 
 
-def _phase(pin: Pin, schedule: ContactSchedule) -> Phase:
+def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:
+    """The ground phase that a pin names. Raises UnknownPhase."""
     ground = [p for p in schedule.phases if p.kind is PhaseKind.GROUND]
     for phase in ground:
         if phase.name == pin.phase:
@@ -116,7 +117,8 @@ def _phase(pin: Pin, schedule: ContactSchedule) -> Phase:
     raise UnknownPhase(pin.name, pin.phase, tuple(p.name for p in ground))
 
 
-def _chosen(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[int]:
+def chosen_contacts(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[int]:
+    """Indices of the contacts that a pin moves. Raises UnknownContact."""
     there = [
         i for i, c in enumerate(schedule.contacts) if c.start < phase.end and c.end > phase.start
     ]

@@ -1,38 +1,33 @@
-"""Steps towards a motion that satisfies every equation (thesis 4.2 and 4.4).
+"""Steps towards a motion that satisfies every equation and bound (thesis 4.2 and 4.4).
 
 Each step solves the linearised problem
 
-    min  g . d + 1/2 d . W d   subject to   C(x) + C_x d = 0
+    min  g . d + 1/2 d . W d   subject to   C(x) + C_x d = 0,   lo <= B(x) + B_x d <= hi
 
 with W the metric of closeness.py. With g the gradient of the distance to a target this *projects*
-the target onto the valid motions (the fit); with g = 0 it is the thesis's minimum-norm step (the
-implicit solution), which converges quadratically and stays near where it began.
+the target onto the valid motions (the fit, and the explicit solution for other objectives); with
+g = 0 it is the thesis's minimum-norm step (the implicit solution), which converges quadratically
+and stays near where it began.
 
-The equality problem is solved by an augmented Lagrangian on one banded factor, which also settles
-redundant rows (two feet planted, pins on one rigid foot) without choosing among them.
+The equations are settled by an augmented Lagrangian on one banded factor, which also settles
+redundant rows (two feet planted, pins on one rigid foot) without choosing among them; the bounds
+by a small quadratic program (qp.py).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from .closeness import Closeness
 from .linear import BlockBanded, Factor
-from .recording import FloatArray, IntArray
-from .rows import RowKind, Rows
+from .qp import BoundedStep
+from .recording import BoolArray, FloatArray, IntArray
+from .rows import RowKind, Rows, by_kind
 from .splines import ORDER
 from .status import Status
 from .transcription import Transcription
 
-# The largest violation that is let stand, by kind, in the kind's unit.
-TOLERANCE = {
-    RowKind.BALANCE: 1e-5,
-    RowKind.MOMENT: 2e-5,
-    RowKind.PIN: 1e-5,
-    RowKind.PIN_SPEED: 1e-3,
-    RowKind.RELEASE: 1e-4,
-}
 # Speeds are weighed against places by the time in which they would move as far.
 NORM = {RowKind.PIN_SPEED: 30.0}
 PENALTY = 1e2
@@ -41,9 +36,8 @@ SWEEP_GAIN = 1e-3
 CHORD_GAIN = 0.03
 RIDGE = 1e-8
 SHORTEST_STEP = 0.005
-PULL_TOLERANCE = 0.01  # BW
-NEAR = 1e3  # times the tolerances: near enough to tell which forces pull
-ENOUGH = 0.05  # of the distance to the target: what a further step must gain
+PATIENCE = 6  # steps
+ENOUGH = 0.05  # of the objective: what a further step must gain
 
 
 @dataclass(frozen=True)
@@ -57,7 +51,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Where the steps ended: unknowns, equations (some forces may be released), how and why."""
+    """Where the steps ended: unknowns, equations, how and why."""
 
     x: FloatArray
     transcription: Transcription
@@ -65,8 +59,22 @@ class Outcome:
     steps: tuple[Step, ...]
     violation: float
 
+    @property
+    def solved(self) -> bool:
+        return self.status is Status.SOLVED
+
 
 Progress = Callable[[Step], None]
+
+
+class Goal(Protocol):
+    """What steps lessen."""
+
+    def value(self, x: FloatArray) -> float:
+        """The objective at unknowns (K, n_block)."""
+
+    def expand(self, x: FloatArray) -> tuple[FloatArray, BlockBanded]:
+        """Its gradient (K, n_block) and a positive definite approximation of its Hessian."""
 
 
 def restore(
@@ -77,76 +85,80 @@ def restore(
     *,
     stage: str,
     most_steps: int = 30,
+    basis: FloatArray | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
-    """Minimum-norm steps until the equations hold; forces that pull are released on the way.
+    """Minimum-norm steps until equations and bounds hold.
 
-    metric: W, fixed. places: (n_contacts, 3) m. A line search on the summed squared violation
-    guards the steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses
-    the same Jacobian and factor, which costs a third of a new one (chord steps).
+    metric: W, fixed. places: (n_contacts, 3) m. basis: (n_block, k), the changes of a block that
+    are allowed (thesis 5), None all. A line search on the summed squared violation guards the
+    steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
+    Jacobian and factor, which costs a third of a new one (chord steps).
     """
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
-    line = Linearised(transcription, transcription.rows(x, places), metric)
-    residual, fresh, last = line.rows.residual, True, np.inf
+    line = Linearised(transcription, transcription.rows(x, places), metric, basis=basis)
+    value, fresh, last = line.rows.value, True, np.inf
     while len(steps) < most_steps:
-        violation = line.worst(residual)
-        if violation <= NEAR:
-            pulling = transcription.pulling(x, PULL_TOLERANCE) - transcription.released
-            if pulling:
-                transcription = transcription.release(pulling)
-                rows = transcription.rows(x, places)
-                line, fresh = Linearised(transcription, rows, metric), True
-                residual = rows.residual
-                violation = line.worst(residual)
+        violation = line.worst(value)
         if violation <= 1.0:
             status = Status.SOLVED
             break
         if not fresh and violation > CHORD_GAIN * last:
-            line, fresh = Linearised(transcription, transcription.rows(x, places), metric), True
-        d, _ = line.step(residual)
-        x, residual, length = _shorten(transcription, line, x, d, places, residual)
+            line, fresh = line.at(transcription.rows(x, places), metric), True
+        d, _ = line.step(value)
+        x, value, length = _shorten(transcription, line, x, d, places, value)
         if length < 1.0 and not fresh:  # the old Jacobian no longer serves
-            line, fresh = Linearised(transcription, transcription.rows(x, places), metric), True
+            line, fresh = line.at(transcription.rows(x, places), metric), True
             continue
         steps.append(Step(stage, violation, length))
         last, fresh = violation, False
         if progress is not None:
             progress(steps[-1])
-        if length == 0.0:
+        if length == 0.0 or _stagnant(steps):
             status = Status.STALLED
             break
-    return Outcome(x, transcription, status, tuple(steps), line.worst(residual))
+    return Outcome(x, transcription, status, tuple(steps), line.worst(value))
+
+
+def _stagnant(steps: list[Step]) -> bool:
+    """Whether the last steps did not even halve the violation."""
+    if len(steps) < 2 * PATIENCE:
+        return False
+    return steps[-1].violation > 0.5 * steps[-1 - PATIENCE].violation
 
 
 def project(
     transcription: Transcription,
-    closeness: Closeness,
+    goal: Goal,
     x: FloatArray,
     places: FloatArray,
     *,
     stage: str,
     most_steps: int,
+    basis: FloatArray | None = None,
     progress: Progress | None = None,
 ) -> Outcome:
-    """Steps towards the valid motion nearest to the target; `restore` finishes what they leave.
+    """Steps that lessen a goal among the valid motions; `restore` finishes what they leave.
 
-    Ends when a step changes the distance little; the equations then nearly hold.
+    Ends when a step changes the goal little; equations and bounds then nearly hold.
     """
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     multipliers: FloatArray | None = None
-    objective = closeness.value(x)
+    objective = goal.value(x)
+    line: Linearised | None = None
     for _ in range(most_steps):
         rows = transcription.rows(x, places)
-        gradient, metric = closeness.expand(x)
-        line = Linearised(transcription, rows, metric)
-        d, multipliers = line.step(rows.residual, gradient, multipliers)
-        x, length = _search(transcription, closeness, x, d, places, rows, multipliers, objective)
-        steps.append(Step(stage, worst_violation(rows), length))
+        gradient, metric = goal.expand(x)
+        working = None if line is None else line.working
+        line = Linearised(transcription, rows, metric, basis=basis, working=working)
+        d, multipliers = line.step(rows.value, gradient, multipliers)
+        x, length = _search(transcription, goal, x, d, places, line, multipliers, objective)
+        steps.append(Step(stage, line.worst(rows.value), length))
         if progress is not None:
             progress(steps[-1])
-        before, objective = objective, closeness.value(x)
+        before, objective = objective, goal.value(x)
         if length == 0.0 or (len(steps) > 1 and abs(before - objective) < ENOUGH * before):
             status = Status.SOLVED
             break
@@ -155,15 +167,8 @@ def project(
 
 
 def worst_violation(rows: Rows) -> float:
-    """The worst violation over its kind's tolerance; at most 1 means that the equations hold."""
-    return float((np.abs(rows.residual) / _by_kind(rows, TOLERANCE)).max())
-
-
-def _by_kind(rows: Rows, sizes: dict[RowKind, float]) -> FloatArray:
-    values = np.ones(len(rows.residual))
-    for kind, size in sizes.items():
-        values[rows.kind == kind] = size
-    return values
+    """The worst violation over its kind's tolerance; at most 1 means that all rows hold."""
+    return float((np.abs(rows.violation()) / rows.tolerance).max())
 
 
 @dataclass(frozen=True)
@@ -174,6 +179,21 @@ class _Windows:
     counts: IntArray  # (S,) rows of each span
     first: IntArray  # (S,) first block of each span
     size: int
+    where: tuple[IntArray, IntArray]  # of each row: its span, its place there
+
+    @staticmethod
+    def of(rows: Rows, norm: FloatArray, first: IntArray, basis: FloatArray | None) -> "_Windows":
+        """Sorts rows, in units of norm (R,), by span."""
+        order = np.argsort(rows.span, kind="stable")
+        counts = np.bincount(rows.span, minlength=len(first))
+        before = np.concatenate([[0], np.cumsum(counts)])
+        place = np.empty(len(order), dtype=int)
+        place[order] = np.arange(len(order)) - before[rows.span[order]]
+        jacobian = rows.jacobian if basis is None else rows.jacobian @ basis
+        n = jacobian.shape[2]
+        J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
+        J[rows.span, place] = jacobian.reshape(len(order), -1) / norm[:, None]
+        return _Windows(J, counts, first, n, (rows.span, place))
 
     def times(self, d: FloatArray) -> FloatArray:
         """J d, (S, R), of d (K, n)."""
@@ -196,6 +216,15 @@ class _Windows:
             squares[span] = scaled[span, :count].T @ scaled[span, :count]
         return np.asarray(squares.reshape(len(self.J), ORDER, self.size, ORDER, self.size))
 
+    def columns(self, rows: IntArray, blocks: int) -> FloatArray:
+        """(K, n, m) the chosen rows as columns."""
+        span, place = (index[rows] for index in self.where)
+        local = self.J[span, place].reshape(len(rows), ORDER, self.size)
+        columns = np.zeros((blocks, self.size, len(rows)))
+        for k in range(ORDER):
+            columns[self.first[span] + k, :, np.arange(len(rows))] = local[:, k]
+        return columns
+
 
 def _factor(system: BlockBanded) -> Factor:
     """Cholesky; far from any motion rounding can spoil it, and a small ridge mends that."""
@@ -207,70 +236,117 @@ def _factor(system: BlockBanded) -> Factor:
 
 
 class Linearised:
-    """Rows linearised at one point, with the factor of W + rho J'J, ready for steps."""
+    """Rows linearised at one point, with the factor of W + rho J'J, ready for steps.
 
-    def __init__(self, transcription: Transcription, rows: Rows, metric: BlockBanded) -> None:
+    basis: (n_block, k) the changes of a block that are allowed, None all. working: (R,) the rows
+    that were at their bounds in the last step.
+    """
+
+    def __init__(
+        self,
+        transcription: Transcription,
+        rows: Rows,
+        metric: BlockBanded,
+        *,
+        basis: FloatArray | None = None,
+        working: BoolArray | None = None,
+    ) -> None:
+        self._transcription, self._basis = transcription, basis
         self.rows = rows
-        self.metric = metric
-        self.tolerance = _by_kind(rows, TOLERANCE)
-        self._norm = _by_kind(rows, NORM)
+        self._metric = metric if basis is None else metric.changed(basis)
         self._blocks = transcription.basis.n_coefficients
-        self._gather(transcription)
-        system = metric.copy()
-        system.add_windows(self._windows.first, self._windows.normal(PENALTY))
+        self._norm = by_kind(rows.kind, NORM)
+        self._tolerance = rows.tolerance
+        first = transcription.basis.first_coefficient
+        self._equal = np.flatnonzero(rows.equal)
+        self._free = np.flatnonzero(~rows.equal)
+        self._equations = _Windows.of(rows.some(self._equal), self._norm[self._equal], first, basis)
+        system = self._metric.copy()
+        system.add_windows(first, self._equations.normal(PENALTY))
         self._factor = _factor(system)
+        self._bounds = _Windows.of(rows.some(self._free), self._norm[self._free], first, basis)
+        was = np.zeros(len(self._free), bool) if working is None else working[self._free]
+        self._bounded = BoundedStep(
+            self._factor,
+            lambda rows: self._bounds.columns(rows, self._blocks),
+            (self._scaled(rows.lower, self._free), self._scaled(rows.upper, self._free)),
+            self._scaled(self._tolerance, self._free),
+            was,
+        )
 
-    def _gather(self, transcription: Transcription) -> None:
-        """Sorts the rows, in units of NORM, by span."""
-        rows, basis = self.rows, transcription.basis
-        order = np.argsort(rows.span, kind="stable")
-        counts = np.bincount(rows.span, minlength=basis.n_spans)
-        first = np.concatenate([[0], np.cumsum(counts)])
-        place = np.empty(len(order), dtype=int)
-        place[order] = np.arange(len(order)) - first[rows.span[order]]
-        self._where = (rows.span, place)
-        n = rows.jacobian.shape[2]
-        J = np.zeros((basis.n_spans, counts.max(), ORDER * n))
-        J[self._where] = rows.jacobian.reshape(len(order), -1) / self._norm[:, None]
-        self._windows = _Windows(J, counts, basis.first_coefficient, n)
+    def at(self, rows: Rows, metric: BlockBanded) -> "Linearised":
+        """The same problem linearised elsewhere."""
+        return Linearised(
+            self._transcription, rows, metric, basis=self._basis, working=self.working
+        )
 
-    def worst(self, residual: FloatArray) -> float:
-        """The worst violation over its kind's tolerance; at most 1 means that all hold."""
-        return float((np.abs(residual) / self.tolerance).max())
+    @property
+    def working(self) -> BoolArray:
+        """(R,) the rows that the last step has at a bound."""
+        working = np.zeros(len(self.rows.value), dtype=bool)
+        working[self._free] = self._bounded.working
+        return working
+
+    def worst(self, value: FloatArray) -> float:
+        """The worst violation over its tolerance; at most 1 means that all rows hold."""
+        return float((np.abs(self.rows.violation(value)) / self._tolerance).max())
+
+    def merit(self, value: FloatArray) -> float:
+        """The summed squared violations over their tolerances (thesis eq. 4.6)."""
+        return float(((self.rows.violation(value) / self._tolerance) ** 2).sum())
+
+    def total(self, value: FloatArray) -> float:
+        """The summed violations in units of NORM."""
+        return float((np.abs(self.rows.violation(value)) / self._norm).sum())
+
+    def _scaled(self, values: FloatArray, rows: IntArray) -> FloatArray:
+        return np.asarray(values[rows] / self._norm[rows])
 
     def step(
         self,
-        residual: FloatArray,
+        value: FloatArray,
         gradient: FloatArray | None = None,
         multipliers: FloatArray | None = None,
     ) -> tuple[FloatArray, FloatArray]:
         """Step d (K, n_block) and multipliers (R,) of the rows in units of NORM.
 
-        Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)), y += rho (r + J d),
-        until the linearised equations hold a thousand times better than before. gradient: g, None
-        for the minimum-norm step.
+        Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
+        y += rho (r + J d), until the linearised equations hold a thousand times better than
+        before. gradient: g, None for the minimum-norm step.
         """
-        windows = self._windows
+        windows = self._equations
         r = np.zeros(windows.J.shape[:2])
-        r[self._where] = residual / self._norm
+        r[windows.where] = self._scaled(value - self.rows.lower, self._equal)
         y = np.zeros_like(r)
         if multipliers is not None:
-            y[self._where] = multipliers
+            y[windows.where] = multipliers[self._equal]
+        if gradient is not None and self._basis is not None:
+            gradient = gradient @ self._basis
         d = np.zeros((self._blocks, windows.size))
         missing = r
         enough = max(1e-9, SWEEP_GAIN * float(np.abs(missing).max()))
+        z = self._scaled(value, self._free)
         for sweep in range(MOST_SWEEPS):
             slope = windows.transposed(y + PENALTY * missing, self._blocks)
             if sweep:
-                slope += self.metric.times(d)
+                slope += self._metric.times(d)
             if gradient is not None:
                 slope += gradient
-            d -= self._factor.solve(slope)
+            d = d - self._factor.solve(slope)
+            if len(z):
+                d = d + self._bounded.correct(z + self._bound_values(d), self._bound_values)
             missing = r + windows.times(d)
             y += PENALTY * missing
             if np.abs(missing).max() < enough:
                 break
-        return d, y[self._where]
+        found = np.zeros(len(value))
+        found[self._equal] = y[windows.where]
+        found[self._free] = self._bounded.multipliers
+        return d if self._basis is None else d @ self._basis.T, found
+
+    def _bound_values(self, d: FloatArray) -> FloatArray:
+        """B_x d, (R_bounds,)."""
+        return np.asarray(self._bounds.times(d)[self._bounds.where])
 
 
 def _shorten(
@@ -279,42 +355,41 @@ def _shorten(
     x: FloatArray,
     d: FloatArray,
     places: FloatArray,
-    residual: FloatArray,
+    value: FloatArray,
 ) -> tuple[FloatArray, FloatArray, float]:
     """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0.0 if none does.
 
-    Returns the new unknowns, their residual and the length.
+    Returns the new unknowns, their rows' values and the length.
     """
-    before = float(((residual / line.tolerance) ** 2).sum())
+    before = line.merit(value)
     length = 1.0
     while length > SHORTEST_STEP:
         trial = x + length * d
-        left = transcription.residuals(trial, places)
-        if float(((left / line.tolerance) ** 2).sum()) < (1.0 - 0.1 * length) * before:
+        left = transcription.values(trial, places)
+        if line.merit(left) < (1.0 - 0.1 * length) * before:
             return trial, left, length
         length *= 0.5
-    return x, residual, 0.0
+    return x, value, 0.0
 
 
 def _search(
     transcription: Transcription,
-    closeness: Closeness,
+    goal: Goal,
     x: FloatArray,
     d: FloatArray,
     places: FloatArray,
-    rows: Rows,
+    line: Linearised,
     multipliers: FloatArray,
     objective: float,
 ) -> tuple[FloatArray, float]:
-    """Backtracks on distance plus weighted violation (an exact l1 merit function)."""
-    norm = _by_kind(rows, NORM)
+    """Backtracks on the goal plus weighted violation (an exact l1 merit function)."""
     weight = 2.0 * float(np.abs(multipliers).max()) + 1e-9
-    before = objective + weight * float(np.abs(rows.residual / norm).sum())
+    before = objective + weight * line.total(line.rows.value)
     length = 1.0
     while length > 0.1:
         trial = x + length * d
-        violation = float(np.abs(transcription.residuals(trial, places) / norm).sum())
-        if closeness.value(trial) + weight * violation < before:
+        violation = line.total(transcription.values(trial, places))
+        if goal.value(trial) + weight * violation < before:
             return trial, length
         length *= 0.5
     return x, 0.0

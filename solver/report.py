@@ -5,27 +5,28 @@ bw is the body's weight.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from .adapt import Adaptation
+from .character import Character
+from .condition import Missed, missed
 from .contacts import Phase, PhaseKind
 from .dynamics import GRAVITY
 from .fit import Fit
 from .motion import Motion, pinned_instants, unexplained
 from .performance import interpolate
 from .pins import PointContact
-from .problem import Axes3, MotionProblem, Pin, _chosen, _phase
-from .projection import TOLERANCE, Outcome
+from .problem import Axes3, MotionProblem, Pin, chosen_contacts, phase_of
+from .projection import Outcome
 from .recording import FloatArray
 from .rows import RowKind
 from .trajectory import instants
 
 RATE = 1000.0  # Hz, of what is measured between the nodes
 LIGHTEST = 0.2  # BW
-SHOWN = {RowKind.PIN: (1000.0, "mm")}  # factor and unit of a violation; else the kind's own
 Json = dict[str, Any]
 
 
@@ -49,72 +50,104 @@ def report(
     origin: Origin,
 ) -> Json:
     """Everything about an adaptation that a JSON file can hold; what is not finite is None."""
-    fit, motion = adaptation.fit, adaptation.motion
+    fit, motion, schedule = adaptation.fit, adaptation.motion, adaptation.plan.schedule
     pins = pins_of_contacts(fit, problem)
     contacts = motion.transcription.contacts
     content = {
         "status": adaptation.outcome.status.value,
         "recording": _recording(fit, origin),
-        "figure": _figure(fit, problem),
+        "figure": _figure(fit, motion, problem),
         "pins": [_pin(pin) for pin in problem.pins],
         "solves": _solves(fit.outcomes, "fit") + _solves(adaptation.outcomes, "adapt"),
         "unknowns": motion.transcription.n_unknowns,
-        "rows": len(motion.transcription.residuals(motion.x, motion.places)),
+        "rows": len(motion.transcription.values(motion.x, motion.places)),
         "equations": [
             {"name": name, "violation": amount, "unit": unit}
             for name, amount, unit in worst_constraints(adaptation, problem, least=0.0)
         ],
-        "contacts": [_contact(motion, fit, i, pins[i]) for i in range(len(contacts))],
-        "between_nodes": dense_residuals(motion, fit.schedule.phases),
-        "forces": _forces(motion, fit),
+        "conditions": [
+            _condition(each, fit, motion.transcription.character)
+            for each in missed_conditions(adaptation)
+        ],
+        "contacts": [
+            _contact(motion, adaptation, i, pins.get(contacts[i].contact.name))
+            for i in range(len(contacts))
+        ],
+        "between_nodes": dense_residuals(motion, schedule.phases),
+        "forces": _forces(motion, adaptation),
         "fit_to_recording": closeness(fit),
-        "jumps": _jumps(fit, motion),
+        "jumps": _jumps(adaptation),
     }
     finite: Json = _finite(content)
     return finite
 
 
-def pins_of_contacts(fit: Fit, problem: MotionProblem) -> list[str | None]:
-    """The artist's name of the pin that moves each contact. Raises UnknownPhase, UnknownContact."""
-    names: list[str | None] = [None] * len(fit.schedule.contacts)
+def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
+    """The artist's name of the pin that moves each contact, by the contact's name.
+
+    Raises UnknownPhase, UnknownContact.
+    """
+    names: dict[str, str] = {}
     for pin in problem.pins:
-        for i in _chosen(pin, _phase(pin, fit.schedule), fit.schedule):
-            names[i] = pin.name
+        for i in chosen_contacts(pin, phase_of(pin, fit.schedule), fit.schedule):
+            names[fit.schedule.contacts[i].name] = pin.name
     return names
+
+
+def missed_conditions(adaptation: Adaptation) -> list[Missed]:
+    """By how much each of the artist's conditions is missed at worst, between the nodes too."""
+    x, t = adaptation.motion.x, adaptation.motion.transcription
+    return [missed(c, t.character, t.basis, t.layout, x) for c in t.conditions]
 
 
 def worst_constraints(
     adaptation: Adaptation, problem: MotionProblem, *, least: float = 1.0
 ) -> list[tuple[str, float, str]]:
-    """(name, violation, unit) of every contact's pin and every phase's equations, worst first.
+    """(name, violation, unit) of every contact, condition and phase's equations, worst first.
 
-    least: how often its tolerance a violation must reach to be listed.
+    Of a solve that failed: those that conflict where it got stuck, then what the best motion found
+    misses. least: how often its tolerance a violation must reach to be listed.
     """
-    motion = adaptation.motion
-    rows = motion.transcription.rows(motion.x, motion.places)
+    stuck, motion = adaptation.stuck, adaptation.motion
+    if stuck is not None and stuck is not adaptation.outcome:
+        failed = replace(adaptation, outcomes=(stuck,), stuck=None)
+        here = replace(adaptation, stuck=None)
+        conflicts = worst_constraints(failed, problem, least=least)
+        short = worst_constraints(here, problem, least=least)
+        return conflicts + [each for each in short if each[0] not in {c[0] for c in conflicts}]
+    t = motion.transcription
+    rows = t.rows(motion.x, motion.places)
     pins = pins_of_contacts(adaptation.fit, problem)
-    phases = adaptation.fit.schedule.phases
+    phases = adaptation.plan.schedule.phases
+    owners = [f"{pins[name]}: {name}" if name in pins else name for name in t.owners]
     found: dict[tuple[str, RowKind], float] = {}
-    for kind, time, contact, left in zip(
-        rows.kind, rows.time, rows.contact, np.abs(rows.residual), strict=True
+    for kind, time, owner, left in zip(
+        rows.kind, rows.time, rows.owner, np.abs(rows.violation()), strict=True
     ):
-        if contact >= 0:
-            name = motion.transcription.contacts[contact].contact.name
-            name = f"{pins[contact]}: {name}" if pins[contact] else name
-        else:
-            name = _phase_at(phases, time).name
+        name = owners[owner] if owner >= 0 else _phase_at(phases, time).name
         found[name, kind] = max(found.get((name, kind), 0.0), float(left))
     ranked = sorted(
-        ((v / TOLERANCE[kind], name, kind) for (name, kind), v in found.items()),
+        ((v / kind.tolerance, name, kind) for (name, kind), v in found.items()),
         key=lambda each: each[0],
         reverse=True,
     )
     listed = []
     for share, name, kind in ranked:
-        factor, unit = SHOWN.get(kind, (1.0, kind.value))
         if share >= least:
-            listed.append((name, share * TOLERANCE[kind] * factor, unit))
+            amount, unit = shown(share * kind.tolerance, kind, t.character)
+            listed.append((name, amount, unit))
     return listed
+
+
+def shown(amount: float, kind: RowKind, character: Character) -> tuple[float, str]:
+    """A violation in the unit that people read."""
+    if kind in (RowKind.PIN, RowKind.POINT):
+        return 1000.0 * amount, "mm"
+    if kind is RowKind.TORQUE:
+        return amount * character.mass * GRAVITY, "N·m beyond the limit"
+    if kind.unit == "rad":
+        return math.degrees(amount), "degrees"
+    return amount, kind.unit
 
 
 def _phase_at(phases: Sequence[Phase], time: float) -> Phase:
@@ -141,12 +174,13 @@ def _recording(fit: Fit, origin: Origin) -> Json:
     }
 
 
-def _figure(fit: Fit, problem: MotionProblem) -> Json:
-    character = fit.performance.character
+def _figure(fit: Fit, motion: Motion, problem: MotionProblem) -> Json:
+    character = motion.transcription.character  # which may carry more than the fit's
     return {
         "mass_kg": character.mass,
         "mass_table": problem.mass_table.value,
         "height_m": character.height,
+        "gravity_m_s2": character.gravity,
         "bodies": len(character.bodies),
         "degrees_of_freedom": character.n_dofs,
         "floor_m": fit.schedule.floor_m,
@@ -190,8 +224,20 @@ def _solves(outcomes: Sequence[Outcome], name: str) -> list[Json]:
 # ---------------------------------------------------------------- how well it holds
 
 
-def _contact(motion: Motion, fit: Fit, i: int, pin: str | None) -> Json:
-    at = motion.transcription.contacts[i]
+def _condition(missed: Missed, fit: Fit, character: Character) -> Json:
+    amount, unit = shown(missed.amount, missed.kind, character)
+    return {
+        "name": missed.name,
+        "kind": missed.kind.value[0],
+        "worst_violation": amount,
+        "unit": unit,
+        "worst_violation_frame": _frame(fit, missed.time),
+        "met": missed.amount <= missed.kind.tolerance,
+    }
+
+
+def _contact(motion: Motion, adaptation: Adaptation, i: int, pin: str | None) -> Json:
+    fit, at = adaptation.fit, motion.transcription.contacts[i]
     contact = at.contact
     pinned = pinned_instants(at, RATE)
     drift = motion.drift(i, pinned)
@@ -207,7 +253,7 @@ def _contact(motion: Motion, fit: Fit, i: int, pin: str | None) -> Json:
         "end_frame": _frame(fit, contact.end),
         "pinned_from_s": at.pin_start,
         "pinned_to_s": at.pin_end,
-        "fitted_place_m": fit.places[i].tolist(),
+        "fitted_place_m": adaptation.plan.start.places[i].tolist(),
         "place_m": motion.places[i].tolist(),
         "worst_violation_mm": 1000.0 * float(drift.max()),
         "worst_violation_frame": _frame(fit, float(pinned[drift.argmax()])),
@@ -243,7 +289,8 @@ def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> Json:
     return content
 
 
-def _forces(motion: Motion, fit: Fit) -> Json:
+def _forces(motion: Motion, adaptation: Adaptation) -> Json:
+    fit = adaptation.fit
     times = instants(motion.duration, RATE)
     forces = motion.forces(times) / (motion.transcription.character.mass * GRAVITY)
     ground = forces.sum(axis=1)
@@ -252,7 +299,7 @@ def _forces(motion: Motion, fit: Fit) -> Json:
     carried = np.where(ground[:, 2] > LIGHTEST, ground[:, 2], np.inf)
     grip = np.linalg.norm(ground[:, :2], axis=1) / carried
     peaks = []
-    for phase in fit.schedule.phases:
+    for phase in adaptation.plan.schedule.phases:
         inside = (times >= phase.start) & (times <= phase.end)
         if phase.kind is PhaseKind.GROUND and inside.any():
             at = int(np.argmax(np.where(inside, total, -1.0)))
@@ -277,36 +324,47 @@ def closeness(fit: Fit) -> Json:
 # ---------------------------------------------------------------- what changed
 
 
-def _jumps(fit: Fit, motion: Motion) -> list[Json]:
+def _jumps(adaptation: Adaptation) -> list[Json]:
     """Each flight before and after: pelvis heights above the floor, and the flight's reach."""
+    fit, motion = adaptation.fit, adaptation.motion
     floor = fit.schedule.floor_m
+    after = {phase.name: phase for phase in adaptation.plan.schedule.phases}
     jumps = []
     for flight in _flights(fit):
-        before = [p for p in fit.schedule.phases if p.end <= flight.start + 1e-9]
-        was, now = (
-            {
-                "crouch_pelvis_height_m": _lowest(m, before[-1]) - floor if before else None,
-                "apex_pelvis_height_m": _apex(m, flight) - floor,
-                "flight_length_m": _reach(m, flight),
-            }
-            for m in (fit.motion, motion)
+        if flight.name not in after:
+            continue
+        now = after[flight.name]
+        was_before, now_before = (
+            [p for p in schedule.phases if p.end <= start + 1e-9]
+            for schedule, start in (
+                (fit.schedule, flight.start),
+                (adaptation.plan.schedule, now.start),
+            )
         )
-        recorded = {"apex_pelvis_height_m": _recorded_apex(fit, flight) - floor}
+        both = ((fit.motion, flight, was_before), (motion, now, now_before))
+        before, adapted = (
+            {
+                "crouch_pelvis_height_m": _lowest(m, stance[-1]) - floor if stance else None,
+                "apex_pelvis_height_m": _apex(m, phase) - floor,
+                "flight_length_m": _reach(m, phase),
+            }
+            for m, phase, stance in both
+        )
         deeper = None
-        if before:
-            deeper = 100.0 * (_lowest(fit.motion, before[-1]) - _lowest(motion, before[-1]))
+        if was_before and now_before:
+            deeper = 100.0 * (_lowest(fit.motion, was_before[-1]) - _lowest(motion, now_before[-1]))
         jumps.append(
             {
                 "flight": flight.name,
-                "take_off_s": flight.start,
-                "landing_s": flight.end,
-                "take_off_frame": _frame(fit, flight.start),
-                "landing_frame": _frame(fit, flight.end),
-                "recorded": recorded,
-                "fit": was,
-                "adapted": now,
+                "take_off_s": now.start,
+                "landing_s": now.end,
+                "take_off_frame": _frame(fit, now.start),
+                "landing_frame": _frame(fit, now.end),
+                "recorded": {"apex_pelvis_height_m": _recorded_apex(fit, flight) - floor},
+                "fit": before,
+                "adapted": adapted,
                 "crouch_deeper_cm": deeper,
-                "apex_higher_cm": 100.0 * (_apex(motion, flight) - _apex(fit.motion, flight)),
+                "apex_higher_cm": 100.0 * (_apex(motion, now) - _apex(fit.motion, flight)),
             }
         )
     return jumps

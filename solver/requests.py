@@ -369,3 +369,8 @@ class Requests:
     timings: tuple[PhaseTiming, ...] = ()
     holds: tuple[Hold, ...] = ()
     solution: Solution = field(default_factory=Solution)
+
+    @property
+    def preferred(self) -> tuple[PoseRequest, ...]:
+        """The poses that are not held but only preferred."""
+        return tuple(pose for pose in self.poses if pose.weight is not None)

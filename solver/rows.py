@@ -1,23 +1,40 @@
-"""Equations as arrays, and the layout of the unknowns that they act on."""
+"""Equations and bounds as arrays, and the layout of the unknowns that they act on."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .recording import FloatArray, IntArray
+from .recording import BoolArray, FloatArray, IntArray
 
 
 class RowKind(Enum):
-    """What an equation states. The value is the unit of its violation."""
+    """What a row states: a name, the unit of its value, and the violation that is let stand."""
 
-    BALANCE = "BW"
-    MOMENT = "BW·m"
-    PIN = "m"
-    PIN_SPEED = "m/s"
-    RELEASE = "BW released"  # a force that would pull is held at zero
+    BALANCE = ("balance", "BW", 1e-5)
+    MOMENT = ("moment", "BW·m", 2e-5)
+    PIN = ("pin", "m", 1e-5)
+    PIN_SPEED = ("pin's speed", "m/s", 1e-3)
+    POINT = ("point", "m", 3e-4)
+    BEND = ("bend", "rad", 2e-3)
+    CONE = ("cone", "rad", 2e-3)
+    TWIST = ("twist", "rad", 2e-3)
+    ORIENTATION = ("orientation", "rad", 2e-3)
+    POSE = ("pose", "rad", 2e-3)
+    PUSH = ("push", "BW of pull", 0.01)
+    FRICTION = ("friction", "BW beyond friction", 0.01)
+    PEAK = ("peak", "BW beyond the cap", 0.01)
+    TORQUE = ("torque", "BW·m beyond the limit", 5e-5)
+
+    @property
+    def unit(self) -> str:
+        return self.value[1]
+
+    @property
+    def tolerance(self) -> float:
+        return self.value[2]
 
 
 @dataclass(frozen=True)
@@ -57,38 +74,76 @@ class Layout:
 
 @dataclass(frozen=True)
 class Rows:
-    """R equations, each within one span: residual (R,), Jacobian (R, 4, n_block) over the span's
-    four blocks, and per row its kind, instant (s) and contact (index or -1)."""
+    """R rows, each within one span: value (R,) and its Jacobian (R, 4, n_block) over the span's
+    four blocks, between lower and upper (R,); an equation where they are equal. Per row its kind,
+    instant (s) and owner (the index of a contact, or of a condition counted on from those; -1)."""
 
     span: IntArray
-    residual: FloatArray
+    value: FloatArray
     jacobian: FloatArray
+    lower: FloatArray
+    upper: FloatArray
     kind: NDArray[np.object_]
     time: FloatArray
-    contact: IntArray
+    owner: IntArray
 
     @staticmethod
     def join(parts: Sequence["Rows"]) -> "Rows":
-        names = ("span", "residual", "jacobian", "kind", "time", "contact")
+        names = [field.name for field in fields(Rows)]
         return Rows(*[np.concatenate([getattr(p, name) for p in parts]) for name in names])
 
     @staticmethod
-    def triples(
+    def of(
         spans: IntArray,
-        residual: FloatArray,
+        value: FloatArray,
         jacobian: FloatArray,
         kind: RowKind,
         times: FloatArray,
-        contact: IntArray | None = None,
+        owner: IntArray | int = -1,
+        bounds: tuple[FloatArray, FloatArray] | None = None,
     ) -> "Rows":
-        """Rows of M vector equations: residual (M, 3), Jacobian (M, 3, 4, n_block)."""
-        count = 3 * len(spans)
-        owner = np.full(len(spans), -1) if contact is None else contact
+        """Rows of M vectors: value (M, m), Jacobian (M, m, 4, n_block), bounds each (M, m)."""
+        each = value.shape[1]
+        count = value.size
+        lower, upper = (np.zeros(count),) * 2 if bounds is None else (b.ravel() for b in bounds)
         return Rows(
-            np.repeat(spans, 3),
-            residual.ravel(),
+            np.repeat(spans, each),
+            value.ravel(),
             jacobian.reshape(count, *jacobian.shape[2:]),
+            lower,
+            upper,
             np.full(count, kind),
-            np.repeat(times, 3),
-            np.repeat(owner, 3),
+            np.repeat(times, each),
+            np.repeat(np.broadcast_to(owner, len(spans)), each),
         )
+
+    def some(self, which: BoolArray | IntArray) -> "Rows":
+        """Those that are chosen, by (R,) flags or by indices."""
+        return Rows(*[getattr(self, field.name)[which] for field in fields(Rows)])
+
+    @property
+    def equal(self) -> BoolArray:
+        """(R,) which rows are equations."""
+        return np.asarray(self.lower == self.upper)
+
+    @property
+    def tolerance(self) -> FloatArray:
+        """(R,) the violation of each that is let stand."""
+        return by_kind(self.kind, {kind: kind.tolerance for kind in RowKind})
+
+    def violation(self, value: FloatArray | None = None) -> FloatArray:
+        """(R,) by how much values (their own by default) miss the bounds; signed."""
+        return violation(self.value if value is None else value, self.lower, self.upper)
+
+
+def violation(value: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """By how much values miss their bounds: above zero over the upper, below under the lower."""
+    return np.asarray(np.maximum(value - upper, 0.0) + np.minimum(value - lower, 0.0))
+
+
+def by_kind(kinds: NDArray[np.object_], sizes: dict[RowKind, float]) -> FloatArray:
+    """(R,) the size of each row's kind; 1 where none is given."""
+    values = np.ones(len(kinds))
+    for kind, size in sizes.items():
+        values[kinds == kind] = size
+    return values

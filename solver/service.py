@@ -5,7 +5,7 @@ from collections import Counter, OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from .adapt import Adaptation, adapt
+from .adapt import Adaptation, adapt, unadapted
 from .contacts import PhaseKind
 from .digest import digest
 from .faults import Fault, NoFit, NoSolution
@@ -14,6 +14,7 @@ from .messages import Adapted, Analysed, Answer, Failed, Kind, Progress, Request
 from .problem import MotionProblem, travel_axes
 from .projection import Step
 from .report import Origin, report, worst_constraints
+from .requests import Requests
 from .session import Analysis, analyse
 from .stature import scaled_problem, scaled_recording, scaled_schedule, scaled_track
 
@@ -57,14 +58,13 @@ class Service:
         began = time.perf_counter()
         fitted = self._fit(request, measured.analysis, progress)
         if not fitted.solved:
-            unmoved = Adaptation(fitted.outcomes[-1:], fitted.places, fitted)
-            raise _unsolved(NoFit, unmoved, measured.problem)
+            raise _unsolved(NoFit, unadapted(fitted), MotionProblem())
         fitted_at = time.perf_counter()
         adaptation = adapt(fitted, measured.problem, progress=progress)
         adapted_at = time.perf_counter()
         if not adaptation.solved:
             raise _unsolved(NoSolution, adaptation, measured.problem)
-        track = adaptation.motion.track(measured.analysis.performance.recording)
+        track = adaptation.track
         content = report(adaptation, measured.problem, Origin(request.recording.name))
         content["stages"] = [
             {"name": "Fitting the physics", "seconds": fitted_at - began},
@@ -75,7 +75,7 @@ class Service:
             request.id,
             scaled_track(track, back),
             content,
-            scaled_schedule(fitted.schedule, back),
+            scaled_schedule(adaptation.plan.schedule, back),
         )
 
     def _fit(self, request: Request, analysis: Analysis, progress: Callable[[Step], None]) -> Fit:
@@ -111,9 +111,9 @@ def _analysed(request: Request, measured: _Measured) -> Analysed:
 
 
 def _fit_relevant(problem: MotionProblem) -> str:
-    """Everything of a problem but its pins, which the fit does not know."""
+    """Everything of a problem but its pins and requests, which the fit does not know."""
     bones = dict(sorted(problem.bones.items()))
-    return repr(replace(problem, pins=(), bones=bones))
+    return repr(replace(problem, pins=(), requests=Requests(), bones=bones))
 
 
 def _stepper(request: int, tell: Tell) -> Callable[[Step], None]:

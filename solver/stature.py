@@ -7,6 +7,7 @@ import numpy as np
 from .contacts import ContactSchedule
 from .problem import MotionProblem
 from .recording import PoseTrack, Recording
+from .requests import PointRequest, Vector
 
 
 def scaled_recording(recording: Recording, factor: float) -> Recording:
@@ -30,7 +31,37 @@ def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
         )
         for pin in problem.pins
     )
-    return replace(problem, pins=tuple(pins))
+    requests = problem.requests
+    added = (
+        m if m.offset is None else replace(m, offset=scaled(m.offset)) for m in requests.body.added
+    )
+    requests = replace(
+        requests,
+        points=tuple(_scaled_point(point, factor) for point in requests.points),
+        body=replace(requests.body, added=tuple(added)),
+    )
+    return replace(problem, pins=tuple(pins), requests=requests)
+
+
+def _scaled_point(point: PointRequest, factor: float) -> PointRequest:
+    def scaled(vector: Vector) -> Vector:
+        x, y, z = (factor * value for value in vector)
+        return x, y, z
+
+    bounds, path = point.bounds, point.path
+    if bounds is not None:
+        low_high = [tuple(None if b is None else factor * b for b in bound) for bound in bounds]
+        bounds = tuple(low_high)  # type: ignore[assignment]
+    if path is not None:
+        path = replace(path, places=tuple(map(scaled, path.places)))
+    return replace(
+        point,
+        offset=None if point.offset is None else scaled(point.offset),
+        place=None if point.place is None else scaled(point.place),
+        relative=scaled(point.relative),
+        bounds=bounds,
+        path=path,
+    )
 
 
 def scaled_schedule(schedule: ContactSchedule, factor: float) -> ContactSchedule:

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .dynamics import GRAVITY
 from .motion import Motion
 from .recording import FloatArray
 
@@ -36,7 +35,7 @@ def sample(motion: Motion, rate: float = 1000.0) -> dict[str, NDArray[Any]]:
         "contact_names": np.array([names[i] for i in range(len(transcription.points))], dtype=str),
         "contact_point": points,
         "contact_force": motion.forces(times),
-        "gravity": np.array([0.0, 0.0, -GRAVITY]),
+        "gravity": np.array([0.0, 0.0, -character.gravity]),
     }
 
 

@@ -8,6 +8,9 @@ balance   c'' / g + z - sum f = 0 at every force node: with the matching bases i
 moment    L'(theta) - sum (p_i - c) x f_i = 0 at three Gauss points a span
 pin       c + p_i(theta) - place = 0 at every break while a point is pinned, and zero velocity at
           the ends: as many rows as a cubic has freedom, so that they stay independent
+push      forces push and stay in their friction cones, at every force node and so at every
+          instant: both sets are convex (force_cones.py)
+others    what the artist bounds (condition.py)
 
 A contact carries force for a short while before its point has come to rest and after it starts
 to lift (`SETTLE`): shoes and feet give, and a spline cannot stop a foot in no time.
@@ -19,14 +22,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .character import Character
+from .condition import Bounded, Condition
 from .contacts import Contact
 from .dynamics import GRAVITY, MomentFunction
+from .force_cones import ForceCones
 from .kinematics import BodyPoint, Pose, pose
 from .pins import Pins, PointContact
 from .recording import BoolArray, FloatArray, IntArray
 from .rotations import cross_matrix
 from .rows import Layout, RowKind, Rows
 from .splines import ORDER, Basis, gauss_instants
+from .state import Instants, Slope
 
 GAUSS = 3  # dynamics nodes a span
 SETTLE = 0.03  # s
@@ -36,7 +42,7 @@ SETTLE = 0.03  # s
 class Transcription:
     """The equations of one motion problem on one basis.
 
-    points: the bodies' points that touch; contacts: when and where they do.
+    points: the bodies' points that touch; contacts: when and where they do. conditions: bounds.
     """
 
     character: Character
@@ -44,7 +50,7 @@ class Transcription:
     points: tuple[BodyPoint, ...]
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
-    released: frozenset[tuple[int, int]] = frozenset()  # (force node, point): held at zero
+    conditions: tuple[Condition, ...] = ()
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block) bool, which unknowns exist
 
@@ -57,6 +63,24 @@ class Transcription:
         self._node_force = self.basis.force_weights(times, self.node_spans)
         self._balance = self._balance_rows()
         self.pins = Pins(self.basis, self.layout, self.contacts)
+        self.cones = ForceCones(self.basis, self.layout, self.contacts)
+        first = len(self.contacts)
+        self.bounded = [
+            Bounded(condition, self.character, self.basis, self.layout, first + i)
+            for i, condition in enumerate(self.conditions)
+        ]
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """What the rows' owners are called: contacts, then conditions."""
+        contacts = tuple(c.contact.name for c in self.contacts)
+        return contacts + tuple(c.name for c in self.conditions)
+
+    def eased(self, x: FloatArray, share: float) -> "Transcription":
+        """The same with every bound that x misses moved `share` of the way from x to its own."""
+        twin = copy(self)
+        twin.bounded = [bounded.eased(x, share) for bounded in self.bounded]
+        return twin
 
     @property
     def n_unknowns(self) -> int:
@@ -91,26 +115,26 @@ class Transcription:
         if self.contacts:
             window = self.window(x, self.pins.spans)
             parts += self.pins.rows(window, at_pins, self.points, places)
-        if self.released:
-            parts.append(self._release_rows(x))
+            parts += self.cones.rows(x)
+        parts += [bounded.rows(x) for bounded in self.bounded]
         return self._only_active(Rows.join(parts))
 
-    def residuals(self, x: FloatArray, places: FloatArray) -> FloatArray:
-        """The residuals of `rows` alone, cheaper."""
+    def values(self, x: FloatArray, places: FloatArray) -> FloatArray:
+        """The values of `rows` alone, cheaper."""
         at_nodes, at_pins = self._poses(x)
         parts = [self._balance_residual(x), self._moment_residual(x, at_nodes).ravel()]
         if self.contacts:
             window = self.window(x, self.pins.spans)
-            parts.append(self.pins.residuals(window, at_pins, self.points, places))
-        if self.released:
-            parts.append(self._release_rows(x).residual)
+            parts.append(self.pins.values(window, at_pins, self.points, places))
+            parts.append(self.cones.values(x))
+        parts += [bounded.value(x) for bounded in self.bounded]
         return np.concatenate(parts)
 
-    def release(self, pairs: frozenset[tuple[int, int]]) -> "Transcription":
-        """These equations with the forces of (force node, point) pairs held at zero as well."""
-        twin = copy(self)
-        twin.released = self.released | pairs
-        return twin
+    def spread(self, instants: Instants, slopes: list[Slope]) -> FloatArray:
+        """(U, m, 4, n_block) derivatives by the unknowns that exist in each instant's blocks."""
+        jacobian = instants.spread(slopes, self.layout)
+        jacobian *= self.active[instants.blocks][:, None]
+        return jacobian
 
     def _only_active(self, rows: Rows) -> Rows:
         blocks = self.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)
@@ -140,16 +164,16 @@ class Transcription:
             jacobian[:, axis, :, axis] = second
             for point in range(layout.n_points):
                 jacobian[each, axis, 1 + side, layout.force(point).start + axis] = -1.0
-        weight = np.tile([0.0, 0.0, 1.0], (len(span), 1))
-        return self._only_active(Rows.triples(span, weight, jacobian, RowKind.BALANCE, times))
+        weight = np.tile([0.0, 0.0, self.character.gravity / GRAVITY], (len(span), 1))
+        return self._only_active(Rows.of(span, weight, jacobian, RowKind.BALANCE, times))
 
     def _balance_residual(self, x: FloatArray) -> FloatArray:
         rows = self._balance
         local = self.window(x, rows.span)
-        return np.asarray(rows.residual + np.einsum("rkn,rkn->r", rows.jacobian, local))
+        return np.asarray(rows.value + np.einsum("rkn,rkn->r", rows.jacobian, local))
 
     def _balance_at(self, x: FloatArray) -> Rows:
-        return replace(self._balance, residual=self._balance_residual(x))
+        return replace(self._balance, value=self._balance_residual(x))
 
     # -- moment ----------------------------------------------------------------------------
 
@@ -188,32 +212,7 @@ class Transcription:
                 jacobian[:, :, 1 + side, layout.forces] = weight[:, None, None] * lever
         stacked = np.stack(self._node_basis, axis=-1)  # (N, 4, 3)
         jacobian[..., layout.angles] = np.einsum("nko,niom->nikm", stacked, by_order)
-        return Rows.triples(self.node_spans, rate, jacobian, RowKind.MOMENT, self.node_times)
-
-    # -- releases --------------------------------------------------------------------------
-
-    def _release_rows(self, x: FloatArray) -> Rows:
-        layout, basis = self.layout, self.basis
-        pairs = np.array(sorted(self.released))
-        block = pairs[:, 0] + 1
-        last = basis.first_coefficient + 1  # the block of each span's first force node
-        span = np.minimum(np.searchsorted(last, block, side="right") - 1, basis.n_spans - 1)
-        count = len(pairs)
-        jacobian = np.zeros((count, 3, ORDER, layout.n_block))
-        local = block - basis.first_coefficient[span]
-        residual = np.empty((count, 3))
-        for axis in range(3):
-            column = layout.forces.start + 3 * pairs[:, 1] + axis
-            jacobian[np.arange(count), axis, local, column] = 1.0
-            residual[:, axis] = x[block, column]
-        times = basis.breaks[span]
-        return Rows.triples(span, residual, jacobian, RowKind.RELEASE, times)
-
-    def pulling(self, x: FloatArray, tolerance: float) -> frozenset[tuple[int, int]]:
-        """(force node, point) pairs whose vertical force pulls by more than tolerance (BW)."""
-        vertical = x[1:-1, self.layout.forces].reshape(-1, self.layout.n_points, 3)[:, :, 2]
-        nodes, points = np.nonzero(vertical < -tolerance)
-        return frozenset(zip(nodes.tolist(), points.tolist(), strict=True))
+        return Rows.of(self.node_spans, rate, jacobian, RowKind.MOMENT, self.node_times)
 
 
 def touching_spans(basis: Basis, contact: Contact) -> IntArray:

@@ -54,7 +54,7 @@ def test_what_is_not_finite_becomes_none() -> None:
 def test_numbers_carry_units() -> None:
     bare = {"bodies", "degrees_of_freedom", "unknowns", "rows", "iterations", "violation"}
     units = ("_m", "_s", "_frame", "_kg", "_hz", "_bw", "_bw_m", "_mm", "_cm", "_deg", "seconds")
-    units += ("frame", "_per_second", "_over_tolerance", "_coefficient_needed")
+    units += ("frame", "_per_second", "_over_tolerance", "_coefficient_needed", "_m_s2")
 
     def check(key: str, value: object) -> None:
         match value:

@@ -1,21 +1,37 @@
-"""Small figures for tests: a trunk on two jointed legs that stand, one until half-way."""
+"""Small figures for tests: a trunk on two jointed legs that stand, one until half-way; an arm."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 from hangtime.solver.anatomy import Part, Side
+from hangtime.solver.build import Scene, conditions
 from hangtime.solver.character import Body, Character, Joint
-from hangtime.solver.contacts import Contact
+from hangtime.solver.closeness import Closeness, Prices
+from hangtime.solver.condition import Condition, Measure
+from hangtime.solver.contacts import Contact, ContactSchedule
 from hangtime.solver.coordinates import Axes
 from hangtime.solver.dynamics import MomentFunction
+from hangtime.solver.fit import motion_target
 from hangtime.solver.kinematics import BodyPoint, pose
+from hangtime.solver.linear import BlockBanded
+from hangtime.solver.motion import Motion
 from hangtime.solver.pins import PointContact
+from hangtime.solver.projection import Outcome, restore
+from hangtime.solver.recording import Bone, Recording
+from hangtime.solver.requests import Requests
 from hangtime.solver.rotations import rotation_matrix
-from hangtime.solver.splines import Basis, phase_breaks
+from hangtime.solver.rows import Layout
+from hangtime.solver.splines import ORDER, Basis, phase_breaks
+from hangtime.solver.state import Instants, State
+from hangtime.solver.status import Status
+from hangtime.solver.timeline import Timeline
 from hangtime.solver.transcription import Transcription
 
 DURATION = 0.3  # s
 LIFT = 0.15  # s, when the right foot leaves
+STEP = 1e-6
+RATE = 100.0  # scene frames a second of the small figure's recording, whose first frame is 1
 
 
 def body(name: str, part: Part, side: Side, mass: float, tip: tuple[float, float, float]) -> Body:
@@ -89,3 +105,101 @@ def random_state(seed: int, size: float = 0.2) -> np.ndarray:
     x[:, t.layout.forces] += np.tile([0.0, 0.0, 0.5], t.layout.n_points)
     x[~t.active] = 0.0
     return x
+
+
+# -- standing, solved -----------------------------------------------------------------------
+
+
+def metric(motion: Motion) -> BlockBanded:
+    prices = Prices(shape=1.0, com=0.1, force=1e-3)
+    return Closeness(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
+
+
+@cache
+def stood() -> Motion:
+    """A valid motion near standing."""
+    start = Motion(standing(), random_state(3, size=0.02), places())
+    outcome = restored(standing(), start)
+    assert outcome.status is Status.SOLVED
+    return Motion(standing(), outcome.x, places())
+
+
+def restored(transcription: Transcription, start: Motion) -> Outcome:
+    """Minimum-norm steps to where a transcription's rows hold."""
+    return restore(transcription, metric(start), start.x, places(), stage="toy")
+
+
+@cache
+def scene() -> Scene:
+    """The standing motion as a fit of which something is asked."""
+    motion = stood()
+    touching = tuple(c.contact for c in motion.transcription.contacts)
+    line = Timeline(np.array([0.0, DURATION]), np.array([0.0, DURATION]), (), 1.0, RATE)
+    schedule = ContactSchedule(touching, DURATION, 0.0)
+    return Scene(recording(), motion, motion, schedule, line, lambda _: np.eye(3))
+
+
+def recording() -> Recording:
+    """What scene() was read from; bones' axes are the bodies'."""
+    character = figure()
+    times = np.linspace(0.0, DURATION, round(DURATION * RATE) + 1)
+    still = pose(character, np.zeros((1, character.n_angles)))
+    bones = tuple(
+        Bone(b.bone, j.parent, head, head + b.tip, np.eye(3))
+        for b, j, head in zip(character.bodies, character.joints, still.centres[0], strict=True)
+    )
+    heads = np.tile(still.centres, (len(times), 1, 1))
+    rotations = np.tile(np.eye(3), (len(times), len(bones), 1, 1))
+    return Recording("toy", bones, 1.0 + RATE * times, times, heads, rotations)
+
+
+def asked(requests: Requests) -> Transcription:
+    """The standing figure of which something is asked."""
+    return replace(standing(), conditions=conditions(requests, scene(), standing()))
+
+
+# -- an arm with plain axes, posed at will --------------------------------------------------
+
+
+def arm(dofs: int) -> Character:
+    """A trunk and an arm that hangs from it by a joint of x, y and z in turn."""
+    trunk = body("trunk", Part.PELVIS, Side.MIDDLE, 40.0, (0.0, 0.0, 0.5))
+    hanging = body("arm", Part.UPPER_ARM, Side.LEFT, 5.0, (0.0, 0.0, -0.6))
+    shoulder = Joint(0, np.array([0.2, 0.0, 0.5]), Axes(dofs, np.eye(3), np.eye(3)), 3)
+    root = Joint(-1, np.zeros(3), Axes(3, np.eye(3), np.eye(3)), 0)
+    return Character((trunk, hanging), (root, shoulder), 1.2)
+
+
+def still(character: Character, angles: np.ndarray, com: np.ndarray | None = None) -> State:
+    """The character in one pose, seen at one instant of a second."""
+    layout = Layout(character.n_angles, 0)
+    basis = Basis(np.array([0.0, 1.0]), np.array([False, False]))
+    x = np.zeros((basis.n_coefficients, layout.n_block))
+    x[:, layout.angles] = angles
+    x[:, layout.com] = 0.0 if com is None else com
+    return State(character, layout, Instants(basis, np.array([0.5])), x)
+
+
+# -- slopes ---------------------------------------------------------------------------------
+
+
+def seen(t: Transcription, x: np.ndarray) -> State:
+    """Unknowns at the instants at which a condition of the whole clip would have its rows."""
+    whole = Condition("toy", None, None, *t.basis.breaks[[0, -1]])
+    return State(t.character, t.layout, whole.instants(t.basis), x)
+
+
+def slope_error(state: State, measure: Measure, seed: int) -> float:
+    """How far a measure's slopes are from central differences along a random direction of the
+    unknowns, over the largest of these."""
+    direction = np.random.default_rng(seed).normal(size=state.x.shape)
+    ahead, behind = (
+        measure.value(replace(state, x=state.x + s * STEP * direction)) for s in (1.0, -1.0)
+    )
+    theirs = (ahead - behind) / (2.0 * STEP)
+    jacobian = state.instants.spread(measure.slopes(state), state.layout)
+    assert jacobian.shape == (*theirs.shape, ORDER, state.layout.n_block)
+    ours = np.einsum("umkn,ukn->um", jacobian, direction[state.instants.blocks])
+    largest = float(np.abs(theirs).max())
+    assert largest > 1e-3  # else nothing was tested
+    return float(np.abs(ours - theirs).max()) / largest

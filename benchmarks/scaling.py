@@ -1,0 +1,96 @@
+"""What an adaptation costs against the clip's length and the figure's degrees of freedom."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..solver.adapt import adapt
+from ..solver.anatomy import Part
+from ..solver.character import Character, Joint
+from ..solver.coordinates import Axes
+from ..solver.dynamics import MomentFunction
+from ..solver.fit import ADAPT_PRICES, Fit, fit, motion_metric
+from ..solver.motion import Motion
+from ..solver.performance import Performance
+from ..solver.projection import Outcome, restore
+from ..solver.rotations import mean_rotation
+from .recordings import HOPS, analysed, hops
+from .task import IntArray, Task
+from .timing import in_turns, timed
+
+FIRST = 1.0  # s, where the windows of the hops begin
+LENGTHS = (2.0, 5.0, 10.0, 20.0)  # s
+WELDED: dict[str, tuple[Part, ...]] = {
+    "every joint": (),
+    "no hands, toes": (Part.HAND, Part.TOE),
+    "nor clavicles, neck": (Part.HAND, Part.TOE, Part.CLAVICLE, Part.NECK),
+    "nor spine, head": (Part.HAND, Part.TOE, Part.CLAVICLE, Part.NECK, Part.SPINE, Part.HEAD),
+}
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What one window took. steps: of the adaptation."""
+
+    length: float
+    unknowns: int
+    fit_s: float
+    adapt_s: float
+    steps: int
+    solved: bool
+
+
+def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Cost]:
+    """Windows of the hops, each fitted and its first landing moved."""
+    for length in seconds:
+        problem = hops(FIRST, length)
+        analysis = analysed(HOPS, problem)
+        fitted, fit_s = timed(lambda a=analysis: fit(a.performance, a.schedule))
+        _ = fitted.metric  # part of the stored fit
+        adaptation, adapt_s = in_turns({"": lambda f=fitted, p=problem: adapt(f, p)}, 3)[""]
+        yield Cost(
+            length,
+            adaptation.motion.transcription.n_unknowns,
+            fit_s,
+            adapt_s,
+            sum(len(outcome.steps) for outcome in adaptation.outcomes),
+            fitted.solved and adaptation.solved,
+        )
+
+
+def welded(performance: Performance, parts: tuple[Part, ...]) -> tuple[Character, IntArray]:
+    """The character with the joints of these parts rigid, at their mean over the clip, and the
+    indices of the angles that are left."""
+    character = performance.character
+    joints: list[Joint] = []
+    kept: list[int] = []
+    for i, (body, joint) in enumerate(zip(character.bodies, character.joints, strict=True)):
+        axes = joint.axes
+        if body.part in parts:
+            parent = performance.rotations[:, joint.parent]
+            relative = np.swapaxes(parent, -1, -2) @ performance.rotations[:, i]
+            axes = Axes(0, mean_rotation(relative), np.eye(3))
+        else:
+            kept += range(joint.first, joint.dofs.stop)
+        first = joints[-1].first + joints[-1].axes.dofs if joints else 0
+        joints.append(replace(joint, axes=axes, first=first))
+    return replace(character, joints=tuple(joints)), np.array(kept)
+
+
+def with_fewer(fitted: Fit, task: Task, parts: tuple[Part, ...]) -> Task:
+    """The task for a figure with these parts' joints rigid: same knots, instants and pins."""
+    old = task.transcription
+    character, kept = welded(fitted.performance, parts)
+    new = replace(old, character=character, moment=MomentFunction(character))
+    forces = np.arange(old.layout.forces.start, old.layout.n_block)
+    columns = np.concatenate([np.arange(3), 3 + kept, forces])
+    metric = motion_metric(
+        Motion(new, fitted.motion.x[:, columns], fitted.places), ADAPT_PRICES
+    )
+    return Task(new, task.places, task.start[:, columns], metric)
+
+
+def finished(task: Task) -> Outcome:
+    """The task solved by our steps."""
+    return restore(task.transcription, task.metric, task.start, task.places, stage="adapt")

@@ -1,0 +1,175 @@
+"""A named condition on the motion: bounds on a quantity at instants (thesis 3.3).
+
+Between the instants a bound can be missed a little; `exchange` then adds the worst instants, the
+way semi-infinite programs are solved (Hettich and Kortanek 1993).
+"""
+
+from copy import copy
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from .character import Character
+from .recording import FloatArray, IntArray
+from .rows import Layout, RowKind, Rows, violation
+from .splines import Basis
+from .state import Instants, Slope, State
+
+
+class Measure(Protocol):
+    """A quantity of the motion that can be bounded."""
+
+    @property
+    def kind(self) -> RowKind:
+        """What its rows are called."""
+
+    def value(self, state: State) -> FloatArray:
+        """(U, m) at the state's instants."""
+
+    def slopes(self, state: State) -> list[Slope]:
+        """Its derivatives."""
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """lower, upper (m,) or, where they change over time, (T, m) at instants `times`; linear
+    between them."""
+
+    lower: FloatArray
+    upper: FloatArray
+    times: FloatArray | None = None
+
+    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Each (U, m)."""
+        if self.times is None:
+            return tuple(np.tile(b, (len(times), 1)) for b in (self.lower, self.upper))  # type: ignore[return-value]
+        columns = range(self.lower.shape[1])
+        lower, upper = (
+            np.stack([np.interp(times, self.times, bound[:, k]) for k in columns], axis=1)
+            for bound in (self.lower, self.upper)
+        )
+        return lower, upper
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Bounds on a measure between start and end, s. name: the artist's.
+
+    per_span: rows per span. at: instants at which to hold it instead, and their spans. extra:
+    instants that `exchange` added.
+    """
+
+    name: str
+    measure: Measure
+    bounds: Bounds
+    start: float
+    end: float
+    per_span: int = 2
+    at: tuple[FloatArray, IntArray] | None = None
+    extra: tuple[float, ...] = ()
+
+    @property
+    def kind(self) -> RowKind:
+        return self.measure.kind
+
+    def instants(self, basis: Basis) -> Instants:
+        """Where its rows are on a basis: at the ends, and evenly inside every span."""
+        if self.at is not None:
+            return Instants(basis, *self.at)
+        inside = np.linspace(0.0, 1.0, self.per_span, endpoint=False) + 0.5 / self.per_span
+        length = np.diff(basis.breaks)[:, None]
+        times = (basis.breaks[:-1, None] + length * inside).ravel()
+        times = times[(times > self.start) & (times < self.end)]
+        ends = [self.start, self.end]
+        return Instants(basis, np.unique(np.concatenate([times, ends, self.extra])))
+
+    def dense(self, basis: Basis) -> Instants:
+        """Instants that tell whether it holds between the rows."""
+        return replace(self, per_span=6, extra=()).instants(basis)
+
+
+class Bounded:
+    """A condition on one basis, ready to give rows. owner: its index among all owners."""
+
+    def __init__(
+        self,
+        condition: Condition,
+        character: Character,
+        basis: Basis,
+        layout: Layout,
+        owner: int,
+    ) -> None:
+        self.condition = condition
+        self.instants = condition.instants(basis)
+        self.lower, self.upper = condition.bounds.at(self.instants.times)
+        self._character, self._layout, self._owner = character, layout, owner
+
+    def eased(self, x: FloatArray, share: float) -> "Bounded":
+        """The same with the bounds that x misses moved `share` of the way from x to their own."""
+        twin = copy(self)
+        found = self.value(x).reshape(self.lower.shape)
+        twin.lower = self.lower + (1.0 - share) * np.minimum(found - self.lower, 0.0)
+        twin.upper = self.upper + (1.0 - share) * np.maximum(found - self.upper, 0.0)
+        return twin
+
+    def value(self, x: FloatArray) -> FloatArray:
+        """(U m,) the values of `rows` alone, cheaper."""
+        return np.asarray(self.condition.measure.value(self.state(x)).ravel())
+
+    def rows(self, x: FloatArray) -> Rows:
+        state, instants = self.state(x), self.instants
+        measure = self.condition.measure
+        return Rows.of(
+            instants.spans,
+            measure.value(state),
+            instants.spread(measure.slopes(state), self._layout),
+            measure.kind,
+            instants.times,
+            self._owner,
+            (self.lower, self.upper),
+        )
+
+    def state(self, x: FloatArray) -> State:
+        return State(self._character, self._layout, self.instants, x)
+
+
+@dataclass(frozen=True)
+class Missed:
+    """By how much a condition is missed at worst, in its kind's unit, and when (s)."""
+
+    name: str
+    kind: RowKind
+    amount: float
+    time: float
+
+
+def missed(
+    condition: Condition, character: Character, basis: Basis, layout: Layout, x: FloatArray
+) -> Missed:
+    """How badly a motion misses a condition at worst, between its rows too."""
+    instants, off = _dense_violation(condition, character, basis, layout, x)
+    worst = int(np.argmax(off))
+    return Missed(condition.name, condition.kind, float(off[worst]), float(instants.times[worst]))
+
+
+def exchange(
+    condition: Condition, character: Character, basis: Basis, layout: Layout, x: FloatArray
+) -> Condition:
+    """The condition with the instants added at which it is missed most, one for each stretch."""
+    instants, off = _dense_violation(condition, character, basis, layout, x)
+    bad = off > condition.kind.tolerance
+    if condition.at is not None or not bad.any():
+        return condition
+    peak = bad & (off >= np.roll(off, 1)) & (off >= np.roll(off, -1))
+    added = {*condition.extra, *instants.times[peak].tolist()}
+    return replace(condition, extra=tuple(sorted(added)))
+
+
+def _dense_violation(
+    condition: Condition, character: Character, basis: Basis, layout: Layout, x: FloatArray
+) -> tuple[Instants, FloatArray]:
+    instants = condition.dense(basis)
+    value = condition.measure.value(State(character, layout, instants, x))
+    off = violation(value, *condition.bounds.at(instants.times))
+    return instants, np.abs(off).max(axis=1)
