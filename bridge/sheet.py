@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import radians
 from pathlib import Path
 
 from ..solver.faults import OutputNotWritable
 from ..solver.recording import FloatArray
+from .marks import Mark
 
 
 @dataclass(frozen=True)
@@ -27,10 +29,13 @@ class Limb:
 class SheetRow:
     """One motion of the picture; world frame, m, Z up.
 
-    times: (T,) s, increasing. com: (T, 3) centre of mass. pins: (P, 3) contact points.
-    key_times: instants (s) that must be shown, such as take-off, apex and landing.
-    pin_times: for each pin the first and last instant (s) it holds; where left out, a pin holds
-    whenever the body touches it.
+    times: (T,) s, increasing. com: (T, 3) centre of mass. pins: (P, 3) contact points of the feet:
+    red spheres, with a step below those above the ground.
+    key_times: instants (s) to be shown before others, such as take-off, landing and apex; the most
+    wanted first.
+    pin_times: for each pin the first and last instant (s) it holds, shown at least once; where left
+    out, a pin holds whenever the body touches it.
+    marks: what else is drawn. ground: height m of the floor; where left out, the lowest pin's.
     """
 
     title: str
@@ -40,13 +45,30 @@ class SheetRow:
     pins: FloatArray
     key_times: tuple[float, ...] = ()
     pin_times: tuple[tuple[float, float], ...] = ()
+    marks: tuple[Mark, ...] = ()
+    ground: float | None = None
 
 
-def draw_sheet(rows: Sequence[SheetRow], path: Path, *, width: int = 1800) -> None:
+@dataclass(frozen=True)
+class View:
+    """How the rows are seen.
+
+    figures: about how many in a row. elevation: rad, of the viewer above the horizon. heading:
+    (x, y) world direction drawn to the right; where left out, that of the travel.
+    """
+
+    figures: int = 10
+    elevation: float = radians(15.0)
+    heading: tuple[float, float] | None = None
+
+
+def draw_sheet(
+    rows: Sequence[SheetRow], path: Path, view: View | None = None, *, width: int = 1600
+) -> None:
     """Render the rows, first on top, to the PNG file `path`, `width` pixels wide.
 
-    All rows share scale, framing and sideways spread (see `sheet_layout`). Works without a
-    display; the user's scenes and data are left as they were. Blocks until done (seconds).
+    All rows share scale, framing and sideways spread (see `sheet_time`). Works without a display;
+    the user's scenes and data are left as they were. Blocks until done (seconds).
     Raises OutputNotWritable.
     """
     from . import sheet_layout, sheet_render
@@ -55,4 +77,5 @@ def draw_sheet(rows: Sequence[SheetRow], path: Path, *, width: int = 1800) -> No
         path.open("ab").close()
     except OSError as error:
         raise OutputNotWritable(str(path), error.strerror or "") from error
-    sheet_render.render(sheet_layout.lay_out(rows), path, width)
+    view = view or View()
+    sheet_render.render(sheet_layout.lay_out(rows, view), view, path, width)

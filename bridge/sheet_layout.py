@@ -1,40 +1,40 @@
 """Where everything goes in the picture: pure geometry, no Blender.
 
 Canvas frame: x right along the direction of travel, y away from the viewer, z up.
-
-A jump stays on one spot while it crouches and recovers; drawn in place, those figures would hide
-each other. So a row is spread: figures slide to the right as time passes, the faster the more the
-body moves without travelling. Every row slides by the same amount at the same time: a landing that
-is 0.3 m further in the world is 0.3 m further in the picture.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..solver.recording import FloatArray
-from .sheet import Limb, SheetRow
+from .marks import Mark, Sphere, Tint, Tone, at, moved
+from .sheet import Limb, SheetRow, View
+from .sheet_mark_solids import Solid, merged, solids
+from .sheet_time import during, instants, nearest, spread, with_keys
 
-FIGURES = 10
 SPACING = 0.7  # m between neighbouring figures, where the spread may choose
-CLOSE = 0.35  # m, figures nearer to each other than this hide each other
-SMOOTH = 0.15  # s, over which the spread's speed is averaged: a flight's path stays a parabola
 TOUCHES = 0.04  # m, a limb nearer to a pin than this is held by it
 RAISED = 0.05  # m, a pin this far above the floor stands on a step
 STEP_MARGIN = 0.22  # m, how far a step reaches beyond its pins
 STEP_GAP = 1.4  # m, pins further apart than this stand on different steps
+RIGHT = np.array([1.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True)
 class Figure:
-    """The body at one instant. centre: (L, 3) m. rotation: (L, 3, 3). com: (3,) m. Canvas frame."""
+    """The body at one instant. centre: (L, 3) m. rotation: (L, 3, 3). com: (3,) m. Canvas frame.
+
+    tones: by limb (index), where it has a colour of its own.
+    """
 
     time: float
     centre: FloatArray
     rotation: FloatArray
     com: FloatArray
+    tones: Mapping[int, Tone]
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,7 @@ class Tier:
 
     sizes: (L, 3) box extents. proximal: (L,) +1 or -1, the end of each limb's long axis that is
     joined to the heavier neighbour. far: (L,) whether the limb is on the side away from the viewer.
+    marks: one solid for each look, pins among them.
     """
 
     title: str
@@ -63,42 +64,69 @@ class Tier:
     path: FloatArray
     pins: FloatArray
     steps: tuple[Step, ...]
+    marks: tuple[Solid, ...]
 
     def corners(self) -> FloatArray:
-        """(2, 3) lowest and highest corner of the box that the figures fill."""
+        """(2, 3) lowest and highest corner of the box that figures and marks fill."""
         half = [np.abs(figure.rotation) @ self.sizes[:, :, None] / 2 for figure in self.figures]
-        reach = np.stack(half)[..., 0]
-        centre = np.stack([figure.centre for figure in self.figures])
-        return np.array([(centre - reach).min(axis=(0, 1)), (centre + reach).max(axis=(0, 1))])
+        reach = np.concatenate(half)[..., 0]
+        centre = np.concatenate([figure.centre for figure in self.figures])
+        points = np.concatenate([centre - reach, centre + reach, *(m.vertices for m in self.marks)])
+        return np.array([points.min(axis=0), points.max(axis=0)])
 
 
 @dataclass(frozen=True)
 class Layout:
-    """All rows. floor: z of the ground; left, right: what the figures of any row reach, m."""
+    """All rows. floor: z of the ground; low, high: (3,) corners of what any row fills, m."""
 
     tiers: tuple[Tier, ...]
     floor: float
-    left: float
-    right: float
+    low: FloatArray
+    high: FloatArray
 
 
-def lay_out(rows: Sequence[SheetRow]) -> Layout:
+@dataclass(frozen=True)
+class Canvas:
+    """World to canvas: axes (3, 3), then shift (3,) m."""
+
+    axes: FloatArray
+    shift: FloatArray
+
+    def points(self, world: FloatArray) -> FloatArray:
+        return np.asarray(world @ self.axes.T + self.shift)
+
+    def row(self, row: SheetRow) -> SheetRow:
+        limbs = tuple(
+            Limb(m.name, m.size, self.points(m.centre), self.axes @ m.rotation) for m in row.limbs
+        )
+        pins = self.points(row.pins.reshape(-1, 3))
+        marks = tuple(moved(mark, self.axes, self.shift) for mark in row.marks)
+        return replace(row, limbs=limbs, com=self.points(row.com), pins=pins, marks=marks)
+
+
+def lay_out(rows: Sequence[SheetRow], view: View | None = None) -> Layout:
     """Place every row in the canvas frame. Rows need at least one instant and one limb each."""
-    axes = canvas_axes(rows)
-    turned = [_turn(row, axes) for row in rows]
+    view = view or View()
+    axes = canvas_axes(rows, view.heading)
+    aside = (rows[0].com @ axes.T)[:, 1].mean()
+    canvas = Canvas(axes, np.array([0.0, -aside, 0.0]))
+    turned = [canvas.row(row) for row in rows]
     lead = turned[0]
-    slide = spread(lead, SPACING * (FIGURES - 1))
-    wished = lead.times[instants(lead, lead.com[:, 0] + slide)]
-    floor = min(_lowest(row) for row in turned)
+    slide = spread(lead, SPACING * (view.figures - 1))
+    wished = lead.times[instants(lead, lead.com[:, 0] + slide, view.figures)]
+    floor = min(_ground(row) for row in turned)
     tiers = tuple(_tier(r, np.interp(r.times, lead.times, slide), wished, floor) for r in turned)
-    reach = np.concatenate([tier.corners()[:, 0] for tier in tiers])
-    return Layout(tiers, floor, float(reach.min()), float(reach.max()))
+    reach = np.concatenate([tier.corners() for tier in tiers])
+    return Layout(tiers, floor, reach.min(axis=0), reach.max(axis=0))
 
 
-def canvas_axes(rows: Sequence[SheetRow]) -> FloatArray:
-    """(3, 3) world to canvas: x along the travel, or where the body faces if it hardly travels."""
+def canvas_axes(rows: Sequence[SheetRow], heading: tuple[float, float] | None = None) -> FloatArray:
+    """(3, 3) world to canvas: x along the heading, or the travel, or where the body faces if it
+    hardly travels."""
     travel = sum((row.com[-1] - row.com[0] for row in rows), np.zeros(3))[:2] / len(rows)
-    if np.hypot(*travel) < 0.3:
+    if heading is not None:
+        travel = np.array(heading)
+    elif np.hypot(*travel) < 0.3:
         trunk = max(rows[0].limbs, key=lambda limb: float(np.prod(limb.size)))
         travel = trunk.rotation[:, :2, 1].mean(axis=0)
     if np.hypot(*travel) < 1e-6:
@@ -107,78 +135,10 @@ def canvas_axes(rows: Sequence[SheetRow]) -> FloatArray:
     return np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
 
 
-def spread(row: SheetRow, span: float) -> FloatArray:
-    """(T,) m, how far each instant slides to the right so that the row spans about `span` m.
-
-    Zero at the instant of fastest travel; never to the left as time passes.
-    """
-    if len(row.times) < 2:
-        return np.zeros(len(row.times))
-    step = np.diff(row.times)
-    centres = np.stack([limb.centre for limb in row.limbs], axis=1)
-    bustle = np.linalg.norm(np.diff(centres, axis=0), axis=2).mean(axis=1) / step
-    bustle = _smooth(np.sqrt(bustle), SMOOTH / step.mean())
-    travel = np.diff(row.com[:, 0]) / step
-
-    def slid(k: float) -> FloatArray:
-        rate = (k * bustle - travel).clip(min=0.0)
-        return np.concatenate([[0.0], np.cumsum(rate * step)])
-
-    low, high = 0.0, 100.0
-    for _ in range(40):  # the span grows with k
-        k = (low + high) / 2
-        low, high = (k, high) if np.ptp(row.com[:, 0] + slid(k)) < span else (low, k)
-    slide = slid(low)
-    return slide - slide[np.argmax(travel)]
-
-
-def _smooth(x: FloatArray, samples: float) -> FloatArray:
-    """Gaussian average over about so many samples; the ends are held."""
-    reach = max(int(samples), 1)
-    kernel = np.exp(-0.5 * np.linspace(-2.0, 2.0, 2 * reach + 1) ** 2)
-    return np.convolve(np.pad(x, reach, mode="edge"), kernel / kernel.sum(), mode="valid")
-
-
-def instants(row: SheetRow, x: FloatArray, count: int = FIGURES) -> list[int]:
-    """Indices of about `count` instants worth showing, x: (T,) m where each would be drawn.
-
-    Key times, ends, lowest and highest; the others are put where the gaps are widest.
-    """
-    z = row.com[:, 2]
-    kept = with_keys(row, x, [0, len(x) - 1, int(z.argmin()), int(z.argmax())])
-    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
-    gaps = np.diff(along[kept])
-    parts = np.ones(len(gaps), dtype=int)
-    while parts.sum() < count - 1 and np.max(gaps / parts, initial=0.0) > 1.4 * CLOSE:
-        parts[np.argmax(gaps / parts)] += 1
-    shown = set(kept)
-    for start, gap, n in zip(along[kept], gaps, parts, strict=False):
-        between = start + gap * np.arange(1, n) / n
-        shown.update(np.searchsorted(along, between).tolist())
-    return sorted(shown)
-
-
-def with_keys(row: SheetRow, x: FloatArray, wished: Sequence[int]) -> list[int]:
-    """Indices of the key times, and of those wished for that no other one hides; in order."""
-    kept = {_nearest(row.times, t) for t in row.key_times}
-    for i in wished:
-        if all(abs(x[i] - x[j]) >= CLOSE for j in kept):
-            kept.add(i)
-    return sorted(kept)
-
-
-def _nearest(times: FloatArray, t: float) -> int:
-    return int(np.abs(times - t).argmin())
-
-
-def _turn(row: SheetRow, axes: FloatArray) -> SheetRow:
-    limbs = tuple(Limb(m.name, m.size, m.centre @ axes.T, axes @ m.rotation) for m in row.limbs)
-    pins = row.pins.reshape(-1, 3) @ axes.T
-    return replace(row, limbs=limbs, com=row.com @ axes.T, pins=pins)
-
-
-def _lowest(row: SheetRow) -> float:
-    """The ground: the lowest pin, or without pins the lowest point of the body."""
+def _ground(row: SheetRow) -> float:
+    """As given; else the lowest pin, or without pins the lowest point of the body."""
+    if row.ground is not None:
+        return row.ground
     if len(row.pins):
         return float(row.pins[:, 2].min())
     drops = [m.centre[:, 2] - np.abs(m.rotation[:, 2]) @ m.size / 2 for m in row.limbs]
@@ -186,19 +146,24 @@ def _lowest(row: SheetRow) -> float:
 
 
 def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) -> Tier:
-    path = row.com + slide[:, None] * np.array([1.0, 0.0, 0.0])
-    shown = with_keys(row, path[:, 0], [_nearest(row.times, t) for t in wished.tolist()])
+    path = row.com + slide[:, None] * RIGHT
+    same = [nearest(row.times, t) for t in wished.tolist()]
+    shown = with_keys(row, path[:, 0], same, len(same))
     centre = np.stack([limb.centre for limb in row.limbs], axis=1)
     rotation = np.stack([limb.rotation for limb in row.limbs], axis=1)
     sizes = np.array([limb.size for limb in row.limbs])
     aside = (centre[:, :, 1] - row.com[:, None, 1]).mean(axis=0)
     if row.pin_times:
-        away = _out_of_time(row.pin_times, row.times)
+        held = [during(span, row.times, shown) for span in row.pin_times]
     else:
-        away = _distances(row.pins, sizes, centre, rotation) / TOUCHES
-    pins = _pins(row.pins, away, slide, shown)
+        near = _distances(row.pins, sizes, centre, rotation) < TOUCHES
+        held = [[i for i in shown if near[i, p]] for p in range(len(row.pins))]
+    pins = _pins(row.pins, held, slide)
     centre[:, :, 0] += slide[:, None]
-    figures = tuple(Figure(float(row.times[i]), centre[i], rotation[i], path[i]) for i in shown)
+    figures = tuple(
+        Figure(float(row.times[i]), centre[i], rotation[i], path[i], _tones(row, i)) for i in shown
+    )
+    drawn = [*map(Sphere, pins), *_marks(row, slide, shown)]
     return Tier(
         row.title,
         figures,
@@ -209,7 +174,25 @@ def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) ->
         path,
         pins,
         steps(pins, floor),
+        merged(solid for mark in drawn for solid in solids(mark)),
     )
+
+
+def _marks(row: SheetRow, slide: FloatArray, shown: Sequence[int]) -> Iterable[Mark]:
+    """Every mark with every figure it belongs to, where that figure is drawn."""
+    for mark in row.marks:
+        for i in during(mark.span, row.times, shown):
+            yield moved(at(mark, i), np.eye(3), slide[i] * RIGHT)
+
+
+def _tones(row: SheetRow, instant: int) -> dict[int, Tone]:
+    return {
+        i: mark.tone
+        for mark in row.marks
+        if isinstance(mark, Tint) and during(mark.span, row.times, [instant]) == [instant]
+        for i, limb in enumerate(row.limbs)
+        if limb.name in mark.limbs
+    }
 
 
 def proximal_ends(sizes: FloatArray, centre: FloatArray, rotation: FloatArray) -> FloatArray:
@@ -237,21 +220,9 @@ def _distances(
     return np.linalg.norm(local.clip(min=0.0), axis=3).min(axis=2)
 
 
-def _out_of_time(spans: Sequence[tuple[float, float]], times: FloatArray) -> FloatArray:
-    """(T, P) zero in the middle of a pin's span, 1 at its ends, more outside it."""
-    first, last = np.array(spans).T
-    return np.abs(times[:, None] - (first + last) / 2) / np.maximum((last - first) / 2, 1e-9)
-
-
-def _pins(pins: FloatArray, away: FloatArray, slide: FloatArray, shown: list[int]) -> FloatArray:
-    """(N, 3) each pin under every figure that it holds; one that holds none of them is left out.
-
-    away: (T, P) from how far the body misses each pin; it is held up to 1.
-    """
-    drawn = []
-    for p, place in enumerate(pins):
-        held = [i for i in shown if away[i, p] <= 1.0 + 1e-6]
-        drawn += [place + np.array([slide[i], 0.0, 0.0]) for i in held]
+def _pins(pins: FloatArray, held: Sequence[Sequence[int]], slide: FloatArray) -> FloatArray:
+    """(N, 3) each pin at every instant (index) at which it is drawn."""
+    drawn = [pin + slide[i] * RIGHT for pin, when in zip(pins, held, strict=True) for i in when]
     return np.array(drawn).reshape(-1, 3)
 
 

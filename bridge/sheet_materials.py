@@ -38,6 +38,28 @@ def plain() -> Any:
     return material
 
 
+def glass(*, thin: float, edge: float, rim: float) -> Any:
+    """See-through and unlit, in the object's colour, without noise.
+
+    thin, edge: opacity where the surface faces the viewer, and where it turns away. rim: 0 to 1,
+    how far the edge's reaches in.
+    """
+    material, nodes, links = _material("glass")
+    material.cycles.emission_sampling = "NONE"
+    facing = nodes.new("ShaderNodeLayerWeight")
+    facing.inputs["Blend"].default_value = rim
+    opacity = nodes.new("ShaderNodeMapRange")
+    opacity.inputs["To Min"].default_value, opacity.inputs["To Max"].default_value = thin, edge
+    surface, mixed = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeMixShader")
+    links.new(facing.outputs["Facing"], opacity.inputs["Value"])
+    links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Color"])
+    links.new(opacity.outputs["Result"], mixed.inputs[0])
+    links.new(nodes.new("ShaderNodeBsdfTransparent").outputs[0], mixed.inputs[1])
+    links.new(surface.outputs[0], mixed.inputs[2])
+    links.new(mixed.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return material
+
+
 def _material(name: str) -> tuple[Any, Any, Any]:
     import bpy
 
@@ -54,15 +76,20 @@ def _empty_tree(owner: Any) -> tuple[Any, Any]:
     return owner.node_tree.nodes, owner.node_tree.links
 
 
-def soft_light() -> Any:
-    """A world of even, slightly cool light."""
+def soft_light(paper: Colour) -> Any:
+    """A world of even, slightly cool light; the viewer sees paper instead of it."""
     import bpy
 
     world = bpy.data.worlds.new("sheet")
     world.cycles.sampling_method = "NONE"  # even light needs no aim
     nodes, links = _empty_tree(world)
-    glow = nodes.new("ShaderNodeBackground")
+    glow, seen = (nodes.new("ShaderNodeBackground") for _ in range(2))
     glow.inputs["Color"].default_value = (0.93, 0.96, 1.0, 1.0)
     glow.inputs["Strength"].default_value = 0.5
-    links.new(glow.outputs[0], nodes.new("ShaderNodeOutputWorld").inputs["Surface"])
+    seen.inputs["Color"].default_value = (*paper, 1.0)
+    mixed = nodes.new("ShaderNodeMixShader")
+    links.new(nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"], mixed.inputs[0])
+    links.new(glow.outputs[0], mixed.inputs[1])
+    links.new(seen.outputs[0], mixed.inputs[2])
+    links.new(mixed.outputs[0], nodes.new("ShaderNodeOutputWorld").inputs["Surface"])
     return world

@@ -5,35 +5,21 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-import numpy as np
-
-from ..solver.recording import FloatArray
+from .sheet import View
 from .sheet_layout import Layout
 from .sheet_scene import Painter
 
-PAPER = np.array([247, 248, 250]) / 255  # sRGB
-LIT_SAMPLES, FLAT_SAMPLES = 8, 32  # for each pixel; the denoiser mends the former
+SAMPLES, BARE_SAMPLES = 6, 32  # for each pixel, with and without a denoiser
+SEEN_THROUGH = 64  # surfaces behind each other: two for each box of a see-through body
 
 
-def render(layout: Layout, path: Path, width: int) -> None:
-    """Render `layout` to the PNG file `path`.
-
-    Twice: what is lit few samples and denoised; letters and lines, which a denoiser would blur,
-    with more samples and no light. Both are then laid over the paper.
-    """
-    with _cycles(), _clean_scene() as scene, TemporaryDirectory() as folder:
-        painter = Painter(scene)
-        painter.draw(layout, width)
-        picture = PAPER.reshape(1, 1, 3)
-        for drawn, hidden in ((painter.lit, painter.flat), (painter.flat, painter.lit)):
-            drawn.hide_render, hidden.hide_render = False, True
-            file = Path(folder) / f"{drawn.name}.png"
-            _render(scene, file, denoise=drawn is painter.lit)
-            picture = _over(_read(file), picture)
-        _write(picture, path)
+def render(layout: Layout, view: View, path: Path, width: int) -> None:
+    """Render `layout` to the PNG file `path`."""
+    with _cycles(), _clean_scene() as scene:
+        Painter(scene, view.elevation).draw(layout, width)
+        _render(scene, path)
 
 
 @contextmanager
@@ -69,58 +55,31 @@ def _cycles() -> Iterator[None]:
             addon_utils.disable("cycles")
 
 
-def _render(scene: Any, path: Path, *, denoise: bool) -> None:
+def _render(scene: Any, path: Path) -> None:
     import bpy
 
     settings = scene.render
     settings.engine = "CYCLES"
     settings.filepath = str(path)
-    settings.film_transparent = True
+    settings.use_file_extension = False
+    settings.dither_intensity = 0.0  # noise that would triple the file
     settings.image_settings.file_format = "PNG"
-    settings.image_settings.color_mode = "RGBA"
-    settings.image_settings.compression = 0
+    settings.image_settings.color_mode = "RGB"
+    settings.image_settings.compression = 50
     scene.view_settings.view_transform = "Standard"
     cycles = scene.cycles
     cycles.device = "CPU"
     cycles.use_light_tree = False  # one lamp
-    cycles.max_bounces = 1 if denoise else 0
-    cycles.use_denoising = denoise and _has_denoiser()
-    cycles.denoising_prefilter = "NONE"
+    cycles.max_bounces = 1
+    cycles.transparent_max_bounces = SEEN_THROUGH
+    cycles.use_denoising = _has_denoiser()
+    # Told colours and normals too, the denoiser keeps edges as jagged as few samples leave them.
+    cycles.denoising_input_passes = "RGB"
     cycles.denoising_quality = "FAST"
-    cycles.samples = LIT_SAMPLES if cycles.use_denoising else FLAT_SAMPLES
-    cycles.use_adaptive_sampling = not denoise
-    cycles.adaptive_min_samples, cycles.adaptive_threshold = 4, 0.1
+    cycles.samples = SAMPLES if cycles.use_denoising else BARE_SAMPLES
+    cycles.use_adaptive_sampling = False
     with _quiet():
         bpy.ops.render.render(write_still=True, scene=scene.name)
-
-
-def _read(path: Path) -> FloatArray:
-    """(H, W, 4) sRGB values and alpha of an image, bottom row first."""
-    import bpy
-
-    image = bpy.data.images.load(str(path))
-    wide, high = image.size
-    pixels = np.empty(wide * high * 4, dtype=np.float32)
-    image.pixels.foreach_get(pixels)
-    return pixels.reshape(high, wide, 4).astype(float)
-
-
-def _over(front: FloatArray, back: FloatArray) -> FloatArray:
-    """(H, W, 3) an image with alpha (H, W, 4) laid over an opaque one."""
-    alpha = front[..., 3:]
-    return front[..., :3] * alpha + back * (1 - alpha)
-
-
-def _write(picture: FloatArray, path: Path) -> None:
-    import bpy
-
-    high, wide, _ = picture.shape
-    image = bpy.data.images.new("sheet", wide, high, alpha=False)
-    opaque = np.concatenate([picture, np.ones((high, wide, 1))], axis=2)
-    image.pixels.foreach_set(opaque.astype(np.float32).ravel())
-    image.filepath_raw = str(path)
-    image.file_format = "PNG"
-    image.save()
 
 
 @contextmanager

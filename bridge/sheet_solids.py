@@ -9,6 +9,7 @@ IntArray = NDArray[np.int64]
 Mesh = tuple[FloatArray, IntArray]  # (V, 3) vertices m, (F, 4) faces
 
 AROUND, ALONG = 28, 20
+TUBE = 10  # corners of a line's cross-section
 FLAT = 0.75  # a body shorter than this share of its width is a slice of the trunk
 SLENDER = 1.7  # a body this many times longer than wide is drawn as a tapered limb
 
@@ -41,6 +42,37 @@ def block(low: FloatArray, high: FloatArray) -> Mesh:
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
     faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
     return low + corners * (high - low), np.array(faces)
+
+
+def band(one: FloatArray, other: FloatArray) -> Mesh:
+    """The surface between two lines of (N, 3) points each."""
+    n = len(one)
+    k = np.arange(n - 1)
+    return np.concatenate([one, other]), np.stack([k, k + 1, k + 1 + n, k + n], axis=1)
+
+
+def tube(points: FloatArray, radius: float) -> Mesh:
+    """A round line through (N, 3) points; closed where the last one is the first."""
+    closed = bool(np.allclose(points[0], points[-1]))
+    ahead = np.diff(points, axis=0)
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    first, last = (ahead[-1:], ahead[:1]) if closed else (ahead[:1], ahead[-1:])
+    along = np.concatenate([first, ahead]) + np.concatenate([ahead, last])
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    # one direction that no part of the line runs along keeps the rings from twisting
+    fixed = np.eye(3)[np.abs(along).max(axis=0).argmin()]
+    side = np.cross(along, fixed)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    turn = np.linspace(0.0, 2 * np.pi, TUBE, endpoint=False)[:, None, None]
+    rings = points + radius * (np.cos(turn) * side + np.sin(turn) * np.cross(along, side))
+    if not closed:  # the ends are drawn together to caps
+        rings = np.concatenate(
+            [np.tile(points[0], (TUBE, 1, 1)), rings, np.tile(points[-1], (TUBE, 1, 1))], axis=1
+        )
+    n = rings.shape[1]
+    k, step = np.meshgrid(np.arange(n - 1), np.arange(TUBE), indexing="ij")
+    a, b = step * n + k, (step + 1) % TUBE * n + k
+    return rings.reshape(-1, 3), np.stack([a, b, b + 1, a + 1], axis=-1).reshape(-1, 4)
 
 
 def _superellipsoid(

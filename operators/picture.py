@@ -1,45 +1,127 @@
-"""The sheet's rows: the recording above, the adapted motion below."""
+"""The pictures of a result: the body at instants, with what holds it (thesis 6)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 
-from ..bridge.sheet import Limb, SheetRow, draw_sheet
+from ..bridge.marks import Bar, Mark, Span, Sphere
+from ..bridge.sheet import Limb, SheetRow, View, draw_sheet
 from ..solver.adapt import Adaptation
+from ..solver.anatomy import Part
 from ..solver.character import Body
-from ..solver.contacts import PhaseKind
+from ..solver.contacts import Phase, PhaseKind
+from ..solver.motion import Motion
 from ..solver.problem import Axes3, MotionProblem, Pin
 from ..solver.recording import FloatArray
 
+FEET = (Part.FOOT, Part.TOE)
+BESIDE_HANDS = 0.3  # m, how far a bar reaches beyond the hands that hold it
+FIGURES = 9  # of a motion alone
+TRAVELS = 0.3  # m, less is no direction
 
-def draw(adaptation: Adaptation, problem: MotionProblem, path: Path) -> None:
-    """Renders both motions into a PNG file. Raises OutputNotWritable."""
-    performance, motion = adaptation.fit.performance, adaptation.motion
-    bodies, times = performance.character.bodies, performance.times
-    posed, com = motion.pose(times), motion.com(times)
+
+def draw(
+    adaptation: Adaptation, problem: MotionProblem, path: Path, marks: Sequence[Mark] = ()
+) -> None:
+    """The recording above, the adapted motion with its marks below, as a PNG file.
+
+    The marks' arrays are constant, or sampled at `instants(adaptation.motion)`.
+    Raises OutputNotWritable.
+    """
     edit = "; ".join(map(caption, problem.pins)) or "made to obey physics"
-    contacts, keys = adaptation.fit.schedule.contacts, key_times(adaptation)
-    spans = tuple((c.start, c.end) for c in contacts)
-    recorded = SheetRow(
+    rows = [recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)]
+    draw_sheet(rows, path, View(heading=heading(adaptation)))
+
+
+def draw_result(adaptation: Adaptation, title: str, path: Path, marks: Sequence[Mark] = ()) -> None:
+    """The adapted motion alone, as in the thesis's gallery; otherwise as `draw`."""
+    view = View(figures=FIGURES, heading=heading(adaptation))
+    draw_sheet([adapted_row(adaptation, title, marks)], path, view)
+
+
+def heading(adaptation: Adaptation) -> tuple[float, float] | None:
+    """Where the recording travels, so that a diagonal shows as one; None if it hardly does."""
+    com = adaptation.fit.performance.com
+    x, y = (com[-1] - com[0])[:2].tolist()
+    return (x, y) if np.hypot(x, y) > TRAVELS else None
+
+
+def instants(motion: Motion, rate: float = 120.0) -> FloatArray:
+    """(T,) s, at which a motion's row, and marks that vary, are sampled."""
+    return np.linspace(0.0, motion.duration, max(2, round(motion.duration * rate) + 1))
+
+
+def recorded_row(adaptation: Adaptation) -> SheetRow:
+    """The recording with the contacts found in it."""
+    performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
+    bodies = performance.character.bodies
+    return SheetRow(
         f"Recording: {performance.recording.name}",
-        times,
+        performance.times,
         tuple(limbs(bodies, performance.rotations, performance.centres)),
         performance.com,
-        np.array([c.place for c in contacts]).reshape(-1, 3),
-        keys,
-        spans,
+        np.array([c.place for c in schedule.contacts]).reshape(-1, 3),
+        key_times(adaptation.fit.motion, schedule.phases),
+        tuple((c.start, c.end) for c in schedule.contacts),
     )
-    adapted = SheetRow(
-        f"Adapted: {edit}",
+
+
+def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) -> SheetRow:
+    """The adapted motion with its contacts: spheres, and a bar where hands hold on."""
+    motion, phases = adaptation.motion, adaptation.plan.schedule.phases
+    t, times = motion.transcription, instants(motion)
+    posed, com = motion.pose(times), motion.com(times)
+    holds = tuple(contact_holds(motion, times))
+    feet = [hold for hold in holds if hold.part in FEET and hold.place.ndim == 1]
+    others = [hold for hold in holds if hold not in feet]
+    ground = [*adaptation.fit.places[:, 2], *(hold.place[2] for hold in feet)]
+    return SheetRow(
+        title,
         times,
-        tuple(limbs(bodies, posed.rotations, posed.centres + com[:, None])),
+        tuple(limbs(t.character.bodies, posed.rotations, posed.centres + com[:, None])),
         com,
-        adaptation.places,
-        keys,
-        spans,
+        np.array([hold.place for hold in feet]).reshape(-1, 3),
+        key_times(motion, phases),
+        tuple(hold.span for hold in feet),
+        (*(Sphere(hold.place, hold.span) for hold in others), *bars(others), *marks),
+        min(ground, default=None),
     )
-    draw_sheet([recorded, adapted], path)
+
+
+@dataclass(frozen=True, eq=False)
+class ContactHold:
+    """Where and when a contact holds a part of the body. place: (3,), or (T, 3) if it moves, m."""
+
+    part: Part
+    place: FloatArray
+    span: Span
+
+
+def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
+    """Every contact of a motion; where it moves, at the instants (T,)."""
+    t = motion.transcription
+    for contact, place in zip(t.contacts, motion.places, strict=True):
+        body = t.character.bodies[t.points[contact.point].body]
+        if contact.track is not None:
+            moves = [np.interp(times, contact.track.times, x) for x in contact.track.moves.T]
+            place = place + np.stack(moves, axis=1)
+        yield ContactHold(body.part, place, (contact.contact.start, contact.contact.end))
+
+
+def bars(holds: Sequence[ContactHold]) -> Iterator[Bar]:
+    """A level bar through each two hands that hold on at the same time."""
+    hands = [hold for hold in holds if hold.part is Part.HAND]
+    for one, other in combinations(hands, 2):
+        span = max(one.span[0], other.span[0]), min(one.span[1], other.span[1])
+        along = (other.place - one.place) * [1.0, 1.0, 0.0]
+        length = np.linalg.norm(along, axis=-1, keepdims=True)
+        if span[0] < span[1] and length.min() > 1e-3:
+            reach = (0.5 + BESIDE_HANDS / length) * along
+            middle = 0.5 * (one.place + other.place)
+            yield Bar(middle - reach, middle + reach, span=span)
 
 
 def limbs(bodies: Iterable[Body], rotations: FloatArray, centres: FloatArray) -> Iterable[Limb]:
@@ -50,15 +132,16 @@ def limbs(bodies: Iterable[Body], rotations: FloatArray, centres: FloatArray) ->
         yield Limb(body.name, body.box_size, middle, turn @ body.box_rotation)
 
 
-def key_times(adaptation: Adaptation) -> tuple[float, ...]:
-    """Take-off, apex and landing of every flight, s."""
-    keys: list[float] = []
-    for phase in adaptation.fit.schedule.phases:
+def key_times(motion: Motion, phases: Iterable[Phase]) -> tuple[float, ...]:
+    """Take-off and landing of every flight, then its apex, s."""
+    edges: list[float] = []
+    apexes: list[float] = []
+    for phase in phases:
         if phase.kind is PhaseKind.FLIGHT:
             during = np.linspace(phase.start, phase.end, 100)
-            apex = during[adaptation.motion.com(during)[:, 2].argmax()]
-            keys += [phase.start, float(apex), phase.end]
-    return tuple(keys)
+            edges += [phase.start, phase.end]
+            apexes.append(float(during[motion.com(during)[:, 2].argmax()]))
+    return (*edges, *apexes)
 
 
 def caption(pin: Pin) -> str:

@@ -1,5 +1,6 @@
 """The picture of a result: what it shows, where, and that it leaves no trace in the scene."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from hangtime.bridge import sheet_layout  # noqa: E402
-from hangtime.bridge.sheet import Limb, SheetRow, draw_sheet  # noqa: E402
+from hangtime.bridge.sheet import Limb, SheetRow, View, draw_sheet  # noqa: E402
 from hangtime.solver.faults import OutputNotWritable  # noqa: E402
 
 TIMES = np.linspace(0.0, 1.0, 61)
@@ -128,7 +129,7 @@ def test_key_instants_are_shown_and_figures_keep_apart(rows):
         for key in row.key_times:
             assert np.abs(times - key).min() < 0.01
         x = np.array([figure.com[0] for figure in tier.figures])
-        assert 7 <= len(x) <= sheet_layout.FIGURES
+        assert 7 <= len(x) <= View().figures
         assert np.diff(x).min() > 0.3
 
 
@@ -152,6 +153,26 @@ def test_travel_runs_to_the_right_whatever_the_heading():
         tier = sheet_layout.lay_out([hopper("Recording", heading=heading)]).tiers[0]
         np.testing.assert_allclose(tier.path[:, 1], 0.0, atol=1e-9)
         assert np.diff(tier.path[:, 0]).min() > -1e-9
+
+
+def test_the_heading_asked_for_runs_to_the_right():
+    row = hopper("Diagonal", heading=0.5)
+    tier = sheet_layout.lay_out([row], View(heading=(1.0, 0.0))).tiers[0]
+    aside = tier.path[-1, 1] - tier.path[0, 1]
+    assert aside == pytest.approx(np.sin(0.5))
+
+
+def test_the_floor_is_where_the_row_says(rows):
+    low = replace(rows[1], pins=rows[1].pins[1:], pin_times=rows[1].pin_times[1:])
+    assert sheet_layout.lay_out([low]).tiers[0].steps == ()
+    assert len(sheet_layout.lay_out([replace(low, ground=0.0)]).tiers[0].steps) == 1
+
+
+def test_key_times_that_would_hide_each_other_are_not_both_shown(rows):
+    row = replace(rows[0], key_times=(0.55, 0.57))
+    times = [figure.time for figure in sheet_layout.lay_out([row]).tiers[0].figures]
+    assert 0.55 in np.round(times, 2)
+    assert 0.57 not in np.round(times, 2)
 
 
 def test_a_jump_in_place_faces_right_and_is_spread():
