@@ -106,11 +106,15 @@ def _reported(
     outbox: Outbox,
     stages: Stages,
 ) -> NoSolution:
-    """Why a solve failed, places before physics, once the report is written."""
+    """Why a solve failed, places before physics, once the report and the best motion that was
+    found are written."""
+    if adaptation.reached > 0.0:
+        _write_actions(loaded, adaptation, called="best found, short of the goal")
+        _save_blend(outbox.path("best_found.blend"))
     _write_report(_measured(job, loaded, adaptation, stages), outbox)
     outbox.deliver()
     missed = sorted(worst_constraints(adaptation, job.problem), key=lambda each: each[2] != "mm")
-    return kind(adaptation.outcome.status.value, tuple(missed[:3]))
+    return kind(adaptation.outcome.status.value, tuple(missed[:3]), adaptation.reached)
 
 
 # ---------------------------------------------------------------- in
@@ -223,7 +227,9 @@ def _write_report(content: Json, outbox: Outbox) -> None:
     outbox.write_text("report.txt", as_text(content))
 
 
-def _write_actions(loaded: Loaded, adaptation: Adaptation) -> "bpy.types.Action":
+def _write_actions(
+    loaded: Loaded, adaptation: Adaptation, *, called: str = "adapted"
+) -> "bpy.types.Action":
     """The adapted action on the armature, the recording's on a copy beside it."""
     import bpy
 
@@ -232,7 +238,7 @@ def _write_actions(loaded: Loaded, adaptation: Adaptation) -> "bpy.types.Action"
     performance = adaptation.fit.performance
     recorded = loaded.armature.animation_data.action
     track = adaptation.track
-    adapted = write_action(loaded.armature, track, name=f"{recorded.name} adapted")
+    adapted = write_action(loaded.armature, track, name=f"{recorded.name} {called}")
     x, y = (performance.com[-1] - performance.com[0])[:2]
     far = float(np.hypot(x, y))
     beside = (-ASIDE * y / far, ASIDE * x / far, 0.0) if far > 0.05 else (ASIDE, 0.0, 0.0)

@@ -140,7 +140,10 @@ def _(fault: faults.NoFit) -> str:
 
 def _furthest_off(fault: faults.NoSolution) -> str:
     worst = "; ".join(_missed(*each) for each in fault.worst)
-    return f" Furthest off: {worst}." if worst else ""
+    if not worst:
+        return ""
+    way = f"The best found goes {100.0 * fault.reached:.0f} % of the way; furthest off"
+    return f" {way if fault.reached else 'Furthest off'}: {worst}."
 
 
 @sentence.register
@@ -205,6 +208,14 @@ def _(fault: faults.RootHasNoJoint) -> str:
     return (
         f"{_quoted(fault.request)} limits the joint of {_quoted(fault.bone)}, but that is the root, "
         "which has no joint; choose a bone that hangs on another."
+    )
+
+
+@sentence.register
+def _(fault: faults.NeedsTorques) -> str:
+    return (
+        f"{_quoted(fault.request)} limits a torque, but the reduced dynamics have none; "
+        'choose "automatic" or "standard" dynamics.'
     )
 
 
@@ -294,6 +305,16 @@ def _missed(name: str, amount: float, unit: str) -> str:
             return f"in {name}, {amount:.3g} of the body's weight is not carried as it must be"
         case "BW·m":
             return f"in {name}, the body turns without cause ({amount:.3g} BW·m)"
+        case "N·m beyond the limit":
+            return f"{_quoted(name)} needs {amount:.3g} N·m more than its limit"
+        case "degrees":
+            return f"{_quoted(name)} is missed by {amount:.3g}°"
+        case "BW of pull":
+            return f"{_quoted(name)} would have to pull with {amount:.3g} of the body's weight"
+        case "BW beyond friction":
+            return f"{_quoted(name)} slips: {amount:.3g} of the body's weight beyond its friction"
+        case "BW beyond the cap":
+            return f"{_quoted(name)} is exceeded by {amount:.3g} of the body's weight"
     return f"{name}: {amount:.3g} {unit}"
 
 

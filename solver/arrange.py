@@ -23,7 +23,7 @@ from .build import (
 from .closeness import Prices
 from .contacts import Contact, ContactSchedule
 from .dynamics import GRAVITY, MomentFunction
-from .faults import UnknownPhaseIn
+from .faults import NeedsTorques, UnknownPhaseIn
 from .fit import (
     ADAPT_PRICES,
     SHORTEST_SPAN,
@@ -42,7 +42,7 @@ from .pins import PointContact, Track
 from .problem import MotionProblem, pinned_places, travel_axes
 from .recording import FloatArray, Recording
 from .reduction import reduce
-from .requests import ConeShape, Method, PointRequest, Requests
+from .requests import ConeShape, Dynamics, Method, PointRequest, Requests
 from .splines import Basis, phase_breaks
 from .timeline import timeline
 from .torque import TorqueFunction, every_torque
@@ -89,6 +89,8 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults.
     """
     requests, recording = problem.requests, fit.performance.recording
+    if requests.torques and requests.solution.dynamics is Dynamics.REDUCED:
+        raise NeedsTorques(requests.torques[0].name)
     rate = (len(recording.times) - 1) / float(recording.times[-1])
     first = float(recording.frames[0])
     line = timeline(fit.schedule, first, rate, requests.timings, requests.holds)

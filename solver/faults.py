@@ -117,10 +117,14 @@ class ContradictoryPins(Fault):
 
 @dataclass
 class NoSolution(Fault):
-    """The solver ended without meeting every constraint; worst first: (name, violation, unit)."""
+    """The solver ended without meeting every constraint; worst first: (name, violation, unit).
+
+    reached: the share of the way that the best motion found goes.
+    """
 
     reason: str
     worst: tuple[tuple[str, float, str], ...] = ()
+    reached: float = 0.0
 
 
 @dataclass
@@ -245,3 +249,10 @@ class RootHasNoJoint(Fault):
 
     request: str
     bone: str
+
+
+@dataclass
+class NeedsTorques(Fault):
+    """A torque was limited, but the reduced dynamics that were chosen have none."""
+
+    request: str

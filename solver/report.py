@@ -22,7 +22,9 @@ from .pins import PointContact
 from .problem import Axes3, MotionProblem, Pin, chosen_contacts, phase_of
 from .projection import Outcome
 from .recording import FloatArray
+from .requests import Dynamics, Method
 from .rows import RowKind
+from .torque_curve import exact_torques, torque_curve
 from .trajectory import instants
 
 RATE = 1000.0  # Hz, of what is measured between the nodes
@@ -75,7 +77,9 @@ def report(
         ],
         "between_nodes": dense_residuals(motion, schedule.phases),
         "forces": _forces(motion, adaptation),
+        "torques": _torques(adaptation, problem) if _in_play(problem) else None,
         "fit_to_recording": closeness(fit),
+        "change": change(adaptation),
         "jumps": _jumps(adaptation),
     }
     finite: Json = _finite(content)
@@ -321,7 +325,48 @@ def closeness(fit: Fit) -> Json:
     }
 
 
+def _in_play(problem: MotionProblem) -> bool:
+    """Whether torques matter to the problem."""
+    solution = problem.requests.solution
+    return (
+        bool(problem.requests.torques)
+        or solution.method is not Method.IMPLICIT
+        or solution.dynamics is Dynamics.STANDARD
+    )
+
+
+def _torques(adaptation: Adaptation, problem: MotionProblem) -> Json:
+    """The largest torque at every joint, and the splines that hold them."""
+    motion, torques = adaptation.motion, adaptation.plan.torques
+    times = (instants(motion.duration, RATE) + 0.5 / RATE)[:-1]
+    sizes = np.abs(exact_torques(motion, torques, times))
+    character = motion.transcription.character
+    peaks = {}
+    for body, joint in zip(character.bodies[1:], character.joints[1:], strict=True):
+        peaks[body.bone] = float(sizes[:, joint.first - 3 : joint.dofs.stop - 3].max())
+    curve = torque_curve(motion, torques, longest=problem.requests.solution.torque_span)
+    return {
+        "peaks_nm": [{"bone": bone, "peak_nm": peak} for bone, peak in peaks.items()],
+        "spline_unknowns": curve.n_coefficients * sizes.shape[1],
+        "spline_error_rms_nm": curve.error,
+    }
+
+
 # ---------------------------------------------------------------- what changed
+
+
+def change(adaptation: Adaptation) -> Json:
+    """How far the motion is from the fit, at the recording's frames and on its own time."""
+    times = adaptation.fit.performance.times
+    moved = adaptation.plan.scene.timeline.to_new(times)
+    kept = moved <= adaptation.motion.duration
+    was, now = adaptation.fit.motion, adaptation.motion
+    places = now.joint_centres(moved[kept]) - was.joint_centres(times[kept])
+    angles = now.angles(moved[kept])[:, 3:] - was.angles(times[kept])[:, 3:]
+    return {
+        "joint_centres_rms_cm": 100.0 * _rms(np.linalg.norm(places, axis=2)),
+        "joint_angles_rms_deg": math.degrees(_rms(angles)),
+    }
 
 
 def _jumps(adaptation: Adaptation) -> list[Json]:

@@ -128,4 +128,4 @@ def _stepper(request: int, tell: Tell) -> Callable[[Step], None]:
 
 def _unsolved(kind: type[NoSolution], adaptation: Adaptation, problem: MotionProblem) -> NoSolution:
     worst = worst_constraints(adaptation, problem)[:MOST_LISTED]
-    return kind(adaptation.outcome.status.value, tuple(worst))
+    return kind(adaptation.outcome.status.value, tuple(worst), adaptation.reached)
