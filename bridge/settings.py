@@ -17,7 +17,9 @@ from ..solver.digest import digest
 from ..solver.messages import Analysed
 from ..solver.problem import ContactEdit, MotionProblem, Pin
 from ..solver.recording import Recording
+from ..solver.requests import Requests
 from .poses import frames_per_second, metres_per_unit
+from .recipe import parse_recipe
 from .stances import place
 
 if TYPE_CHECKING:
@@ -50,7 +52,16 @@ def problem_of(
         mass_table=MassTable[settings.mass_table],
         contacts=_edits(settings) if with_contacts else (),
         pins=_pins(settings, span) if with_contacts else (),
+        requests=_requests(settings) if with_contacts else Requests(),
     )
+
+
+def _requests(settings: HangtimeSettings) -> Requests:
+    """What the armature's text of requests says; it is a recipe's. Raises BadRecipe."""
+    if settings.requests is None:
+        return Requests()
+    text = settings.requests
+    return parse_recipe(text.as_string(), text.name).problem.requests
 
 
 def _edits(settings: HangtimeSettings) -> tuple[ContactEdit, ...]:

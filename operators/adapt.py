@@ -6,12 +6,16 @@ from dataclasses import dataclass
 
 import bpy
 
+from ..bridge.other_figure import other_figure
 from ..bridge.settings import problem_of, wanted_range
 from ..bridge.takes import read_take, recorded_action, write_take
 from ..bridge.worker import Job, Kind, shared
+from ..bridge.write import write_action
 from ..solver.digest import digest
 from ..solver.faults import ChangedMeanwhile, Fault
 from ..solver.messages import Adapted, Failed, Progress
+from ..solver.proportions import changed_recording
+from ..solver.recording import Recording
 from .common import FaultyOperator, chosen_armature, hindrance, said
 from .names import OperatorId
 
@@ -124,9 +128,21 @@ def finish(asked: Asked) -> str:
         raise answer.fault
     assert isinstance(answer, Adapted)
     armature = _unchanged(asked)
+    limbs = asked.job.request.problem.requests.body.limbs
+    if limbs:
+        return _write_other(changed_recording(asked.job.request.recording, limbs), answer, armature)
     write_take(armature, answer.track)
     armature.hangtime.status = summary(answer)
     return f"Wrote the action {armature.animation_data.action.name}"
+
+
+def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Object) -> str:
+    """The answer on an armature of its own, for the artist's keeps its proportions."""
+    other, track, _ = other_figure(recording, answer.track)
+    other.name = f"{armature.name} changed"
+    write_action(other, track, name=f"{recording.name} adapted")
+    armature.hangtime.status = summary(answer)
+    return f"Made the armature {other.name}, which performs the adapted motion"
 
 
 def _unchanged(asked: Asked) -> bpy.types.Object:

@@ -59,6 +59,14 @@ class Loaded:
     analysis: Analysis
 
 
+@dataclass(frozen=True)
+class Performed:
+    """An adapted action, and the armature that performs it."""
+
+    armature: "bpy.types.Object"
+    action: "bpy.types.Action"
+
+
 def run(job: Job, stages: Stages) -> list[Path]:
     """Does the whole job and returns the files written.
 
@@ -202,7 +210,7 @@ def _write_results(
     with stages.stage("Exporting FBX"), quiet():
         from ..bridge.export import export_fbx
 
-        export_fbx(loaded.armature, adapted, outbox.path("adapted.fbx"))
+        export_fbx(adapted.armature, adapted.action, outbox.path("adapted.fbx"))
     with stages.stage("Drawing the picture"), quiet():
         from .picture import draw
 
@@ -229,24 +237,31 @@ def _write_report(content: Json, outbox: Outbox) -> None:
 
 def _write_actions(
     loaded: Loaded, adaptation: Adaptation, *, called: str = "adapted"
-) -> "bpy.types.Action":
-    """The adapted action on the armature, the recording's on a copy beside it."""
+) -> "Performed":
+    """The adapted action on the armature, or on one of its own where limbs were changed; the
+    recording's on a copy beside it."""
     import bpy
 
+    from ..bridge.other_figure import other_figure
     from ..bridge.write import side_by_side, write_action
 
     performance = adaptation.fit.performance
     recorded = loaded.armature.animation_data.action
-    track = adaptation.track
-    adapted = write_action(loaded.armature, track, name=f"{recorded.name} {called}")
+    armature, track = loaded.armature, adaptation.track
+    if adaptation.plan.requests.body.limbs:
+        armature, track, _ = other_figure(adaptation.plan.recording, track)
+    adapted = write_action(armature, track, name=f"{recorded.name} {called}")
     x, y = (performance.com[-1] - performance.com[0])[:2]
     far = float(np.hypot(x, y))
     beside = (-ASIDE * y / far, ASIDE * x / far, 0.0) if far > 0.05 else (ASIDE, 0.0, 0.0)
-    side_by_side(loaded.armature, recorded, adapted, offset=beside)
+    if armature is loaded.armature:
+        side_by_side(armature, recorded, adapted, offset=beside)
+    else:  # the recording's own armature performs it
+        loaded.armature.location = np.add(loaded.armature.location, beside)
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end = (round(track.frames[k]) for k in (0, -1))
     scene.frame_set(scene.frame_start)
-    return adapted
+    return Performed(armature, adapted)
 
 
 def _save_blend(path: Path) -> None:

@@ -79,9 +79,7 @@ def _of_condition(condition: Condition, figure: _Posed) -> Iterator[Mark]:
             yield _ghost(wanted, figure, span)
 
 
-def _limit(
-    bend: measures.Bend, condition: Condition, figure: _Posed, span: Span
-) -> Iterator[Mark]:
+def _limit(bend: measures.Bend, condition: Condition, figure: _Posed, span: Span) -> Iterator[Mark]:
     body = figure.body_of(bend.joint.first)
     lower, upper = float(condition.bounds.lower[0]), float(condition.bounds.upper[0])
     if upper - lower < SAME:
@@ -114,9 +112,7 @@ def _ghost(wanted: measures.Angles, figure: _Posed, span: Span) -> Ghost:
     return Ghost(centres + middles, boxes, np.array([b.box_size for b in bodies]), span)
 
 
-def _limp(
-    torques: Iterable[TorqueLimit], adaptation: Adaptation, figure: _Posed
-) -> Iterator[Tint]:
+def _limp(torques: Iterable[TorqueLimit], adaptation: Adaptation, figure: _Posed) -> Iterator[Tint]:
     """The limbs whose joints' torques are bounded, while they are."""
     bodies = {body.bone: body.name for body in figure.character.bodies}
     spans = {

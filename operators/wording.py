@@ -206,8 +206,8 @@ def _(fault: faults.BadTiming) -> str:
 @sentence.register
 def _(fault: faults.RootHasNoJoint) -> str:
     return (
-        f"{_quoted(fault.request)} limits the joint of {_quoted(fault.bone)}, but that is the root, "
-        "which has no joint; choose a bone that hangs on another."
+        f"{_quoted(fault.request)} limits the joint of {_quoted(fault.bone)}, but that is the "
+        "root, which has no joint; choose a bone that hangs on another."
     )
 
 

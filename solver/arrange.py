@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .body_changes import changed_character, changed_points, changed_recording, reseated
+from .body_changes import changed_character, changed_points, reseated
 from .build import (
     Scene,
     conditions,
@@ -40,6 +40,7 @@ from .motion import Motion
 from .objectives import torque_metric
 from .pins import PointContact, Track
 from .problem import MotionProblem, pinned_places, travel_axes
+from .proportions import changed_recording
 from .recording import FloatArray, Recording
 from .reduction import reduce
 from .requests import ConeShape, Dynamics, Method, PointRequest, Requests

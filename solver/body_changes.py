@@ -6,7 +6,7 @@ of it moves by its share of the way from head to tail, what hangs on it moves wi
 it hangs.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,80 +14,16 @@ import numpy as np
 from .anatomy import Segment
 from .body_shapes import joined, stretched
 from .character import Body, Character, _height
-from .faults import NotAboveZero, UnknownBone
 from .kinematics import BodyPoint, pose
 from .motion import Motion
+from .proportions import above_zero, along, index_of, limb_factors
 from .recording import Bone, FloatArray, Recording
-from .requests import AddedMass, BodyChange, LimbChange
+from .requests import AddedMass, BodyChange
 from .splines import gauss_instants
 
 SAME_PLACE = 1e-9  # m
 SWING = 1e-9  # weight against third derivatives where a first guess jumps between contacts
 WHOLE_BODY = "body"  # what a fault calls the change of the total mass
-
-
-# ---------------------------------------------------------------- the skeleton
-
-
-def changed_recording(recording: Recording, limbs: tuple[LimbChange, ...]) -> Recording:
-    """The recording as a figure of other proportions would move with the same rotations.
-
-    Factors multiply where several changes name a bone. The roots' heads keep their tracks; what a
-    bone slides against its parent in the recording it still does. Raises UnknownBone, NotAboveZero.
-    """
-    longer = _longer(recording, limbs)
-    bones, moved = list(recording.bones), np.zeros_like(recording.heads)
-    rest = np.zeros((len(bones), 3))
-    for b, bone in enumerate(recording.bones):
-        if bone.parent >= 0:
-            parent = recording.bones[bone.parent]
-            shift = along(parent, bone.head) * longer[bone.parent]
-            turn = recording.rotations[:, bone.parent] @ parent.rotation.T
-            rest[b] = rest[bone.parent] + shift
-            moved[:, b] = moved[:, bone.parent] + turn @ shift
-        bones[b] = replace(bone, head=bone.head + rest[b], tail=bone.tail + rest[b] + longer[b])
-    return replace(recording, bones=tuple(bones), heads=recording.heads + moved)
-
-
-def along(bone: Bone, point: FloatArray) -> float:
-    """How far along a bone a rest point (3,) lies: 0 at or before its head, 1 at or past its tail.
-
-    0 for a bone of no length.
-    """
-    span = bone.tail - bone.head
-    square = float(span @ span)
-    return float(np.clip((point - bone.head) @ span / square, 0.0, 1.0)) if square > 0.0 else 0.0
-
-
-def _longer(recording: Recording, limbs: Sequence[LimbChange]) -> FloatArray:
-    """(B, 3) how much further each bone's tail is from its head at rest, m, world."""
-    factors = _factors(recording, limbs, lambda limb: limb.length)
-    spans = np.stack([bone.tail - bone.head for bone in recording.bones])
-    return np.asarray((factors - 1.0)[:, None] * spans)
-
-
-def _factors(
-    recording: Recording, limbs: Sequence[LimbChange], of: Callable[[LimbChange], float]
-) -> FloatArray:
-    """(B,) the product of the limbs' factors, bone by bone."""
-    factors = np.ones(len(recording.bones))
-    for limb in limbs:
-        for bone in limb.bones:
-            factors[_index(recording, limb.name, bone)] *= _above_zero(limb.name, of(limb))
-    return factors
-
-
-def _index(recording: Recording, request: str, bone: str) -> int:
-    try:
-        return recording.index(bone)
-    except KeyError:
-        raise UnknownBone(request, bone) from None
-
-
-def _above_zero(request: str, amount: float) -> float:
-    if not amount > 0.0:
-        raise NotAboveZero(request, amount)
-    return amount
 
 
 # ---------------------------------------------------------------- the rigid bodies
@@ -174,11 +110,11 @@ def _rest_centres(character: Character, offsets: Sequence[FloatArray]) -> list[F
 
 def _weighed(bodies: Sequence[Body], change: BodyChange, recording: Recording) -> list[Body]:
     """The bodies with their masses changed; other density, same shape."""
-    by_bone = _factors(recording, change.limbs, lambda limb: limb.mass)
+    by_bone = limb_factors(recording, change.limbs, lambda limb: limb.mass)
     factors = np.array([by_bone[recording.index(body.bone)] for body in bodies])
     if change.mass is not None:
         together = factors @ np.array([body.mass for body in bodies])
-        factors *= _above_zero(WHOLE_BODY, change.mass) / together
+        factors *= above_zero(WHOLE_BODY, change.mass) / together
     return [
         replace(body, mass=float(factor) * body.mass, inertia=factor * body.inertia)
         for body, factor in zip(bodies, factors, strict=True)
@@ -189,7 +125,7 @@ def _loaded(
     bodies: Sequence[Body], added: AddedMass, total: float, changed: Recording
 ) -> list[Body]:
     """The bodies with a ball joined to one of them; total: the body's mass that shares are of."""
-    bone = changed.bones[_index(changed, added.name, added.bone)]
+    bone = changed.bones[index_of(changed, added.name, added.bone)]
     home = _carrier(bodies, bone, changed)
     mass = (added.mass or 0.0) + (added.share or 0.0) * total
     reach = bone.tail - bone.head
@@ -197,7 +133,7 @@ def _loaded(
         reach = bone.rotation @ np.array(added.offset)
     start = changed.bones[changed.index(bodies[home].bone)].head
     loaded = list(bodies)
-    ball = _above_zero(added.name, mass)
+    ball = above_zero(added.name, mass)
     loaded[home] = joined(bodies[home], ball, bone.head + reach - start)
     return loaded
 

@@ -127,6 +127,10 @@ class AdaptPanel(_SidebarPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        requests = layout.column()
+        requests.label(text="Limits, Poses, Loads, Timing")
+        settings = chosen_armature(context).hangtime
+        requests.template_ID(settings, "requests", new="text.new", open="text.open")
         adapt = layout.row()
         adapt.scale_y = 1.5
         adapt.operator(OperatorId.ADAPT, icon="PLAY")

@@ -168,6 +168,13 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         default=True,
     )
 
+    requests: bpy.props.PointerProperty(
+        name="Requests",
+        description="A text with limits, poses, torques, loads and whatever else a recipe may "
+        "hold; see the manual's page of recipes",
+        type=bpy.types.Text,
+    )
+
     adapted: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
     status: bpy.props.StringProperty(options=_HIDDEN)  # lines, ready to be drawn
 

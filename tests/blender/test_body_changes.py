@@ -5,7 +5,7 @@ import numpy as np
 from hangtime.bridge.build_armature import build_armature
 from hangtime.bridge.clip_of import clip_of
 from hangtime.bridge.read import read_recording
-from hangtime.solver.body_changes import changed_recording
+from hangtime.solver.proportions import changed_recording
 from hangtime.solver.recording import Recording
 from hangtime.solver.requests import LimbChange
 

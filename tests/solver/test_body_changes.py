@@ -12,7 +12,6 @@ from hangtime.devtools.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.body_changes import (
     changed_character,
     changed_points,
-    changed_recording,
     reseated,
 )
 from hangtime.solver.body_shapes import joined, stretched
@@ -25,6 +24,7 @@ from hangtime.solver.kinematics import BodyPoint, pose
 from hangtime.solver.mjcf import hinge_order, mjcf, state
 from hangtime.solver.motion import Motion, unexplained
 from hangtime.solver.performance import perform
+from hangtime.solver.proportions import changed_recording
 from hangtime.solver.recording import Recording
 from hangtime.solver.requests import AddedMass, BodyChange, LimbChange
 from hangtime.solver.trajectory import sample
