@@ -49,6 +49,7 @@ from .timeline import timeline
 from .torque import TorqueFunction, every_torque
 from .transcription import Transcription
 
+HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
 SAMPLES_PER_TRACK = 60.0  # Hz
 
 
@@ -251,7 +252,11 @@ def _mapped_basis(old: Basis, scene: Scene, extra: Sequence[float]) -> Basis:
     line, boundaries = scene.timeline, scene.schedule.boundaries
     fixed = sorted({*boundaries, *extra})
     kept: list[float] = []
-    for t in sorted({*line.to_new(old.breaks).tolist(), *(h.end for h in line.holds)}):
+    held = [
+        np.linspace(hold.start, hold.end, 1 + int(np.ceil((hold.end - hold.start) / HELD_SPAN)))
+        for hold in line.holds
+    ]
+    for t in np.unique(np.concatenate([line.to_new(old.breaks), *held])).tolist():
         near = min(abs(t - other) for other in (*fixed, *kept))
         if 0.0 < t < line.duration and near > SHORTEST_SPAN:
             kept.append(t)
