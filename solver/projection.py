@@ -30,12 +30,13 @@ from .transcription import Transcription
 
 # Speeds are weighed against places by the time in which they would move as far.
 NORM = {RowKind.PIN_SPEED: 30.0}
-PENALTY = 1e2
+PENALTY = 1e4
 MOST_SWEEPS = 8
 SWEEP_GAIN = 1e-3
 CHORD_GAIN = 0.03
 RIDGE = 1e-8
 SHORTEST_STEP = 0.005
+LET_STAND = 0.5  # of a bound's tolerance
 PATIENCE = 6  # steps
 ENOUGH = 0.05  # of the objective: what a further step must gain
 
@@ -292,8 +293,13 @@ class Linearised:
         return float((np.abs(self.rows.violation(value)) / self._tolerance).max())
 
     def merit(self, value: FloatArray) -> float:
-        """The summed squared violations over their tolerances (thesis eq. 4.6)."""
-        return float(((self.rows.violation(value) / self._tolerance) ** 2).sum())
+        """The summed squared violations in units of NORM (thesis eq. 4.6).
+
+        What a bound's tolerance lets stand counts nothing: it is large beside the equations'.
+        """
+        off = np.abs(self.rows.violation(value))
+        off[self._free] = np.maximum(off[self._free] - LET_STAND * self._tolerance[self._free], 0.0)
+        return float(((off / self._norm) ** 2).sum())
 
     def total(self, value: FloatArray) -> float:
         """The summed violations in units of NORM."""

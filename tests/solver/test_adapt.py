@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hangtime.solver.adapt import Adaptation, adapt
 from hangtime.solver.fit import fit
+from hangtime.solver.motion import unexplained
 from hangtime.solver.problem import Axes3, MotionProblem, Pin, pinned_places
 from hangtime.solver.projection import Step
 from hangtime.solver.session import analyse
@@ -139,21 +140,21 @@ def test_feet_that_land_ten_metres_apart_end_soon_and_say_so() -> None:
 
 
 @pytest.mark.slow
-def test_ten_metres_further_ends_in_bounded_steps() -> None:
+@pytest.mark.parametrize("height", [0.0, 8.0])
+def test_ten_metres_further_ends_in_bounded_steps(height: float) -> None:
+    """What is returned obeys physics, falls short of the landing, and is marked as such."""
     steps: list[Step] = []
-    problem = MotionProblem(pins=(Pin("far", LANDING, offset=(10.0, 0.0, 8.0)),))
+    problem = MotionProblem(pins=(Pin("far", LANDING, offset=(10.0, 0.0, height)),))
     adaptation = adapt(fitted_hop(), problem, progress=steps.append)
     assert not adaptation.solved
     assert adaptation.outcome.violation > 1.0
-    assert len(steps) < 600
+    assert len(steps) < 200
     assert finite(adaptation)
-
-
-@pytest.mark.slow
-@pytest.mark.xfail(reason="no bound on friction: feet that push sideways at will", strict=True)
-def test_ten_metres_further_on_the_level_is_refused() -> None:
-    problem = MotionProblem(pins=(Pin("far", LANDING, offset=(10.0, 0.0, 0.0)),))
-    assert not adapt(fitted_hop(), problem).solved
+    assert 0.0 < adaptation.reached < 1.0
+    motion = adaptation.motion
+    times = np.linspace(0.0, motion.duration, 300)
+    assert np.abs(unexplained(motion, times).force).max() < 1e-3
+    assert np.linalg.norm(contact_places(adaptation) - motion.places, axis=1).max() > 1.0
 
 
 def test_progress_is_reported_step_by_step() -> None:

@@ -54,6 +54,26 @@ def test_windows_may_skip_blocks() -> None:
     assert banded.times(x).ravel() == pytest.approx(dense @ x.ravel(), abs=1e-10)
 
 
+def test_many_right_sides_are_solved_at_once() -> None:
+    banded, dense = random_matrix(4, 7, 3)
+    b = np.random.default_rng(6).normal(size=(7, 3, 5))
+    factor = banded.factor()
+    x = factor.backward(factor.forward(b))
+    assert x.reshape(21, 5) == pytest.approx(np.linalg.solve(dense, b.reshape(21, 5)))
+    half = factor.forward(b).reshape(21, 5)
+    assert half.T @ half == pytest.approx(b.reshape(21, 5).T @ x.reshape(21, 5))
+
+
+def test_another_basis_of_every_block() -> None:
+    """A reduced figure's matrix: T'AT."""
+    banded, dense = random_matrix(5, 6, 4)
+    T = np.random.default_rng(7).normal(size=(4, 2))
+    changed = banded.changed(T)
+    whole = np.kron(np.eye(6), T)
+    x = np.random.default_rng(8).normal(size=(6, 2))
+    assert changed.times(x).ravel() == pytest.approx(whole.T @ dense @ whole @ x.ravel())
+
+
 def test_solving_leaves_matrix_and_right_side_alone() -> None:
     banded, dense = random_matrix(2, 6, 3)
     b = np.ones((6, 3))

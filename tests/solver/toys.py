@@ -31,6 +31,7 @@ from hangtime.solver.transcription import Transcription
 DURATION = 0.3  # s
 LIFT = 0.15  # s, when the right foot leaves
 STEP = 1e-6
+CROUCH = np.array([0.0, 0.0, 0.0, 0.4, 0.0, -0.8, 0.4, 0.0, -0.8])  # rad
 RATE = 100.0  # scene frames a second of the small figure's recording, whose first frame is 1
 
 
@@ -81,8 +82,8 @@ def standing() -> Transcription:
 
 
 def contacts() -> tuple[PointContact, ...]:
-    """Each foot where it is when every angle is zero and the centre of mass one metre up."""
-    at = pose(figure(), np.zeros((1, figure().n_angles))).points(feet())[0] + [0.0, 0.0, 1.0]
+    """Each foot a little nearer than with straight legs and the centre of mass one metre up."""
+    at = pose(figure(), np.zeros((1, figure().n_angles))).points(feet())[0] + [0.0, 0.0, 1.08]
     ends = (DURATION, LIFT)
     bones = [figure().bodies[p.body].bone for p in feet()]
     made = [
@@ -117,9 +118,10 @@ def metric(motion: Motion) -> BlockBanded:
 
 @cache
 def stood() -> Motion:
-    """A valid motion near standing."""
-    start = Motion(standing(), random_state(3, size=0.02), places())
-    outcome = restored(standing(), start)
+    """A valid motion near standing, knees a little bent."""
+    x = random_state(3, size=0.02)
+    x[:, standing().layout.angles] += CROUCH
+    outcome = restored(standing(), Motion(standing(), x, places()))
     assert outcome.status is Status.SOLVED
     return Motion(standing(), outcome.x, places())
 
