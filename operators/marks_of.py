@@ -16,8 +16,8 @@ from ..solver.torque import Torques
 from .picture import instants
 
 DENSITY = 1000.0  # kg/m³, of what is carried
+SHAPE = np.array([0.9, 1.6, 0.7])  # of a cube's sides; thin where a hanging arm faces sideways
 ARC = 0.7  # radius of a limit's line, as a share of the limb
-FREE = np.radians(150.0)  # where a limit without an upper end is drawn to
 SAME = np.radians(0.5)  # limits nearer than this fix the joint
 
 
@@ -88,8 +88,8 @@ def _limit(bend: measures.Bend, condition: Condition, figure: _Posed, span: Span
         centre=figure.centres[:, body],
         zero=figure.in_world(body, bend.straight),
         normal=figure.in_world(body, np.cross(bend.straight, bend.flexion)),
-        lower=max(lower, -FREE),
-        upper=min(upper, FREE),
+        lower=upper if np.isinf(lower) else lower,  # one end alone is one line
+        upper=lower if np.isinf(upper) else upper,
         radius=ARC * float(np.linalg.norm(figure.character.bodies[body].tip)),
         span=span,
     )
@@ -126,17 +126,17 @@ def _limp(torques: Iterable[TorqueLimit], adaptation: Adaptation, figure: _Posed
 
 
 def _carried(added: AddedMass, figure: _Posed) -> Iterator[Box]:
-    """A cube as heavy as what is carried, where a body carries it."""
+    """A box as heavy as what is carried, where a body carries it."""
     bodies = figure.character.bodies
     body = next((i for i, b in enumerate(bodies) if b.bone == added.bone), None)
     if body is None:
         return
     total = figure.scene.fitted.transcription.character.mass
     mass = added.mass if added.mass is not None else (added.share or 0.0) * total
-    side = float(np.cbrt(mass / DENSITY))
+    side = np.cbrt(mass / DENSITY)
     at = bodies[body].tip
     if added.offset is not None:
         recording = figure.scene.recording
         at = recording.bones[recording.index(added.bone)].rotation @ np.array(added.offset)
     turns = figure.pose.rotations[:, body]
-    yield Box(figure.centres[:, body] + turns @ at, turns, np.full(3, side))
+    yield Box(figure.centres[:, body] + turns @ at, turns, side * SHAPE)

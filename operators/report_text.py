@@ -18,6 +18,8 @@ def as_text(report: Json) -> str:
     lines += [*_changes(report), ""]
     lines += [*_quality(report), ""]
     lines += [*_contacts(report), ""]
+    if report["conditions"]:
+        lines += [*_conditions(report), ""]
     lines += _stages(report)
     return "\n".join(lines) + "\n"
 
@@ -92,6 +94,18 @@ def _contacts(report: Json) -> Iterator[str]:
         span = f"{contact['start_frame']:.1f} to {contact['end_frame']:.1f}"
         off = f"{contact['worst_violation_mm']:.2f} mm"
         yield f"{contact['name']:<20}{span:>18}{off:>16}  {contact['pin'] or ''}".rstrip()
+
+
+def _conditions(report: Json) -> Iterator[str]:
+    yield f"{'Request':<24}{'':<14}held"
+    for each in report["conditions"]:
+        held = "yes"
+        if not each["met"]:
+            held = (
+                f"missed by {each['worst_violation']:.3g} {each['unit']} "
+                f"(frame {each['worst_violation_frame']:.0f})"
+            )
+        yield f"{each['name']:<24}{each['kind']:<14}{held}"
 
 
 def _stages(report: Json) -> Iterator[str]:

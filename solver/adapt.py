@@ -157,7 +157,7 @@ def finish(outcome: Outcome, plan: Arrangement, progress: Progress | None) -> li
             basis=plan.basis,
             progress=progress,
         )
-        outcomes.append(outcome)
         if not outcome.solved:
-            break
+            break  # what was solved for stands; what it misses in between is reported
+        outcomes.append(outcome)
     return outcomes

@@ -16,7 +16,8 @@ from .kinematics import BodyPoint
 from .measures import Angles, Bend, Cone, Orientation, PeakForce, Place, Twist
 from .motion import Motion
 from .objectives import Squares
-from .recording import FloatArray, Recording
+from .pins import between
+from .recording import FloatArray, IntArray, Recording
 from .requests import (
     AngleLimit,
     Axes,
@@ -241,15 +242,23 @@ def pose_measure(request: PoseRequest, scene: Scene) -> Angles:
     which = np.concatenate([np.arange(j.first, j.dofs.stop) for j in joints])
     if request.reference is Reference.REST:
         rest = [joint.axes.angles(np.eye(3)[None])[0] for joint in joints]
-        fixed = np.concatenate(rest)
-        return Angles(which, lambda times: np.tile(fixed, (len(times), 1)))
+        return _fixed_angles(which, np.concatenate(rest), scene)
     if request.frame is not None:
         at = (request.frame - scene.timeline.first_frame) / scene.timeline.rate
-        posed = scene.reference.angles(np.array([at]))[0, which]
-        return Angles(which, lambda times: np.tile(posed, (len(times), 1)))
+        return _fixed_angles(which, scene.reference.angles(np.array([at]))[0, which], scene)
     return Angles(
         which, lambda times: scene.reference.angles(scene.reference_times(times))[:, which]
     )
+
+
+def _fixed_angles(which: IntArray, posed: FloatArray, scene: Scene) -> Angles:
+    """Wanted angles, the turn of each nearest to the fit's."""
+
+    def wanted(times: FloatArray) -> FloatArray:
+        found = scene.reference.angles(scene.reference_times(times))[:, which]
+        return np.asarray(posed + 2 * np.pi * np.round((found - posed) / (2 * np.pi)))
+
+    return Angles(which, wanted)
 
 
 def preferred_poses(requests: Requests, scene: Scene, t: Transcription) -> list[Squares]:
@@ -347,10 +356,10 @@ def _reference_place(scene: Scene, point: BodyPoint, times: FloatArray) -> Float
 
 
 def path_places(path: Path, timeline: Timeline) -> Callable[[FloatArray], FloatArray]:
-    """A moving place as a function of instants, linear between its frames."""
+    """A moving place as a function of instants; see pins.between."""
     at = np.array([timeline.instant(frame) for frame in path.frames])
     places = np.array(path.places)
-    return lambda times: np.stack([np.interp(times, at, places[:, k]) for k in range(3)], axis=1)
+    return lambda times: between(at, places, times)
 
 
 def _peak(request: ForceRequest, scene: Scene, transcription: Transcription) -> Condition:

@@ -76,9 +76,10 @@ class Motion:
         )
 
     def drift(self, contact: int, times: FloatArray) -> FloatArray:
-        """(T,) distance of a contact's point from its place, m."""
-        at = self.contact_points(times)[:, self.transcription.contacts[contact].point]
-        return np.asarray(np.linalg.norm(at - self.places[contact], axis=1))
+        """(T,) distance of a contact's point from where it is held, m."""
+        each = self.transcription.contacts[contact]
+        at = self.contact_points(times)[:, each.point]
+        return np.asarray(np.linalg.norm(each.off(at, self.places[contact], times), axis=1))
 
 
 SHORTEST_SPLIT = 0.016  # s; shorter spans are not split further
@@ -150,8 +151,8 @@ def weak_spans(motion: Motion, promise: Promise) -> IntArray:
         spans = np.repeat(np.arange(basis.n_spans), per)
         for i, contact in enumerate(transcription.contacts):
             pinned = (times > contact.pin_start) & (times < contact.pin_end)
-            off = np.linalg.norm(at[:, contact.point] - motion.places[i], axis=1)
-            weak[spans[pinned & (off > promise.drift)]] = True
+            off = contact.off(at[:, contact.point], motion.places[i], times)
+            weak[spans[pinned & (np.linalg.norm(off, axis=1) > promise.drift)]] = True
     return np.flatnonzero(weak)
 
 

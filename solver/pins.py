@@ -13,6 +13,7 @@ import numpy as np
 
 from .contacts import Contact
 from .kinematics import BodyPoint, Pose, point_velocity
+from .performance import interpolate
 from .recording import BoolArray, FloatArray, IntArray
 from .rows import Layout, RowKind, Rows
 from .splines import ORDER, Basis
@@ -29,15 +30,24 @@ class Track:
     moves: FloatArray
 
     def at(self, times: FloatArray) -> FloatArray:
-        """(U, 3) m, linear between the instants."""
-        columns = [np.interp(times, self.times, self.moves[:, k]) for k in range(3)]
-        return np.stack(columns, axis=1)
+        """(U, 3) m, smooth between the instants."""
+        return between(self.times, self.moves, times)
 
     def speed(self, times: FloatArray) -> FloatArray:
         """(U, 3) m/s."""
         first, last = self.times[0], self.times[-1]
         before, after = (np.clip(times + step, first, last) for step in (-STEP, STEP))
         return np.asarray((self.at(after) - self.at(before)) / (after - before)[:, None])
+
+
+def between(times: FloatArray, places: FloatArray, at: FloatArray) -> FloatArray:
+    """(U, 3) places of (T, 3) at instants (U,): cubic where four are known, else linear; still
+    before the first and after the last."""
+    inside = np.clip(at, times[0], times[-1])
+    if len(times) >= 4:
+        return interpolate(times, places, inside)
+    columns = [np.interp(inside, times, places[:, k]) for k in range(3)]
+    return np.stack(columns, axis=1)
 
 
 @dataclass(frozen=True)
@@ -58,6 +68,16 @@ class PointContact:
     friction: float | None = FRICTION
     normal: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     pyramid: bool = False
+
+    def off(self, at: FloatArray, place: FloatArray, times: FloatArray) -> FloatArray:
+        """(T, k) how far points at (T, 3) are from where they are held at instants (T,), m.
+
+        place: (3,) m, where the contact's track begins.
+        """
+        off = at - place
+        if self.track is not None:
+            off = off - self.track.at(times)
+        return off if self.held is None else np.asarray(off @ self.held.T)
 
 
 @dataclass(frozen=True)

@@ -139,6 +139,9 @@ def interval(
         start, end = found[-1].start, found[-1].end
     if when.frames is not None:
         first, last = (line.instant(frame) for frame in when.frames)
+        shown = line.first_frame + line.rate * line.old[-1]
+        if when.frames[0] > shown + 0.5 or when.frames[1] < line.first_frame - 0.5:
+            raise BadTiming(name, 0.0)
         start, end = max(start, first), min(end, last)
     if end < start:
         raise BadTiming(name, end - start)

@@ -4,10 +4,25 @@ import math
 
 import numpy as np
 import pytest
+from hangtime.bridge.marks import Box, Cone, LimitArc, Tint
 from hangtime.devtools import gallery, gallery_jobs, gallery_limits, gallery_table
 from hangtime.devtools.gallery_checks import BendCheck, Check, ConeCheck, PointCheck
+from hangtime.operators.marks_of import marks_of
+from hangtime.operators.picture import instants
+from hangtime.solver.adapt import adapt
+from hangtime.solver.problem import MotionProblem
 from hangtime.solver.recording import Bone, Recording
+from hangtime.solver.requests import (
+    AddedMass,
+    AngleLimit,
+    BodyChange,
+    ConeLimit,
+    Requests,
+    TorqueLimit,
+    When,
+)
 from hangtime.solver.rotations import axis_rotation
+from hangtime.tests.solver.jumps import fitted_hop
 
 ALONG = np.array([0.0, 0.0, -1.0])
 FREE = (-math.inf, math.inf)
@@ -88,7 +103,12 @@ def row(**changes: object) -> gallery_jobs.Json:
         "methods": {"implicit": solved},
         "conditions": [],
         "checks": [{"name": "toe", "kind": "point", "worst": 0.1, "unit": "mm", "by": "Blender"}],
-        "residuals": {"flight_force": 0.0, "flight_moment": 1e-4, "ground_force": 0.0},
+        "residuals": {
+            "flight_force": 0.0,
+            "flight_moment": 1e-4,
+            "ground_force": 0.0,
+            "ground_moment": 0.0,
+        },
         "loads": {"peak_torque_nm": 300.0, "peak_torque_at": "shin", "peak_force_bw": 3.0},
         "from_fit": {"joint_centres_rms_cm": 1.0, "angles_rms_deg": 2.0},
         "looks": {"overlap_cm": 0.0, "below_floor_cm": 0.0, "jerk": 1.0, "least_knee_deg": 10.0},
@@ -127,6 +147,30 @@ def test_the_page_shows_a_failure_and_the_thesis_s_sizes() -> None:
     assert "**failed**: no way" in page
     assert "| results in order | 1 of 2 |" in page
     assert "| jump | 3000-3000 | 1100-2400 | 1500-1500 | 700-1700 |" in page
+
+
+def test_what_is_asked_for_is_marked_where_it_is() -> None:
+    flight = When(phase="flight 1")
+    case = AddedMass("case", "RightHand", share=0.1)
+    requests = Requests(
+        angles=(AngleLimit("knee", "LeftLeg", 0.0, None, flight),),
+        cones=(ConeLimit("arm", "LeftArm", math.radians(170), when=flight),),
+        torques=(TorqueLimit("weak", ("RightFoot",), bound=1000.0, when=flight),),
+        body=BodyChange(added=(case,)),
+    )
+    problem = MotionProblem(requests=requests)
+    adaptation = adapt(fitted_hop(), problem)
+    marks = {type(mark): mark for mark in marks_of(adaptation, problem)}
+    assert set(marks) == {LimitArc, Cone, Tint, Box}
+    motion = adaptation.motion
+    names = [body.bone for body in motion.transcription.character.bodies]
+    names_of_bodies = [body.name for body in motion.transcription.character.bodies]
+    centres = motion.joint_centres(instants(motion))
+    np.testing.assert_allclose(marks[Cone].apex, centres[:, names.index("LeftArm")])
+    np.testing.assert_allclose(marks[LimitArc].centre, centres[:, names.index("LeftLeg")])
+    assert marks[LimitArc].lower == marks[LimitArc].upper == 0.0
+    assert marks[Tint].limbs == (names_of_bodies[names.index("RightFoot")],)
+    assert marks[Box].size.prod() == pytest.approx(0.007, rel=0.01)  # 7 kg
 
 
 def test_an_unknown_name_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
