@@ -74,15 +74,36 @@ class Condition:
         return self.measure.kind
 
     def instants(self, basis: Basis) -> Instants:
-        """Where its rows are on a basis: at the ends, and evenly inside every span."""
+        """Where its rows are on a basis: at the ends, and evenly inside every span.
+
+        Torques follow accelerations, which have corners at the breaks and jump at the double ones:
+        there they have rows on both sides.
+        """
         if self.at is not None:
             return Instants(basis, *self.at)
+        if self.kind is RowKind.TORQUE:
+            return self._sided_instants(basis)
         inside = np.linspace(0.0, 1.0, self.per_span, endpoint=False) + 0.5 / self.per_span
         length = np.diff(basis.breaks)[:, None]
         times = (basis.breaks[:-1, None] + length * inside).ravel()
         times = times[(times > self.start) & (times < self.end)]
         ends = [self.start, self.end]
         return Instants(basis, np.unique(np.concatenate([times, ends, self.extra])))
+
+    def _sided_instants(self, basis: Basis) -> Instants:
+        first, last = basis.breaks[:-1], basis.breaks[1:]
+        spans = np.arange(basis.n_spans)
+        ends = np.append(basis.double[1:-1], True)
+        inside = (np.arange(self.per_span - 1) + 1.0) / self.per_span
+        between = (first[:, None] + (last - first)[:, None] * inside).ravel()
+        extra = np.array(self.extra)
+        times = np.concatenate([first, between, last[ends], extra])
+        owners = [spans, np.repeat(spans, len(inside)), spans[ends], basis.spans(extra)]
+        held = (times >= self.start) & (times <= self.end)
+        if not held.any():
+            middle = np.array([0.5 * (self.start + self.end)])
+            return Instants(basis, middle)
+        return Instants(basis, times[held], np.concatenate(owners)[held])
 
     def dense(self, basis: Basis) -> Instants:
         """Instants that tell whether it holds between the rows."""

@@ -38,6 +38,7 @@ RIDGE = 1e-8
 SHORTEST_STEP = 0.005
 LET_STAND = 0.5  # of a bound's tolerance
 PATIENCE = 6  # steps
+NEAR = 30.0  # times the tolerances: the end of a solve
 ENOUGH = 0.05  # of the objective: what a further step must gain
 
 
@@ -365,14 +366,18 @@ def _shorten(
 ) -> tuple[FloatArray, FloatArray, float]:
     """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0.0 if none does.
 
-    Returns the new unknowns, their rows' values and the length.
+    Near the end, where what is left of different rows has different units, lessening the worst
+    violation counts as well. Returns the new unknowns, their rows' values and the length.
     """
-    before = line.merit(value)
+    before, worst = line.merit(value), line.worst(value)
     length = 1.0
     while length > SHORTEST_STEP:
         trial = x + length * d
         left = transcription.values(trial, places)
-        if line.merit(left) < (1.0 - 0.1 * length) * before:
+        enough = 1.0 - 0.1 * length
+        if line.merit(left) < enough * before:
+            return trial, left, length
+        if worst < NEAR and line.worst(left) < enough * worst:
             return trial, left, length
         length *= 0.5
     return x, value, 0.0

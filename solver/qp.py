@@ -93,12 +93,17 @@ class BoundedStep:
 def small_program(root: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
     """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper; root (m, m)."""
     m = len(root)
-    scale = 1.0 / np.linalg.norm(root, axis=1)  # rows of one size: what DAQP expects
+    # DAQP's tolerances are absolute: rows of length 1, and a violation of 1 to begin with.
+    row = 1.0 / np.linalg.norm(root, axis=1)
+    lower, upper = row * lower, row * upper
+    size = max(float(lower.max()), float(-upper.min()))
+    if size <= 0.0:
+        return np.zeros(m)
     solver = ca.conic(
         "step",
         "daqp",
         {"h": ca.Sparsity.diag(m), "a": ca.Sparsity.dense(m, m)},
         {"error_on_fail": False},
     )
-    found = solver(h=ca.DM.eye(m), a=scale[:, None] * root, lba=scale * lower, uba=scale * upper)
-    return np.asarray(np.asarray(found["lam_a"]).ravel() * scale)
+    found = solver(h=ca.DM.eye(m), a=row[:, None] * root, lba=lower / size, uba=upper / size)
+    return np.asarray(np.asarray(found["lam_a"]).ravel() * row * size)

@@ -26,7 +26,7 @@ class RowKind(Enum):
     PUSH = ("push", "BW of pull", 0.01)
     FRICTION = ("friction", "BW beyond friction", 0.01)
     PEAK = ("peak", "BW beyond the cap", 0.01)
-    TORQUE = ("torque", "BW·m beyond the limit", 5e-5)
+    TORQUE = ("torque", "BW·m beyond the limit", 2e-5)
 
     @property
     def unit(self) -> str:
