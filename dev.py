@@ -6,6 +6,8 @@
   analyze CLIP [--write-recipe FILE]      what touches when, and a recipe to start from
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
+  gallery [NAMES...] [--out DIR]          make the thesis's results, with pictures and a table
+  benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
   build [--out DIR]                       make and validate the extension's zips
   lint                                    ruff and mypy
 
@@ -21,6 +23,7 @@ import sys
 
 from devtools import environment, pythons
 
+PEERS = "benchmark"  # has an environment of its own
 # command: module of the package, arguments before the user's, whether it needs dev.txt
 COMMANDS = {
     "demo": ("devtools.demo", [], False),
@@ -28,6 +31,8 @@ COMMANDS = {
     "analyze": ("operators.cli", ["analyze"], False),
     "test": ("devtools.testing", [], True),
     "figures": ("devtools.figures", [], True),
+    "gallery": ("devtools.gallery", [], True),
+    PEERS: ("benchmarks.benchmark", [], False),
     "build": ("devtools.build", [], False),
     "lint": ("devtools.lint", [], True),
 }
@@ -54,7 +59,10 @@ def main(argv: list[str]) -> int:
         command, wanted, rest = split_arguments(argv)
         module, leading, tools = COMMANDS[command]
         blender, python = pythons.choose(wanted)
-        place = environment.prepare(blender, python, tools)
+        if command == PEERS:
+            place = environment.prepare_peers(blender, python)
+        else:
+            place = environment.prepare(blender, python, tools)
     except environment.SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2

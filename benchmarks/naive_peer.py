@@ -8,6 +8,7 @@ own, so that both are the same problem; `Graph.rows` lists them in the same orde
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -28,10 +29,10 @@ def solve(task: Task, limit_s: float) -> PeerResult:
     begun = time.perf_counter()
     x = ca.MX.sym("x", task.transcription.n_unknowns)
     graph = Graph(task, x)
-    equations = {"x": x, "f": graph.distance(), "g": graph.rows()}
+    equations: dict[str, Any] = {"x": x, "f": graph.distance(), "g": graph.rows()}
     # IPOPT looks at its clock after every iteration; CasADi's set-up alone may outlast the limit.
-    quiet = {"print_level": 0, "sb": "yes", "max_wall_time": limit_s}
-    options = {"print_time": False, "error_on_fail": False, "ipopt": quiet}
+    quiet: dict[str, Any] = {"print_level": 0, "sb": "yes", "max_wall_time": limit_s}
+    options: dict[str, Any] = {"print_time": False, "error_on_fail": False, "ipopt": quiet}
     solver = ca.nlpsol("naive", "ipopt", equations, options)
     ready = time.perf_counter()
     start = task.start[task.transcription.active]
@@ -45,14 +46,15 @@ def solve(task: Task, limit_s: float) -> PeerResult:
 
 @dataclass(frozen=True)
 class _When:
-    """Vector rows of one kind: instants (U,), spans (U,) and owners (U,) of every three rows."""
+    """The U vectors that the rows of one kind state: instants, spans and owners, each (U,)."""
 
     times: FloatArray
     spans: IntArray
     owners: IntArray
 
     @staticmethod
-    def of(rows: Rows, kind: RowKind, each: int) -> "_When":
+    def of(rows: Rows, kind: RowKind) -> "_When":
+        each = 1 if kind in (RowKind.PUSH, RowKind.FRICTION) else 3
         mine = rows.kind == kind
         return _When(*(part[mine][::each] for part in (rows.time, rows.span, rows.owner)))
 
@@ -73,7 +75,7 @@ class Graph:
         self.com = full[:, layout.com.start : layout.com.stop]
         self.angles = full[:, layout.angles.start : layout.angles.stop]
         self.forces = full[:, layout.forces.start : layout.forces.stop]
-        self.listed = t.rows(task.start, task.places)
+        self.listed = task.rows(task.start)
         self.lower = self.listed.lower - self.listed.tolerance
         self.upper = self.listed.upper + self.listed.tolerance
 
@@ -90,12 +92,14 @@ class Graph:
             RowKind.MOMENT: self._moment,
             RowKind.PIN: self._place,
             RowKind.PIN_SPEED: self._speed,
+            RowKind.PUSH: self._push,
+            RowKind.FRICTION: self._friction,
         }
         kinds = list(dict.fromkeys(self.listed.kind.tolist()))
         unknown = [kind for kind in kinds if kind not in write]
         if unknown:
             raise ValueError(f"rows of kind {unknown} are not written for CasADi")
-        return ca.vertcat(*(write[kind](_When.of(self.listed, kind, 3)) for kind in kinds))
+        return ca.vertcat(*(write[kind](_When.of(self.listed, kind)) for kind in kinds))
 
     # -- the rows --------------------------------------------------------------------------
 
@@ -120,13 +124,31 @@ class Graph:
         _, speed = self._points(when)
         return ca.vec((_spline(self.t, when, 1) @ self.com).T + speed)
 
+    def _push(self, when: _When) -> ca.MX:
+        return ca.vec(self._own_force(when)[2, :])
+
+    def _friction(self, when: _When) -> ca.MX:
+        """Above zero beyond the cone about the vertical."""
+        force = self._own_force(when)
+        friction = ca.DM([[self.t.contacts[i].friction for i in when.owners]])
+        along = ca.sqrt(force[0, :] ** 2 + force[1, :] ** 2 + LEAST**2)
+        return ca.vec(along - friction * force[2, :])
+
+    def _own_force(self, when: _When) -> ca.MX:
+        """(3, U) the force of each row's own point, BW."""
+        return self._own((_linear(self.t, when) @ self.forces).T, when)
+
+    def _own(self, every: ca.MX, when: _When) -> ca.MX:
+        """(3, U) of (3 P, U): what belongs to each row's own point."""
+        point = np.array([self.t.contacts[i].point for i in when.owners], dtype=int)
+        index = (3 * (np.arange(len(point)) * self.t.layout.n_points + point))[:, None] + range(3)
+        return ca.reshape(ca.vec(every)[index.ravel().tolist()], 3, -1)
+
     def _points(self, when: _When) -> tuple[ca.MX, ca.MX]:
         """Place and velocity (3, U) of each row's own point, relative to the centre of mass."""
         q, v = ((_spline(self.t, when, k) @ self.angles).T for k in (0, 1))
         every = points_function(self.t).map(len(when.times))(q, v)
-        point = np.array([self.t.contacts[i].point for i in when.owners], dtype=int)
-        index = (3 * (np.arange(len(point)) * self.t.layout.n_points + point))[:, None] + range(3)
-        at, speed = (ca.reshape(ca.vec(part)[index.ravel().tolist()], 3, -1) for part in every)
+        at, speed = (self._own(part, when) for part in every)
         return at, speed
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -21,11 +22,12 @@ from .timing import in_turns, timed
 
 FIRST = 1.0  # s, where the windows of the hops begin
 LENGTHS = (2.0, 5.0, 10.0, 20.0)  # s
+# Toes stay: a rigid foot cannot roll over the heel and toe that the recording plants.
 WELDED: dict[str, tuple[Part, ...]] = {
     "every joint": (),
-    "no hands, toes": (Part.HAND, Part.TOE),
-    "nor clavicles, neck": (Part.HAND, Part.TOE, Part.CLAVICLE, Part.NECK),
-    "nor spine, head": (Part.HAND, Part.TOE, Part.CLAVICLE, Part.NECK, Part.SPINE, Part.HEAD),
+    "without hands": (Part.HAND,),
+    "nor clavicles and neck": (Part.HAND, Part.CLAVICLE, Part.NECK),
+    "nor spine and head": (Part.HAND, Part.CLAVICLE, Part.NECK, Part.SPINE, Part.HEAD),
 }
 
 
@@ -46,9 +48,9 @@ def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Cost]:
     for length in seconds:
         problem = hops(FIRST, length)
         analysis = analysed(HOPS, problem)
-        fitted, fit_s = timed(lambda a=analysis: fit(a.performance, a.schedule))
+        fitted, fit_s = timed(partial(fit, analysis.performance, analysis.schedule))
         _ = fitted.metric  # part of the stored fit
-        adaptation, adapt_s = in_turns({"": lambda f=fitted, p=problem: adapt(f, p)}, 3)[""]
+        adaptation, adapt_s = in_turns({"": partial(adapt, fitted, problem)}, 3)[""]
         yield Cost(
             length,
             adaptation.motion.transcription.n_unknowns,
@@ -85,9 +87,7 @@ def with_fewer(fitted: Fit, task: Task, parts: tuple[Part, ...]) -> Task:
     new = replace(old, character=character, moment=MomentFunction(character))
     forces = np.arange(old.layout.forces.start, old.layout.n_block)
     columns = np.concatenate([np.arange(3), 3 + kept, forces])
-    metric = motion_metric(
-        Motion(new, fitted.motion.x[:, columns], fitted.places), ADAPT_PRICES
-    )
+    metric = motion_metric(Motion(new, fitted.motion.x[:, columns], fitted.places), ADAPT_PRICES)
     return Task(new, task.places, task.start[:, columns], metric)
 
 

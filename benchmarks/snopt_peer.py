@@ -25,7 +25,7 @@ from scipy.sparse import csc_matrix
 from ..solver.rows import RowKind
 from .task import Entries, Equations, FloatArray, PeerResult, Task, judged, metric_entries
 
-LINEAR = (RowKind.BALANCE,)
+LINEAR = (RowKind.BALANCE, RowKind.PUSH)
 GRACE = 1.0  # s, for the process to hand over its answer
 TIME_IS_UP = "ended when its time was up"
 
@@ -36,7 +36,7 @@ def solve(task: Task, limit_s: float) -> PeerResult:
     equations = Equations(task)
     start = task.start[task.transcription.active]
     apart = multiprocessing.get_context("fork")  # the problem is inherited, not sent
-    board = _Board(apart.Array("d", start), apart.Array("d", 2), apart.Array("c", 200))
+    board = _Board(apart.Array("d", start.tolist()), apart.Array("d", 2), apart.Array("c", 200))
     process = apart.Process(target=_work, args=(task, equations, start, limit_s, board))
     process.start()
     while process.is_alive() and not board.begun:
@@ -100,7 +100,7 @@ def _constrain(
     where = equations.entries
     shape = (equations.count, equations.size)
     jacobian = csc_matrix((entries, (where.row, where.column)), shape)
-    linear = np.isin(equations.kind, LINEAR)
+    linear = np.array([kind in LINEAR for kind in equations.kind])
     constant = (value - jacobian @ start)[linear]
     lower, upper = equations.lower, equations.upper
     program.AddLinearConstraint(

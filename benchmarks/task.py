@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solver.adapt import carry, stance_moves
+from ..solver.arrange import arrange
+from ..solver.carry import carry, stance_moves
 from ..solver.fit import Fit
 from ..solver.linear import BlockBanded
-from ..solver.problem import MotionProblem, pinned_places
+from ..solver.problem import MotionProblem
 from ..solver.projection import worst_violation
 from ..solver.rows import Rows
 from ..solver.splines import ORDER
@@ -21,6 +22,9 @@ from ..solver.transcription import Transcription
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int_]
+
+
+SOLVED = 1.1  # a solver meets the bounds within a tolerance of its own: a tenth of ours
 
 
 @dataclass(frozen=True)
@@ -35,14 +39,19 @@ class Task:
 
     @staticmethod
     def of(fit: Fit, problem: MotionProblem) -> "Task":
-        """The adaptation of a fit to a problem's pins, in one stage."""
-        places = pinned_places(problem, fit.performance, fit.schedule)
-        start = carry(fit.motion, stance_moves(fit.schedule, fit.places, places))
-        return Task(fit.motion.transcription, places, start, fit.metric)
+        """The adaptation of a fit to a problem, in one stage."""
+        plan = arrange(fit, problem)
+        moves = stance_moves(plan.schedule, plan.start.places, plan.goal, plan.turns)
+        start = carry(plan.start, moves)
+        return Task(plan.start.transcription, plan.goal, start, plan.metric)
+
+    def rows(self, x: FloatArray) -> Rows:
+        """The rows at x (K, n_block)."""
+        return self.transcription.rows(x, self.places)
 
     def violation(self, x: FloatArray) -> float:
         """Worst violation of x (K, n_block) over its tolerance; at most 1 when solved."""
-        return worst_violation(self.transcription.rows(x, self.places))
+        return worst_violation(self.rows(x))
 
     def distance(self, x: FloatArray) -> float:
         """How far x (K, n_block) is from the start, in the metric."""
@@ -58,8 +67,8 @@ class Task:
 
 @dataclass(frozen=True)
 class PeerResult:
-    """How a solver fared. seconds: from the task to its last unknowns x (K, n_block); setup: what
-    of them passed before its first iteration. violation: worst over tolerance, at most 1 when
+    """How a solver fared. seconds: from its first iteration to its last unknowns x (K, n_block);
+    setup: what passed before. violation: worst over tolerance, at most 1 when
     solved; distance: from the start, in the metric."""
 
     seconds: float
@@ -72,16 +81,14 @@ class PeerResult:
 
     @property
     def solved(self) -> bool:
-        return self.violation <= 1.0
+        return self.violation <= SOLVED
 
 
 def judged(
     task: Task, x: FloatArray, seconds: float, setup: float, iterations: int, status: str
 ) -> PeerResult:
     """A peer's last unknowns (K, n_block), judged by our rows and not by its own word."""
-    return PeerResult(
-        seconds, setup, iterations, status, task.violation(x), task.distance(x), x
-    )
+    return PeerResult(seconds, setup, iterations, status, task.violation(x), task.distance(x), x)
 
 
 @dataclass(frozen=True)
@@ -108,7 +115,7 @@ class Equations:
     def __init__(self, task: Task) -> None:
         self.task = task
         t = task.transcription
-        rows = t.rows(task.start, task.places)
+        rows = task.rows(task.start)
         self.count, self.size = len(rows.value), t.n_unknowns
         self.kind = rows.kind
         self.lower, self.upper = rows.lower - rows.tolerance, rows.upper + rows.tolerance
@@ -123,14 +130,11 @@ class Equations:
         """Entries that differ from zero at some of a few random places."""
         random = np.random.default_rng(0)
         start = self.task.start
-        used = np.zeros(self._rows(start).jacobian.shape, dtype=bool)
+        used = np.zeros(self.task.rows(start).jacobian.shape, dtype=bool)
         for _ in range(3):
             near = start + 0.1 * random.normal(size=start.shape)
-            used |= self._rows(near).jacobian != 0.0
+            used |= self.task.rows(near).jacobian != 0.0
         return used
-
-    def _rows(self, x: FloatArray) -> Rows:
-        return self.task.transcription.rows(x, self.task.places)
 
     def values(self, packed: FloatArray) -> FloatArray:
         """(count,)"""
@@ -139,7 +143,7 @@ class Equations:
 
     def jacobian(self, packed: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Values (count,) and the Jacobian's entries in the order of `entries`."""
-        rows = self._rows(self.task.unpack(packed))
+        rows = self.task.rows(self.task.unpack(packed))
         return rows.value, rows.jacobian[self._used][self._order]
 
 

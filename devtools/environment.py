@@ -22,16 +22,23 @@ ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".hangtime"
 REQUIREMENTS = ROOT / "requirements"
 
-__all__ = ["CACHE", "REQUIREMENTS", "ROOT", "Place", "SetUpError", "prepare"]
+__all__ = ["CACHE", "REQUIREMENTS", "ROOT", "Place", "SetUpError", "prepare", "prepare_peers"]
 
 
 @dataclass(frozen=True)
 class Layer:
-    """One requirements file: what is being installed, in words, and how pip should read it."""
+    """One requirements file: what is being installed, in words, and how pip should read it.
+
+    blender: whether Blender's module is in it, which needs libraries of the system's.
+    """
 
     file: str
     words: str
     options: tuple[str, ...] = ()
+    blender: bool = False
+
+
+CASADI = Layer("casadi.txt", "CasADi (90 MB)", ("--no-deps", "--require-hashes"))
 
 
 @dataclass(frozen=True)
@@ -68,7 +75,19 @@ def prepare(blender: Blender, python: str, tools: bool) -> Place:
     tools: also install what tests, lint and figures need.
     """
     place = Place(CACHE / f"python{blender.python}-blender{blender.version}")
-    wanted = layers(blender, tools)
+    return complete(place, layers(blender, tools), python)
+
+
+def prepare_peers(blender: Blender, python: str) -> Place:
+    """The benchmark's environment: the solvers that we are compared with, and no Blender, whose
+    numpy is not theirs. Raises SetUpError."""
+    place = Place(CACHE / f"python{blender.python}-benchmark")
+    peers = Layer("benchmark.txt", "the benchmark's peers (400 MB to fetch, 1.3 GB on disk)")
+    return complete(place, [peers, CASADI], python)
+
+
+def complete(place: Place, wanted: list[Layer], python: str) -> Place:
+    """Make the environment where it is missing, and install what it lacks."""
     installed = read_stamp(place)
     pending = [layer for layer in wanted if installed.get(layer.file) != fingerprint(layer)]
     if not pending:
@@ -79,7 +98,7 @@ def prepare(blender: Blender, python: str, tools: bool) -> Place:
         command = [place.python, "-m", "pip", "install", "--no-input", *layer.options]
         command += ["--disable-pip-version-check", "-r", str(REQUIREMENTS / layer.file)]
         run_quietly(f"Installing {layer.words}", command, place.log)
-        if layer is wanted[0]:
+        if layer.blender:
             libraries.ensure(place.python, place.log)
         installed[layer.file] = fingerprint(layer)
         place.stamp.write_text(json.dumps(installed, indent=1))
@@ -89,10 +108,7 @@ def prepare(blender: Blender, python: str, tools: bool) -> Place:
 def layers(blender: Blender, tools: bool) -> list[Layer]:
     own = f"blender-{blender.version}.txt"
     words = f"Blender {blender.version} as a Python module (about 400 MB to fetch, 1 GB on disk)"
-    found = [
-        Layer(own, words),
-        Layer("casadi.txt", "CasADi (90 MB)", ("--no-deps", "--require-hashes")),
-    ]
+    found = [Layer(own, words, blender=True), CASADI]
     if tools:
         keep = ("--constraint", str(REQUIREMENTS / own))
         found.append(Layer("dev.txt", "the tools of tests and checks (90 MB)", keep))

@@ -131,7 +131,8 @@ def stage_count(moves: tuple[RigidMove, ...]) -> int:
     turns = [b.turn - a.turn for a, b in itertools.pairwise(moves)]
     furthest = max((float(np.linalg.norm(shift)) for shift in relative), default=0.0)
     largest = max((abs(turn) for turn in turns), default=0.0)
-    return max(1, int(np.ceil(furthest / STAGE_SHIFT)), int(np.ceil(largest / STAGE_TURN)))
+    parts = np.array([furthest / STAGE_SHIFT, largest / STAGE_TURN])
+    return max(1, int(np.ceil(parts.max() - 1e-6)))
 
 
 def staged(

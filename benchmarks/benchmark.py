@@ -1,0 +1,71 @@
+"""python3 dev.py benchmark: our solutions, other solvers on the same problem, and how it scales.
+
+Everything runs in one process with one thread of linear algebra, one after the other.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from ..devtools.environment import ROOT
+
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+DOCUMENT = ROOT / "docs" / "benchmark.md"
+HEAD = """# The benchmark
+
+Written by `python3 dev.py benchmark --write-docs` from a measured run; `benchmark.json` has the
+seconds too. Only what means the same on any machine is told here. The recordings in
+`../shared/mocap` are needed; Drake (with SNOPT) and Pinocchio come from the package registry.
+
+A peer that does not finish is stopped at its limit and told with its violation at the end: 1 is
+solved, by our rows and tolerances and not by its own word. "Set-up" is what a solver prepares for
+a problem before it starts; ours is part of the stored fit. Our times are those of the whole
+adaptation, stages and added knots included. SNOPT's iterations are the times that it asked for the
+rows: most of its time goes into its first quadratic programs, as it must find its Hessian from
+gradients. On figures of a few joints it and the others find the same motion
+(`tests/test_benchmark.py`).
+"""
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="dev.py benchmark", description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
+    parser.add_argument("--limit", type=float, metavar="SECONDS", help="for each peer, else 60")
+    parser.add_argument("--quick", action="store_true", help="10 s a peer, short clips")
+    parser.add_argument("--write-docs", action="store_true", help="rewrite docs/benchmark.md")
+    options = parser.parse_args(argv)
+    if any(os.environ.get(name) != "1" for name in ONE_THREAD):
+        return _in_one_thread(argv)
+    from .measure import Benchmark, Extent
+    from .recordings import HOPS, JUMP, MOCAP
+    from .tables import Table, write_json
+
+    absent = [file for file in (JUMP, HOPS) if not (MOCAP / file).is_file()]
+    if absent:
+        print(f"No recording {absent[0]} in ../shared/mocap.")
+        return 2
+    extent = Extent(options.limit or 60.0)
+    if options.quick:
+        extent = Extent(options.limit or 10.0, lengths=(2.0, 5.0), repeats=3)
+    tables: list[Table] = []
+    for table in Benchmark(extent).tables():
+        tables.append(table)
+        print(f"{table.text()}\n", flush=True)
+    options.out.mkdir(parents=True, exist_ok=True)
+    path = options.out / "benchmark.json"
+    write_json(tables, path)
+    print(f"All of it, with every digit: {path}")
+    if options.write_docs:
+        parts = [HEAD, *(table.without_seconds().markdown() + "\n" for table in tables)]
+        DOCUMENT.write_text("\n".join(parts), encoding="utf-8")
+        print(f"Written: {DOCUMENT.relative_to(ROOT)}")
+    return 0
+
+
+def _in_one_thread(argv: list[str]) -> int:
+    """The same in a process whose linear algebra keeps to one thread: set before numpy loads."""
+    launcher = ROOT / "devtools" / "package.py"
+    command = [sys.executable, str(launcher), "benchmarks.benchmark", *argv]
+    return subprocess.call(command, env={**os.environ, **ONE_THREAD})

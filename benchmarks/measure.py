@@ -1,0 +1,203 @@
+"""What `dev.py benchmark` measures, table by table."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+from ..solver.adapt import Adaptation, adapt
+from ..solver.fit import Fit, fit
+from . import floor, ipopt_peer, naive_peer, scaling, snopt_peer
+from .recordings import JUMP, analysed, jump
+from .solutions import IMPLICIT, SOLUTIONS, with_solution
+from .tables import Table, Value
+from .task import PeerResult, Task
+from .timing import REPEATS, in_turns
+
+Peer = Callable[[Task, float], PeerResult]
+
+
+PEERS: dict[str, Peer] = {
+    "IPOPT, fair": ipopt_peer.solve,
+    "IPOPT, as first written with CasADi": naive_peer.solve,
+    "Drake with SNOPT": snopt_peer.solve,
+}
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How much is measured. limit_s: for each peer."""
+
+    limit_s: float
+    lengths: tuple[float, ...] = scaling.LENGTHS
+    repeats: int = REPEATS
+
+
+class Benchmark:
+    """All tables; the jump is fitted once."""
+
+    def __init__(self, extent: Extent) -> None:
+        self.extent = extent
+        self.problem = jump()
+
+    @cached_property
+    def fitted(self) -> Fit:
+        analysis = analysed(JUMP, self.problem)
+        fitted = fit(analysis.performance, analysis.schedule)
+        _ = fitted.metric  # part of the stored fit
+        return fitted
+
+    @cached_property
+    def task(self) -> Task:
+        return Task.of(self.fitted, self.problem)
+
+    def tables(self) -> Iterator[Table]:
+        """Each as soon as it is measured."""
+        yield self._solvers()
+        yield self._iteration()
+        yield self._lengths()
+        yield self._dofs()
+
+    def _solvers(self) -> Table:
+        t = self.task.transcription
+        caption = (
+            "forward_jump_116cm, frames 60 to 330, its landing moved 0.4 m forward and 0.3 m up, "
+            f"from the stored fit: {t.n_unknowns} unknowns, "
+            f"{len(t.rows(self.task.start, self.task.places).value)} rows. Every peer gets our "
+            "rows, start and metric, and as bounds the violations that we let stand; after "
+            f"{self.extent.limit_s:g} s it is stopped and judged where it is, by our rows."
+        )
+        ours = in_turns({name: self._adapting(name) for name in SOLUTIONS}, self.extent.repeats)
+        one, distance = ours[IMPLICIT][1], self._distance(ours[IMPLICIT][0])
+        rows: list[tuple[Value, ...]] = []
+        for name, (found, seconds) in ours.items():
+            off = self._distance(found)
+            steps = sum(len(outcome.steps) for outcome in found.outcomes)
+            apart = None if off is None or distance is None else off / distance
+            violation = found.outcome.violation
+            rows.append((name, seconds, seconds / one, None, steps, found.solved, violation, apart))
+        for name, solve in PEERS.items():
+            peer = solve(self.task, self.extent.limit_s)
+            apart = None if distance is None else peer.distance / distance
+            times = (peer.seconds, peer.seconds / one, peer.setup / one)
+            end = (peer.iterations, peer.solved, peer.violation, apart)
+            rows.append((name, *times, *end))
+        columns = (
+            "solver",
+            "time (s)",
+            "times ours",
+            "set-up, times ours",
+            "iterations",
+            "solved",
+            "worst violation / tolerance",
+            "distance / ours",
+        )
+        return Table("Solutions and peers", caption, columns, tuple(rows))
+
+    def _adapting(self, name: str) -> Callable[[], Adaptation]:
+        problem = with_solution(self.problem, SOLUTIONS[name])
+        return partial(adapt, self.fitted, problem)
+
+    def _distance(self, adaptation: Adaptation) -> float | None:
+        """From the task's start; None where knots or unknowns were added since."""
+        same = [o.x for o in adaptation.outcomes if o.x.shape == self.task.start.shape]
+        return self.task.distance(same[-1]) if same else None
+
+    def _iteration(self) -> Table:
+        task = self.task
+        nodes, bands = floor.Nodes.of(task), floor.band_matrix(task)
+        works: dict[str, Callable[[], object]] = {
+            "our rows and Jacobian": lambda: floor.our_rows(task),
+            "our iteration: rows, factor, step": lambda: floor.our_iteration(task),
+            "Pinocchio, inverse dynamics' derivatives": nodes.all_derivatives,
+            "Pinocchio, centroidal momentum's derivatives": nodes.root_derivatives,
+            "LAPACK, banded Cholesky": lambda: floor.factor(bands),
+        }
+        found = {name: s for name, (_, s) in in_turns(works, 3 * self.extent.repeats).items()}
+        quickest = min(s for name, s in found.items() if name.startswith("Pinocchio"))
+        least = quickest + found["LAPACK, banded Cholesky"]
+        found["floor: the quicker derivatives and Cholesky"] = least
+        caption = (
+            f"One full iteration at {len(nodes.q)} nodes against the floor: Pinocchio's analytic "
+            "derivatives at all of them plus one banded Cholesky of the same size and band "
+            f"({bands.shape[1]} unknowns, half-bandwidth {len(bands) - 1})."
+        )
+        rows = tuple((name, s, s / least) for name, s in found.items())
+        return Table("One iteration", caption, ("work", "time (s)", "times the floor"), rows)
+
+    def _lengths(self) -> Table:
+        costs = list(scaling.lengths(self.extent.lengths))
+        first = costs[0]
+        rows = tuple(
+            (
+                f"{c.length:g} s",
+                c.unknowns,
+                c.unknowns / first.unknowns,
+                c.fit_s,
+                c.fit_s / first.fit_s,
+                c.adapt_s,
+                c.adapt_s / first.adapt_s,
+                c.steps,
+                c.solved,
+            )
+            for c in costs
+        )
+        columns = (
+            "window",
+            "unknowns",
+            "unknowns / first",
+            "fit (s)",
+            "fit / first",
+            "adaptation (s)",
+            "adaptation / first",
+            "steps",
+            "solved",
+        )
+        caption = (
+            "Windows of forward_hops_01_01 from 1 s on, each fitted, then its first landing moved "
+            "0.3 m forward."
+        )
+        return Table("Cost against length", caption, columns, rows)
+
+    def _dofs(self) -> Table:
+        tasks = {
+            name: scaling.with_fewer(self.fitted, self.task, parts)
+            for name, parts in scaling.WELDED.items()
+        }
+        works = {name: partial(floor.our_iteration, small) for name, small in tasks.items()}
+        one = in_turns(works, 3 * self.extent.repeats)
+        whole = in_turns(
+            {name: partial(scaling.finished, small) for name, small in tasks.items()},
+            self.extent.repeats,
+        )
+        first = next(iter(tasks))
+        rows: list[tuple[Value, ...]] = []
+        for name, small in tasks.items():
+            t, (outcome, seconds) = small.transcription, whole[name]
+            rows.append(
+                (
+                    name,
+                    t.character.n_dofs,
+                    t.n_unknowns,
+                    one[name][1],
+                    one[name][1] / one[first][1],
+                    seconds,
+                    seconds / whole[first][1],
+                    len(outcome.steps),
+                    outcome.violation <= 1.0,
+                )
+            )
+        columns = (
+            "figure",
+            "DOFs",
+            "unknowns",
+            "iteration (s)",
+            "iteration / all DOFs",
+            "solve (s)",
+            "solve / all DOFs",
+            "steps",
+            "solved",
+        )
+        caption = (
+            "The jump's edit with joints made rigid at their mean over the clip, at the same knots."
+        )
+        return Table("Cost against degrees of freedom", caption, columns, tuple(rows))
