@@ -5,6 +5,7 @@ every body are compared, so a change costs what it visibly moves; and their acce
 likewise, times a time to the fourth, so that limbs do not jerk.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,9 @@ from .kinematics import BodyPoint, Pose, pose
 from .linear import BlockBanded
 from .recording import FloatArray
 from .splines import ORDER
-from .transcription import Transcription
+from .transcription import GAUSS, Transcription
+
+AT_ONCE = 16  # spans
 
 
 @dataclass(frozen=True)
@@ -59,6 +62,21 @@ class Target:
     forces: FloatArray
 
 
+@dataclass(frozen=True)
+class _Nodes:
+    """A motion against the target at N nodes: basis values and second derivatives (N, 4), weights
+    (N,) s, pose, marker errors in the world and in shape (N, M, 3), errors of the centre of mass
+    (N, 3) and of the accelerations (N, n_angles)."""
+
+    values: list[FloatArray]
+    weight: FloatArray
+    posed: Pose
+    world: FloatArray
+    shape: FloatArray
+    com: FloatArray
+    bend: FloatArray
+
+
 class Closeness:
     """The squared distance to a target as a function of the unknowns, with Gauss-Newton metric."""
 
@@ -73,101 +91,100 @@ class Closeness:
         self._smooth = prices.smooth_s**4
         self._force_windows = self._force_metric()
 
-    def _at_nodes(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        t = self.transcription
-        local = t.window(x, t.node_spans)
-        motion, second = (np.einsum("nk,nkj->nj", B, local) for B in self._values)
-        layout = t.layout
-        return motion[:, layout.com], motion[:, layout.angles], second[:, layout.angles]
+    def _parts(self) -> Iterator[slice]:
+        """The spans, a few at a time: what they need then stays in the processor's cache."""
+        for first in range(0, self.transcription.basis.n_spans, AT_ONCE):
+            yield slice(first, min(first + AT_ONCE, self.transcription.basis.n_spans))
 
-    def _errors(self, posed: Pose, com: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _at_nodes(self, x: FloatArray, spans: slice) -> "_Nodes":
+        t = self.transcription
+        nodes = slice(GAUSS * spans.start, GAUSS * spans.stop)
+        local = t.window(x, t.node_spans[nodes])
+        values = [each[nodes] for each in self._values]
+        motion, second = (np.einsum("nk,nkj->nj", B, local) for B in values)
+        posed = pose(t.character, motion[:, t.layout.angles])
+        com, target = motion[:, t.layout.com], self.target
         relative = posed.points(self.points)
-        world = relative + com[:, None] - self.target.markers
-        shape = relative - (self.target.markers - self.target.com[:, None])
-        return world, shape
+        markers, centre = target.markers[nodes], target.com[nodes]
+        return _Nodes(
+            values=values,
+            weight=t.node_weights[nodes],
+            posed=posed,
+            world=relative + com[:, None] - markers,
+            shape=relative - (markers - centre[:, None]),
+            com=com - centre,
+            bend=second[:, t.layout.angles] - target.accelerations[nodes],
+        )
 
     def value(self, x: FloatArray) -> float:
         """Half the squared distance."""
-        com, q, a = self._at_nodes(x)
-        posed = pose(self.transcription.character, q)
-        world, shape = self._errors(posed, com)
-        p = self.prices
-        mean = p.place * (world**2).sum(axis=(1, 2)) + p.shape * (shape**2).sum(axis=(1, 2))
-        each = mean / len(self.points) + p.com * ((com - self.target.com) ** 2).sum(axis=1)
-        metric = self._angle_metric(posed)
-        off = a - self.target.accelerations
-        each = each + self._smooth * np.einsum("nj,njk,nk->n", off, metric, off)
-        total = 0.5 * float(self.transcription.node_weights @ each)
+        p, total = self.prices, 0.0
+        for spans in self._parts():
+            at = self._at_nodes(x, spans)
+            mean = p.place * (at.world**2).sum(axis=(1, 2)) + p.shape * (at.shape**2).sum(
+                axis=(1, 2)
+            )
+            each = mean / len(self.points) + p.com * (at.com**2).sum(axis=1)
+            moved = np.einsum("npij,nj->npi", at.posed.point_jacobian(self.points), at.bend)
+            each += self._smooth * self._mean_price * (moved**2).sum(axis=(1, 2))
+            total += 0.5 * float(at.weight @ each)
         forces = self._force_error(x)
         return total + 0.5 * float((forces * self._force_windows.times(forces)).sum())
 
-    def _angle_metric(self, posed: Pose) -> FloatArray:
-        """(N, n, n) mean squared displacement of the points per angle change."""
-        turn = posed.point_jacobian(self.points)
-        flat = turn.reshape(len(turn), -1, turn.shape[-1])
-        weight = (self.prices.place + self.prices.shape) / len(self.points)
-        return np.asarray(weight * np.swapaxes(flat, 1, 2) @ flat)
+    @property
+    def _mean_price(self) -> float:
+        return (self.prices.place + self.prices.shape) / len(self.points)
 
     def expand(self, x: FloatArray) -> tuple[FloatArray, BlockBanded]:
         """Gradient (K, n_block) and Gauss-Newton metric at x."""
-        t, p = self.transcription, self.prices
-        layout = t.layout
-        com, q, a = self._at_nodes(x)
-        posed = pose(t.character, q)
-        turn = posed.point_jacobian(self.points)
-        world, shape = self._errors(posed, com)
-        count = len(self.points)
+        t = self.transcription
+        gradient = self._force_windows.times(self._force_error(x))
+        matrix = self._force_windows.copy()
+        for spans in self._parts():
+            self._expand_part(x, spans, gradient, matrix)
+        matrix.add_diagonal((~t.active).astype(float))  # unknowns that do not exist stay put
+        return gradient, matrix
+
+    def _expand_part(
+        self, x: FloatArray, spans: slice, gradient: FloatArray, matrix: BlockBanded
+    ) -> None:
+        p, layout = self.prices, self.transcription.layout
+        at, count = self._at_nodes(x, spans), len(self.points)
+        turn = at.posed.point_jacobian(self.points)
         flat = turn.reshape(len(turn), -1, layout.n_angles)
         n_motion = 3 + layout.n_angles
-        metric = np.zeros((len(q), n_motion, n_motion))
-        angle = (p.place + p.shape) / count * np.swapaxes(flat, 1, 2) @ flat
+        metric = np.zeros((len(turn), n_motion, n_motion))
+        angle = self._mean_price * np.swapaxes(flat, 1, 2) @ flat
         mean_turn = p.place * turn.mean(axis=1)  # (N, 3, n)
         metric[:, 3:, 3:] = angle
         metric[:, :3, 3:] = mean_turn
         metric[:, 3:, :3] = np.swapaxes(mean_turn, 1, 2)
         metric[:, range(3), range(3)] = p.place + p.com
-        slope = np.zeros((len(q), n_motion))
-        pull = (p.place * world + p.shape * shape).reshape(len(q), -1) / count
+        slope = np.zeros((len(turn), n_motion))
+        pull = (p.place * at.world + p.shape * at.shape).reshape(len(turn), -1) / count
         slope[:, 3:] = np.einsum("nrj,nr->nj", flat, pull)
-        slope[:, :3] = p.place * world.mean(axis=1) + p.com * (com - self.target.com)
-        off = a - self.target.accelerations
-        bend = self._smooth * np.einsum("njk,nk->nj", angle, off)
-        return self._assemble(slope, bend, metric, angle, x)
-
-    def _assemble(
-        self,
-        slope: FloatArray,
-        bend: FloatArray,
-        metric: FloatArray,
-        angle: FloatArray,
-        x: FloatArray,
-    ) -> tuple[FloatArray, BlockBanded]:
-        t = self.transcription
-        layout, basis = t.layout, t.basis
-        value, second = self._values
-        weight = t.node_weights
-        spans, per = basis.n_spans, len(weight) // basis.n_spans
-        n_motion = metric.shape[-1]
-        pairs = _products(value, weight).reshape(spans, per, ORDER * ORDER)
-        windows = np.swapaxes(pairs, 1, 2) @ metric.reshape(spans, per, -1)
-        windows = windows.reshape(spans, ORDER, ORDER, n_motion, n_motion)
-        pairs = self._smooth * _products(second, weight).reshape(spans, per, ORDER * ORDER)
-        bending = np.swapaxes(pairs, 1, 2) @ angle.reshape(spans, per, -1)
-        n = layout.n_angles
-        windows[..., 3:, 3:] += bending.reshape(spans, ORDER, ORDER, n, n)
-        full = np.zeros((spans, ORDER, layout.n_block, ORDER, layout.n_block))
-        full[:, :, layout.motion, :, layout.motion] = windows.transpose(0, 1, 3, 2, 4)
-        matrix = BlockBanded(basis.n_coefficients, layout.n_block)
-        matrix.lower += self._force_windows.lower
-        matrix.add_windows(basis.first_coefficient, full)
-        matrix.add_diagonal((~t.active).astype(float))  # unknowns that do not exist stay put
-        gradient = self._force_windows.times(self._force_error(x))
-        local = (weight[:, None] * value)[..., None] * slope[:, None]
-        local[..., 3:] += (weight[:, None] * second)[..., None] * bend[:, None]
-        summed = local.reshape(spans, per, ORDER, n_motion).sum(axis=1)
+        slope[:, :3] = p.place * at.world.mean(axis=1) + p.com * at.com
+        bend = self._smooth * np.einsum("njk,nk->nj", angle, at.bend)
+        first = self.transcription.basis.first_coefficient[spans]
+        matrix.add_windows(first, self._windows(at, metric, angle), layout.motion)
+        value, second = at.values
+        local = (at.weight[:, None] * value)[..., None] * slope[:, None]
+        local[..., 3:] += (at.weight[:, None] * second)[..., None] * bend[:, None]
+        summed = local.reshape(len(first), GAUSS, ORDER, n_motion).sum(axis=1)
         for k in range(ORDER):
-            gradient[basis.first_coefficient + k, layout.motion] += summed[:, k]
-        return gradient, matrix
+            gradient[first + k, layout.motion] += summed[:, k]
+
+    def _windows(self, at: "_Nodes", metric: FloatArray, angle: FloatArray) -> FloatArray:
+        """(S, 4, n_motion, 4, n_motion) the metric over each span's blocks."""
+        spans, n_motion, n = len(metric) // GAUSS, metric.shape[-1], angle.shape[-1]
+        value, second = at.values
+        pairs = _products(value, at.weight).reshape(spans, GAUSS, ORDER * ORDER)
+        windows = np.swapaxes(pairs, 1, 2) @ metric.reshape(spans, GAUSS, -1)
+        windows = windows.reshape(spans, ORDER, ORDER, n_motion, n_motion)
+        pairs = self._smooth * _products(second, at.weight).reshape(spans, GAUSS, ORDER * ORDER)
+        bending = np.swapaxes(pairs, 1, 2) @ angle.reshape(spans, GAUSS, -1)
+        windows[..., 3:, 3:] += bending.reshape(spans, ORDER, ORDER, n, n)
+        return np.asarray(windows.transpose(0, 1, 3, 2, 4))
 
     # -- forces ----------------------------------------------------------------------------
 
@@ -186,16 +203,19 @@ class Closeness:
         mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
         stiff = np.array([[1.0, -1.0], [-1.0, 1.0]])
         each = p.force * (h[:, None, None] * mass + p.force_slope_s**2 / h[:, None, None] * stiff)
-        n = 3 * layout.n_points
-        full = np.zeros((basis.n_spans, ORDER, layout.n_block, ORDER, layout.n_block))
-        index = np.arange(layout.forces.start, layout.forces.start + n)
-        for row in range(2):
-            for column in range(2):
-                full[:, 1 + row, index, 1 + column, index] = each[:, row, column, None]
-        exists = t.active[basis.first_coefficient[:, None] + np.arange(ORDER)]
-        full *= exists[:, :, :, None, None] & exists[:, None, None, :, :]
         matrix = BlockBanded(basis.n_coefficients, layout.n_block)
-        matrix.add_windows(basis.first_coefficient, full)
+        exists = t.active[:, layout.forces]
+        index = np.arange(layout.forces.start, layout.forces.stop)
+        first = basis.first_coefficient + 1  # the block of each span's first force value
+        for row in range(2):
+            for column in range(row + 1):
+                both = exists[first + row] & exists[first + column]
+                block = matrix.lower[row - column]
+                np.add.at(
+                    block,
+                    ((first + column)[:, None], index, index),
+                    each[:, row, column, None] * both,
+                )
         return matrix
 
 

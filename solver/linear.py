@@ -31,12 +31,13 @@ class BlockBanded:
         twin.lower[: self.band + 1] = self.lower
         return twin
 
-    def add_windows(self, first: IntArray, windows: FloatArray) -> None:
+    def add_windows(self, first: IntArray, windows: FloatArray, part: slice = slice(None)) -> None:
         """Adds dense (S, w, n, w, n) windows, w at most band + 1, whose first block row is
-        first (S,), all different."""
+        first (S,), all different; or those of a part of each block."""
         for row in range(windows.shape[1]):
             for column in range(row + 1):
-                self.lower[row - column][first + column] += windows[:, row, :, column, :]
+                block = self.lower[row - column][:, part, part]
+                block[first + column] += windows[:, row, :, column, :]
 
     def changed(self, change: FloatArray) -> "BlockBanded":
         """T' A T of each block with T (n, k), another basis of every block's unknowns."""

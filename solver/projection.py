@@ -31,6 +31,7 @@ from .transcription import Transcription
 # Speeds are weighed against places by the time in which they would move as far.
 NORM = {RowKind.PIN_SPEED: 30.0}
 PENALTY = 1e4
+AT_ONCE = 16  # spans
 MOST_SWEEPS = 8
 SWEEP_GAIN = 1e-3
 CHORD_GAIN = 0.03
@@ -210,13 +211,17 @@ class _Windows:
             total[self.first + k] += local[:, k]
         return total
 
-    def normal(self, weight: float) -> FloatArray:
-        """weight * J'J of each span, (S, 4, n, 4, n)."""
-        scaled = np.sqrt(weight) * self.J
-        squares = np.empty((len(self.J), self.J.shape[2], self.J.shape[2]))
-        for span, count in enumerate(self.counts):  # numpy knows that a.T @ a is symmetric
-            squares[span] = scaled[span, :count].T @ scaled[span, :count]
-        return np.asarray(squares.reshape(len(self.J), ORDER, self.size, ORDER, self.size))
+    def add_normal(self, system: BlockBanded, weight: float) -> None:
+        """Adds weight * J'J, a few spans at a time so that they stay in the processor's cache."""
+        wide = self.J.shape[2]
+        for first in range(0, len(self.J), AT_ONCE):
+            some = slice(first, first + AT_ONCE)
+            scaled = np.sqrt(weight) * self.J[some]
+            squares = np.empty((len(scaled), wide, wide))
+            for span, count in enumerate(self.counts[some]):  # numpy knows a.T @ a is symmetric
+                squares[span] = scaled[span, :count].T @ scaled[span, :count]
+            shape = (len(scaled), ORDER, self.size, ORDER, self.size)
+            system.add_windows(self.first[some], squares.reshape(shape))
 
     def columns(self, rows: IntArray, blocks: int) -> FloatArray:
         """(K, n, m) the chosen rows as columns."""
@@ -264,7 +269,7 @@ class Linearised:
         self._free = np.flatnonzero(~rows.equal)
         self._equations = _Windows.of(rows.some(self._equal), self._norm[self._equal], first, basis)
         system = self._metric.copy()
-        system.add_windows(first, self._equations.normal(PENALTY))
+        self._equations.add_normal(system, PENALTY)
         self._factor = _factor(system)
         self._bounds = _Windows.of(rows.some(self._free), self._norm[self._free], first, basis)
         was = np.zeros(len(self._free), bool) if working is None else working[self._free]

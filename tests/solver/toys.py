@@ -15,6 +15,7 @@ from hangtime.solver.dynamics import MomentFunction
 from hangtime.solver.fit import motion_target
 from hangtime.solver.kinematics import BodyPoint, pose
 from hangtime.solver.linear import BlockBanded
+from hangtime.solver.measures import Twist
 from hangtime.solver.motion import Motion
 from hangtime.solver.pins import PointContact
 from hangtime.solver.projection import Outcome, restore
@@ -187,7 +188,9 @@ def still(character: Character, angles: np.ndarray, com: np.ndarray | None = Non
 
 def seen(t: Transcription, x: np.ndarray) -> State:
     """Unknowns at the instants at which a condition of the whole clip would have its rows."""
-    whole = Condition("toy", None, None, *t.basis.breaks[[0, -1]])
+    whole = Condition(
+        "toy", Twist(t.character.joints[0], np.eye(3)[0]), None, *t.basis.breaks[[0, -1]]
+    )
     return State(t.character, t.layout, whole.instants(t.basis), x)
 
 
