@@ -212,9 +212,15 @@ def _write_results(
 
         export_fbx(adapted.armature, adapted.action, outbox.path("adapted.fbx"))
     with stages.stage("Drawing the picture"), quiet():
+        from .marks_of import marks_of
         from .picture import draw
 
-        draw(adaptation, job.problem, outbox.path("sheet.png"))
+        draw(
+            adaptation,
+            job.problem,
+            outbox.path("sheet.png"),
+            marks_of(adaptation, job.problem),
+        )
     with stages.stage("Measuring"):
         try:
             save(adaptation.motion, outbox.path("trajectory.npz"))

@@ -10,9 +10,9 @@ from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, Solved, motion_metric, refine
 from .motion import Motion
 from .problem import MotionProblem
 from .projection import Outcome, Progress, restore, worst_violation
-from .recording import FloatArray, PoseTrack
+from .reach import reaching
+from .recording import PoseTrack
 from .requests import Method, Objective
-from .rows import RowKind
 
 MOST_RETRIES = 3  # with twice as many stages each
 MOST_STEPS = 60  # after which there is no further try
@@ -106,7 +106,7 @@ def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way
             places = staged(schedule, before, plan.goal, whole, stage / stages)
         start = carry(motion, stance_moves(schedule, motion.places, places))
         if stage == 1 and plan.scene.timeline.holds:
-            start = _reached(plan, start, places)
+            start = reaching(Motion(transcription, start, places), plan.goal).x
         if stage < stages:
             transcription = transcription.eased(start, 1.0 / (stages - stage + 1))
         outcome = restore(
@@ -123,15 +123,6 @@ def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way
         if not outcome.solved:
             break
     return _Way(tuple(outcomes), stages)
-
-
-def _reached(plan: Arrangement, x: FloatArray, places: FloatArray) -> FloatArray:
-    """A held frame's pose is far from where it shall hang: first every point goes where it
-    belongs, without physics (the thesis's reaching pose for the dunk, 6.3)."""
-    t = plan.start.transcription
-    shaping = tuple(c for c in t.conditions if c.kind not in (RowKind.TORQUE, RowKind.PEAK))
-    still = replace(t, conditions=shaping, dynamic=False)
-    return restore(still, plan.metric, x, places, stage="reach", basis=plan.basis).x
 
 
 def finish(outcome: Outcome, plan: Arrangement, progress: Progress | None) -> list[Outcome]:

@@ -147,11 +147,15 @@ def _with_body(fit: Fit, problem: MotionProblem, changed: Recording) -> Motion:
     still = (change.mass, change.gravity, change.added, change.limbs)
     if still == (None, t.character.gravity, (), ()):
         return motion
-    character = changed_character(t.character, change, fit.performance.recording, changed)
-    points = changed_points(t.points, t.character, character)
-    moment = MomentFunction(character)
-    new = replace(t, character=character, points=points, moment=moment)
-    return Motion(new, reseated(motion, character), motion.places)
+    if change not in fit.other_bodies:
+        character = changed_character(t.character, change, fit.performance.recording, changed)
+        points = changed_points(t.points, t.character, character)
+        moment = MomentFunction(character)
+        new = replace(t, character=character, points=points, moment=moment)
+        made = Motion(new, reseated(motion, character), motion.places)
+        fit.other_bodies.clear()  # the last one is asked for again and again, older ones are not
+        fit.other_bodies[change] = made
+    return fit.other_bodies[change]
 
 
 # ---------------------------------------------------------------- contacts
@@ -242,7 +246,7 @@ def _start(
     else:
         basis = Basis(*phase_breaks(schedule.boundaries, extra, coarse))
     new = Transcription(t.character, basis, points, contacts, t.moment)
-    x = _resampled(reference, new, scene.timeline.to_old)
+    x = _resampled(reference, new, scene.timeline.eased)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
     return replace(motion, places=_current_places(motion, fit))
 

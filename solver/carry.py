@@ -47,6 +47,7 @@ def stance_moves(
 ) -> tuple[RigidMove, ...]:
     """The rigid move nearest to how each ground phase's contacts go from before to after.
 
+    Grips and other contacts that were asked for move nothing: the arms reach for them (reach.py).
     wanted: turns by phase, rad. Places alone cannot tell a half turn left from one right, nor a
     whole turn from none.
     """
@@ -57,7 +58,7 @@ def stance_moves(
         mine = [
             i
             for i, c in enumerate(schedule.contacts)
-            if c.start < phase.end and c.end > phase.start
+            if c.start < phase.end and c.end > phase.start and not c.asked_for
         ]
         if not mine:
             continue

@@ -71,6 +71,11 @@ class Contact:
     end: float
     place: FloatArray
 
+    @property
+    def asked_for(self) -> bool:
+        """Whether the artist made it; those that were found are numbered."""
+        return self.name == self.point
+
 
 @dataclass(frozen=True)
 class Flight:

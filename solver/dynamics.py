@@ -7,10 +7,7 @@ and L' depends on the joint angles alone. Forces are in body weights, so L' is i
 (thesis 4.1: scaling).
 """
 
-import itertools
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,9 +16,9 @@ import numpy as np
 
 from .character import Character
 from .recording import FloatArray
+from .threads import in_threads
 
 GRAVITY = 9.81
-MOST_THREADS = 4
 FEWEST_EACH = 32  # instants worth a thread of their own
 
 
@@ -134,16 +131,12 @@ def evaluate(
     """
     inputs = np.ascontiguousarray(x, dtype=float)
     outputs = [np.empty((len(x), *shape)) for shape in shapes]
-    workers = min(MOST_THREADS, os.cpu_count() or 1, len(x) // FEWEST_EACH)
-    if workers < 2:
-        _fill(function, inputs, outputs)
-        return outputs
-    edges = np.linspace(0, len(x), workers + 1).astype(int).tolist()
-    parts = [slice(a, b) for a, b in itertools.pairwise(edges)]
-    # CasADi lets go of Python's lock while it evaluates, so plain threads share the work; its own
-    # threaded map was slower than the serial one.
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(lambda p: _fill(function, inputs[p], [out[p] for out in outputs]), parts))
+    # Plain threads: CasADi's own threaded map was slower than the serial one.
+    in_threads(
+        lambda part: _fill(function, inputs[part], [out[part] for out in outputs]),
+        len(x),
+        FEWEST_EACH,
+    )
     return outputs
 
 

@@ -21,6 +21,7 @@ from .performance import Performance, interpolate
 from .pins import PointContact
 from .projection import Outcome, Progress, project, restore
 from .recording import FloatArray, IntArray, Recording
+from .requests import BodyChange
 from .splines import Basis, gauss_instants, phase_breaks
 from .status import Status
 from .torque import TorqueFunction, every_torque
@@ -74,6 +75,11 @@ class Fit(Solved):
     def metric(self) -> BlockBanded:
         """The norm in which adaptations of this fit are small."""
         return motion_metric(self.motion, ADAPT_PRICES)
+
+    @cached_property
+    def other_bodies(self) -> dict[BodyChange, Motion]:
+        """The fit with other bodies, for arrange.py to keep: their functions take long to build."""
+        return {}
 
     @cached_property
     def torques(self) -> TorqueFunction:

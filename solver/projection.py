@@ -26,12 +26,14 @@ from .recording import BoolArray, FloatArray, IntArray
 from .rows import RowKind, Rows, by_kind
 from .splines import ORDER
 from .status import Status
+from .threads import in_threads
 from .transcription import Transcription
 
 # Speeds are weighed against places by the time in which they would move as far.
 NORM = {RowKind.PIN_SPEED: 30.0}
 PENALTY = 1e4
-AT_ONCE = 16  # spans
+AT_ONCE = 32  # spans
+FEWEST_EACH = 8  # spans worth a thread of their own
 MOST_SWEEPS = 8
 SWEEP_GAIN = 1e-3
 CHORD_GAIN = 0.03
@@ -39,7 +41,7 @@ RIDGE = 1e-8
 SHORTEST_STEP = 0.005
 LET_STAND = 0.5  # of a bound's tolerance
 PATIENCE = 6  # steps
-NEAR = 30.0  # times the tolerances: the end of a solve
+NEAR = 1e3  # times the tolerances: the end of a solve
 ENOUGH = 0.05  # of the objective: what a further step must gain
 
 
@@ -100,28 +102,37 @@ def restore(
     """
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
-    line = Linearised(transcription, transcription.rows(x, places), metric, basis=basis)
-    value, fresh, last = line.rows.value, True, np.inf
+    begun = transcription.rows(x, places)
+    here: Rows | None = begun  # the rows at x with their Jacobian, where that is known
+    line: Linearised | None = None
+    value, last, slow, violation = begun.value, np.inf, True, worst_violation(begun)
     while len(steps) < most_steps:
-        violation = line.worst(value)
+        violation = violation if line is None else line.worst(value)
         if violation <= 1.0:
             status = Status.SOLVED
             break
-        if not fresh and violation > CHORD_GAIN * last:
-            line, fresh = line.at(transcription.rows(x, places), metric), True
+        slow = line is None or violation > CHORD_GAIN * last
+        fresh = slow or here is not None
+        if fresh:
+            here = transcription.rows(x, places) if here is None else here
+            working = None if line is None else line.working
+            line = Linearised(transcription, here, metric, basis=basis, working=working)
+        assert line is not None
         d, _ = line.step(value)
-        x, value, length = _shorten(transcription, line, x, d, places, value)
-        if length < 1.0 and not fresh:  # the old Jacobian no longer serves
-            line, fresh = line.at(transcription.rows(x, places), metric), True
+        at = _shorten(transcription, line, x, d, places, value, whole=slow)
+        if at.length < 1.0 and not fresh:  # the old Jacobian no longer serves
+            x, value, here = at.x, at.value, transcription.rows(at.x, places)
             continue
+        x, value, here, length = at.x, at.value, at.rows, at.length
         steps.append(Step(stage, violation, length))
-        last, fresh = violation, False
+        last = violation
         if progress is not None:
             progress(steps[-1])
         if length == 0.0 or _stagnant(steps):
             status = Status.STALLED
             break
-    return Outcome(x, transcription, status, tuple(steps), line.worst(value))
+    violation = violation if line is None else line.worst(value)
+    return Outcome(x, transcription, status, tuple(steps), violation)
 
 
 def _stagnant(steps: list[Step]) -> bool:
@@ -214,14 +225,19 @@ class _Windows:
     def add_normal(self, system: BlockBanded, weight: float) -> None:
         """Adds weight * J'J, a few spans at a time so that they stay in the processor's cache."""
         wide = self.J.shape[2]
+        scaled = np.sqrt(weight) * self.J
+        squares = np.empty((AT_ONCE, wide, wide))
+
+        def square(part: slice) -> None:
+            for i in range(part.start, part.stop):  # numpy knows that a.T @ a is symmetric
+                rows = scaled[first + i, : self.counts[first + i]]
+                np.matmul(rows.T, rows, out=squares[i])
+
         for first in range(0, len(self.J), AT_ONCE):
-            some = slice(first, first + AT_ONCE)
-            scaled = np.sqrt(weight) * self.J[some]
-            squares = np.empty((len(scaled), wide, wide))
-            for span, count in enumerate(self.counts[some]):  # numpy knows a.T @ a is symmetric
-                squares[span] = scaled[span, :count].T @ scaled[span, :count]
-            shape = (len(scaled), ORDER, self.size, ORDER, self.size)
-            system.add_windows(self.first[some], squares.reshape(shape))
+            count = min(AT_ONCE, len(self.J) - first)
+            in_threads(square, count, FEWEST_EACH)
+            shape = (count, ORDER, self.size, ORDER, self.size)
+            system.add_windows(self.first[first : first + count], squares[:count].reshape(shape))
 
     def columns(self, rows: IntArray, blocks: int) -> FloatArray:
         """(K, n, m) the chosen rows as columns."""
@@ -279,12 +295,6 @@ class Linearised:
             (self._scaled(rows.lower, self._free), self._scaled(rows.upper, self._free)),
             self._scaled(self._tolerance, self._free),
             was,
-        )
-
-    def at(self, rows: Rows, metric: BlockBanded) -> "Linearised":
-        """The same problem linearised elsewhere."""
-        return Linearised(
-            self._transcription, rows, metric, basis=self._basis, working=self.working
         )
 
     @property
@@ -361,6 +371,16 @@ class Linearised:
         return np.asarray(self._bounds.times(d)[self._bounds.where])
 
 
+@dataclass(frozen=True)
+class _Trial:
+    """Where a step led: unknowns, the rows' values, its length, and the rows if they are known."""
+
+    x: FloatArray
+    value: FloatArray
+    length: float
+    rows: Rows | None
+
+
 def _shorten(
     transcription: Transcription,
     line: Linearised,
@@ -368,24 +388,27 @@ def _shorten(
     d: FloatArray,
     places: FloatArray,
     value: FloatArray,
-) -> tuple[FloatArray, FloatArray, float]:
-    """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0.0 if none does.
+    *,
+    whole: bool,
+) -> _Trial:
+    """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0 if none does.
 
     Near the end, where what is left of different rows has different units, lessening the worst
-    violation counts as well. Returns the new unknowns, their rows' values and the length.
+    violation counts as well. whole: whether the next step will want the Jacobian there, so that
+    the full step is tried with it.
     """
     before, worst = line.merit(value), line.worst(value)
     length = 1.0
     while length > SHORTEST_STEP:
         trial = x + length * d
-        left = transcription.values(trial, places)
+        rows = transcription.rows(trial, places) if whole and length == 1.0 else None
+        left = transcription.values(trial, places) if rows is None else rows.value
         enough = 1.0 - 0.1 * length
-        if line.merit(left) < enough * before:
-            return trial, left, length
-        if worst < NEAR and line.worst(left) < enough * worst:
-            return trial, left, length
+        near = worst < NEAR and line.worst(left) < enough * worst
+        if near or line.merit(left) < enough * before:
+            return _Trial(trial, left, length, rows)
         length *= 0.5
-    return x, value, 0.0
+    return _Trial(x, value, 0.0, None)
 
 
 def _search(

@@ -17,6 +17,7 @@ from .recording import FloatArray
 from .requests import Hold, Moment, PhaseTiming, When
 
 SHORTEST_PHASE = 0.03  # s
+EASE = 0.2  # s
 DIGITS = 9  # of an instant in s, so that those that are one stay one
 
 
@@ -56,6 +57,19 @@ class Timeline:
     def to_old(self, new: FloatArray | float) -> FloatArray:
         """Old instants of new ones."""
         return np.asarray(np.interp(new, self.new, self.old))
+
+    def eased(self, new: FloatArray) -> FloatArray:
+        """Old instants as `to_old`, but gliding into holds and out of them instead of stopping.
+
+        A moving average over EASE to both sides (less near the ends), with a parabola's weights.
+        """
+        if not self.holds:
+            return self.to_old(new)
+        share = np.linspace(-1.0, 1.0, 21)
+        weight = 1.0 - share**2
+        reach = np.minimum(EASE, np.minimum(new, self.duration - new))
+        around = new[:, None] + share * np.maximum(reach, 0.0)[:, None]
+        return np.asarray(self.to_old(around) @ (weight / weight.sum()))
 
     def instant(self, frame: float) -> float:
         """New time of a scene frame of the recording."""

@@ -43,7 +43,6 @@ class Transcription:
     """The equations of one motion problem on one basis.
 
     points: the bodies' points that touch; contacts: when and where they do. conditions: bounds.
-    dynamic: whether the laws of motion are among the equations.
     """
 
     character: Character
@@ -52,7 +51,6 @@ class Transcription:
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
     conditions: tuple[Condition, ...] = ()
-    dynamic: bool = True
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block) bool, which unknowns exist
 
@@ -113,9 +111,7 @@ class Transcription:
     def rows(self, x: FloatArray, places: FloatArray) -> Rows:
         """Every equation at unknowns x (K, n_block), pins at places (n_contacts, 3) m."""
         at_nodes, at_pins = self._poses(x)
-        parts = []
-        if self.dynamic:
-            parts = [self._balance_at(x), self._moment_rows(x, at_nodes)]
+        parts = [self._balance_at(x), self._moment_rows(x, at_nodes)]
         if self.contacts:
             window = self.window(x, self.pins.spans)
             parts += self.pins.rows(window, at_pins, self.points, places)
@@ -126,9 +122,7 @@ class Transcription:
     def values(self, x: FloatArray, places: FloatArray) -> FloatArray:
         """The values of `rows` alone, cheaper."""
         at_nodes, at_pins = self._poses(x)
-        parts = []
-        if self.dynamic:
-            parts = [self._balance_residual(x), self._moment_residual(x, at_nodes).ravel()]
+        parts = [self._balance_residual(x), self._moment_residual(x, at_nodes).ravel()]
         if self.contacts:
             window = self.window(x, self.pins.spans)
             parts.append(self.pins.values(window, at_pins, self.points, places))

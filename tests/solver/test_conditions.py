@@ -34,6 +34,7 @@ from hangtime.tests.solver.toys import (
     RATE,
     asked,
     contacts,
+    held_between,
     places,
     restored,
     scene,
@@ -122,7 +123,7 @@ def test_what_is_asked_is_missed_by_name_and_then_met(name: str) -> None:
     assert condition.start - 1e-9 <= before.time <= condition.end + 1e-9
     if name not in MET_ALREADY:
         assert before.amount > 5.0 * before.kind.tolerance
-    outcome = restored(t, stood())
+    t, outcome = held_between(t, stood())
     assert outcome.status is Status.SOLVED
     rows = t.rows(outcome.x, places())
     assert np.abs(rows.violation() / rows.tolerance).max() <= 1.0

@@ -8,7 +8,7 @@ from hangtime.solver.anatomy import Part, Side
 from hangtime.solver.build import Scene, conditions
 from hangtime.solver.character import Body, Character, Joint
 from hangtime.solver.closeness import Closeness, Prices
-from hangtime.solver.condition import Condition, Measure
+from hangtime.solver.condition import Condition, Measure, exchange
 from hangtime.solver.contacts import Contact, ContactSchedule
 from hangtime.solver.coordinates import Axes
 from hangtime.solver.dynamics import MomentFunction
@@ -130,6 +130,18 @@ def stood() -> Motion:
 def restored(transcription: Transcription, start: Motion) -> Outcome:
     """Minimum-norm steps to where a transcription's rows hold."""
     return restore(transcription, metric(start), start.x, places(), stage="toy")
+
+
+def held_between(t: Transcription, start: Motion) -> tuple[Transcription, Outcome]:
+    """The same, with rows added where a condition is missed in between."""
+    outcome = restored(t, start)
+    for _ in range(4):
+        added = tuple(exchange(c, t.character, t.basis, t.layout, outcome.x) for c in t.conditions)
+        if all(new is old for new, old in zip(added, t.conditions, strict=True)):
+            break
+        t = replace(t, conditions=added)
+        outcome = restored(t, Motion(t, outcome.x, start.places))
+    return t, outcome
 
 
 @cache
