@@ -16,6 +16,9 @@ from .rows import Layout, RowKind, Rows, violation
 from .splines import Basis
 from .state import Instants, Slope, State
 
+DENSE = 0.004  # s, between the instants that tell whether a bound holds
+FEWEST_DENSE = 6  # of them a span
+
 
 class Measure(Protocol):
     """A quantity of the motion that can be bounded."""
@@ -99,15 +102,18 @@ class Condition:
         extra = np.array(self.extra)
         times = np.concatenate([first, between, last[ends], extra])
         owners = [spans, np.repeat(spans, len(inside)), spans[ends], basis.spans(extra)]
-        held = (times >= self.start) & (times <= self.end)
-        if not held.any():
-            middle = np.array([0.5 * (self.start + self.end)])
-            return Instants(basis, middle)
-        return Instants(basis, times[held], np.concatenate(owners)[held])
+        owner = np.concatenate(owners)
+        order = np.lexsort((owner, times))
+        order = order[(times[order] >= self.start) & (times[order] <= self.end)]
+        if not len(order):
+            return Instants(basis, np.array([0.5 * (self.start + self.end)]))
+        return Instants(basis, times[order], owner[order])
 
     def dense(self, basis: Basis) -> Instants:
         """Instants that tell whether it holds between the rows."""
-        return replace(self, per_span=6, extra=()).instants(basis)
+        longest = float(np.diff(basis.breaks).max())
+        per_span = max(FEWEST_DENSE, int(np.ceil(longest / DENSE)))
+        return replace(self, per_span=per_span, extra=()).instants(basis)
 
 
 class Bounded:

@@ -40,7 +40,7 @@ SWING = 1e-9  # weight against third derivatives when the recording is made a sp
 
 
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
-FIT_PROMISE = Promise(flight=4e-4, ground=1.5e-3, drift=2e-4)
+FIT_PROMISE = Promise(flight=4e-4, ground=1.5e-3, drift=1e-4)
 ADAPT_PROMISE = Promise(flight=1e-3, ground=4e-3, drift=4e-4)
 
 

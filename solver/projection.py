@@ -287,11 +287,12 @@ class Linearised:
         system = self._metric.copy()
         self._equations.add_normal(system, PENALTY)
         self._factor = _factor(system)
-        self._bounds = _Windows.of(rows.some(self._free), self._norm[self._free], first, basis)
+        bounds = _Windows.of(rows.some(self._free), self._norm[self._free], first, basis)
+        self._bounds, blocks = bounds, self._blocks
         was = np.zeros(len(self._free), bool) if working is None else working[self._free]
         self._bounded = BoundedStep(
             self._factor,
-            lambda rows: self._bounds.columns(rows, self._blocks),
+            lambda rows: bounds.columns(rows, blocks),  # not self: a cycle would live on for long
             (self._scaled(rows.lower, self._free), self._scaled(rows.upper, self._free)),
             self._scaled(self._tolerance, self._free),
             was,
