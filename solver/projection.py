@@ -105,14 +105,15 @@ def restore(
     begun = transcription.rows(x, places)
     here: Rows | None = begun  # the rows at x with their Jacobian, where that is known
     line: Linearised | None = None
-    value, last, slow, violation = begun.value, np.inf, True, worst_violation(begun)
+    value, last, violation = begun.value, np.inf, worst_violation(begun)
+    slow = stale = False
     while len(steps) < most_steps:
         violation = violation if line is None else line.worst(value)
         if violation <= 1.0:
             status = Status.SOLVED
             break
         slow = line is None or violation > CHORD_GAIN * last
-        fresh = slow or here is not None
+        fresh, stale = slow or stale or here is not None, False
         if fresh:
             here = transcription.rows(x, places) if here is None else here
             working = None if line is None else line.working
@@ -121,7 +122,7 @@ def restore(
         d, _ = line.step(value)
         at = _shorten(transcription, line, x, d, places, value, whole=slow)
         if at.length < 1.0 and not fresh:  # the old Jacobian no longer serves
-            x, value, here = at.x, at.value, transcription.rows(at.x, places)
+            x, value, here, stale = at.x, at.value, None, True
             continue
         x, value, here, length = at.x, at.value, at.rows, at.length
         steps.append(Step(stage, violation, length))

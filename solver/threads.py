@@ -4,6 +4,7 @@ import itertools
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 import numpy as np
 
@@ -17,6 +18,14 @@ def in_threads(work: Callable[[slice], object], count: int, fewest: int) -> None
         work(slice(0, count))
         return
     edges = np.linspace(0, count, workers + 1).astype(int).tolist()
-    parts = [slice(a, b) for a, b in itertools.pairwise(edges)]
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(work, parts))
+    first, *others = (slice(a, b) for a, b in itertools.pairwise(edges))
+    pending = [_pool().submit(work, part) for part in others]
+    work(first)
+    for each in pending:
+        each.result()
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    """One for the process: starting threads for every call would take longer than some calls."""
+    return ThreadPoolExecutor(MOST, thread_name_prefix="hangtime")

@@ -507,3 +507,57 @@ def test_a_result_for_keys_that_changed_meanwhile_is_thrown_away(
     with pytest.raises(RuntimeError, match="The result was thrown away"):
         bpy.ops.hangtime.adapt()
     assert SceneState.of(analysed) == before
+
+
+# ---------------------------------------------------------------- requests
+
+
+def ask_by_text(armature: bpy.types.Object, text: str) -> None:
+    asked = bpy.data.texts.new("Requests")
+    asked.from_string(text)
+    armature.hangtime.requests = asked
+
+
+def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
+    ask_by_text(
+        analysed,
+        '[[torque]]\nname = "Weak ankle"\nbones = ["RightFoot"]\nbound = 60\n'
+        'phase = "ground 1"\n[[load]]\nname = "Briefcase"\nbone = "RightHand"\nshare = 0.1\n',
+    )
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert analysed.animation_data.action.name.endswith("adapted")
+    problem = problem_of(analysed.hangtime, read_take(analysed, FIRST, LAST))
+    assert [limit.name for limit in problem.requests.torques] == ["Weak ankle"]
+    assert [load.share for load in problem.requests.body.added] == [0.1]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('[[torque]]\nname = "Weak"\nbones = ["Tail"]\nbound = 5\n', "Weak.*Tail"),
+        ('[[cone]]\nbone = "LeftArm"\n', "line 1"),
+        ('[[pose]]\nname = "Tuck"\nphase = "flight 7"\n', "Tuck.*flight 7"),
+    ],
+)
+def test_a_wrong_request_is_said_and_changes_nothing(
+    analysed: bpy.types.Object, text: str, words: str
+) -> None:
+    ask_by_text(analysed, text)
+    before = SceneState.of(analysed)
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.hangtime.adapt()
+    assert SceneState.of(analysed) == before
+
+
+def test_longer_limbs_perform_on_an_armature_of_their_own(analysed: bpy.types.Object) -> None:
+    bones = '["LeftUpLeg", "RightUpLeg", "LeftLeg", "RightLeg"]'
+    ask_by_text(analysed, f'[[limb]]\nname = "Long legs"\nbones = {bones}\nlength = 1.15\n')
+    recorded = analysed.animation_data.action
+    keys = snapshot(recorded, analysed)
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert snapshot(recorded, analysed) == keys
+    other = bpy.data.objects[f"{analysed.name} changed"]
+    longer = other.data.bones["LeftLeg"].length / analysed.data.bones["LeftLeg"].length
+    scale = analysed.matrix_world.median_scale
+    assert longer == pytest.approx(1.15 * scale, rel=0.01)
+    assert other.animation_data.action is not None
