@@ -166,6 +166,10 @@ def summary(answer: Adapted) -> str:
         [
             f"Solved in {seconds:.1f} s",
             f"Pins: {worst['worst_violation_mm']:.2f} mm off at most ({worst['name']})",
+            *(
+                f"{each['name']}: {'held' if each['met'] else 'missed a little'}"
+                for each in report["conditions"]
+            ),
             f"Peak force: {peak['peak_bw']:.1f} body weights (frame {peak['frame']:.0f})",
         ]
     )

@@ -114,14 +114,13 @@ def _reported(
     outbox: Outbox,
     stages: Stages,
 ) -> NoSolution:
-    """Why a solve failed, places before physics, once the report and the best motion that was
-    found are written."""
+    """Why a solve failed, once the report and the best motion that was found are written."""
     if adaptation.reached > 0.0:
         _write_actions(loaded, adaptation, called="best found, short of the goal")
         _save_blend(outbox.path("best_found.blend"))
     _write_report(_measured(job, loaded, adaptation, stages), outbox)
     outbox.deliver()
-    missed = sorted(worst_constraints(adaptation, job.problem), key=lambda each: each[2] != "mm")
+    missed = worst_constraints(adaptation, job.problem)
     return kind(adaptation.outcome.status.value, tuple(missed[:3]), adaptation.reached)
 
 

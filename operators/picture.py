@@ -31,7 +31,8 @@ def draw(
     The marks' arrays are constant, or sampled at `instants(adaptation.motion)`.
     Raises OutputNotWritable.
     """
-    edit = "; ".join(map(caption, problem.pins)) or "made to obey physics"
+    asked = [*map(caption, problem.pins), *problem.requests.names]
+    edit = "; ".join(asked) or "made to obey physics"
     rows = [recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)]
     draw_sheet(rows, path, View(heading=heading(adaptation)))
 

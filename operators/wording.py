@@ -9,11 +9,13 @@ from ..solver.problem import UnknownContact, UnknownPhase
 from ..solver.status import Status
 
 OUTCOMES = {
-    Status.SOLVED: "Solved: the motion obeys physics and every pin holds.",
-    Status.STALLED: "No motion was found that obeys physics and holds every pin. "
-    "Move the pins less, pin fewer points, or check the contacts' frames.",
+    Status.SOLVED: "Solved: the motion obeys physics and everything asked for holds.",
+    Status.STALLED: "No motion was found that obeys physics and holds all that is asked for. "
+    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
     Status.TOO_MANY_STEPS: "No motion was found within the allowed number of steps. "
-    "Move the pins less, or check the contacts' frames.",
+    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
+    Status.MISSED: "The motion obeys physics, but between the solver's instants something asked "
+    "for is missed by more than is promised. Loosen what is named here a little.",
 }
 
 
@@ -216,6 +218,39 @@ def _(fault: faults.NeedsTorques) -> str:
     return (
         f"{_quoted(fault.request)} limits a torque, but the reduced dynamics have none; "
         'choose "automatic" or "standard" dynamics.'
+    )
+
+
+@sentence.register
+def _(fault: faults.NothingTouches) -> str:
+    who = _names(fault.touching) if fault.touching else "nothing"
+    return (
+        f"{_quoted(fault.request)} is about {who}, which does not touch then; "
+        "name contacts, points or bones that the analysis lists."
+    )
+
+
+@sentence.register
+def _(fault: faults.WrongAngle) -> str:
+    return (
+        f"{_quoted(fault.request)} names an angle that the joint of {_quoted(fault.bone)} does "
+        f"not have; it has {fault.count}, counted from 0."
+    )
+
+
+@sentence.register
+def _(fault: faults.FreePoint) -> str:
+    return (
+        f"{_quoted(fault.request)} is pushed by the world but held in no direction; "
+        "hold it in one at least, or let it be no part of the environment."
+    )
+
+
+@sentence.register
+def _(fault: faults.TakenName) -> str:
+    return (
+        f"{_quoted(fault.request)} is called like a contact that was found; "
+        "give it a name of its own."
     )
 
 

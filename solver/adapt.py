@@ -4,19 +4,21 @@ from dataclasses import dataclass, replace
 
 from .arrange import Arrangement, arrange
 from .carry import carry, stage_count, staged, stance_moves
-from .condition import exchange
+from .condition import exchange, missed
 from .explicit import explicit
-from .fit import ADAPT_PRICES, ADAPT_PROMISE, Fit, Solved, motion_metric, refine
+from .fit import ADAPT_PROMISE, Fit, Solved, refine
 from .motion import Motion
 from .problem import MotionProblem
 from .projection import Outcome, Progress, restore, worst_violation
 from .reach import reaching
 from .recording import PoseTrack
 from .requests import Method, Objective
+from .status import Status
 
 MOST_RETRIES = 3  # with twice as many stages each
 MOST_STEPS = 60  # after which there is no further try
 MOST_EXCHANGES = 4
+PROMISED = 3.0  # times a condition's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
 
 @dataclass(frozen=True)
@@ -24,13 +26,15 @@ class Adaptation(Solved):
     """An adapted motion, the fit it came from, and how the problem was set up.
 
     stuck: where the steps failed, None where they did not; the motion is then the last on the way
-    that obeys physics, `reached` the share of the way that it went.
+    that obeys physics, `reached` the share of the way that it went. gain: what is left of the
+    explicit solution's objective, in shares of the start's; None where there was none.
     """
 
     fit: Fit
     plan: Arrangement
     stuck: Outcome | None = None
     reached: float = 1.0
+    gain: float | None = None
 
     @property
     def track(self) -> PoseTrack:
@@ -52,22 +56,33 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     """
     plan = arrange(fit, problem)
     outcomes: list[Outcome] = []
+    ways: list[_Way] = []
     for harder in range(MOST_RETRIES):
-        way = _in_stages(plan, 2**harder, progress)
-        outcomes += way.outcomes
-        if way.arrived or sum(len(o.steps) for o in outcomes) > MOST_STEPS:
+        ways.append(_in_stages(plan, 2**harder, progress))
+        outcomes += ways[-1].outcomes
+        if ways[-1].arrived or sum(len(o.steps) for o in outcomes) > MOST_STEPS:
             break
-    if not way.arrived:
-        return _failed(way, outcomes, fit, plan)
+    if not ways[-1].arrived:
+        return _failed(max(ways, key=lambda way: way.reached), outcomes, fit, plan)
     outcomes += finish(outcomes[-1], plan, progress)
-    weights = dict[Objective, float]()
-    if problem.requests.solution.method is Method.EXPLICIT:
+    gain = None
+    method, weights = problem.requests.solution.method, dict[Objective, float]()
+    if method is Method.EXPLICIT:
         weights = dict(problem.requests.solution.objectives)
-    if outcomes[-1].solved and (weights or problem.requests.preferred):
-        better = explicit(outcomes[-1], plan, weights, progress)
+    if weights or problem.requests.preferred:
+        better, gain = explicit(outcomes[-1], plan, weights, progress)
         outcomes += better + (finish(better[-1], plan, progress) if better else [])
+    if misses(outcomes[-1]):
+        outcomes[-1] = replace(outcomes[-1], status=Status.MISSED)
     stuck = None if outcomes[-1].solved else outcomes[-1]
-    return Adaptation(tuple(outcomes), plan.goal, fit, plan, stuck)
+    return Adaptation(tuple(outcomes), plan.goal, fit, plan, stuck, gain=gain)
+
+
+def misses(outcome: Outcome) -> bool:
+    """Whether a condition is missed by more than is promised, between the rows too."""
+    t = outcome.transcription
+    found = (missed(c, t.character, t.basis, t.layout, outcome.x) for c in t.conditions)
+    return any(each.amount > PROMISED * each.kind.tolerance for each in found)
 
 
 @dataclass(frozen=True)
@@ -76,6 +91,11 @@ class _Way:
 
     outcomes: tuple[Outcome, ...]
     stages: int
+
+    @property
+    def reached(self) -> float:
+        """The share of the stages that were solved."""
+        return sum(outcome.solved for outcome in self.outcomes) / self.stages
 
     @property
     def arrived(self) -> bool:
@@ -88,8 +108,8 @@ def _failed(way: _Way, outcomes: list[Outcome], fit: Fit, plan: Arrangement) -> 
     best = solved[-1] if solved else stuck
     t = plan.start.transcription
     left = worst_violation(t.rows(best.x, plan.goal))
-    outcomes.append(Outcome(best.x, t, stuck.status, (), left))
-    return Adaptation(tuple(outcomes), plan.goal, fit, plan, stuck, len(solved) / way.stages)
+    outcomes.append(Outcome(best.x, t, stuck.status, (), left, plan.goal))
+    return Adaptation(tuple(outcomes), plan.goal, fit, plan, stuck, way.reached)
 
 
 def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way:
@@ -130,7 +150,7 @@ def finish(outcome: Outcome, plan: Arrangement, progress: Progress | None) -> li
     outcomes: list[Outcome] = []
     for _ in range(MOST_EXCHANGES):
         outcomes += refine(
-            outcome, plan.goal, ADAPT_PRICES, ADAPT_PROMISE, basis=plan.basis, progress=progress
+            outcome, plan.goal, plan.metric_of, ADAPT_PROMISE, basis=plan.basis, progress=progress
         )
         outcome = outcomes[-1] if outcomes else outcome
         t = outcome.transcription
@@ -141,7 +161,7 @@ def finish(outcome: Outcome, plan: Arrangement, progress: Progress | None) -> li
         same = t.basis is plan.start.transcription.basis
         outcome = restore(
             motion.transcription,
-            plan.metric if same else motion_metric(motion, ADAPT_PRICES),
+            plan.metric if same else plan.metric_of(motion),
             motion.x,
             plan.goal,
             stage="bounds",

@@ -21,9 +21,16 @@ from .build import (
     touches,
 )
 from .closeness import Prices
-from .contacts import Contact, ContactSchedule
+from .contacts import Contact, ContactSchedule, Phase
 from .dynamics import GRAVITY, MomentFunction
-from .faults import NeedsTorques, UnknownPhaseIn
+from .faults import (
+    BadTiming,
+    FreePoint,
+    NeedsTorques,
+    NothingTouches,
+    TakenName,
+    UnknownPhaseIn,
+)
 from .fit import (
     ADAPT_PRICES,
     SHORTEST_SPAN,
@@ -42,10 +49,10 @@ from .pins import PointContact, Track
 from .problem import MotionProblem, pinned_places, travel_axes
 from .proportions import changed_recording
 from .recording import FloatArray, Recording
-from .reduction import reduce
+from .reduction import ReducedSpace, reduce
 from .requests import ConeShape, Dynamics, Method, PointRequest, Requests
 from .splines import Basis, phase_breaks
-from .timeline import timeline
+from .timeline import SHORTEST_PHASE, timeline
 from .torque import TorqueFunction, every_torque
 from .transcription import Transcription
 
@@ -60,7 +67,8 @@ class Arrangement:
     start: the first guess, whose equations have the problem's conditions; its places are where
     the contacts are now. goal: (n_contacts, 3) m, where they shall be. turns: what the pins ask
     of each phase, rad. basis: (n_block, k), the changes that a reduction allows, None all.
-    requests: those set up here. recording: of the figure as it is asked for.
+    requests: those set up here. recording: of the figure as it is asked for. space: the reduced
+    figure, None where it is not reduced.
     """
 
     fit: Fit
@@ -72,6 +80,14 @@ class Arrangement:
     basis: FloatArray | None
     recording: Recording
     requests: Requests
+    space: ReducedSpace | None
+
+    def metric_of(self, motion: Motion) -> BlockBanded:
+        """The norm in which steps from a motion of this problem are small."""
+        metric = motion_metric(motion, _prices(self.requests))
+        if self.requests.solution.method is not Method.IMPLICIT:
+            metric.lower += torque_metric(motion, self.torques).lower
+        return metric
 
     @property
     def schedule(self) -> ContactSchedule:
@@ -102,13 +118,14 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     wanted = {c.name: place for c, place in zip(fit.schedule.contacts, places, strict=True)}
     schedule = _without_lifted(line.schedule(fit.schedule), problem)
 
+    phases = line.schedule(fit.schedule).phases
+
     def travel(time: float) -> FloatArray:
-        phases = line.schedule(fit.schedule).phases
         index = next((i for i, p in enumerate(phases) if time <= p.end), len(phases) - 1)
         old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
         return travel_axes(fit.performance, fit.schedule, old)
 
-    scene = Scene(changed, fit.motion, reference, schedule, line, travel)
+    scene = Scene(changed, fit.motion, reference, phases, schedule, line, travel)
     added = {r.name: r for r in requests.points if r.environment}
     contacts = [_added(request, scene) for request in added.values()]
     scene = replace(scene, schedule=_with_added(schedule, contacts))
@@ -117,22 +134,36 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     start = _with_conditions(start, problem, scene)
     goal = np.array([wanted[c.name] for c in scene.schedule.contacts]).reshape(-1, 3)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
-    prices = _prices(problem)
+    prices = _prices(requests)
     kept = same and prices is ADAPT_PRICES
     metric = fit.metric if kept else motion_metric(start, prices)
     if problem.requests.solution.method is not Method.IMPLICIT:
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
+    turns = _turns(problem, phases, scene.schedule)
+    reduction, space = requests.solution.reduction, None
+    if reduction is not None:
+        space = reduce(reduction, start.transcription.character, fit.performance.angles)
+    basis = _allowed(space, start)
+    return Arrangement(fit, scene, start, goal, metric, turns, basis, changed, requests, space)
+
+
+def _turns(
+    problem: MotionProblem, named: Sequence[Phase], schedule: ContactSchedule
+) -> dict[str, float]:
+    """What the pins ask of the result's ground phases, rad; pins name the recording's."""
     turns: dict[str, float] = {}
     for pin in problem.pins:
-        turns[pin.phase] = turns.get(pin.phase, 0.0) + pin.turn
-    basis = _allowed(fit, problem, start)
-    return Arrangement(fit, scene, start, goal, metric, turns, basis, changed, requests)
+        was = next((phase for phase in named if phase.name == pin.phase), None)
+        for phase in schedule.phases:
+            if was is not None and phase.start < was.end and phase.end > was.start:
+                turns[phase.name] = turns.get(phase.name, 0.0) + pin.turn
+    return turns
 
 
-def _prices(problem: MotionProblem) -> Prices:
+def _prices(requests: Requests) -> Prices:
     """The usual prices; forces are dearer where they shall stay like the fit's."""
-    wishes = [r.match for r in problem.requests.forces if r.match is not None]
+    wishes = [r.match for r in requests.forces if r.match is not None]
     return replace(ADAPT_PRICES, force=max(wishes) * ADAPT_PRICES.force) if wishes else ADAPT_PRICES
 
 
@@ -168,11 +199,14 @@ def _without_lifted(schedule: ContactSchedule, problem: MotionProblem) -> Contac
         if phase is None:
             known = tuple(p.name for p in schedule.phases)
             raise UnknownPhaseIn(lift.name, lift.phase, known)
-        kept = tuple(
-            c
+        lifted = [
+            c.name
             for c in kept
-            if c.start >= phase.end or c.end <= phase.start or not touches(lift.touching, c)
-        )
+            if c.start < phase.end and c.end > phase.start and touches(lift.touching, c)
+        ]
+        if not lifted:
+            raise NothingTouches(lift.name, lift.touching)
+        kept = tuple(c for c in kept if c.name not in lifted)
     return replace(schedule, contacts=kept)
 
 
@@ -180,6 +214,12 @@ def _added(request: PointRequest, scene: Scene) -> Contact:
     """The contact that an environment point makes, from when it holds."""
     body = scene.body(request.name, request.bone)
     span = scene.interval(request.name, request.when)
+    if span[1] - span[0] < SHORTEST_PHASE:
+        raise BadTiming(request.name, span[1] - span[0])
+    if any(contact.name == request.name for contact in scene.schedule.contacts):
+        raise TakenName(request.name)
+    if request.bounds is not None and (0.0, 0.0) not in request.bounds:
+        raise FreePoint(request.name)
     point = scene.point(body, request.offset)
     place = point_place(request, scene, point, span)(np.array([span[0]]))[0]
     bone = scene.recording.bones[scene.recording.index(request.bone)]
@@ -311,13 +351,11 @@ def _with_conditions(start: Motion, problem: MotionProblem, scene: Scene) -> Mot
     return replace(start, transcription=replace(start.transcription, conditions=made))
 
 
-def _allowed(fit: Fit, problem: MotionProblem, start: Motion) -> FloatArray | None:
+def _allowed(space: ReducedSpace | None, start: Motion) -> FloatArray | None:
     """(n_block, k): root, centre of mass and forces as they are, the other joints reduced."""
-    reduction = problem.requests.solution.reduction
-    if reduction is None:
+    if space is None:
         return None
-    layout = start.transcription.layout
-    reduced = reduce(reduction, start.transcription.character, fit.performance.angles).basis
+    layout, reduced = start.transcription.layout, space.basis
     kept = layout.angles.start + 3  # the root's angles
     k = reduced.shape[1]
     rest = layout.n_block - layout.angles.stop

@@ -9,9 +9,9 @@ import numpy as np
 from .anatomy import Part
 from .character import Body, Character
 from .condition import Bounds, Condition
-from .contacts import Contact, ContactSchedule
+from .contacts import Contact, ContactSchedule, Phase
 from .dynamics import GRAVITY
-from .faults import RootHasNoJoint, StillBone
+from .faults import BadTiming, NothingTouches, RootHasNoJoint, StillBone, WrongAngle
 from .kinematics import BodyPoint
 from .measures import Angles, Bend, Cone, Orientation, PeakForce, Place, Twist
 from .motion import Motion
@@ -49,12 +49,15 @@ class Scene:
     """What requests are understood in: the fit, and the timeline that the result will have.
 
     fitted: the fit, which gives peaks; reference: the same with the body as it is asked for,
-    which gives places and poses. travel: (3, 3) columns forward, left, up at an instant.
+    which gives places and poses. phases: the recording's, on the new time, by which requests name
+    them; schedule: what touches when in the result. travel: (3, 3) columns forward, left, up at
+    an instant.
     """
 
     recording: Recording
     fitted: Motion
     reference: Motion
+    phases: tuple[Phase, ...]
     schedule: ContactSchedule
     timeline: Timeline
     travel: Callable[[float], FloatArray]
@@ -72,7 +75,7 @@ class Scene:
 
     def interval(self, name: str, when: When) -> tuple[float, float]:
         """Start and end, s. Raises UnknownPhaseIn, BadTiming."""
-        return interval(name, when, self.timeline, self.schedule.phases, self.apex)
+        return interval(name, when, self.timeline, self.phases, self.apex)
 
     def body(self, name: str, bone: str) -> int:
         """Raises StillBone."""
@@ -106,7 +109,7 @@ def conditions(
     """Every condition, in the order of the records' kinds, on a motion that touches as the
     transcription has it. Raises the faults of Scene."""
     made: list[Condition] = []
-    made += [_point(r, scene) for r in requests.points if not r.environment]
+    made += [_point(r, scene) for r in requests.points if not r.environment or _loose(r)]
     made += [_bend(r, scene) for r in requests.angles]
     made += [_cone(r, scene) for r in requests.cones]
     made += [_twist(r, scene) for r in requests.twists]
@@ -199,6 +202,8 @@ def _torque(request: TorqueLimit, scene: Scene, transcription: Transcription) ->
         joint = scene.character.joints[body]
         mine = list(range(joint.first, joint.dofs.stop))
         if request.dof is not None:
+            if request.dof >= len(mine):
+                raise WrongAngle(request.name, scene.character.bodies[body].bone, len(mine))
             mine = mine[request.dof : request.dof + 1]
         bound = request.bound
         if bound is None:
@@ -245,6 +250,8 @@ def pose_measure(request: PoseRequest, scene: Scene) -> Angles:
         return _fixed_angles(which, np.concatenate(rest), scene)
     if request.frame is not None:
         at = (request.frame - scene.timeline.first_frame) / scene.timeline.rate
+        if not -1e-6 <= at <= scene.reference.duration + 1e-6:
+            raise BadTiming(request.name, 0.0)
         return _fixed_angles(which, scene.reference.angles(np.array([at]))[0, which], scene)
     return Angles(
         which, lambda times: scene.reference.angles(scene.reference_times(times))[:, which]
@@ -312,6 +319,12 @@ def _point(request: PointRequest, scene: Scene) -> Condition:
     return Condition(request.name, measure, limits, *span, per_span=1 if exact else 2)
 
 
+def _loose(request: PointRequest) -> bool:
+    """Whether a point has bounds that hold it in no one place, which are conditions even where
+    the world pushes at it."""
+    return any(bound not in ((0.0, 0.0), (None, None)) for bound in request.bounds or ())
+
+
 def point_axes(request: PointRequest, scene: Scene, span: tuple[float, float]) -> FloatArray:
     """(3, 3) columns: the directions of a point's bounds and displacement."""
     match request.axes:
@@ -367,14 +380,10 @@ def _peak(request: ForceRequest, scene: Scene, transcription: Transcription) -> 
     points = sorted(
         {c.point for c in transcription.contacts if touches(request.touching, c.contact)}
     )
-    basis = transcription.basis
-    spans = np.arange(basis.n_spans)
-    spans = spans[(basis.breaks[1:] > span[0]) & (basis.breaks[:-1] < span[1])]
-    # Forces are linear between their nodes and the bound is convex: it holds in between.
-    at = np.concatenate([basis.breaks[spans], basis.breaks[spans + 1]])
-    bounds = _limits(None, request.peak)
-    where = (at, np.concatenate([spans, spans]))
-    return Condition(request.name, PeakForce(np.array(points)), bounds, *span, at=where)
+    if not points:
+        raise NothingTouches(request.name, request.touching)
+    measure = PeakForce(np.array(points, dtype=int))
+    return Condition(request.name, measure, _limits(None, request.peak), *span)
 
 
 def touches(names: Sequence[str], contact: Contact) -> bool:

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from .character import Character
-from .recording import FloatArray, IntArray
+from .recording import FloatArray
 from .rows import Layout, RowKind, Rows, violation
 from .splines import Basis
 from .state import Instants, Slope, State
@@ -59,8 +59,7 @@ class Bounds:
 class Condition:
     """Bounds on a measure between start and end, s. name: the artist's.
 
-    per_span: rows per span. at: instants at which to hold it instead, and their spans. extra:
-    instants that `exchange` added.
+    per_span: rows per span. extra: instants that `exchange` added.
     """
 
     name: str
@@ -69,7 +68,6 @@ class Condition:
     start: float
     end: float
     per_span: int = 2
-    at: tuple[FloatArray, IntArray] | None = None
     extra: tuple[float, ...] = ()
 
     @property
@@ -82,8 +80,8 @@ class Condition:
         Torques follow accelerations, which have corners at the breaks and jump at the double ones:
         there they have rows on both sides.
         """
-        if self.at is not None:
-            return Instants(basis, *self.at)
+        if self.kind is RowKind.PEAK:
+            return self._node_instants(basis)
         if self.kind is RowKind.TORQUE:
             return self._sided_instants(basis)
         inside = np.linspace(0.0, 1.0, self.per_span, endpoint=False) + 0.5 / self.per_span
@@ -92,6 +90,15 @@ class Condition:
         times = times[(times > self.start) & (times < self.end)]
         ends = [self.start, self.end]
         return Instants(basis, np.unique(np.concatenate([times, ends, self.extra])))
+
+    def _node_instants(self, basis: Basis) -> Instants:
+        """The force nodes: forces are linear in between, so a bound that is convex holds there."""
+        inside = (basis.breaks[1:] > self.start) & (basis.breaks[:-1] < self.end)
+        spans = np.flatnonzero(inside)
+        if not len(spans):
+            spans = basis.spans(np.array([self.start]))
+        times = np.concatenate([basis.breaks[spans], basis.breaks[spans + 1]])
+        return Instants(basis, times, np.concatenate([spans, spans]))
 
     def _sided_instants(self, basis: Basis) -> Instants:
         first, last = basis.breaks[:-1], basis.breaks[1:]
@@ -186,7 +193,7 @@ def exchange(
     """The condition with the instants added at which it is missed most, one for each stretch."""
     instants, off = _dense_violation(condition, character, basis, layout, x)
     bad = off > condition.kind.tolerance
-    if condition.at is not None or not bad.any():
+    if condition.kind is RowKind.PEAK or not bad.any():
         return condition
     peak = bad & (off >= np.roll(off, 1)) & (off >= np.roll(off, -1))
     added = {*condition.extra, *instants.times[peak].tolist()}

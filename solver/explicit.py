@@ -59,11 +59,11 @@ def explicit(
     plan: Arrangement,
     objectives: Mapping[Objective, float],
     progress: Progress | None,
-) -> list[Outcome]:
+) -> tuple[list[Outcome], float]:
     """Lessens weighted objectives from a motion that meets every request.
 
-    Returns the steps' outcome and that of the restoring after; nothing where no motion with a
-    lower objective was reached.
+    Returns the steps' outcome and that of the restoring after, and the goal's value in shares of
+    that at the start; nothing and 1 where no motion with a lower objective was reached.
     """
     t = outcome.transcription
     goal = weighed(t, outcome.x, plan, objectives)
@@ -78,8 +78,8 @@ def explicit(
         progress=progress,
     )
     if settled.status is not Status.SOLVED or goal.value(settled.x) >= goal.value(outcome.x):
-        return []
-    return [near, settled]
+        return [], 1.0
+    return [near, settled], goal.value(settled.x) / goal.value(outcome.x)
 
 
 def descend(
@@ -114,7 +114,7 @@ def descend(
         before, (x, value, _) = value, found
         if before - value < ENOUGH * before:
             break
-    return Outcome(x, t, Status.SOLVED, tuple(steps), violation)
+    return Outcome(x, t, Status.SOLVED, tuple(steps), violation, plan.goal)
 
 
 def _settled_step(

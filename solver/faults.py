@@ -256,3 +256,34 @@ class NeedsTorques(Fault):
     """A torque was limited, but the reduced dynamics that were chosen have none."""
 
     request: str
+
+
+@dataclass
+class NothingTouches(Fault):
+    """A request names contacts, points or bones of which none touches; none named means all."""
+
+    request: str
+    touching: tuple[str, ...]
+
+
+@dataclass
+class WrongAngle(Fault):
+    """A request names an angle that a joint does not have; count: how many it has."""
+
+    request: str
+    bone: str
+    count: int
+
+
+@dataclass
+class FreePoint(Fault):
+    """A point that the world shall push at is held in no direction."""
+
+    request: str
+
+
+@dataclass
+class TakenName(Fault):
+    """A point that the world shall push at is called like a contact that was found."""
+
+    request: str

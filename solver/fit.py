@@ -3,7 +3,7 @@
 It is computed once per recording and starts every adaptation.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -112,7 +112,7 @@ def fit(
         last = restore(transcription, metric, last.x, places, stage="fit", progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
-            outcomes += refine(last, places, FIT_PRICES, FIT_PROMISE, progress=progress)
+            outcomes += refine(last, places, fitting_metric, FIT_PROMISE, progress=progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
     settled = tuple(
@@ -138,7 +138,7 @@ def reached_places(motion: Motion) -> FloatArray:
 def refine(
     outcome: Outcome,
     places: FloatArray,
-    prices: Prices,
+    metric_of: Callable[[Motion], BlockBanded],
     promise: Promise,
     *,
     basis: FloatArray | None = None,
@@ -152,7 +152,7 @@ def refine(
         if not len(weak):
             break
         finer = on_finer_basis(motion, weak)
-        metric = motion_metric(finer, prices)
+        metric = metric_of(finer)
         finer_outcome = restore(
             finer.transcription,
             metric,
@@ -188,6 +188,11 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
         x[nodes[:, side] + 1, old.layout.forces] = np.einsum("tk,tkn->tn", weights, values)
     x[~new.active] = 0.0
     return Motion(new, x, motion.places)
+
+
+def fitting_metric(motion: Motion) -> BlockBanded:
+    """The norm in which steps of a fit are small."""
+    return motion_metric(motion, FIT_PRICES)
 
 
 def motion_metric(motion: Motion, prices: Prices) -> BlockBanded:

@@ -259,8 +259,8 @@ class ContactForces:
 
 @dataclass(frozen=True)
 class WeightedSum:
-    """A goal for `project`: terms, and a metric that damps the steps (Levenberg) without being
-    part of the goal. band: of the Hessian."""
+    """A goal of the explicit solution: terms, and a metric that damps the steps (Levenberg)
+    without being part of the goal."""
 
     terms: Sequence[Term]
     damping: Callable[[FloatArray], BlockBanded]

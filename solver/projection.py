@@ -5,9 +5,8 @@ Each step solves the linearised problem
     min  g . d + 1/2 d . W d   subject to   C(x) + C_x d = 0,   lo <= B(x) + B_x d <= hi
 
 with W the metric of closeness.py. With g the gradient of the distance to a target this *projects*
-the target onto the valid motions (the fit, and the explicit solution for other objectives); with
-g = 0 it is the thesis's minimum-norm step (the implicit solution), which converges quadratically
-and stays near where it began.
+the target onto the valid motions (the fit); with g = 0 it is the thesis's minimum-norm step (the
+implicit solution), which converges quadratically and stays near where it began.
 
 The equations are settled by an augmented Lagrangian on one banded factor, which also settles
 redundant rows (two feet planted, pins on one rigid foot) without choosing among them; the bounds
@@ -56,13 +55,14 @@ class Step:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Where the steps ended: unknowns, equations, how and why."""
+    """Where the steps ended: unknowns, equations, how and why, and the contacts' places."""
 
     x: FloatArray
     transcription: Transcription
     status: Status
     steps: tuple[Step, ...]
     violation: float
+    places: FloatArray
 
     @property
     def solved(self) -> bool:
@@ -133,7 +133,7 @@ def restore(
             status = Status.STALLED
             break
     violation = violation if line is None else line.worst(value)
-    return Outcome(x, transcription, status, tuple(steps), violation)
+    return Outcome(x, transcription, status, tuple(steps), violation, places)
 
 
 def _stagnant(steps: list[Step]) -> bool:
@@ -178,7 +178,7 @@ def project(
             status = Status.SOLVED
             break
     violation = worst_violation(transcription.rows(x, places))
-    return Outcome(x, transcription, status, tuple(steps), violation)
+    return Outcome(x, transcription, status, tuple(steps), violation, places)
 
 
 def worst_violation(rows: Rows) -> float:

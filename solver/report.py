@@ -22,7 +22,7 @@ from .pins import PointContact
 from .problem import Axes3, MotionProblem, Pin, chosen_contacts, phase_of
 from .projection import Outcome
 from .recording import FloatArray
-from .requests import Dynamics, Method
+from .requests import ConeShape, Dynamics, Method
 from .rows import RowKind
 from .torque_curve import exact_torques, torque_curve
 from .trajectory import instants
@@ -77,6 +77,8 @@ def report(
         ],
         "between_nodes": dense_residuals(motion, schedule.phases),
         "forces": _forces(motion, adaptation),
+        "objective_end_over_start": adaptation.gain,
+        "reduction": _reduction(adaptation),
         "torques": _torques(adaptation, problem) if _in_play(problem) else None,
         "fit_to_recording": closeness(fit),
         "change": change(adaptation),
@@ -120,7 +122,7 @@ def worst_constraints(
         short = worst_constraints(here, problem, least=least)
         return conflicts + [each for each in short if each[0] not in {c[0] for c in conflicts}]
     t = motion.transcription
-    rows = t.rows(motion.x, motion.places)
+    rows = t.rows(motion.x, adaptation.outcome.places)
     pins = pins_of_contacts(adaptation.fit, problem)
     phases = adaptation.plan.schedule.phases
     owners = [f"{pins[name]}: {name}" if name in pins else name for name in t.owners]
@@ -130,6 +132,8 @@ def worst_constraints(
     ):
         name = owners[owner] if owner >= 0 else _phase_at(phases, time).name
         found[name, kind] = max(found.get((name, kind), 0.0), float(left))
+    for each in missed_conditions(adaptation):
+        found[each.name, each.kind] = max(found.get((each.name, each.kind), 0.0), each.amount)
     ranked = sorted(
         ((v / kind.tolerance, name, kind) for (name, kind), v in found.items()),
         key=lambda each: each[0],
@@ -251,6 +255,8 @@ def _contact(motion: Motion, adaptation: Adaptation, i: int, pin: str | None) ->
         "pin": pin,
         "point": contact.point,
         "bone": contact.bone,
+        "friction_coefficient": at.friction,
+        "friction_cone": _cone(at),
         "start_s": contact.start,
         "end_s": contact.end,
         "start_frame": _frame(fit, contact.start),
@@ -263,6 +269,13 @@ def _contact(motion: Motion, adaptation: Adaptation, i: int, pin: str | None) ->
         "worst_violation_frame": _frame(fit, float(pinned[drift.argmax()])),
         "worst_while_settling_mm": 1000.0 * float(settling.max()),
     }
+
+
+def _cone(contact: PointContact) -> str:
+    if contact.friction is None:
+        return "none: a grip"
+    shape = ConeShape.PYRAMID if contact.pyramid else ConeShape.EXACT
+    return str(shape.value)
 
 
 def _settling(contact: PointContact) -> FloatArray:
@@ -322,6 +335,19 @@ def closeness(fit: Fit) -> Json:
     return {
         "joint_centres_rms_cm": 100.0 * _rms(np.linalg.norm(apart, axis=2)),
         "pelvis_apex_difference_cm": 100.0 * max(lost, key=abs, default=0.0),
+    }
+
+
+def _reduction(adaptation: Adaptation) -> Json | None:
+    """The reduced figure, with the curve that its size is chosen by."""
+    space = adaptation.plan.space
+    if space is None:
+        return None
+    return {
+        "kind": space.kind.value,
+        "degrees_of_freedom": space.basis.shape[1],
+        "eigenvalues_rad2": space.eigenvalues.tolist(),
+        "explained_share": space.explained.tolist(),
     }
 
 

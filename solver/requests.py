@@ -371,6 +371,14 @@ class Requests:
     solution: Solution = field(default_factory=Solution)
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """What the artist called them."""
+        kinds = (self.points, self.lifts, self.angles, self.cones, self.twists, self.torques)
+        more = (self.poses, self.orientations, self.forces, self.body.added, self.body.limbs)
+        every = (*kinds, *more, self.timings, self.holds)
+        return tuple(request.name for kind in every for request in kind)
+
+    @property
     def preferred(self) -> tuple[PoseRequest, ...]:
         """The poses that are not held but only preferred."""
         return tuple(pose for pose in self.poses if pose.weight is not None)

@@ -9,3 +9,4 @@ class Status(Enum):
     SOLVED = "solved"
     STALLED = "stalled"
     TOO_MANY_STEPS = "too many steps"
+    MISSED = "missed between the nodes"

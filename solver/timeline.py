@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from .contacts import Contact, ContactSchedule, Phase
+from .contacts import ContactSchedule, Phase
 from .faults import BadTiming, UnknownPhaseIn
 from .recording import FloatArray
 from .requests import Hold, Moment, PhaseTiming, When
@@ -173,10 +173,3 @@ def interval(
             best = apex[inside][np.argmax(apex[inside, 1]), 0]
             return float(best), float(best)
     return start, end
-
-
-def added_contact(
-    name: str, bone: str, offset: FloatArray, place: FloatArray, start: float, end: float
-) -> Contact:
-    """A contact that the artist asked for, as if it had been found."""
-    return Contact(name, name, bone, offset, start, end, place)

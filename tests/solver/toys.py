@@ -151,7 +151,7 @@ def scene() -> Scene:
     touching = tuple(c.contact for c in motion.transcription.contacts)
     line = Timeline(np.array([0.0, DURATION]), np.array([0.0, DURATION]), (), 1.0, RATE)
     schedule = ContactSchedule(touching, DURATION, 0.0)
-    return Scene(recording(), motion, motion, schedule, line, lambda _: np.eye(3))
+    return Scene(recording(), motion, motion, schedule.phases, schedule, line, lambda _: np.eye(3))
 
 
 def recording() -> Recording:
