@@ -26,7 +26,10 @@ class Span:
     end: float
 
     def during(self, times: FloatArray) -> IntArray:
-        return np.flatnonzero((times > self.start - SLACK) & (times < self.end + SLACK))
+        """The instants in which it holds; the nearest one where none falls into them."""
+        inside = np.flatnonzero((times > self.start - SLACK) & (times < self.end + SLACK))
+        nearest = np.abs(times - 0.5 * (self.start + self.end)).argmin()
+        return inside if len(inside) else np.array([nearest])
 
 
 @dataclass(frozen=True)

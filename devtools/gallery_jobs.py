@@ -20,6 +20,8 @@ from .environment import ROOT
 
 GALLERY = ROOT / "examples" / "gallery"
 LONGEST = 400.0  # s, that solving one result may take by all methods together
+LEFT = ("sheet.png", "adapted.fbx", "report.json", "trajectory.npz")  # what a result leaves
+SCRATCH = ("recording.pickle", "drawn.pickle", "measured.json", "written.json")
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 Json = dict[str, Any]
 
@@ -65,8 +67,8 @@ def names() -> list[str]:
 def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
     """Makes one result in a folder; what was measured, with "failed" where something went wrong."""
     folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.iterdir():
-        old.unlink()
+    for name in (*LEFT, *SCRATCH):
+        (folder / name).unlink(missing_ok=True)
     said = _run("gallery_blender", ["read", result.name, str(folder)])
     if said is None:
         said = _run("gallery_solve", [result.name, str(folder), *(["--quick"] if quick else [])])
@@ -77,7 +79,7 @@ def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
     if said is not None:
         found["failed"] = said
     found |= {"name": result.name, "title": result.title} | _read(folder / "written.json")
-    for scratch in ("recording.pickle", "drawn.pickle", "measured.json", "written.json"):
+    for scratch in SCRATCH:
         (folder / scratch).unlink(missing_ok=True)
     return found
 

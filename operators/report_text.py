@@ -62,7 +62,7 @@ def _changes(report: Json) -> Iterator[str]:
     for peak in report["forces"]["peaks"]:
         beyond = ": more than people can bear" if peak["peak_bw"] > BEARABLE else ""
         yield (
-            f"{peak['phase'].capitalize():<11} the ground pushes with at most "
+            f"{peak['phase'].capitalize():<11} what carries the body pushes with at most "
             f"{peak['peak_bw']:.1f} times the body's weight (frame {peak['frame']:.0f}){beyond}"
         )
         grip = peak["friction_coefficient_needed"]

@@ -255,6 +255,14 @@ def _(fault: faults.TakenName) -> str:
 
 
 @sentence.register
+def _(fault: faults.TimedTwice) -> str:
+    return (
+        f"{_quoted(fault.request)} is the second to say how long {_quoted(fault.phase)} takes; "
+        "keep one."
+    )
+
+
+@sentence.register
 def _(fault: faults.WorkerDied) -> str:
     return (
         f"The solver stopped without an answer ({fault.detail}); "

@@ -125,7 +125,7 @@ def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way
         if stage < stages:
             places = staged(schedule, before, plan.goal, whole, stage / stages)
         start = carry(motion, stance_moves(schedule, motion.places, places))
-        if stage == 1 and plan.scene.timeline.holds:
+        if stage == 1:  # where nothing is gripped this changes nothing
             start = reaching(Motion(transcription, start, places), plan.goal).x
         if stage < stages:
             transcription = transcription.eased(start, 1.0 / (stages - stage + 1))

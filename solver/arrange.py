@@ -216,7 +216,7 @@ def _added(request: PointRequest, scene: Scene) -> Contact:
     span = scene.interval(request.name, request.when)
     if span[1] - span[0] < SHORTEST_PHASE:
         raise BadTiming(request.name, span[1] - span[0])
-    if any(contact.name == request.name for contact in scene.schedule.contacts):
+    if any(request.name in (c.name, c.point) for c in scene.schedule.contacts):
         raise TakenName(request.name)
     if request.bounds is not None and (0.0, 0.0) not in request.bounds:
         raise FreePoint(request.name)
@@ -238,10 +238,12 @@ def _detailed(
     """A contact with its friction, and with what an environment point says of it."""
     friction, pyramid = contact.friction, False
     for force in problem.requests.forces:
-        if force.friction is not None and touches(force.touching, contact.contact):
+        shaped = force.friction is not None or force.shape is ConeShape.PYRAMID
+        if shaped and touches(force.touching, contact.contact):
             start, end = scene.interval(force.name, force.when)
             if contact.contact.start < end and contact.contact.end > start:
-                friction, pyramid = force.friction, force.shape is ConeShape.PYRAMID
+                friction = friction if force.friction is None else force.friction
+                pyramid = force.shape is ConeShape.PYRAMID
     contact = replace(contact, friction=friction, pyramid=pyramid)
     if request is None:
         return contact

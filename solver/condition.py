@@ -111,7 +111,11 @@ class Condition:
         owners = [spans, np.repeat(spans, len(inside)), spans[ends], basis.spans(extra)]
         owner = np.concatenate(owners)
         order = np.lexsort((owner, times))
-        order = order[(times[order] >= self.start) & (times[order] <= self.end)]
+        middle = 0.5 * (first + last)[owner]  # of the span that an instant is seen from
+        inside = (times >= self.start) & (times <= self.end)
+        inside &= (middle > self.start) | (times > self.start)
+        inside &= (middle < self.end) | (times < self.end)
+        order = order[inside[order]]
         if not len(order):
             return Instants(basis, np.array([0.5 * (self.start + self.end)]))
         return Instants(basis, times[order], owner[order])

@@ -287,3 +287,11 @@ class TakenName(Fault):
     """A point that the world shall push at is called like a contact that was found."""
 
     request: str
+
+
+@dataclass
+class TimedTwice(Fault):
+    """A second request for the duration of one phase."""
+
+    request: str
+    phase: str

@@ -21,8 +21,6 @@ STEPS, LONGEST, DAMPING = 60, 0.1, 1e-3  # of damped least squares; rad a step, 
 def reaching(motion: Motion, places: FloatArray) -> Motion:
     """The motion with the arms of its gripping contacts turned to the places (n_contacts, 3) m."""
     t = motion.transcription
-    times = dense_instants(t.basis)
-    angles = motion.angles(times)
     grips = [
         (contact, place)
         for contact, place in zip(t.contacts, places, strict=True)
@@ -30,6 +28,8 @@ def reaching(motion: Motion, places: FloatArray) -> Motion:
     ]
     if not grips:
         return motion
+    times = dense_instants(t.basis)
+    angles = motion.angles(times)
     for contact, place in grips:
         _turn_arm(motion, contact, place, times, angles)
     x = motion.x.copy()

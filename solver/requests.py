@@ -202,8 +202,9 @@ class ConeShape(Enum):
 class ForceRequest:
     """What contact forces may be, of every contact or of those named, in `when`.
 
-    friction: coefficient. peak: body weights, of the sum of all forces of the contacts named.
-    match: how strongly the forces are kept like the fit's, times the usual price.
+    friction: coefficient, for the whole of every contact that `when` meets; None leaves it as it
+    is. peak: body weights, of the sum of all forces of the contacts named.
+    match: how strongly all forces are kept like the fit's, times the usual price.
     touching: bones, points or contacts; empty is all.
     """
 

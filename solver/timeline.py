@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from .contacts import ContactSchedule, Phase
-from .faults import BadTiming, UnknownPhaseIn
+from .faults import BadTiming, TimedTwice, UnknownPhaseIn
 from .recording import FloatArray
 from .requests import Hold, Moment, PhaseTiming, When
 
@@ -104,6 +104,8 @@ def timeline(
         seconds = length * factor if timing.seconds is None else timing.seconds
         if seconds < SHORTEST_PHASE:
             raise BadTiming(timing.name, seconds)
+        if timing.phase in wanted:
+            raise TimedTwice(timing.name, timing.phase)
         wanted[timing.phase] = seconds
     edges = sorted({0.0, schedule.duration, *(p.end for p in phases.values())})
     stops: dict[float, list[Hold]] = {}
