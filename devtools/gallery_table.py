@@ -25,10 +25,10 @@ wrote this page. A result lies in its folder: `sheet.png`, `adapted.fbx`, `repor
 NOTES = """
 Seconds and iterations are those from the stored fit, with one thread of linear algebra. *Flight*
 and *ground* are what nothing explains by MuJoCo's inverse dynamics at 960 Hz: force in body weights
-and moment in body weights x m, rms. A joint has no residual of its own: its torque is what the movement needs. *Worst constraint* is
-measured on the action written into Blender (points, bends, cones), by MuJoCo (torques, forces), or
-by the solver between its rows (turns, poses, orientations). *From the fit*: joint centres and joint
-angles, rms.
+and moment in body weights x m, rms. A joint has no residual of its own: its torque is what the
+movement needs. *Worst constraint* is measured on the action written into Blender (points, bends,
+cones), by MuJoCo (torques, forces), or by the solver between its rows (turns, poses, orientations).
+*From the fit*: joint centres and joint angles, rms.
 """
 
 
