@@ -10,9 +10,9 @@ from ..solver.dynamics import GRAVITY
 from ..solver.measures import PeakForce
 from ..solver.mjcf import hinge_order
 from ..solver.recording import FloatArray
-from ..solver.report import shown
 from ..solver.rows import RowKind
 from ..solver.torque import Torques
+from ..solver.violations import shown
 from .gallery_jobs import Json
 from .gallery_looks import looks
 from .mujoco_check import Residual, check_motion

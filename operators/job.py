@@ -11,9 +11,10 @@ from ..solver.adapt import Adaptation, adapt, unadapted
 from ..solver.faults import NoArmature, NoFit, NoSolution, OutputNotWritable, UnreadableClip
 from ..solver.fit import fit
 from ..solver.problem import MotionProblem, pinned_places
-from ..solver.report import Json, Origin, report, worst_constraints
+from ..solver.report import Json, Origin, report
 from ..solver.session import Analysis, analyse
 from ..solver.trajectory import save
+from ..solver.violations import worst_constraints
 from .outbox import Outbox, not_writable
 from .quiet import quiet
 from .report_text import as_text

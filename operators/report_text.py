@@ -20,7 +20,7 @@ def as_text(report: Json) -> str:
     lines += [*_contacts(report), ""]
     if report["conditions"]:
         lines += [*_conditions(report), ""]
-    lines += _stages(report)
+    lines += [*_objective(report), *_stages(report)]
     return "\n".join(lines) + "\n"
 
 
@@ -106,6 +106,16 @@ def _conditions(report: Json) -> Iterator[str]:
                 f"(frame {each['worst_violation_frame']:.0f})"
             )
         yield f"{each['name']:<24}{each['kind']:<14}{held}"
+
+
+def _objective(report: Json) -> Iterator[str]:
+    left = report["objective_end_over_start"]
+    if left is None:
+        return
+    if left < 1.0:
+        yield f"Objective   {100.0 * left:.0f} % of what it was before it was lessened"
+    else:
+        yield "Objective   no motion was found with less of it; the one before stands"
 
 
 def _stages(report: Json) -> Iterator[str]:

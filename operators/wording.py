@@ -216,7 +216,7 @@ def _(fault: faults.RootHasNoJoint) -> str:
 @sentence.register
 def _(fault: faults.NeedsTorques) -> str:
     return (
-        f"{_quoted(fault.request)} limits a torque, but the reduced dynamics have none; "
+        f"{_quoted(fault.request)} is about torques, but the reduced dynamics have none; "
         'choose "automatic" or "standard" dynamics.'
     )
 

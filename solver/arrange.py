@@ -50,7 +50,7 @@ from .problem import MotionProblem, pinned_places, travel_axes
 from .proportions import changed_recording
 from .recording import FloatArray, Recording
 from .reduction import ReducedSpace, reduce
-from .requests import ConeShape, Dynamics, Method, PointRequest, Requests
+from .requests import ConeShape, Dynamics, Method, Objective, PointRequest, Requests
 from .splines import Basis, phase_breaks
 from .timeline import SHORTEST_PHASE, timeline
 from .torque import TorqueFunction, every_torque
@@ -58,6 +58,13 @@ from .transcription import Transcription
 
 HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
 SAMPLES_PER_TRACK = 60.0  # Hz
+OF_TORQUES = (
+    Objective.TORQUE_SMOOTHNESS.value,
+    Objective.POWER.value,
+    Objective.TORQUE_OUTPUT.value,
+    Objective.TOTAL_CHANGE.value,
+    Method.IMPLICIT_TORQUES.value,
+)
 
 
 @dataclass(frozen=True)
@@ -85,7 +92,7 @@ class Arrangement:
     def metric_of(self, motion: Motion) -> BlockBanded:
         """The norm in which steps from a motion of this problem are small."""
         metric = motion_metric(motion, _prices(self.requests))
-        if self.requests.solution.method is not Method.IMPLICIT:
+        if _weighs_torques(self.requests):
             metric.lower += torque_metric(motion, self.torques).lower
         return metric
 
@@ -107,8 +114,8 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults.
     """
     requests, recording = problem.requests, fit.performance.recording
-    if requests.torques and requests.solution.dynamics is Dynamics.REDUCED:
-        raise NeedsTorques(requests.torques[0].name)
+    if requests.solution.dynamics is Dynamics.REDUCED:
+        _refuse_torques(requests)
     rate = (len(recording.times) - 1) / float(recording.times[-1])
     first = float(recording.frames[0])
     line = timeline(fit.schedule, first, rate, requests.timings, requests.holds)
@@ -137,7 +144,7 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     prices = _prices(requests)
     kept = same and prices is ADAPT_PRICES
     metric = fit.metric if kept else motion_metric(start, prices)
-    if problem.requests.solution.method is not Method.IMPLICIT:
+    if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
     turns = _turns(problem, phases, scene.schedule)
@@ -146,6 +153,25 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)
     basis = _allowed(space, start)
     return Arrangement(fit, scene, start, goal, metric, turns, basis, changed, requests, space)
+
+
+def _weighs_torques(requests: Requests) -> bool:
+    """Whether changes of torques count in the norm of the steps."""
+    solution = requests.solution
+    return solution.method is not Method.IMPLICIT and solution.dynamics is not Dynamics.REDUCED
+
+
+def _refuse_torques(requests: Requests) -> None:
+    """Reduced dynamics have no torques to limit or to weigh. Raises NeedsTorques."""
+    solution = requests.solution
+    for limit in requests.torques:
+        raise NeedsTorques(limit.name)
+    if solution.method is not Method.IMPLICIT:
+        weighed = [o.value for o, weight in solution.objectives if weight > 0.0]
+        weighed = weighed if solution.method is Method.EXPLICIT else [solution.method.value]
+        for name in weighed:
+            if name in OF_TORQUES:
+                raise NeedsTorques(name)
 
 
 def _turns(

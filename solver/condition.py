@@ -36,23 +36,14 @@ class Measure(Protocol):
 
 @dataclass(frozen=True)
 class Bounds:
-    """lower, upper (m,) or, where they change over time, (T, m) at instants `times`; linear
-    between them."""
+    """lower, upper (m,); infinite where free."""
 
     lower: FloatArray
     upper: FloatArray
-    times: FloatArray | None = None
 
     def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Each (U, m)."""
-        if self.times is None:
-            return tuple(np.tile(b, (len(times), 1)) for b in (self.lower, self.upper))  # type: ignore[return-value]
-        columns = range(self.lower.shape[1])
-        lower, upper = (
-            np.stack([np.interp(times, self.times, bound[:, k]) for k in columns], axis=1)
-            for bound in (self.lower, self.upper)
-        )
-        return lower, upper
+        return np.tile(self.lower, (len(times), 1)), np.tile(self.upper, (len(times), 1))
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from .build import preferred_poses
 from .closeness import Closeness
 from .fit import ADAPT_PRICES, motion_target
 from .linear import BlockBanded
+from .linearised import Linearised
 from .motion import Motion
 from .objectives import (
     AngleRates,
@@ -23,7 +24,7 @@ from .objectives import (
     WeightedSum,
     nodes_of,
 )
-from .projection import Linearised, Outcome, Progress, Step, restore
+from .projection import Outcome, Progress, Step, restore
 from .recording import FloatArray
 from .requests import Objective
 from .status import Status

@@ -13,10 +13,11 @@ from .fit import Fit, fit
 from .messages import Adapted, Analysed, Answer, Failed, Kind, Progress, Request
 from .problem import MotionProblem, travel_axes
 from .projection import Step
-from .report import Origin, report, worst_constraints
+from .report import Origin, report
 from .requests import Requests
 from .session import Analysis, analyse
 from .stature import scaled_problem, scaled_recording, scaled_schedule, scaled_track
+from .violations import worst_constraints
 
 MOST_FITS = 3
 MOST_LISTED = 3  # constraints that a failure names

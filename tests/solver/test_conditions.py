@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.solver.build import conditions, point_axes, touches
-from hangtime.solver.condition import Bounded, Bounds, Condition, exchange, missed
+from hangtime.solver.condition import exchange, missed
 from hangtime.solver.faults import BadTiming, RootHasNoJoint, StillBone, UnknownPhaseIn
 from hangtime.solver.kinematics import BodyPoint
-from hangtime.solver.measures import Place
 from hangtime.solver.motion import Motion
 from hangtime.solver.requests import (
     ALWAYS,
@@ -41,7 +40,6 @@ from hangtime.tests.solver.toys import (
     standing,
     stood,
 )
-from numpy.polynomial import Polynomial
 
 MIDDLE = When(moment=Moment.MIDDLE)
 LATE = When(frames=(1.0 + 0.2 * RATE, 1.0 + 0.25 * RATE))
@@ -246,25 +244,6 @@ def test_touching_is_by_contact_point_or_bone() -> None:
         assert touches(("other", name), contact)
     assert touches((), contact)
     assert not touches(("Right heel",), contact)
-
-
-def test_bounds_may_change_over_time() -> None:
-    """A point that is let down along a line, within a centimetre."""
-    t = standing()
-    measure = Place(BodyPoint(0, np.zeros(3)), lambda times: np.zeros((len(times), 3)), np.eye(3))
-    line = Polynomial([1.0, -0.2])
-    times = np.array([0.0, DURATION])
-    upper = np.stack([np.full(2, np.inf), np.full(2, np.inf), line(times)], axis=1)
-    limits = Bounds(np.full((2, 3), -np.inf), upper, times)
-    _, found = limits.at(np.array([0.1, 0.2]))
-    assert found[:, 2] == pytest.approx(line(np.array([0.1, 0.2])))
-    condition = Condition("down", measure, limits, 0.0, DURATION)
-    high = stood().x.copy()
-    high[:, t.layout.com] += [0.0, 0.0, 0.3]
-    bounded = Bounded(condition, t.character, t.basis, t.layout, 7)
-    off = bounded.rows(high).violation().reshape(-1, 3)
-    assert not off[:, :2].any()
-    assert np.diff(off[:, 2])[:3].max() > 0.0 or off[:, 2].max() > 0.1
 
 
 # -- faults ---------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ import pytest
 from hangtime.solver.adapt import Adaptation, adapt
 from hangtime.solver.arrange import arrange
 from hangtime.solver.explicit import weighed
+from hangtime.solver.linearised import Linearised
 from hangtime.solver.objectives import (
     AngleRates,
     ContactForces,
@@ -20,8 +21,7 @@ from hangtime.solver.objectives import (
     torque_metric,
 )
 from hangtime.solver.problem import MotionProblem, Pin
-from hangtime.solver.projection import Linearised
-from hangtime.solver.report import change, missed_conditions
+from hangtime.solver.report import change
 from hangtime.solver.requests import (
     Method,
     Moment,
@@ -34,6 +34,7 @@ from hangtime.solver.requests import (
     When,
 )
 from hangtime.solver.torque import every_torque
+from hangtime.solver.violations import missed_conditions
 from hangtime.tests.solver.jumps import fitted_hop
 from hangtime.tests.solver.toys import random_state, standing, stood
 

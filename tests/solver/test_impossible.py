@@ -7,15 +7,17 @@ from hangtime.solver.anatomy import Part, Side
 from hangtime.solver.faults import NeedsTorques
 from hangtime.solver.motion import unexplained
 from hangtime.solver.problem import MotionProblem, Pin
-from hangtime.solver.report import missed_conditions, worst_constraints
 from hangtime.solver.requests import (
     Dynamics,
     ForceRequest,
+    Method,
+    Objective,
     Requests,
     Solution,
     TorqueLimit,
     When,
 )
+from hangtime.solver.violations import missed_conditions, worst_constraints
 from hangtime.tests.solver.jumps import fitted_hop
 
 MOST_STEPS = 200
@@ -87,3 +89,19 @@ def test_reduced_dynamics_have_no_torques_to_limit() -> None:
     with pytest.raises(NeedsTorques) as caught:
         adapt(fitted_hop(), MotionProblem(requests=Requests(torques=(limit,), solution=solution)))
     assert caught.value.request == "Weak knee"
+
+
+@pytest.mark.parametrize("method", [Method.IMPLICIT_TORQUES, Method.EXPLICIT])
+def test_reduced_dynamics_have_no_torques_to_weigh(method: Method) -> None:
+    solution = Solution(method, Dynamics.REDUCED)
+    with pytest.raises(NeedsTorques):
+        adapt(fitted_hop(), MotionProblem(requests=Requests(solution=solution)))
+
+
+def test_what_needs_no_torques_is_lessened_with_reduced_dynamics() -> None:
+    weights = ((Objective.ANGLE_SMOOTHNESS, 1.0), (Objective.CLOSENESS, 1.0))
+    solution = Solution(Method.EXPLICIT, Dynamics.REDUCED, weights)
+    found = adapt(fitted_hop(), MotionProblem(requests=Requests(solution=solution)))
+    assert found.solved
+    assert found.gain is not None
+    assert found.gain < 1.0

@@ -10,9 +10,10 @@ import pytest
 from hangtime.operators.report_text import as_text
 from hangtime.solver.adapt import Adaptation, adapt
 from hangtime.solver.problem import MotionProblem, Pin
-from hangtime.solver.report import Origin, report, worst_constraints
+from hangtime.solver.report import Origin, report
 from hangtime.solver.status import Status
 from hangtime.solver.trajectory import instants, sample, save
+from hangtime.solver.violations import worst_constraints
 from hangtime.tests.solver.jumps import fitted_hop
 
 PROBLEM = MotionProblem(pins=(Pin("Landing", "ground 2", offset=(0.3, 0.0, 0.2)),))
