@@ -1,6 +1,7 @@
 """Every fault and outcome in the artist's words: what is wrong, where, and what to do."""
 
 from collections.abc import Sequence
+from difflib import get_close_matches
 from functools import singledispatch
 from pathlib import Path
 
@@ -191,9 +192,11 @@ def _(fault: faults.UnknownPhaseIn) -> str:
 
 @sentence.register
 def _(fault: faults.StillBone) -> str:
+    # All of them would run off the screen.
+    near = get_close_matches(fault.bone, fault.known, n=4, cutoff=0.0)
     return (
         f"{_quoted(fault.request)} names the bone {_quoted(fault.bone)}, which is none of those "
-        f"that physics moves; choose one of {_names(fault.known)}."
+        f"that physics moves; those most like it are {_names(tuple(near))}."
     )
 
 
