@@ -14,7 +14,7 @@ from ..solver.problem import MotionProblem, pinned_places
 from ..solver.report import Json, Origin, report
 from ..solver.session import Analysis, analyse
 from ..solver.trajectory import save
-from ..solver.violations import worst_constraints
+from ..solver.violations import most_telling
 from .outbox import Outbox, not_writable
 from .quiet import quiet
 from .report_text import as_text
@@ -121,8 +121,8 @@ def _reported(
         _save_blend(outbox.path("best_found.blend"))
     _write_report(_measured(job, loaded, adaptation, stages), outbox)
     outbox.deliver()
-    missed = worst_constraints(adaptation, job.problem)
-    return kind(adaptation.outcome.status.value, tuple(missed[:3]), adaptation.reached)
+    worst = most_telling(adaptation, job.problem)
+    return kind(adaptation.outcome.status.value, worst, adaptation.reached)
 
 
 # ---------------------------------------------------------------- in

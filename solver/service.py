@@ -17,10 +17,9 @@ from .report import Origin, report
 from .requests import Requests
 from .session import Analysis, analyse
 from .stature import scaled_problem, scaled_recording, scaled_schedule, scaled_track
-from .violations import worst_constraints
+from .violations import most_telling
 
 MOST_FITS = 3
-MOST_LISTED = 3  # constraints that a failure names
 
 Tell = Callable[[Progress], None]
 
@@ -128,5 +127,5 @@ def _stepper(request: int, tell: Tell) -> Callable[[Step], None]:
 
 
 def _unsolved(kind: type[NoSolution], adaptation: Adaptation, problem: MotionProblem) -> NoSolution:
-    worst = worst_constraints(adaptation, problem)[:MOST_LISTED]
-    return kind(adaptation.outcome.status.value, tuple(worst), adaptation.reached)
+    worst = most_telling(adaptation, problem)
+    return kind(adaptation.outcome.status.value, worst, adaptation.reached)

@@ -15,6 +15,8 @@ from .fit import Fit
 from .problem import MotionProblem, chosen_contacts, phase_of
 from .rows import RowKind
 
+MOST_LISTED = 3  # constraints that a failure names
+
 
 def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
     """The artist's name of the pin that moves each contact, by the contact's name.
@@ -73,6 +75,22 @@ def worst_constraints(
             amount, unit = shown(share * kind.tolerance, kind, t.character)
             listed.append((name, amount, unit))
     return listed
+
+
+def most_telling(
+    adaptation: Adaptation, problem: MotionProblem
+) -> tuple[tuple[str, float, str], ...]:
+    """The few worst constraints of a failed solve, the worst that the artist asked for among them.
+
+    What gives way first may be a foot that nobody moved; what it gave way to has to be named too.
+    """
+    ranked = worst_constraints(adaptation, problem)
+    asked = {pin.name for pin in problem.pins} | set(problem.requests.names)
+    own = [each for each in ranked if each[0] in asked or each[0].partition(": ")[0] in asked]
+    first = ranked[:MOST_LISTED]
+    if own and not any(each in first for each in own):
+        first = [*first[: MOST_LISTED - 1], own[0]]
+    return tuple(first)
 
 
 def shown(amount: float, kind: RowKind, character: Character) -> tuple[float, str]:

@@ -17,7 +17,7 @@ from hangtime.solver.requests import (
     TorqueLimit,
     When,
 )
-from hangtime.solver.violations import missed_conditions, worst_constraints
+from hangtime.solver.violations import missed_conditions, most_telling, worst_constraints
 from hangtime.tests.solver.jumps import fitted_hop
 
 MOST_STEPS = 200
@@ -62,7 +62,10 @@ def check(found: Adaptation, problem: MotionProblem, names: tuple[str, ...]) -> 
 
 @pytest.mark.slow
 def test_a_landing_ten_metres_away() -> None:
-    check(adapt(fitted_hop(), far()), far(), ("Far",))
+    found = adapt(fitted_hop(), far())
+    check(found, far(), ("Far",))
+    # Whatever else gives way there, the few that the artist reads name the landing.
+    assert any(name.startswith("Far: ") for name, _, _ in most_telling(found, far()))
 
 
 @pytest.mark.slow
