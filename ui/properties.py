@@ -11,6 +11,14 @@ import bpy
 
 from ..bridge import stances
 from ..solver.body_tables import MassTable
+from .constraint_properties import CLASSES as CONSTRAINT_CLASSES
+from .constraint_properties import (
+    OVERRIDABLE_LIST,
+    HangtimeBodyChange,
+    HangtimeConstraint,
+)
+from .view_properties import CLASSES as VIEW_CLASSES
+from .view_properties import HangtimeView
 
 _HIDDEN = {"HIDDEN"}
 _TABLES = {
@@ -168,6 +176,25 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         default=True,
     )
 
+    constraints: bpy.props.CollectionProperty(type=HangtimeConstraint, override=OVERRIDABLE_LIST)
+    active_constraint: bpy.props.IntProperty(options=_HIDDEN)
+    body_changes: bpy.props.CollectionProperty(type=HangtimeBodyChange, override=OVERRIDABLE_LIST)
+    active_body_change: bpy.props.IntProperty(options=_HIDDEN)
+    use_new_mass: bpy.props.BoolProperty(
+        name="Other Mass", description="Perform the motion with another mass than the recording's"
+    )
+    new_mass: bpy.props.FloatProperty(
+        name="New Mass (kg)", default=70.0, min=10.0, max=300.0, description="The new total mass"
+    )
+    gravity: bpy.props.FloatProperty(
+        name="Gravity",
+        description="Of the place where the motion is performed; 1.62 m/s² on the Moon",
+        default=9.81,
+        min=0.1,
+        max=50.0,
+        unit="ACCELERATION",
+    )
+
     requests: bpy.props.PointerProperty(
         name="Requests",
         description="A text with limits, poses, torques, loads and whatever else a recipe may "
@@ -180,7 +207,9 @@ class HangtimeSettings(bpy.types.PropertyGroup):
 
 
 class HangtimeScene(bpy.types.PropertyGroup):
-    """Which armature the sidebar is about."""
+    """Which armature the sidebar is about, and what is shown of it."""
+
+    view: bpy.props.PointerProperty(type=HangtimeView)
 
     armature: bpy.props.PointerProperty(
         name="Armature",
@@ -196,7 +225,15 @@ class HangtimeAction(bpy.types.PropertyGroup):
     recording: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
 
 
-CLASSES = (HangtimeContact, HangtimeStance, HangtimeSettings, HangtimeScene, HangtimeAction)
+CLASSES = (
+    *CONSTRAINT_CLASSES,
+    *VIEW_CLASSES,
+    HangtimeContact,
+    HangtimeStance,
+    HangtimeSettings,
+    HangtimeScene,
+    HangtimeAction,
+)
 CARRIERS = {
     bpy.types.Scene: HangtimeScene,
     bpy.types.Object: HangtimeSettings,
