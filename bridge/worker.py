@@ -12,18 +12,22 @@ import subprocess
 import sys
 from collections import deque
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache
 from io import BufferedReader, RawIOBase
 from itertools import count
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from threading import Thread
+from threading import Lock, Thread
+from time import monotonic
 
 from ..solver.faults import WorkerDied
 from ..solver.messages import (
     PROTOCOL,
     Answer,
+    Ending,
     Failed,
+    Halt,
     Hello,
     Kind,
     Message,
@@ -51,6 +55,7 @@ _ONE_THREAD = dict.fromkeys(
 )
 _KEPT_LINES = 20
 _LAST_WORDS_S = 2.0
+_PATIENCE_S = 2.0  # with a request that was dropped, before the worker is ended for it
 
 
 class Job:
@@ -93,11 +98,12 @@ class Worker:
     def __init__(self) -> None:
         self._process: _Process | None = None
         self._job: Job | None = None
+        self._dropped: tuple[Job, float] | None = None  # and when
         self._ids = count(1)
 
     @property
     def busy(self) -> bool:
-        """Whether a request has not had its answer seen."""
+        """Whether a request that has not been dropped has not had its answer seen."""
         return self._job is not None and self._job.answer is None
 
     @property
@@ -106,26 +112,50 @@ class Worker:
         alive = self._process is not None and self._process.alive
         return self._process.pid if alive else None
 
-    def ask(self, kind: Kind, recording: Recording, problem: MotionProblem) -> Job:
+    def ask(self, kind: Kind, recording: Recording | None, problem: MotionProblem) -> Job:
         """Makes a request, in a new process if there is none alive.
 
-        Raises WorkerDied where none can be started, RuntimeError while another is under way.
+        recording: None is the last request's. Raises WorkerDied where none can be started,
+        RuntimeError while another is under way.
         """
         if self.busy:
             raise RuntimeError("one request at a time")
-        if self.pid is None:
+        if self.pid is None or self._stuck():
             self.close()
             self._process = _Process()
         assert self._process is not None
         self._job = Job(Request(next(self._ids), kind, recording, problem))
-        Thread(target=self._process.converse, args=(self._job,), daemon=True).start()
+        self._process.ask(self._job)
         return self._job
+
+    def drop(self) -> None:
+        """Nobody waits for the request under way any more; the worker ends it at its next step."""
+        if self.busy and self._process is not None:
+            assert self._job is not None
+            self._dropped = (self._job, monotonic())
+            self._process.halt(self._job, Ending.CANCEL)
+        self._job = None
+
+    def as_it_stands(self) -> None:
+        """The request under way shall be answered with the motion as it stands."""
+        if self.busy and self._process is not None:
+            assert self._job is not None
+            self._process.halt(self._job, Ending.AS_IT_STANDS)
 
     def close(self) -> None:
         """Ends the process, whatever it is doing; the next request starts another."""
-        process, self._process, self._job = self._process, None, None
+        process, self._process, self._job, self._dropped = self._process, None, None, None
         if process is not None:
             process.end()
+
+    def _stuck(self) -> bool:
+        """Whether a request that was dropped a while ago still goes on."""
+        if self._dropped is None:
+            return False
+        job, since = self._dropped
+        for _ in job.news():
+            pass  # nobody waits for it
+        return job.answer is None and monotonic() - since > _PATIENCE_S
 
 
 @cache
@@ -155,9 +185,12 @@ class _Process:
         self._to_worker = self._popen.stdin
         self._from_worker = BufferedReader(self._popen.stdout)
         self._greeted = False
+        self._sending = Lock()
+        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
         self._listener.start()
+        Thread(target=self._converse, daemon=True).start()
 
     @property
     def pid(self) -> int:
@@ -167,30 +200,41 @@ class _Process:
     def alive(self) -> bool:
         return self._popen.poll() is None
 
-    def converse(self, job: Job) -> None:
-        """Makes the job's request and delivers what is said about it, the answer at the last.
+    def ask(self, job: Job) -> None:
+        """Has the job's request made once those before it are answered; never waits."""
+        self._jobs.put(job)
 
-        To be run on a thread of its own.
-        """
+    def halt(self, job: Job, how: Ending) -> None:
+        """Tells the worker to end the job's request; never waits."""
+        Thread(target=self._halt, args=(Halt(job.request.id, how),), daemon=True).start()
+
+    def _halt(self, halt: Halt) -> None:
         _survive_broken_pipes()
-        try:
-            for message in self._talk(job.request):
-                job.deliver(message)
-        except (OSError, ValueError, EOFError):  # ValueError: the pipe was closed by end()
-            job.deliver(Failed(job.request.id, WorkerDied(self._last_words())))
-        except ProtocolError as problem:
-            self._popen.kill()
-            job.deliver(Failed(job.request.id, WorkerDied(str(problem))))
-        except (
-            BaseException
-        ) as problem:  # a mistake of ours; somebody waits for an answer all the same
-            job.deliver(Failed(job.request.id, WorkerDied(repr(problem))))
-            raise
+        with suppress(OSError, ValueError):  # a worker that has gone has ended it
+            self._send(halt)
+
+    def _converse(self) -> None:
+        """Makes the jobs' requests one after another, on a thread of its own."""
+        _survive_broken_pipes()
+        while (job := self._jobs.get()) is not None:
+            try:
+                for message in self._talk(job.request):
+                    job.deliver(message)
+            except (OSError, ValueError, EOFError):  # ValueError: the pipe was closed by end()
+                job.deliver(Failed(job.request.id, WorkerDied(self._last_words())))
+            except ProtocolError as problem:
+                self._popen.kill()
+                job.deliver(Failed(job.request.id, WorkerDied(str(problem))))
+            except BaseException as problem:
+                # A mistake of ours; somebody waits for an answer all the same.
+                job.deliver(Failed(job.request.id, WorkerDied(repr(problem))))
+                raise
 
     def end(self) -> None:
         """Kills the process and lets go of it."""
         self._popen.kill()
         self._popen.wait()
+        self._jobs.put(None)
         self._listener.join(_LAST_WORDS_S)
         for pipe in (self._to_worker, self._from_worker, self._popen.stderr):
             assert pipe is not None
@@ -199,17 +243,21 @@ class _Process:
     def _talk(self, request: Request) -> Iterator[Progress | Answer]:
         if not self._greeted:
             self._greet()
-        send(self._to_worker, request)
+        self._send(request)
         while True:
             message = self._hear()
-            if isinstance(message, Hello | Ready | Request) or message.id != request.id:
+            if isinstance(message, Hello | Ready | Request | Halt) or message.id != request.id:
                 raise ProtocolError(f"{type(message).__name__} was not asked for")
             yield message
             if not isinstance(message, Progress):
                 return
 
+    def _send(self, message: Message) -> None:
+        with self._sending:
+            send(self._to_worker, message)
+
     def _greet(self) -> None:
-        send(self._to_worker, Hello(PROTOCOL, tuple(p for p in sys.path if p)))
+        self._send(Hello(PROTOCOL, tuple(p for p in sys.path if p)))
         ready = self._hear()
         if not isinstance(ready, Ready) or ready.protocol != PROTOCOL:
             raise ProtocolError(f"{ready} is no greeting of version {PROTOCOL}")

@@ -54,7 +54,7 @@ class Stages:
             self._show(stage, end)
             self.done.append(stage)
 
-    def step(self, step: Step) -> None:
+    def step(self, step: Step, _motion: Motion) -> None:
         """Notes a step of the solver in the stage that runs."""
         if self._current is not None:
             self._current.steps += 1

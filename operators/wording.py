@@ -17,6 +17,7 @@ OUTCOMES = {
     "Ask for less of what is named here, move pins less, or check the contacts' frames.",
     Status.MISSED: "The motion obeys physics, but between the solver's instants something asked "
     "for is missed by more than is promised. Loosen what is named here a little.",
+    Status.STOPPED: "Stopped before everything was met; the motion is as the solver left it.",
 }
 
 

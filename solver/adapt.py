@@ -9,7 +9,7 @@ from .explicit import explicit
 from .fit import ADAPT_PROMISE, Fit, Solved, refine
 from .motion import Motion
 from .problem import MotionProblem
-from .projection import Outcome, Progress, restore, worst_violation
+from .projection import Outcome, Progress, Stopped, restore, worst_violation
 from .reach import reaching
 from .recording import PoseTrack
 from .requests import Method, Objective
@@ -52,9 +52,26 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     """Adapts a fitted performance to what the problem asks for.
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults. A solve
-    that fails is returned with the best motion found and a status that says so.
+    that fails is returned with the best motion found and a status that says so; one that
+    `progress` ends by raising Stopped, with the motion as it stood.
     """
     plan = arrange(fit, problem)
+    try:
+        return _adapted(fit, problem, plan, progress)
+    except Stopped as stop:
+        return _as_it_stands(stop.motion, fit, plan)
+
+
+def _as_it_stands(motion: Motion, fit: Fit, plan: Arrangement) -> Adaptation:
+    t = motion.transcription
+    left = worst_violation(t.rows(motion.x, plan.goal))
+    outcome = Outcome(motion.x, t, Status.STOPPED, (), left, plan.goal)
+    return Adaptation((outcome,), plan.goal, fit, plan, outcome, reached=0.0)
+
+
+def _adapted(
+    fit: Fit, problem: MotionProblem, plan: Arrangement, progress: Progress | None
+) -> Adaptation:
     outcomes: list[Outcome] = []
     ways: list[_Way] = []
     for harder in range(MOST_RETRIES):

@@ -121,8 +121,6 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     line = timeline(fit.schedule, first, rate, requests.timings, requests.holds)
     changed = changed_recording(recording, requests.body.limbs)
     reference = _with_body(fit, problem, changed)
-    places = pinned_places(problem, fit.performance, fit.schedule)
-    wanted = {c.name: place for c, place in zip(fit.schedule.contacts, places, strict=True)}
     schedule = _without_lifted(line.schedule(fit.schedule), problem)
 
     phases = line.schedule(fit.schedule).phases
@@ -136,10 +134,9 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     added = {r.name: r for r in requests.points if r.environment}
     contacts = [_added(request, scene) for request in added.values()]
     scene = replace(scene, schedule=_with_added(schedule, contacts))
-    wanted |= {contact.name: contact.place for contact in contacts}
     start = _start(fit, problem, scene, added)
     start = _with_conditions(start, problem, scene)
-    goal = np.array([wanted[c.name] for c in scene.schedule.contacts]).reshape(-1, 3)
+    goal = goal_places(fit, problem, scene.schedule)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     prices = _prices(requests)
     kept = same and prices is ADAPT_PRICES
@@ -153,6 +150,16 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)
     basis = _allowed(space, start)
     return Arrangement(fit, scene, start, goal, metric, turns, basis, changed, requests, space)
+
+
+def goal_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
+    """(n_contacts, 3) m: where the problem's pins put the contacts of its schedule.
+
+    Raises UnknownPhase, UnknownContact, ContradictoryPins.
+    """
+    places = pinned_places(problem, fit.performance, fit.schedule)
+    wanted = {c.name: place for c, place in zip(fit.schedule.contacts, places, strict=True)}
+    return np.array([wanted.get(c.name, c.place) for c in schedule.contacts]).reshape(-1, 3)
 
 
 def _weighs_torques(requests: Requests) -> bool:

@@ -107,12 +107,12 @@ def descend(
         violation = line.worst(rows.value)
         found = _settled_step(t, goal, line, x, d, plan.goal, (value, min(1.0, 2.0 * length)))
         length = found[2] if found else 0.0
-        steps.append(Step("explicit", violation, length))
-        if progress is not None:
-            progress(steps[-1])
+        steps.append(Step("explicit", violation, length, line.worst_name(rows.value)))
         if found is None:
             break
         before, (x, value, _) = value, found
+        if progress is not None:
+            progress(steps[-1], Motion(t, x, plan.goal))
         if before - value < ENOUGH * before:
             break
     return Outcome(x, t, Status.SOLVED, tuple(steps), violation, plan.goal)

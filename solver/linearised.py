@@ -154,6 +154,13 @@ class Linearised:
         """The worst violation over its tolerance; at most 1 means that all rows hold."""
         return float((np.abs(self.rows.violation(value)) / self._tolerance).max())
 
+    def worst_name(self, value: FloatArray) -> str:
+        """Whose the worst row is: a contact, a condition, or the equation's own name."""
+        worst = int(np.argmax(np.abs(self.rows.violation(value)) / self._tolerance))
+        owner = int(self.rows.owner[worst])
+        kind: RowKind = self.rows.kind[worst]
+        return self._transcription.owners[owner] if owner >= 0 else kind.value[0]
+
     def merit(self, value: FloatArray) -> float:
         """The summed squared violations in units of NORM (thesis eq. 4.6).
 

@@ -1,7 +1,10 @@
 """What the artist's program and the worker process say to each other, and how it is framed.
 
 The parent starts the worker and says Hello; the worker answers Ready. Then the parent makes one
-Request at a time, and the worker tells any number of Progress and one Analysed, Adapted or Failed.
+Request at a time, and the worker tells any number of Progress and one answer.
+
+Meanwhile the parent may tell it to Halt: to drop the request, which is answered by Cancelled, or to
+end with the motion as it stands.
 
 Each message is a length (8 bytes, little-endian), a checksum (4 bytes) and a pickle. Both ends run
 the same files of one version, under the package names that their importers gave them; what arrives
@@ -23,11 +26,12 @@ from zlib import crc32
 
 if TYPE_CHECKING:
     from .contacts import ContactSchedule
-    from .faults import Fault
+    from .faults import Fault, NoSolution
     from .problem import MotionProblem
     from .recording import FloatArray, PoseTrack, Recording
+    from .traces import Traces
 
-PROTOCOL = 1
+PROTOCOL = 2
 LARGEST = 1 << 30  # bytes; a longer message is not one
 _HEAD = struct.Struct("<QI")  # length and CRC-32 of the pickle
 _NUMPY = {
@@ -58,7 +62,9 @@ class Kind(Enum):
     """What a request asks for."""
 
     ANALYSE = "analyse"
+    FIT = "fit"
     ADAPT = "adapt"
+    FOLLOW = "follow"  # a pin that is being dragged: the next few steps, not a whole solve
 
 
 @dataclass(frozen=True)
@@ -78,22 +84,43 @@ class Ready:
 
 @dataclass(frozen=True)
 class Request:
-    """Something to solve; id comes back with everything that is said about it."""
+    """Something to solve; id comes back with everything that is said about it.
+
+    recording: None is the last request's.
+    """
 
     id: int
     kind: Kind
-    recording: Recording
+    recording: Recording | None
     problem: MotionProblem
+
+
+class Ending(Enum):
+    """How a request is halted."""
+
+    CANCEL = "cancel"
+    AS_IT_STANDS = "as it stands"
+
+
+@dataclass(frozen=True)
+class Halt:
+    """The request with this id shall end before it is met."""
+
+    id: int
+    how: Ending
 
 
 @dataclass(frozen=True)
 class Progress:
-    """The stage's step-th step is done; violation: the worst over its tolerance, before it."""
+    """The stage's step-th step is done; violation: the worst over its tolerance, before it, and
+    worst: whose it was (a contact, a condition or an equation). share: of the request, 0 to 1."""
 
     id: int
     stage: str
     step: int
     violation: float
+    worst: str
+    share: float
 
 
 @dataclass(frozen=True)
@@ -101,22 +128,58 @@ class Analysed:
     """The contacts found.
 
     height: m, as measured. axes: (3, 3) by ground phase's name, columns forward, left and up.
+    bones: by the part of the body that they move ("left foot").
     """
 
     id: int
     schedule: ContactSchedule
     height: float
     axes: dict[str, FloatArray]
+    bones: dict[str, str]
+    traces: Traces
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """The nearest valid motion is found. closeness: see report.closeness."""
+
+    id: int
+    closeness: dict[str, float]
+    seconds: float
+    traces: Traces
 
 
 @dataclass(frozen=True)
 class Adapted:
-    """The adapted motion at the recording's frames, its report and its contacts."""
+    """The adapted motion at the recording's frames, its report and its contacts.
+
+    fault: why it is not what was asked for but the best that was found; None where it is.
+    """
 
     id: int
     track: PoseTrack
     report: dict[str, Any]
     schedule: ContactSchedule
+    traces: Traces
+    fault: NoSolution | None
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Where the motion has come that follows a dragged pin. arrived: whether the pin is reached
+    and physics holds; change: numbers by what they are, see follow.change."""
+
+    id: int
+    traces: Traces
+    arrived: bool
+    change: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Cancelled:
+    """The request was dropped."""
+
+    id: int
 
 
 @dataclass(frozen=True)
@@ -127,8 +190,8 @@ class Failed:
     fault: Fault
 
 
-Answer = Analysed | Adapted | Failed
-Message = Hello | Ready | Request | Progress | Answer
+Answer = Analysed | Fitted | Adapted | Followed | Cancelled | Failed
+Message = Hello | Ready | Request | Halt | Progress | Answer
 
 
 class ProtocolError(Exception):

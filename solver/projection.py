@@ -19,6 +19,7 @@ import numpy as np
 
 from .linear import BlockBanded
 from .linearised import Linearised
+from .motion import Motion
 from .recording import FloatArray
 from .rows import Rows
 from .status import Status
@@ -33,11 +34,15 @@ ENOUGH = 0.05  # of the objective: what a further step must gain
 
 @dataclass(frozen=True)
 class Step:
-    """One step: worst violation over its tolerance before the step, and the length taken."""
+    """One step: worst violation over its tolerance before the step, whose, and the length taken.
+
+    worst: a contact's name, a condition's, or the equation's where it is nobody's.
+    """
 
     stage: str
     violation: float
     length: float
+    worst: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,16 @@ class Outcome:
         return self.status is Status.SOLVED
 
 
-Progress = Callable[[Step], None]
+Progress = Callable[[Step, Motion], None]
+"""Told each step and where it led; what it raises ends the solve."""
+
+
+class Stopped(Exception):
+    """The solve shall end, with the motion as it stands."""
+
+    def __init__(self, motion: Motion) -> None:
+        super().__init__()
+        self.motion = motion
 
 
 class Goal(Protocol):
@@ -106,16 +120,17 @@ def restore(
             working = None if line is None else line.working
             line = Linearised(transcription, here, metric, basis=basis, working=working)
         assert line is not None
+        whose = line.worst_name(value)
         d, _ = line.step(value)
         at = _shorten(transcription, line, x, d, places, value, whole=slow)
         if at.length < 1.0 and not fresh:  # the old Jacobian no longer serves
             x, value, here, stale = at.x, at.value, None, True
             continue
         x, value, here, length = at.x, at.value, at.rows, at.length
-        steps.append(Step(stage, violation, length))
+        steps.append(Step(stage, violation, length, whose))
         last = violation
         if progress is not None:
-            progress(steps[-1])
+            progress(steps[-1], Motion(transcription, x, places))
         if length == 0.0 or _stagnant(steps):
             status = Status.STALLED
             break
@@ -157,9 +172,10 @@ def project(
         line = Linearised(transcription, rows, metric, basis=basis, working=working)
         d, multipliers = line.step(rows.value, gradient, multipliers)
         x, length = _search(transcription, goal, x, d, places, line, multipliers, objective)
-        steps.append(Step(stage, line.worst(rows.value), length))
+        worst = (line.worst(rows.value), length, line.worst_name(rows.value))
+        steps.append(Step(stage, *worst))
         if progress is not None:
-            progress(steps[-1])
+            progress(steps[-1], Motion(transcription, x, places))
         before, objective = objective, goal.value(x)
         if length == 0.0 or (len(steps) > 1 and abs(before - objective) < ENOUGH * before):
             status = Status.SOLVED

@@ -16,8 +16,8 @@ from .condition import Missed
 from .contacts import Phase, PhaseKind
 from .dynamics import GRAVITY
 from .fit import Fit
+from .jumps import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .motion import Motion, pinned_instants, unexplained
-from .performance import interpolate
 from .pins import PointContact
 from .problem import Axes3, MotionProblem, Pin
 from .projection import Outcome
@@ -82,7 +82,7 @@ def report(
         "torques": _torques(adaptation, problem) if _in_play(problem) else None,
         "fit_to_recording": closeness(fit),
         "change": change(adaptation),
-        "jumps": _jumps(adaptation),
+        "jumps": jumps(fit, motion, schedule),
     }
     finite: Json = _finite(content)
     return finite
@@ -100,7 +100,7 @@ def _recording(fit: Fit, origin: Origin) -> Json:
         "first_frame": float(recording.frames[0]),
         "last_frame": float(recording.frames[-1]),
         "seconds": seconds,
-        "frames_per_second": _rate(fit),
+        "frames_per_second": frames_per_second(fit),
         "unit_m": origin.unit_m,
         "unit_guessed": origin.unit_guessed,
         "up_axis": origin.up,
@@ -133,16 +133,6 @@ def _pin(pin: Pin) -> Json:
     }
 
 
-def _rate(fit: Fit) -> float:
-    recording = fit.performance.recording
-    return (len(recording.times) - 1) / float(recording.times[-1])
-
-
-def _frame(fit: Fit, time: float) -> float:
-    """The scene's frame at an instant of the clip."""
-    return round(float(fit.performance.recording.frames[0]) + time * _rate(fit), 3)
-
-
 def _solves(outcomes: Sequence[Outcome], name: str) -> list[Json]:
     return [
         {
@@ -165,7 +155,7 @@ def _condition(missed: Missed, fit: Fit, character: Character) -> Json:
         "kind": missed.kind.value[0],
         "worst_violation": amount,
         "unit": unit,
-        "worst_violation_frame": _frame(fit, missed.time),
+        "worst_violation_frame": scene_frame(fit, missed.time),
         "met": missed.amount <= missed.kind.tolerance,
     }
 
@@ -185,14 +175,14 @@ def _contact(motion: Motion, adaptation: Adaptation, i: int, pin: str | None) ->
         "friction_cone": _cone(at),
         "start_s": contact.start,
         "end_s": contact.end,
-        "start_frame": _frame(fit, contact.start),
-        "end_frame": _frame(fit, contact.end),
+        "start_frame": scene_frame(fit, contact.start),
+        "end_frame": scene_frame(fit, contact.end),
         "pinned_from_s": at.pin_start,
         "pinned_to_s": at.pin_end,
         "fitted_place_m": adaptation.plan.start.places[i].tolist(),
         "place_m": motion.places[i].tolist(),
         "worst_violation_mm": 1000.0 * float(drift.max()),
-        "worst_violation_frame": _frame(fit, float(pinned[drift.argmax()])),
+        "worst_violation_frame": scene_frame(fit, float(pinned[drift.argmax()])),
         "worst_while_settling_mm": 1000.0 * float(settling.max()),
     }
 
@@ -246,7 +236,7 @@ def _forces(motion: Motion, adaptation: Adaptation) -> Json:
         inside = (times >= phase.start) & (times <= phase.end)
         if phase.kind is PhaseKind.GROUND and inside.any():
             at = int(np.argmax(np.where(inside, total, -1.0)))
-            peak = {"peak_bw": float(total[at]), "frame": _frame(fit, float(times[at]))}
+            peak = {"peak_bw": float(total[at]), "frame": scene_frame(fit, float(times[at]))}
             needed = {"friction_coefficient_needed": float(grip[inside].max())}
             peaks.append({"phase": phase.name, **peak, **needed})
     smallest = float(forces[:, :, 2].min(initial=0.0))
@@ -257,7 +247,7 @@ def closeness(fit: Fit) -> Json:
     """How far the fit is from the recording, at the recording's frames."""
     performance = fit.performance
     apart = fit.motion.joint_centres(performance.times) - performance.centres
-    lost = [_apex(fit.motion, f) - _recorded_apex(fit, f) for f in _flights(fit)]
+    lost = [apex(fit.motion, f) - recorded_apex(fit, f) for f in flights(fit)]
     return {
         "joint_centres_rms_cm": 100.0 * _rms(np.linalg.norm(apart, axis=2)),
         "pelvis_apex_difference_cm": 100.0 * max(lost, key=abs, default=0.0),
@@ -319,82 +309,6 @@ def change(adaptation: Adaptation) -> Json:
         "joint_centres_rms_cm": 100.0 * _rms(np.linalg.norm(places, axis=2)),
         "joint_angles_rms_deg": math.degrees(_rms(angles)),
     }
-
-
-def _jumps(adaptation: Adaptation) -> list[Json]:
-    """Each flight before and after: pelvis heights above the floor, and the flight's reach."""
-    fit, motion = adaptation.fit, adaptation.motion
-    floor = fit.schedule.floor_m
-    after = {phase.name: phase for phase in adaptation.plan.schedule.phases}
-    jumps = []
-    for flight in _flights(fit):
-        if flight.name not in after:
-            continue
-        now = after[flight.name]
-        was_before, now_before = (
-            [p for p in schedule.phases if p.end <= start + 1e-9]
-            for schedule, start in (
-                (fit.schedule, flight.start),
-                (adaptation.plan.schedule, now.start),
-            )
-        )
-        both = ((fit.motion, flight, was_before), (motion, now, now_before))
-        before, adapted = (
-            {
-                "crouch_pelvis_height_m": _lowest(m, stance[-1]) - floor if stance else None,
-                "apex_pelvis_height_m": _apex(m, phase) - floor,
-                "flight_length_m": _reach(m, phase),
-            }
-            for m, phase, stance in both
-        )
-        deeper = None
-        if was_before and now_before:
-            deeper = 100.0 * (_lowest(fit.motion, was_before[-1]) - _lowest(motion, now_before[-1]))
-        jumps.append(
-            {
-                "flight": flight.name,
-                "take_off_s": now.start,
-                "landing_s": now.end,
-                "take_off_frame": _frame(fit, now.start),
-                "landing_frame": _frame(fit, now.end),
-                "recorded": {"apex_pelvis_height_m": _recorded_apex(fit, flight) - floor},
-                "fit": before,
-                "adapted": adapted,
-                "crouch_deeper_cm": deeper,
-                "apex_higher_cm": 100.0 * (_apex(motion, now) - _apex(fit.motion, flight)),
-            }
-        )
-    return jumps
-
-
-def _flights(fit: Fit) -> list[Phase]:
-    return [p for p in fit.schedule.phases if p.kind is PhaseKind.FLIGHT]
-
-
-def _within(phase: Phase) -> FloatArray:
-    return np.linspace(phase.start, phase.end, 2 + int((phase.end - phase.start) * 240.0))
-
-
-def _apex(motion: Motion, flight: Phase) -> float:
-    """The pelvis's greatest height in a flight, m, world."""
-    return float(motion.joint_centres(_within(flight))[:, 0, 2].max())
-
-
-def _recorded_apex(fit: Fit, flight: Phase) -> float:
-    performance = fit.performance
-    heights = performance.centres[:, 0, 2]
-    return float(interpolate(performance.times, heights, _within(flight)).max())
-
-
-def _lowest(motion: Motion, phase: Phase) -> float:
-    """The pelvis's least height in a phase, m, world."""
-    return float(motion.joint_centres(_within(phase))[:, 0, 2].min())
-
-
-def _reach(motion: Motion, flight: Phase) -> float:
-    """How far the centre of mass travels over the ground in a flight, m."""
-    ends = motion.com(np.array([flight.start, flight.end]))
-    return float(np.linalg.norm((ends[1] - ends[0])[:2]))
 
 
 def _rms(values: FloatArray) -> float:

@@ -10,3 +10,4 @@ class Status(Enum):
     STALLED = "stalled"
     TOO_MANY_STEPS = "too many steps"
     MISSED = "missed between the nodes"
+    STOPPED = "stopped"  # by the artist, who takes the motion as it stands

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -93,20 +93,26 @@ def recorded_traces(performance: Performance) -> Traces:
 
 
 def motion_traces(
-    motion: Motion, recording: Recording, schedule: ContactSchedule, dynamics: InverseDynamics
+    motion: Motion,
+    recording: Recording,
+    schedule: ContactSchedule,
+    dynamics: InverseDynamics | None,
 ) -> Traces:
     """Of a solved motion, at the frames of its track.
 
-    dynamics: of the motion's character, which touches at the motion's points.
+    dynamics: of the motion's character, which touches at the motion's points; None leaves out
+    torques and momentum, which takes a third of the time.
     """
     character = motion.transcription.character
     frames = motion.track(recording).frames
     per_second = float((recording.frames[-1] - recording.frames[0]) / recording.times[-1])
     times = np.clip((frames - frames[0]) / per_second, 0.0, motion.duration)
-    before, after = np.maximum(times - MOMENT, 0.0), np.minimum(times + MOMENT, motion.duration)
     figure = _figure(motion, times)
-    torques = np.abs(dynamics.of(motion, times).torques)
-    joints = [slice(j.first - 3, j.dofs.stop - 3) for j in character.joints[1:]]
+    momentum = np.zeros((len(times), 3))
+    if dynamics is not None:
+        before, after = np.maximum(times - MOMENT, 0.0), np.minimum(times + MOMENT, motion.duration)
+        figures = (_figure(motion, before), _figure(motion, after))
+        momentum = _momentum(character, *figures, after - before)
     names = {c.point: c.contact.point for c in motion.transcription.contacts}
     return Traces(
         frames=frames,
@@ -115,15 +121,13 @@ def motion_traces(
         tails=_tails(character, figure),
         com=motion.com(times),
         velocity=motion.com(times, 1),
-        momentum=_momentum(
-            character, _figure(motion, before), _figure(motion, after), after - before
-        ),
+        momentum=momentum,
         contacts=tuple(names.get(i, "") for i in range(len(motion.transcription.points))),
         points=motion.contact_points(times),
         forces=motion.forces(times),
         weight=character.mass * GRAVITY,
-        joints=tuple(body.bone for body in character.bodies[1:]),
-        torques=np.stack([torques[:, j].max(axis=1, initial=0.0) for j in joints], axis=1),
+        joints=() if dynamics is None else tuple(body.bone for body in character.bodies[1:]),
+        torques=_torques(motion, times, dynamics),
         flights=tuple(
             _flight(motion, phase, float(frames[0]), per_second)
             for phase in schedule.phases
@@ -135,6 +139,15 @@ def motion_traces(
 def _figure(motion: Motion, times: FloatArray) -> _Figure:
     posed = motion.pose(times)
     return _Figure(posed.rotations, posed.centres + motion.com(times)[:, None])
+
+
+def _torques(motion: Motion, times: FloatArray, dynamics: InverseDynamics | None) -> FloatArray:
+    if dynamics is None:
+        return np.zeros((len(times), 0))
+    torques = np.abs(dynamics.of(motion, times).torques)
+    joints = motion.transcription.character.joints[1:]
+    slices = [slice(j.first - 3, j.dofs.stop - 3) for j in joints]
+    return np.stack([torques[:, part].max(axis=1, initial=0.0) for part in slices], axis=1)
 
 
 def _tails(character: Character, figure: _Figure) -> FloatArray:
@@ -164,3 +177,11 @@ def _flight(motion: Motion, phase: Phase, first: float, per_second: float) -> Fl
     times = np.linspace(phase.start, min(phase.end, motion.duration), PARABOLA_POINTS)
     ends = (first + per_second * phase.start, first + per_second * phase.end)
     return Flight(phase.name, *ends, motion.com(times))
+
+
+def scaled_traces(traces: Traces, factor: float) -> Traces:
+    """Of a figure `factor` times as large: lengths times it, forces and torques as they were."""
+    lengths = ("heads", "tails", "com", "velocity", "points")
+    flights = tuple(replace(f, parabola=factor * f.parabola) for f in traces.flights)
+    scaled = {name: factor * getattr(traces, name) for name in lengths}
+    return replace(traces, **scaled, flights=flights)

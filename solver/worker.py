@@ -3,12 +3,19 @@
 Run as a program (`python -I worker.py`); bridge/worker.py starts it and holds the other end.
 """
 
+from __future__ import annotations
+
 import importlib
 import importlib.util
 import os
 import sys
 from pathlib import Path
-from typing import BinaryIO
+from queue import SimpleQueue
+from threading import Thread
+from typing import TYPE_CHECKING, BinaryIO
+
+if TYPE_CHECKING:
+    from .messages import Ending, Request
 
 NAME = "hangtime"
 FOREIGN, PROTOCOL_FAULT = 3, 4  # exit codes
@@ -24,7 +31,7 @@ def main() -> int:
 
 
 def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
-    from .messages import PROTOCOL, Hello, Progress, Ready, Request, receive, send
+    from .messages import PROTOCOL, Hello, Progress, Ready, receive, send
 
     hello = receive(requests)
     if hello is None:
@@ -38,12 +45,47 @@ def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
     def tell(progress: Progress) -> None:
         send(answers, progress)
 
-    service = Service()
-    while (request := receive(requests)) is not None:
-        if not isinstance(request, Request):
-            return PROTOCOL_FAULT
-        send(answers, service.answer(request, tell))
-    return 0
+    inbox = Inbox(requests)
+    service = Service(inbox.ending)
+    Thread(target=inbox.listen, daemon=True).start()
+    while True:
+        send(answers, service.answer(inbox.next(), tell))
+
+
+class Inbox:
+    """Requests in the order they came, and which of them shall end: heard on a thread of its own,
+    for a request is halted while the one that solves is busy."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+        self._requests: SimpleQueue[Request] = SimpleQueue()
+        self._endings: dict[int, Ending] = {}
+
+    def next(self) -> Request:
+        """The next request; waits for it."""
+        return self._requests.get()
+
+    def ending(self, request: int) -> Ending | None:
+        """How the request with this id shall end; None if it may go on."""
+        return self._endings.get(request)
+
+    def listen(self) -> None:
+        """Hears the parent out. Ends the process where the parent goes or talks nonsense."""
+        from .messages import Halt, ProtocolError, Request, receive
+
+        while True:
+            try:
+                message = receive(self._stream)
+            except ProtocolError:
+                os._exit(PROTOCOL_FAULT)
+            if message is None:
+                os._exit(0)  # nobody waits for what is being solved
+            if isinstance(message, Halt):
+                self._endings[message.id] = message.how
+            elif isinstance(message, Request):
+                self._requests.put(message)
+            else:
+                os._exit(PROTOCOL_FAULT)
 
 
 def _private_stdout() -> BinaryIO:

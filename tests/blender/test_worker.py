@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hangtime.bridge.worker import Kind, Worker
+from hangtime.bridge.worker import Job, Kind, Worker
 from hangtime.solver.faults import ClipTooShort, NoFlight, UnknownContactName, WorkerDied
-from hangtime.solver.messages import Adapted, Analysed, Failed, Progress
+from hangtime.solver.messages import Adapted, Analysed, Failed, Fitted, Followed, Progress
 from hangtime.solver.problem import ContactEdit, MotionProblem, Pin
 from hangtime.solver.recording import Recording
 from hangtime.tests.clips import load_recording
@@ -130,6 +130,71 @@ def test_the_stated_height_leaves_places_in_the_recordings_lengths(
     assert places.keys() == {contact.name for contact in stated.schedule.contacts}
     for contact in stated.schedule.contacts:
         np.testing.assert_allclose(contact.place, places[contact.name], atol=0.01)
+
+
+def started(worker: Worker, recording: Recording, problem: MotionProblem) -> Job:
+    """An adaptation of which a first step has been told."""
+    job = worker.ask(Kind.ADAPT, recording, problem)
+    while not list(job.news()):
+        time.sleep(0.01)
+    return job
+
+
+def test_a_request_that_is_dropped_costs_neither_worker_nor_fit(
+    worker: Worker, jump: Recording
+) -> None:
+    worker.ask(Kind.FIT, jump, UP).wait()
+    pid = worker.pid
+    started(worker, jump, UP)
+    worker.drop()
+    assert not worker.busy
+    told: list[Progress] = []
+    answer = worker.ask(Kind.ADAPT, jump, AHEAD).wait(told.append)
+    assert isinstance(answer, Adapted)
+    assert worker.pid == pid
+    assert "fit" not in {progress.stage for progress in told}
+
+
+def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
+    worker: Worker, jump: Recording
+) -> None:
+    job = started(worker, jump, AHEAD)
+    worker.as_it_stands()
+    answer = job.wait()
+    assert isinstance(answer, Adapted)
+    assert answer.fault is not None
+    assert answer.fault.reason == "stopped"
+    assert len(answer.track.frames) == len(answer.traces.frames)
+
+
+def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(
+    worker: Worker, jump: Recording
+) -> None:
+    told: list[Progress] = []
+    answer = worker.ask(Kind.FIT, jump, UP).wait(told.append)
+    assert isinstance(answer, Fitted)
+    assert 0.0 < answer.closeness["joint_centres_rms_cm"] < 2.5
+    shares = [progress.share for progress in told]
+    assert shares == sorted(shares)
+    assert 0.0 < shares[-1] < 1.0
+    assert told[0].worst
+
+
+def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
+    worker.ask(Kind.FIT, jump, UP).wait()
+    apexes = []
+    for up in (0.01, 0.05):
+        raised = Pin("up", "ground 2", offset=(0.0, 0.0, up))
+        problem = MotionProblem(frames=SPAN, pins=(raised,))
+        for _ in range(10):
+            answer = worker.ask(Kind.FOLLOW, None, problem).wait()
+            assert isinstance(answer, Followed)
+            if answer.arrived:
+                break
+        assert answer.arrived
+        assert answer.change["moved_cm"] == pytest.approx(100.0 * up, abs=0.1)
+        apexes.append(answer.traces.heads[:, 0, 2].max())
+    assert apexes[1] > apexes[0] + 0.01
 
 
 def test_a_worker_that_is_killed_answers_so_and_another_takes_over(

@@ -132,7 +132,7 @@ def test_feet_that_land_ten_metres_apart_end_soon_and_say_so() -> None:
         Pin("left", LANDING, touching=("LeftFoot", "LeftToeBase"), offset=(0.0, 5.0, 0.0)),
         Pin("right", LANDING, touching=("RightFoot", "RightToeBase"), offset=(0.0, -5.0, 0.0)),
     )
-    adaptation = adapt(fitted_hop(), MotionProblem(pins=pins), progress=steps.append)
+    adaptation = adapt(fitted_hop(), MotionProblem(pins=pins), progress=lambda step, _: steps.append(step))
     assert not adaptation.solved
     assert adaptation.outcome.violation > 1.0
     assert len(steps) < 100
@@ -145,7 +145,7 @@ def test_ten_metres_further_ends_in_bounded_steps(height: float) -> None:
     """What is returned obeys physics, falls short of the landing, and is marked as such."""
     steps: list[Step] = []
     problem = MotionProblem(pins=(Pin("far", LANDING, offset=(10.0, 0.0, height)),))
-    adaptation = adapt(fitted_hop(), problem, progress=steps.append)
+    adaptation = adapt(fitted_hop(), problem, progress=lambda step, _: steps.append(step))
     assert not adaptation.solved
     assert adaptation.outcome.violation > 1.0
     assert len(steps) < 200
@@ -160,7 +160,7 @@ def test_ten_metres_further_ends_in_bounded_steps(height: float) -> None:
 def test_progress_is_reported_step_by_step() -> None:
     seen: list[Step] = []
     problem = MotionProblem(pins=(EDITS["up"],))
-    adaptation = adapt(fitted_hop(), problem, progress=seen.append)
+    adaptation = adapt(fitted_hop(), problem, progress=lambda step, _: seen.append(step))
     assert seen == [step for outcome in adaptation.outcomes for step in outcome.steps]
     assert seen
 

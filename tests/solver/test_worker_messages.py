@@ -16,7 +16,12 @@ from hangtime.solver.messages import (
     PROTOCOL,
     Adapted,
     Analysed,
+    Cancelled,
+    Ending,
     Failed,
+    Fitted,
+    Followed,
+    Halt,
     Hello,
     Kind,
     Message,
@@ -35,6 +40,7 @@ from hangtime.solver.stature import (
     scaled_schedule,
     scaled_track,
 )
+from hangtime.solver.traces import Flight, Traces
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -55,13 +61,36 @@ PROBLEM = MotionProblem(
 CONTACT = Contact("Left toe 1", "Left toe", "toe", np.ones(3), 0.0, 0.1, np.full(3, 2.0))
 SCHEDULE = ContactSchedule((CONTACT,), 0.4, 0.01)
 TRACK = PoseTrack(np.arange(5.0), ("hips",), np.tile(np.eye(3), (5, 1, 1, 1)), np.ones((5, 3)))
+NONE = np.zeros((5, 0, 3))
+TRACES = Traces(
+    frames=np.arange(5.0),
+    bones=("hips",),
+    heads=np.ones((5, 1, 3)),
+    tails=np.zeros((5, 1, 3)),
+    com=np.ones((5, 3)),
+    velocity=np.zeros((5, 3)),
+    momentum=np.zeros((5, 3)),
+    contacts=(),
+    points=NONE,
+    forces=NONE,
+    weight=700.0,
+    joints=(),
+    torques=NONE[:, :, 0],
+    flights=(Flight("flight 1", 1.0, 2.0, np.ones((3, 3))),),
+)
 MESSAGES: tuple[Message, ...] = (
     Hello(PROTOCOL, ("somewhere",)),
     Ready(PROTOCOL),
     Request(1, Kind.ADAPT, RECORDING, PROBLEM),
-    Progress(1, "fit", 2, 3.5),
-    Analysed(1, SCHEDULE, 1.7, {"ground 1": np.eye(3)}),
-    Adapted(1, TRACK, {"status": "solved", "peaks": [{"peak_bw": 2.5}], "none": None}, SCHEDULE),
+    Request(2, Kind.FOLLOW, None, PROBLEM),
+    Halt(2, Ending.AS_IT_STANDS),
+    Progress(1, "fit", 2, 3.5, "Left toe 1", 0.25),
+    Analysed(1, SCHEDULE, 1.7, {"ground 1": np.eye(3)}, {"pelvis": "hips"}, TRACES),
+    Fitted(1, {"joint_centres_rms_cm": 1.0}, 2.0, TRACES),
+    Adapted(1, TRACK, {"status": "solved", "none": None}, SCHEDULE, TRACES, None),
+    Adapted(1, TRACK, {}, SCHEDULE, TRACES, faults.NoSolution("stopped", (("pin", 1.0, "mm"),))),
+    Followed(1, TRACES, True, {"moved_cm": 3.0}),
+    Cancelled(1),
     Failed(1, faults.NoFlight(lowest_cm=1.5)),
 )
 
