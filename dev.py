@@ -7,6 +7,7 @@
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
   gallery [NAMES...] [--out DIR]          make the thesis's results, with pictures and a table
+  window [--out DIR]                      use the built zip in a real Blender's window, and measure it
   benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
   build [--out DIR]                       make and validate the extension's zips
   lint                                    ruff and mypy
@@ -32,6 +33,7 @@ COMMANDS = {
     "test": ("devtools.testing", [], True),
     "figures": ("devtools.figures", [], True),
     "gallery": ("devtools.gallery", [], True),
+    "window": ("devtools.window", [], False),
     PEERS: ("benchmarks.benchmark", [], False),
     "build": ("devtools.build", [], False),
     "lint": ("devtools.lint", [], True),

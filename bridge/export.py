@@ -38,11 +38,58 @@ def export_fbx(armature: bpy.types.Object, action: bpy.types.Action, path: str |
                 bake_anim_force_startend_keying=True,
                 bake_anim_simplify_factor=0.0,
             )
-        try:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(made, target)
-        except OSError as error:
-            raise OutputNotWritable(str(target), error.strerror or type(error).__name__) from error
+        _deliver(made, target)
+
+
+def export_gltf(armature: bpy.types.Object, action: bpy.types.Action, path: str | Path) -> None:
+    """Write the armature with `action` alone, a key on every frame, as binary glTF.
+
+    Folders are made where missing. The scene is left as it was. Raises OutputNotWritable.
+    """
+    target = Path(path)
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        _alone(armature, action),
+        _selected_alone(armature),
+    ):
+        made = Path(folder) / "export.glb"
+        bpy.ops.export_scene.gltf(
+            filepath=str(made),
+            export_format="GLB",
+            use_selection=True,
+            export_animations=True,
+            export_animation_mode="ACTIVE_ACTIONS",
+            export_frame_range=True,
+            export_force_sampling=True,
+            export_optimize_animation_size=False,
+        )
+        _deliver(made, target)
+
+
+def _deliver(made: Path, target: Path) -> None:
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(made, target)
+    except OSError as error:
+        raise OutputNotWritable(str(target), error.strerror or type(error).__name__) from error
+
+
+@contextmanager
+def _selected_alone(armature: bpy.types.Object) -> Iterator[None]:
+    """Only the armature is selected and active, which the exporter looks at; then as before."""
+    layer = bpy.context.view_layer
+    active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
+    for thing in selected:
+        thing.select_set(False)
+    armature.select_set(True)
+    layer.objects.active = armature
+    try:
+        yield
+    finally:
+        armature.select_set(False)
+        for thing in selected:
+            thing.select_set(True)
+        layer.objects.active = active
 
 
 def reimport_fbx(path: str | Path, frames: FloatArray) -> Recording:

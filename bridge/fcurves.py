@@ -28,10 +28,21 @@ def holder(owner: bpy.types.ID) -> CurveHolder | None:
     action = data.action if data is not None else None
     if action is None or not hasattr(action, "slots"):
         return action
-    if data.action_slot is None:
+    return _bag(action, data.action_slot)
+
+
+def holder_in(action: bpy.types.Action, slot: str | None) -> CurveHolder | None:
+    """What holds the F-curves of an action's slot of that identifier, whomever it animates."""
+    if not hasattr(action, "slots"):
+        return action
+    return _bag(action, next((s for s in action.slots if s.identifier == slot), None))
+
+
+def _bag(action: bpy.types.Action, slot: bpy.types.bpy_struct | None) -> CurveHolder | None:
+    if slot is None:
         return None
     strips = (strip for layer in action.layers for strip in layer.strips)
-    bags = (strip.channelbag(data.action_slot) for strip in strips)
+    bags = (strip.channelbag(slot) for strip in strips)
     return next((bag for bag in bags if bag is not None), None)
 
 

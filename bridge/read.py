@@ -27,11 +27,17 @@ def read_recording(
     Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
     this armature), NonFiniteKey, BadScale.
     """
+    return record(armature, whole_frames(armature, first, last))
+
+
+def whole_frames(
+    armature: bpy.types.Object | None, first: float | None, last: float | None
+) -> FloatArray:
+    """The frames of a recording, (T,). Raises as `read_recording`, but for what poses show."""
     armature, curves = _require_animated(armature)
     for curve in curves.fcurves:
         _require_finite(armature, curve)
-    frames = _whole_frames(armature, curves, first, last)
-    return record(armature, frames)
+    return _whole_frames(armature, curves, first, last)
 
 
 def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:
@@ -39,7 +45,11 @@ def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:
 
     Raises NonFiniteKey, BadScale.
     """
-    poses = sample(armature, frames)
+    return recorded(armature, frames, sample(armature, frames))
+
+
+def recorded(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -> Recording:
+    """Poses sampled at frames (T,) as a Recording. Raises NonFiniteKey, BadScale."""
     _require_uniform_scale(armature, poses.object_to_world)
     metres = metres_per_unit(bpy.context.scene)
     world = poses.object_to_world[:, None] @ poses.matrices

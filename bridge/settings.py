@@ -15,9 +15,11 @@ from ..solver.body_tables import MassTable
 from ..solver.contacts import Contact, ContactSchedule, Phase, PhaseKind, numbered
 from ..solver.digest import digest
 from ..solver.messages import Analysed
-from ..solver.problem import ContactEdit, MotionProblem, Pin
+from ..solver.problem import AddedContact, ContactEdit, MotionProblem, Pin
 from ..solver.recording import Recording
 from ..solver.requests import Requests
+from .constraint_requests import joined, requests_of
+from .parts_of_body import chosen_parts
 from .poses import frames_per_second, metres_per_unit
 from .recipe import parse_recipe
 from .stances import place
@@ -25,6 +27,10 @@ from .stances import place
 if TYPE_CHECKING:
     from ..ui.properties import HangtimeContact, HangtimeSettings
 
+_KEPT = (
+    *("name", "point", "bone", "phase", "added", "used", "empty"),
+    *("found_start", "found_end", "start_frame", "end_frame", "found_at", "at"),
+)
 _UNMOVED = 1e-5  # Blender units
 _SAME_START = 2.0  # frames; how far apart two analyses may see the same contact begin
 _SAME_PLACE = 0.01  # Blender units
@@ -50,23 +56,32 @@ def problem_of(
         mass=settings.mass,
         height=settings.height if settings.use_height else None,
         mass_table=MassTable[settings.mass_table],
+        bones=chosen_parts(settings),
         contacts=_edits(settings) if with_contacts else (),
+        added=_added(settings) if with_contacts else (),
         pins=_pins(settings, span) if with_contacts else (),
-        requests=_requests(settings) if with_contacts else Requests(),
+        requests=_requests(settings, span) if with_contacts else Requests(),
     )
 
 
-def _requests(settings: HangtimeSettings) -> Requests:
-    """What the armature's text of requests says; it is a recipe's. Raises BadRecipe."""
+def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests:
+    """What the lists ask for, and what the armature's text does, which is a recipe's.
+
+    span: first and last scene frame. Raises BadRecipe, NamedTwice and as `requests_of`.
+    """
+    listed = requests_of(settings, settings.id_data, span)
     if settings.requests is None:
-        return Requests()
+        return listed
     text = settings.requests
-    return parse_recipe(text.as_string(), text.name).problem.requests
+    written = parse_recipe(text.as_string(), text.name).problem.requests
+    return joined(listed, written)
 
 
 def _edits(settings: HangtimeSettings) -> tuple[ContactEdit, ...]:
     edits = []
     for row in settings.contacts:
+        if row.added:
+            continue
         start = row.start_frame if row.start_frame != row.found_start else None
         end = row.end_frame if row.end_frame != row.found_end else None
         if not row.used:
@@ -74,6 +89,14 @@ def _edits(settings: HangtimeSettings) -> tuple[ContactEdit, ...]:
         elif start is not None or end is not None:
             edits.append(ContactEdit(row.name, start, end))
     return tuple(edits)
+
+
+def _added(settings: HangtimeSettings) -> tuple[AddedContact, ...]:
+    return tuple(
+        AddedContact(row.point, row.start_frame, row.end_frame)
+        for row in settings.contacts
+        if row.added and row.used
+    )
 
 
 def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, ...]:
@@ -143,9 +166,31 @@ class _Edit:
         return row.point == self.point and near
 
 
+@dataclass(frozen=True)
+class _Added:
+    """A contact that the artist added, to be added again after another analysis."""
+
+    values: dict[str, object]
+
+    @staticmethod
+    def of(row: HangtimeContact) -> _Added:
+        return _Added({name: _plain(getattr(row, name)) for name in _KEPT})
+
+    def put(self, settings: HangtimeSettings) -> None:
+        row = settings.contacts.add()
+        for name, value in self.values.items():
+            setattr(row, name, value)
+
+
+def _plain(value: object) -> object:
+    """A vector as a tuple, which outlives its owner."""
+    return tuple(value) if isinstance(value, bpy.types.bpy_prop_array) else value
+
+
 def write_analysis(settings: HangtimeSettings, recording: Recording, found: Analysed) -> None:
     """Fills the settings' contacts and stances; contacts that are found again keep their edits."""
-    edits = [_Edit.of(row) for row in settings.contacts]
+    edits = [_Edit.of(row) for row in settings.contacts if not row.added]
+    added = [_Added.of(row) for row in settings.contacts if row.added]
     metres = metres_per_unit(bpy.context.scene)
     first, rate = float(recording.frames[0]), frames_per_second(bpy.context.scene)
     settings.measured_height = found.height
@@ -164,6 +209,8 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
         row.found_start = row.start_frame = first + contact.start * rate
         row.found_end = row.end_frame = first + contact.end * rate
         row.found_at = row.at = contact.place / metres
+    for contact in added:
+        contact.put(settings)
     settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
     _restore(settings, edits)
 

@@ -18,12 +18,23 @@ if TYPE_CHECKING:
     from ..ui.properties import HangtimeContact, HangtimeSettings, HangtimeStance
 
 _SAME = 1e-6  # Blender units
+_DIGITS = 6  # of a turn
 
 
-def place(settings: HangtimeSettings, row: HangtimeContact, to: Sequence[float]) -> None:
-    """Puts a contact somewhere; with `whole_stance` its whole stance makes the same move."""
+def place(
+    settings: HangtimeSettings,
+    row: HangtimeContact,
+    to: Sequence[float],
+    *,
+    whole: bool | None = None,
+) -> None:
+    """Puts a contact somewhere; its whole stance makes the same move where `whole` says so.
+
+    whole: None is as the settings have it (`whole_stance`).
+    """
     shift = Vector(to) - Vector(row.at)
-    moving = stance_contacts(settings, row.phase) if settings.whole_stance else [row]
+    whole = settings.whole_stance if whole is None else whole
+    moving = stance_contacts(settings, row.phase) if whole else [row]
     for contact in moving:
         _put(contact, Vector(contact.at) + shift)
     _remember(settings, row.phase)
@@ -60,6 +71,12 @@ def put_back(settings: HangtimeSettings, stance: HangtimeStance) -> None:
 def stance_contacts(settings: HangtimeSettings, phase: str) -> list[HangtimeContact]:
     """The contacts of a ground phase by its name."""
     return [row for row in settings.contacts if row.phase == phase]
+
+
+def stance_middle(settings: HangtimeSettings, phase: str) -> Vector | None:
+    """Where a stance stands, and about what it turns; None where no contact belongs to it."""
+    contacts = stance_contacts(settings, phase)
+    return _middle([contact.at for contact in contacts]) if contacts else None
 
 
 def active_contact(settings: HangtimeSettings) -> HangtimeContact | None:
@@ -107,7 +124,7 @@ def _remember(settings: HangtimeSettings, phase: str) -> None:
     arms = [(Vector(a) - old, Vector(b) - new) for a, b in zip(found, now, strict=True)]
     across = sum(a.x * b.y - a.y * b.x for a, b in arms)
     along = sum(a.x * b.x + a.y * b.y for a, b in arms)
-    turn = atan2(across, along)
+    turn = round(atan2(across, along), _DIGITS)  # places are in single precision
     stance.turned = turn + tau * round((stance.turned - turn) / tau)
 
 

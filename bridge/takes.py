@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 
 import bpy
 
-from ..solver.recording import PoseTrack, Recording
+from ..solver.recording import FloatArray, PoseTrack, Recording
 from . import fcurves
-from .read import read_recording
-from .write import write_action
+from .in_parts import Parts, complete, sample_in_parts
+from .poses import Poses, sample
+from .read import recorded, whole_frames
+from .write import write_in_parts
 
 
 def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
@@ -31,21 +34,50 @@ def read_take(
     armature: bpy.types.Object | None, first: float | None, last: float | None
 ) -> Recording:
     """Reads the recording, whichever of its actions is shown. Raises as `read_recording`."""
+    return complete(read_take_in_parts(armature, first, last))
+
+
+def read_take_in_parts(
+    armature: bpy.types.Object | None, first: float | None, last: float | None
+) -> Parts[Recording]:
+    """The same, a few frames a part."""
     if armature is None or current_action(armature) is None:
-        return read_recording(armature, first=first, last=last)
+        whole_frames(armature, first, last)
+    assert armature is not None
+    showing = partial(_showing, armature, recorded_action(armature))
+    with showing():
+        frames = whole_frames(armature, first, last)
+    poses = yield from sample_in_parts(armature, frames, showing)
+    with showing():
+        return recorded(armature, frames, poses)
+
+
+def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
+    """The recording's poses at frames (T,), whichever of its actions is shown."""
     with _showing(armature, recorded_action(armature)):
-        return read_recording(armature, first=first, last=last)
+        return sample(armature, frames)
 
 
 def write_take(armature: bpy.types.Object, track: PoseTrack) -> bpy.types.Action:
     """Writes an adapted performance as a new action, which is assigned and knows its recording."""
-    recorded = recorded_action(armature)
-    assert recorded is not None
-    with _showing(armature, recorded):
-        action = write_action(armature, track, name=f"{recorded.name} adapted")
-        action.hangtime.recording = recorded
-        action.use_fake_user = True  # the next adaptation must not cost the artist this one
-        slot = fcurves.slot_identifier(armature)
+    return complete(write_take_in_parts(armature, track))
+
+
+def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[bpy.types.Action]:
+    """The same in parts; before the last one the armature is as it was."""
+    original = recorded_action(armature)
+    assert original is not None
+    slot = fcurves.slot_identifier(armature)
+    action = yield from write_in_parts(
+        armature,
+        track,
+        original,
+        slot,
+        name=f"{original.name} adapted",
+        showing=partial(_showing, armature, original),
+    )
+    action.hangtime.recording = original
+    action.use_fake_user = True  # the next adaptation must not cost the artist this one
     show(armature, action, slot)
     armature.hangtime.adapted = action
     return action

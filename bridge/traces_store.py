@@ -46,6 +46,7 @@ def keep(owner: bpy.types.ID, traces: Traces, stood: Matrix) -> None:
         packed[f"span {i}"] = np.array([flight.start, flight.end])
     stream = BytesIO()
     np.savez(stream, **packed)
+    forget(owner)  # Blender would cut bytes that replace others off at the first zero
     owner[_CONTENT] = stream.getvalue()
     owner[_KEY] = str(crc32(stream.getbuffer()))
 

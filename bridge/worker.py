@@ -18,7 +18,7 @@ from io import BufferedReader, RawIOBase
 from itertools import count
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from threading import Lock, Thread
+from threading import Condition, Lock, Thread
 from time import monotonic
 
 from ..solver.faults import WorkerDied
@@ -27,6 +27,7 @@ from ..solver.messages import (
     Answer,
     Ending,
     Failed,
+    Followed,
     Halt,
     Hello,
     Kind,
@@ -66,6 +67,10 @@ class Job:
         self.answer: Answer | None = None
         self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
 
+    def requests(self) -> Iterator[Request]:
+        """The one."""
+        yield self.request
+
     def deliver(self, message: Progress | Answer) -> None:
         """Called by the thread that listens to the worker."""
         self._arrived.put(message)
@@ -92,19 +97,76 @@ class Job:
         return message
 
 
+class Chase:
+    """Follows what is wanted as it changes: the next request leaves as soon as the last one is
+    answered, without waiting until Blender looks, and is always about the latest problem."""
+
+    def __init__(self, recording: Recording, ids: Iterator[int]) -> None:
+        self._recording: Recording | None = recording
+        self._ids = ids
+        self._changed = Condition()
+        self._problem: MotionProblem | None = None
+        self._ended = False
+        self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
+
+    def want(self, problem: MotionProblem) -> None:
+        """This is what to follow from now on."""
+        with self._changed:
+            self._problem = problem
+            self._changed.notify()
+
+    def end(self) -> None:
+        """Nobody follows any more."""
+        with self._changed:
+            self._ended = True
+            self._changed.notify()
+
+    def news(self) -> Iterator[Progress | Answer]:
+        """What has arrived since the last look; never waits."""
+        while True:
+            try:
+                yield self._arrived.get_nowait()
+            except Empty:
+                return
+
+    def requests(self) -> Iterator[Request]:
+        """What to ask one after another; waits while there is nothing new. On the thread that
+        listens to the worker, which delivers what comes before it takes the next."""
+        problem: MotionProblem | None = None
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._ended or self._problem is not None)
+                if self._ended:
+                    return
+                problem, self._problem = self._problem, None
+            assert problem is not None
+            self._last = problem
+            yield Request(next(self._ids), Kind.FOLLOW, self._recording, problem)
+            self._recording = None  # the worker knows it now
+
+    def deliver(self, message: Progress | Answer) -> None:
+        """Called by the thread that listens; a motion that is still on its way is asked again."""
+        self._arrived.put(message)
+        if isinstance(message, Followed) and not message.arrived:
+            with self._changed:
+                self._problem = self._problem or self._last
+
+
 class Worker:
     """The worker process: started when it is needed, kept for the fits that it remembers."""
 
     def __init__(self) -> None:
         self._process: _Process | None = None
         self._job: Job | None = None
+        self._chase: Chase | None = None
         self._dropped: tuple[Job, float] | None = None  # and when
         self._ids = count(1)
 
     @property
     def busy(self) -> bool:
         """Whether a request that has not been dropped has not had its answer seen."""
-        return self._job is not None and self._job.answer is None
+        waits = self._job is not None and self._job.answer is None
+        return waits or self._chase is not None
 
     @property
     def pid(self) -> int | None:
@@ -118,18 +180,33 @@ class Worker:
         recording: None is the last request's. Raises WorkerDied where none can be started,
         RuntimeError while another is under way.
         """
-        if self.busy:
-            raise RuntimeError("one request at a time")
-        if self.pid is None or self._stuck():
-            self.close()
-            self._process = _Process()
+        self._ready()
         assert self._process is not None
         self._job = Job(Request(next(self._ids), kind, recording, problem))
         self._process.ask(self._job)
         return self._job
 
+    def chase(self, recording: Recording) -> Chase:
+        """Begins to follow what is wanted of a recording. Raises as `ask` does."""
+        self._ready()
+        assert self._process is not None
+        self._chase = Chase(recording, self._ids)
+        self._process.ask(self._chase)
+        return self._chase
+
+    def _ready(self) -> None:
+        """A process that is free."""
+        if self.busy:
+            raise RuntimeError("one request at a time")
+        if self.pid is None or self._stuck():
+            self.close()
+            self._process = _Process()
+
     def drop(self) -> None:
         """Nobody waits for the request under way any more; the worker ends it at its next step."""
+        if self._chase is not None:
+            self._chase.end()
+            self._chase = None
         if self.busy and self._process is not None:
             assert self._job is not None
             self._dropped = (self._job, monotonic())
@@ -138,13 +215,15 @@ class Worker:
 
     def as_it_stands(self) -> None:
         """The request under way shall be answered with the motion as it stands."""
-        if self.busy and self._process is not None:
-            assert self._job is not None
+        if self._job is not None and self._job.answer is None and self._process is not None:
             self._process.halt(self._job, Ending.AS_IT_STANDS)
 
     def close(self) -> None:
         """Ends the process, whatever it is doing; the next request starts another."""
+        if self._chase is not None:
+            self._chase.end()
         process, self._process, self._job, self._dropped = self._process, None, None, None
+        self._chase = None
         if process is not None:
             process.end()
 
@@ -186,7 +265,7 @@ class _Process:
         self._from_worker = BufferedReader(self._popen.stdout)
         self._greeted = False
         self._sending = Lock()
-        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
+        self._jobs: SimpleQueue[Job | Chase | None] = SimpleQueue()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
         self._listener.start()
@@ -200,7 +279,7 @@ class _Process:
     def alive(self) -> bool:
         return self._popen.poll() is None
 
-    def ask(self, job: Job) -> None:
+    def ask(self, job: Job | Chase) -> None:
         """Has the job's request made once those before it are answered; never waits."""
         self._jobs.put(job)
 
@@ -217,18 +296,25 @@ class _Process:
         """Makes the jobs' requests one after another, on a thread of its own."""
         _survive_broken_pipes()
         while (job := self._jobs.get()) is not None:
-            try:
-                for message in self._talk(job.request):
-                    job.deliver(message)
-            except (OSError, ValueError, EOFError):  # ValueError: the pipe was closed by end()
-                job.deliver(Failed(job.request.id, WorkerDied(self._last_words())))
-            except ProtocolError as problem:
-                self._popen.kill()
-                job.deliver(Failed(job.request.id, WorkerDied(str(problem))))
-            except BaseException as problem:
-                # A mistake of ours; somebody waits for an answer all the same.
-                job.deliver(Failed(job.request.id, WorkerDied(repr(problem))))
-                raise
+            for request in job.requests():
+                self._meet(request, job.deliver)
+                if not self.alive:
+                    break
+
+    def _meet(self, request: Request, deliver: Callable[[Progress | Answer], None]) -> None:
+        try:
+            for message in self._talk(request):
+                deliver(message)
+        except (OSError, ValueError, EOFError):  # ValueError: the pipe was closed by end()
+            deliver(Failed(request.id, WorkerDied(self._last_words())))
+        except ProtocolError as problem:
+            self._popen.kill()
+            self._popen.wait()
+            deliver(Failed(request.id, WorkerDied(str(problem))))
+        except BaseException as problem:
+            # A mistake of ours; somebody waits for an answer all the same.
+            deliver(Failed(request.id, WorkerDied(repr(problem))))
+            raise
 
     def end(self) -> None:
         """Kills the process and lets go of it."""

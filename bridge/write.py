@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
@@ -10,7 +13,8 @@ from ..solver.recording import FloatArray, PoseTrack
 from . import fcurves
 from .bases import bases, carrier_of
 from .channels import channels, proper
-from .poses import metres_per_unit, sample
+from .in_parts import Parts, complete, sample_in_parts
+from .poses import metres_per_unit
 
 _ROTATION_CHANNELS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 _EULER_CHANNEL = "rotation_euler"
@@ -25,30 +29,43 @@ def write_action(armature: bpy.types.Object, track: PoseTrack, *, name: str) -> 
     the track's frames. The recording's action gets a fake user and is not changed otherwise.
     Raises KeyError where the armature lacks a bone of the track.
     """
-    poses = sample(armature, track.frames)
+    recorded, slot = armature.animation_data.action, fcurves.slot_identifier(armature)
+    action = complete(write_in_parts(armature, track, recorded, slot, name=name))
+    fcurves.assign(armature, action, slot)
+    return action
+
+
+def write_in_parts(
+    armature: bpy.types.Object,
+    track: PoseTrack,
+    recorded: bpy.types.Action,
+    slot: str | None,
+    *,
+    name: str,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Parts[bpy.types.Action]:
+    """The same for a recording in that slot of an action, without assigning the copy.
+
+    showing: lets the armature perform the recording.
+    """
+    poses = yield from sample_in_parts(armature, track.frames, showing)
     made = bases(armature, poses, track)
-    recorded = armature.animation_data.action
-    slot = fcurves.slot_identifier(armature)
+    yield
     recorded.use_fake_user = True
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False
-    fcurves.assign(armature, action, slot)
-    _write(armature, track, made)
-    return action
-
-
-def _write(armature: bpy.types.Object, track: PoseTrack, made: dict[str, FloatArray]) -> None:
-    """Put the channels (T, 4, 4) by bone into the curves of the armature's action."""
-    curves = fcurves.holder(armature)
+    curves = fcurves.holder_in(action, slot)
     assert curves is not None
     carrier = carrier_of(armature.data.bones[track.bones[0]]).name
-    for name in track.bones:
-        _write_rotation(curves, armature.pose.bones[name], track.frames, made[name])
+    for bone in track.bones:
+        _write_rotation(curves, armature.pose.bones[bone], track.frames, made[bone])
+        yield
     path = armature.pose.bones[carrier].path_from_id("location")
     _write_channels(curves, path, carrier, track.frames, made[carrier][:, :3, 3])
     for curve in curves.fcurves:
         fcurves.crop(curve, float(track.frames[0]), float(track.frames[-1]))
+    return action
 
 
 def _write_rotation(

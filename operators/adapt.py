@@ -1,46 +1,49 @@
-"""Adapt: a new action in which the contacts are where the artist put them."""
+"""Adapt and Refine: a new action in which the contacts are where the artist put them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Generator
+from dataclasses import dataclass, replace
 
 import bpy
 
+from ..bridge.in_parts import Parts
 from ..bridge.other_figure import other_figure
 from ..bridge.settings import problem_of, wanted_range
-from ..bridge.takes import read_take, recorded_action, write_take
-from ..bridge.worker import Job, Kind, shared
+from ..bridge.takes import read_take_in_parts, recorded_action, write_take_in_parts
+from ..bridge.traces_store import keep
+from ..bridge.worker import shared
 from ..bridge.write import write_action
 from ..solver.digest import digest
-from ..solver.faults import ChangedMeanwhile, Fault
-from ..solver.messages import Adapted, Failed, Progress
+from ..solver.faults import ChangedMeanwhile
+from ..solver.messages import Adapted, Failed, Kind
+from ..solver.problem import MotionProblem
 from ..solver.proportions import changed_recording
 from ..solver.recording import Recording
-from .common import FaultyOperator, chosen_armature, hindrance, said
+from ..solver.requests import Method, Objective, Solution
+from .common import chosen_armature, hindrance
+from .live import live
 from .names import OperatorId
+from .session import Best, session
+from .solving import State
+from .task import Task, TaskOperator, answered, take_best
 
-LOOK_EVERY = 0.05  # s
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
-STAGES = {"fit": "fitting the physics", "refine": "refining", "adapt": "adapting"}
+STOPPED = "stopped"
 
 
 @dataclass(frozen=True)
 class Asked:
-    """A request under way: of which armature, and what its recording was then."""
+    """A request: of which armature, what its recording was then, and what was asked."""
 
     armature: str
     content: str
-    job: Job
+    recording: Recording
+    problem: MotionProblem
 
 
-class AdaptOperator(FaultyOperator, bpy.types.Operator):
-    bl_idname = OperatorId.ADAPT
-    bl_label = "Adapt"
-    bl_description = (
-        "Make a new action that obeys physics, with every contact where you put it. "
-        "The recording's action is kept unchanged"
-    )
-    bl_options = {"UNDO"}  # noqa: RUF012 - Blender reads a set
+class _Adapting(TaskOperator):
+    """What Adapt and Refine share."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -51,106 +54,151 @@ class AdaptOperator(FaultyOperator, bpy.types.Operator):
             cls.poll_message_set(why)
         return why is None
 
-    def run(self, context: bpy.types.Context) -> set[str]:
-        """In scripts and without a window: waits for the answer."""
-        asked = ask(context)
+    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+        """How to solve; asked: what a recipe says of it."""
+        raise NotImplementedError
+
+    def task(self, context: bpy.types.Context) -> Task:
+        context.view_layer.update()  # empties that a script moved
+        solving = session().solving
+        assert solving is not None
+        asked = yield from ask_for(context)
+        solution = self.solution(chosen_armature(context).hangtime, asked.problem.requests.solution)
+        requests = replace(asked.problem.requests, solution=solution)
+        asked = replace(asked, problem=replace(asked.problem, requests=requests))
+        solving.advance(State.SOLVING)
+        job = shared().ask(Kind.ADAPT, asked.recording, asked.problem)
         try:
-            asked.job.wait()
+            answer = yield from answered(job)
         finally:
-            if asked.job.answer is None:  # interrupted
-                shared().close()
-        self.report({"INFO"}, finish(asked))
-        return {"FINISHED"}
-
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """In the interface: looks for news now and then, so that nothing freezes."""
-        if bpy.app.background or context.window is None:
-            return self.execute(context)
-        try:
-            self._asked = ask(context)
-        except Fault as fault:
-            self.report({"ERROR"}, said(fault))
-            return {"CANCELLED"}
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
-        self._workspace = context.workspace
-        self._workspace.status_text_set("Hangtime: starting (Esc cancels)")
-        manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if event.type == "ESC" and event.value == "PRESS":
-            self.cancel(context)
-            self.report({"INFO"}, "Cancelled; nothing was changed")
-            return {"CANCELLED"}
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        for message in self._asked.job.news():
-            if isinstance(message, Progress):
-                self._workspace.status_text_set(progress_text(message))
-        if self._asked.job.answer is None:
-            return {"PASS_THROUGH"}
-        self._end_waiting(context)
-        try:
-            self.report({"INFO"}, finish(self._asked))
-        except Fault as fault:
-            self.report({"ERROR"}, said(fault))
-            return {"CANCELLED"}
-        return {"FINISHED"}
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Also called by Blender when it opens another file or quits meanwhile."""
-        shared().close()
-        self._end_waiting(context)
-
-    def _end_waiting(self, context: bpy.types.Context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
-        self._workspace.status_text_set(None)
+            live().clear()
+        if isinstance(answer, Failed):
+            raise answer.fault
+        assert isinstance(answer, Adapted)
+        session().best = None
+        if answer.fault is not None and answer.fault.reason != STOPPED:
+            session().best = Best(asked, answer)
+            raise answer.fault
+        return (yield from write_answer(asked, answer))
 
 
-def ask(context: bpy.types.Context) -> Asked:
-    """Requests what the settings ask. Raises any Fault of reading, and ChangedMeanwhile."""
-    context.view_layer.update()  # empties that a script moved
+class AdaptOperator(_Adapting, bpy.types.Operator):
+    bl_idname = OperatorId.ADAPT
+    bl_label = "Adapt"
+    bl_description = (
+        "Make a new action that obeys physics, with every contact where you put it. "
+        "The recording's action is kept unchanged"
+    )
+    bl_options = {"UNDO"}  # noqa: RUF012 - Blender reads a set
+
+    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+        if asked.method is not Method.IMPLICIT:  # a recipe's own choice
+            return asked
+        return replace(asked, method=Method[settings.method])
+
+
+class RefineOperator(_Adapting, bpy.types.Operator):
+    bl_idname = OperatorId.REFINE
+    bl_label = "Refine"
+    bl_description = (
+        "Adapt, then go on to the motion that costs the performer least, as chosen under "
+        "Advanced. Takes some seconds more"
+    )
+    bl_options = {"UNDO"}  # noqa: RUF012 - Blender reads a set
+
+    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+        weights = ((Objective[settings.objective], 1.0), (Objective.CLOSENESS, settings.stay_close))
+        if asked.method is Method.EXPLICIT:
+            return asked
+        return replace(asked, method=Method.EXPLICIT, objectives=weights)
+
+
+class UseBestOperator(TaskOperator, bpy.types.Operator):
+    bl_idname = OperatorId.USE_BEST
+    bl_label = "Use Best So Far"
+    bl_description = (
+        "Take the motion as it stands: of the solve under way, or the best that a failed one "
+        "found. The report says what it misses"
+    )
+    bl_options = {"UNDO"}  # noqa: RUF012 - Blender reads a set
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        solving = session().solving
+        if session().best is None and (solving is None or not solving.can_stop):
+            cls.poll_message_set("No solve is under way, and none has failed")
+            return False
+        return True
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        return {"FINISHED"} if take_best() else super().invoke(context, event)
+
+    def task(self, _context: bpy.types.Context) -> Task:
+        best, solving = session().best, session().solving
+        assert best is not None
+        assert solving is not None
+        done = yield from write_answer(best.asked, best.answer)
+        session().best = None
+        return done
+
+
+def ask_for(context: bpy.types.Context) -> Parts[Asked]:
+    """What the settings ask, of the recording as it is. Raises any Fault of reading, and
+    ChangedMeanwhile where it is not what was analysed."""
     armature = chosen_armature(context)
     settings = armature.hangtime
-    recording = read_take(armature, *wanted_range(settings))
+    recording = yield from read_take_in_parts(armature, *wanted_range(settings))
     content = digest(recording)
     if content != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
-    job = shared().ask(Kind.ADAPT, recording, problem_of(settings, recording))
-    return Asked(armature.name, content, job)
+    return Asked(armature.name, content, recording, problem_of(settings, recording))
 
 
-def finish(asked: Asked) -> str:
-    """Writes the answer as a new action; says how it went. Raises any Fault, writing nothing."""
-    answer = asked.job.answer
-    if isinstance(answer, Failed):
-        raise answer.fault
-    assert isinstance(answer, Adapted)
-    armature = _unchanged(asked)
-    limbs = asked.job.request.problem.requests.body.limbs
+def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
+    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
+    solving = session().solving
+    assert solving is not None
+    solving.advance(State.CHECKING)
+    armature = yield from _unchanged(asked)
+    solving.advance(State.WRITING)
+    limbs = asked.problem.requests.body.limbs
     if limbs:
-        return _write_other(changed_recording(asked.job.request.recording, limbs), answer, armature)
-    write_take(armature, answer.track)
-    armature.hangtime.status = summary(answer)
-    return f"Wrote the action {armature.animation_data.action.name}"
+        return _write_other(changed_recording(asked.recording, limbs), answer, armature)
+    stood = armature.matrix_world.copy()
+    action = yield from write_take_in_parts(armature, answer.track)
+    keep(action, answer.traces, stood)
+    _note(armature, action, answer)
+    return f"Wrote the action {action.name}"
 
 
 def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Object) -> str:
     """The answer on an armature of its own, for the artist's keeps its proportions."""
     other, track, _ = other_figure(recording, answer.track)
     other.name = f"{armature.name} changed"
-    write_action(other, track, name=f"{recording.name} adapted")
-    armature.hangtime.status = summary(answer)
+    action = write_action(other, track, name=f"{recording.name} adapted")
+    keep(action, answer.traces, other.matrix_world)
+    _note(armature, action, answer)
     return f"Made the armature {other.name}, which performs the adapted motion"
 
 
-def _unchanged(asked: Asked) -> bpy.types.Object:
+def _note(armature: bpy.types.Object, action: bpy.types.Action, answer: Adapted) -> None:
+    """Keeps what was found beside the action, and how each constraint came out."""
+    from ..bridge.constraint_status import write_status
+    from .report_text import as_text
+
+    settings = armature.hangtime
+    settings.status = summary(answer)
+    write_status(settings, answer.report)
+    action.hangtime.report = as_text(answer.report)
+
+
+def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
     """The armature, if it and its recording are what they were. Raises ChangedMeanwhile."""
     armature = bpy.data.objects.get(asked.armature)
     if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
-        first, *_, last = asked.job.request.recording.frames
-        if digest(read_take(armature, first, last)) == asked.content:
+        frames = asked.recording.frames
+        now = yield from read_take_in_parts(armature, frames[0], frames[-1])
+        if digest(now) == asked.content:
             return armature
     raise ChangedMeanwhile(asked.armature, while_solving=True)
 
@@ -162,9 +210,10 @@ def summary(answer: Adapted) -> str:
     worst = max(contacts, key=lambda contact: contact["worst_violation_mm"])
     seconds = sum(stage["seconds"] for stage in report["stages"])
     peak = max(report["forces"]["peaks"], key=lambda peak: peak["peak_bw"])
+    said = "Solved" if answer.fault is None else "Best found, not all is met;"
     return "\n".join(
         [
-            f"Solved in {seconds:.1f} s",
+            f"{said} in {seconds:.1f} s",
             f"Pins: {worst['worst_violation_mm']:.2f} mm off at most ({worst['name']})",
             *(
                 f"{each['name']}: {'held' if each['met'] else 'missed a little'}"
@@ -175,13 +224,4 @@ def summary(answer: Adapted) -> str:
     )
 
 
-def progress_text(message: Progress) -> str:
-    """For the status bar."""
-    stage = STAGES.get(message.stage, message.stage)
-    return (
-        f"Hangtime: {stage}, step {message.step}, worst violation "
-        f"{message.violation:.3g} × allowed (Esc cancels)"
-    )
-
-
-CLASSES = (AdaptOperator,)
+CLASSES = (AdaptOperator, RefineOperator, UseBestOperator)

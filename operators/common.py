@@ -7,8 +7,9 @@ import bpy
 from ..bridge.takes import current_action
 from ..bridge.worker import shared
 from ..solver.faults import Fault, NoAction, NoArmature
+from .session import session
 
-BUSY = "A motion is being adapted; wait for it or press Esc"
+BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
 EDIT_MODE = "Leave edit mode first"
 
 
@@ -24,7 +25,7 @@ def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
 def hindrance(context: bpy.types.Context) -> str | None:
     """Why the armature cannot be read now, in a sentence; None where it can."""
     armature = chosen_armature(context)
-    if shared().busy:
+    if shared().busy or session().solving is not None:
         return BUSY
     if armature is None or armature.type != "ARMATURE":
         active = context.view_layer.objects.active

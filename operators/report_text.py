@@ -1,10 +1,15 @@
 """The report as people read it: what changed, then how well it holds."""
 
-from collections.abc import Iterator
+from __future__ import annotations
 
-from ..solver.report import Json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from ..solver.status import Status
 from .wording import outcome
+
+if TYPE_CHECKING:
+    from ..solver.report import Json
 
 LEFT_AT_MOST = {"flight": 0.001, "ground": 0.02}  # BW·m, rms; what the project promises
 GRIPPING = 1.2  # friction coefficient of sports shoes on a good floor, at most

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TextIO
 
+from ..solver.motion import Motion
 from ..solver.projection import Step
 
 WIDTH = 24

@@ -267,6 +267,58 @@ def _(fault: faults.TimedTwice) -> str:
 
 
 @sentence.register
+def _(fault: faults.NoBoneChosen) -> str:
+    return f"{_quoted(fault.request)} is about no bone yet; choose one, or switch it off."
+
+
+@sentence.register
+def _(fault: faults.NoPhaseChosen) -> str:
+    return (
+        f"{_quoted(fault.request)} holds in a phase, but none is chosen; "
+        f"there are {_names(fault.known)}."
+    )
+
+
+@sentence.register
+def _(fault: faults.EmptyRange) -> str:
+    return (
+        f"{_quoted(fault.request)} ends at frame {fault.last:g}, before it begins at frame "
+        f"{fault.first:g}; swap them."
+    )
+
+
+@sentence.register
+def _(fault: faults.CrossedBounds) -> str:
+    return (
+        f"{_quoted(fault.request)} asks for at least {fault.at_least:.4g} {fault.unit} and at most "
+        f"{fault.at_most:.4g} {fault.unit}, which nothing is; raise the one or lower the other."
+    )
+
+
+@sentence.register
+def _(fault: faults.AsksNothing) -> str:
+    return f"{_quoted(fault.request)} asks for nothing; switch on one of its options, or it off."
+
+
+@sentence.register
+def _(fault: faults.NoDirection) -> str:
+    return f"{_quoted(fault.request)} has an axis that points nowhere; give it a direction."
+
+
+@sentence.register
+def _(fault: faults.NamedTwice) -> str:
+    return (
+        f"{_quoted(fault.request)} is the name of two constraints, body changes or contacts; "
+        "rename one, so that the report can tell them apart."
+    )
+
+
+@sentence.register
+def _(fault: faults.NameMissing) -> str:
+    return f"A constraint ({fault.kind}) has no name; give it one in the list."
+
+
+@sentence.register
 def _(fault: faults.WorkerDied) -> str:
     return (
         f"The solver stopped without an answer ({fault.detail}); "

@@ -7,6 +7,7 @@ LeftHip, LeftKnee). The style of a side is decided by what else is there: a *sho
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 
@@ -121,6 +122,28 @@ def map_anatomy(
     segments = [Segment(part, side, bone) for (part, side), bone in found.items()]
     segments += _chain(bones, found)
     return tuple(sorted(segments, key=lambda s: s.bone))
+
+
+def guess_anatomy(bones: Sequence[Bone]) -> dict[str, str | None]:
+    """The bone's name for the label of every part but the spine's and neck's, None where there is
+    none; sided parts in pairs. Raises nothing, so that an artist can fill in what is missing."""
+    found = _by_name(bones)
+    keys = [(Part.PELVIS, Side.MIDDLE), (Part.HEAD, Side.MIDDLE)]
+    keys += [(part, side) for part in SIDED for side in (Side.LEFT, Side.RIGHT)]
+    if all(key in found for key in keys if needed(key[0])):
+        with suppress(MissingPart):
+            _add_trunk(bones, found)
+    return {
+        f"{side.value} {part.value}".strip(): bones[found[part, side]].name
+        if (part, side) in found
+        else None
+        for part, side in keys
+    }
+
+
+def needed(part: Part) -> bool:
+    """Whether the physics needs the part; the pelvis follows from the others."""
+    return part in NEEDED or part is Part.HEAD
 
 
 def _key(label: str) -> tuple[Part, Side]:

@@ -295,3 +295,65 @@ class TimedTwice(Fault):
 
     request: str
     phase: str
+
+
+@dataclass
+class NoBoneChosen(Fault):
+    """A request of a kind that is about a bone names none."""
+
+    request: str
+
+
+@dataclass
+class NoPhaseChosen(Fault):
+    """A request that is to hold in a phase names none."""
+
+    request: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class EmptyRange(Fault):
+    """A request's last frame comes before its first."""
+
+    request: str
+    first: float
+    last: float
+
+
+@dataclass
+class CrossedBounds(Fault):
+    """A request's least value is above its greatest; both in `unit`."""
+
+    request: str
+    at_least: float
+    at_most: float
+    unit: str
+
+
+@dataclass
+class AsksNothing(Fault):
+    """A request in which everything that it could ask for is switched off."""
+
+    request: str
+
+
+@dataclass
+class NoDirection(Fault):
+    """An axis or a normal of a request that is zero, so that it points nowhere."""
+
+    request: str
+
+
+@dataclass
+class NamedTwice(Fault):
+    """Two requests, or a request and a contact, of the same name; reports could not tell them."""
+
+    request: str
+
+
+@dataclass
+class NameMissing(Fault):
+    """A request without a name; kind: what it is, in the artist's words."""
+
+    kind: str

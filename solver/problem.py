@@ -71,6 +71,15 @@ class ContactEdit:
 
 
 @dataclass(frozen=True)
+class AddedContact:
+    """A contact that was not detected: a point ("Left heel") touches between two scene frames."""
+
+    point: str
+    start_frame: float
+    end_frame: float
+
+
+@dataclass(frozen=True)
 class MotionProblem:
     """Everything that defines an adaptation but the recording itself."""
 
@@ -80,6 +89,7 @@ class MotionProblem:
     mass_table: MassTable = MassTable.THESIS
     bones: dict[str, str] = field(default_factory=dict)  # part -> bone, the artist's choice
     contacts: tuple[ContactEdit, ...] = ()
+    added: tuple[AddedContact, ...] = ()
     pins: tuple[Pin, ...] = ()
     requests: Requests = field(default_factory=Requests)
 

@@ -13,6 +13,7 @@ from .faults import Fault, NoFit, NoSolution
 from .fit import Fit, fit
 from .follow import Follower, change
 from .inverse_dynamics import InverseDynamics
+from .made_traces import motion_traces, recorded_traces
 from .messages import (
     Adapted,
     Analysed,
@@ -34,7 +35,7 @@ from .report import Origin, closeness, report
 from .requests import Requests
 from .session import Analysis, analyse
 from .stature import scaled_problem, scaled_recording, scaled_schedule, scaled_track
-from .traces import Traces, motion_traces, recorded_traces, scaled_traces
+from .traces import Traces, scaled_traces
 from .violations import most_telling
 
 MOST_FITS = 3

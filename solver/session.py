@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from .character import build_character
 from .contacts import Contact, ContactSchedule, snap
 from .detection import require_flight
-from .faults import ClipTooShort, UnknownContactName, UnseenSupport
+from .faults import BadTiming, ClipTooShort, UnknownContactName, UnseenSupport
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
-from .problem import ContactEdit, MotionProblem
+from .problem import MotionProblem
 from .recording import Recording
 
 SHORTEST_CLIP = 0.3  # s
@@ -41,7 +41,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
         recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
     )
     performance = perform(recording, character)
-    schedule = _corrected(find_contacts(performance), problem.contacts, performance)
+    schedule = _corrected(find_contacts(performance), problem, performance)
     for gap in schedule.unseen:
         raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
     require_flight(schedule, contact_points(performance)[0])
@@ -54,15 +54,15 @@ def _frame(recording: Recording, time: float) -> float:
 
 
 def _corrected(
-    schedule: ContactSchedule, edits: tuple[ContactEdit, ...], performance: Performance
+    schedule: ContactSchedule, problem: MotionProblem, performance: Performance
 ) -> ContactSchedule:
     """The schedule with the artist's corrections; unchanged contacts keep their exact instants."""
-    if not edits:
+    if not problem.contacts and not problem.added:
         return schedule
     contacts: dict[str, Contact] = {c.name: c for c in schedule.contacts}
     first = float(performance.recording.frames[0])
     rate = (len(performance.times) - 1) / float(performance.times[-1])
-    for edit in edits:
+    for edit in problem.contacts:
         if edit.name not in contacts:
             raise UnknownContactName(edit.name, tuple(contacts))
         contact = contacts[edit.name]
@@ -76,5 +76,22 @@ def _corrected(
             end = (edit.end_frame - first) / rate
         span = (max(start, 0.0), min(end, schedule.duration))
         contacts[edit.name] = replace(contact, start=span[0], end=span[1])
-    edited = replace(schedule, contacts=tuple(contacts.values()))
-    return snap(edited, snap_tolerance(performance))
+    every = [*contacts.values()]
+    for added in problem.added:
+        span = ((added.start_frame - first) / rate, (added.end_frame - first) / rate)
+        within = (max(span[0], 0.0), min(span[1], schedule.duration))
+        every.append(_added(added.point, within, performance))
+    return snap(replace(schedule, contacts=tuple(every)), snap_tolerance(performance))
+
+
+def _added(name: str, span: tuple[float, float], performance: Performance) -> Contact:
+    """A contact of a point during (start, end) s, where the point then is on average."""
+    points, _ = contact_points(performance)
+    if name not in points:
+        raise UnknownContactName(name, tuple(points))
+    point = points[name]
+    during = (performance.times >= span[0]) & (performance.times <= span[1])
+    if not during.any():
+        raise BadTiming(name, span[1] - span[0])
+    place = point.track[during].mean(axis=0)
+    return Contact(name, name, point.bone, point.offset, *span, place)

@@ -1,4 +1,4 @@
-"""What the extension stores of each constraint and body change: one class for all their kinds.
+"""What the extension stores of each constraint: one class for all their kinds.
 
 Lengths are in Blender units, world unless said otherwise; frames are the scene's; angles in rad.
 bridge/constraint_requests.py says which fields count for which kind, and makes requests of them.
@@ -6,14 +6,12 @@ bridge/constraint_requests.py says which fields count for which kind, and makes 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from enum import Enum
 from math import pi, radians
 
 import bpy
 
+from ..bridge import phases
 from ..bridge.kinds import (
-    BodyKind,
     ConstraintKind,
     ForceShape,
     Instant,
@@ -24,32 +22,26 @@ from ..bridge.kinds import (
     TimingBy,
     TorqueBy,
 )
-
-HIDDEN = {"HIDDEN"}
-OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
-OVERRIDABLE_LIST = {"LIBRARY_OVERRIDABLE", "USE_INSERTION"}
+from .row_properties import ASKED, HIDDEN, OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBone, items
 
 
-def _items(kinds: Iterable[Enum]) -> list[tuple[str, str, str]]:
-    return [(kind.name, kind.value, "") for kind in kinds]
-
-
-class HangtimeBone(bpy.types.PropertyGroup):
-    """A bone of the armature; `name` is its name when last looked at, `key` outlives renaming."""
-
-    key: bpy.props.StringProperty(options=HIDDEN, override=OVERRIDABLE)
+def _phases(row: HangtimeConstraint, _context: bpy.types.Context, _typed: str) -> tuple[str, ...]:
+    return phases.names(row.id_data.hangtime)
 
 
 class HangtimeConstraint(bpy.types.PropertyGroup):
     """A row of the constraints' list; `name` is the artist's, by which it is reported."""
 
+    name: bpy.props.StringProperty(
+        name="Name", description="Your name for it, by which it is reported", override=OVERRIDABLE
+    )
     kind: bpy.props.EnumProperty(
-        name="Kind", items=_items(ConstraintKind), options=HIDDEN, override=OVERRIDABLE
+        name="Kind", items=items(ConstraintKind), options=HIDDEN, override=OVERRIDABLE
     )
     used: bpy.props.BoolProperty(
-        name="Use", description="Whether this counts", default=True, override=OVERRIDABLE
+        name="Use", description="Whether this counts", default=True, **ASKED
     )
-    met: bpy.props.EnumProperty(name="Met", items=_items(Met), options=HIDDEN, override=OVERRIDABLE)
+    met: bpy.props.EnumProperty(name="Met", items=items(Met), options=HIDDEN, override=OVERRIDABLE)
     status: bpy.props.StringProperty(options=HIDDEN, override=OVERRIDABLE)  # a line to be drawn
 
     # Whose: the first is what single-bone kinds are about.
@@ -59,31 +51,43 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
     span: bpy.props.EnumProperty(
         name="When",
         description="During what it holds",
-        items=_items(Span),
+        items=items(Span),
         default=Span.ALWAYS.name,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     phase: bpy.props.StringProperty(
-        name="Phase", description="Phase of the clip, as Analyze named it", override=OVERRIDABLE
+        name="Phase",
+        description="Phase of the clip, as Analyze named it, or a Hold",
+        search=_phases,
+        search_options={"SUGGESTION"},
+        **ASKED,
     )
     instant: bpy.props.EnumProperty(
         name="At",
         description="Throughout the phase, or at one instant of it",
-        items=_items(Instant),
-        override=OVERRIDABLE,
+        items=items(Instant),
+        **ASKED,
     )
     first_frame: bpy.props.FloatProperty(
-        name="First", description="First frame at which it holds", override=OVERRIDABLE
+        name="First",
+        description="First frame at which it holds",
+        precision=1,
+        step=100,
+        **ASKED,
     )
     last_frame: bpy.props.FloatProperty(
-        name="Last", description="Last frame at which it holds", override=OVERRIDABLE
+        name="Last",
+        description="Last frame at which it holds",
+        precision=1,
+        step=100,
+        **ASKED,
     )
 
     # POINT
     use_place: bpy.props.BoolProperty(
         name="Own Place",
         description="Hold the point at a place of yours instead of where the recording has it",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     place: bpy.props.FloatVectorProperty(
         name="Place",
@@ -91,40 +95,40 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         size=3,
         subtype="TRANSLATION",
         unit="LENGTH",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     use_offset: bpy.props.BoolProperty(
         name="Own Point",
         description="Choose the point of the bone instead of its middle",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     offset: bpy.props.FloatVectorProperty(
         name="Offset",
-        description="From the bone's head, in the bone's axes",
+        description="From the bone's head, in the bone's axes and the armature's own scale",
         size=3,
         subtype="TRANSLATION",
         unit="LENGTH",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     target: bpy.props.PointerProperty(
         name="Target",
         description="An object that the point follows, wherever it moves",
         type=bpy.types.Object,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     environment: bpy.props.BoolProperty(
         name="Pushes Back",
         description="Something is there that pushes back with a force, such as a bar or a wall",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     grip: bpy.props.BoolProperty(
-        name="Grip", description="It can be held on to, so that it pulls too", override=OVERRIDABLE
+        name="Grip", description="It can be held on to, so that it pulls too", **ASKED
     )
     axes: bpy.props.EnumProperty(
         name="Axes",
         description="The axes of the bounds",
-        items=_items(PointAxes),
-        override=OVERRIDABLE,
+        items=items(PointAxes),
+        **ASKED,
     )
     normal: bpy.props.FloatVectorProperty(
         name="Normal",
@@ -132,40 +136,64 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         size=3,
         subtype="DIRECTION",
         default=(0.0, 0.0, 1.0),
-        override=OVERRIDABLE,
+        **ASKED,
     )
     use_bounds: bpy.props.BoolProperty(
         name="Bounds",
         description="Keep the point within bounds about the place instead of exactly there",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     bound_axes: bpy.props.BoolVectorProperty(
         name="Bounded",
         description="Along which axes the point is bounded; it is free along the others",
         size=3,
         default=(True, True, True),
-        override=OVERRIDABLE,
+        **ASKED,
+    )
+    bound_below: bpy.props.BoolVectorProperty(
+        name="Bounded Below",
+        description="Along which axes there is a least value",
+        size=3,
+        default=(True, True, True),
+        **ASKED,
+    )
+    bound_above: bpy.props.BoolVectorProperty(
+        name="Bounded Above",
+        description="Along which axes there is a greatest value",
+        size=3,
+        default=(True, True, True),
+        **ASKED,
     )
     at_least: bpy.props.FloatVectorProperty(
-        name="At Least", size=3, unit="LENGTH", subtype="XYZ", override=OVERRIDABLE
+        name="At Least",
+        description="Least distance from the place along each axis",
+        size=3,
+        unit="LENGTH",
+        subtype="XYZ",
+        **ASKED,
     )
     at_most: bpy.props.FloatVectorProperty(
-        name="At Most", size=3, unit="LENGTH", subtype="XYZ", override=OVERRIDABLE
+        name="At Most",
+        description="Greatest distance from the place along each axis",
+        size=3,
+        unit="LENGTH",
+        subtype="XYZ",
+        **ASKED,
     )
 
     # ANGLE, TWIST
-    use_lower: bpy.props.BoolProperty(name="Use At Least", default=True, override=OVERRIDABLE)
+    use_lower: bpy.props.BoolProperty(name="Use At Least", default=True, **ASKED)
     lower: bpy.props.FloatProperty(
-        name="At Least", subtype="ANGLE", soft_min=-pi, soft_max=pi, override=OVERRIDABLE
+        name="At Least", subtype="ANGLE", soft_min=-pi, soft_max=pi, **ASKED
     )
-    use_upper: bpy.props.BoolProperty(name="Use At Most", default=True, override=OVERRIDABLE)
+    use_upper: bpy.props.BoolProperty(name="Use At Most", default=True, **ASKED)
     upper: bpy.props.FloatProperty(
         name="At Most",
         subtype="ANGLE",
         soft_min=-pi,
         soft_max=pi,
         default=radians(140.0),
-        override=OVERRIDABLE,
+        **ASKED,
     )
 
     # CONE
@@ -176,12 +204,12 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         min=radians(1.0),
         max=radians(179.0),
         default=radians(40.0),
-        override=OVERRIDABLE,
+        **ASKED,
     )
     use_axis: bpy.props.BoolProperty(
         name="Own Axis",
         description="Aim the cone yourself instead of along the recording's mean direction",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     axis: bpy.props.FloatVectorProperty(
         name="Axis",
@@ -189,7 +217,7 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         size=3,
         subtype="DIRECTION",
         default=(0.0, 0.0, -1.0),
-        override=OVERRIDABLE,
+        **ASKED,
     )
     stretch: bpy.props.FloatVectorProperty(
         name="Stretch",
@@ -198,18 +226,18 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         min=0.1,
         max=10.0,
         default=(1.0, 1.0),
-        override=OVERRIDABLE,
+        **ASKED,
     )
 
     # TORQUE
-    torque_by: bpy.props.EnumProperty(name="In", items=_items(TorqueBy), override=OVERRIDABLE)
+    torque_by: bpy.props.EnumProperty(name="In", items=items(TorqueBy), **ASKED)
     torque: bpy.props.FloatProperty(
         name="At Most (N·m)",
         description="Largest torque of the joint; zero makes it limp",
         min=0.0,
         soft_max=500.0,
         default=50.0,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     share: bpy.props.FloatProperty(
         name="At Most",
@@ -218,36 +246,42 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         min=0.0,
         soft_max=1.0,
         default=0.5,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     torque_value: bpy.props.FloatProperty(
-        name="About (N·m)", description="The torque about which it is bounded", override=OVERRIDABLE
+        name="About (N·m)", description="The torque about which it is bounded", **ASKED
     )
     use_dof: bpy.props.BoolProperty(
-        name="One Angle", description="Bound only one of the joint's angles", override=OVERRIDABLE
+        name="One Angle", description="Bound only one of the joint's angles", **ASKED
     )
-    dof: bpy.props.IntProperty(name="Angle", min=0, max=2, override=OVERRIDABLE)
+    dof: bpy.props.IntProperty(name="Angle", min=0, max=2, **ASKED)
 
     # POSE, ORIENTATION
-    source: bpy.props.EnumProperty(name="From", items=_items(PoseSource), override=OVERRIDABLE)
+    source: bpy.props.EnumProperty(name="From", items=items(PoseSource), **ASKED)
     use_pose_frame: bpy.props.BoolProperty(
         name="Of Another Frame",
         description="Take the pose from one frame of the recording instead of the same frame",
-        override=OVERRIDABLE,
+        **ASKED,
     )
-    pose_frame: bpy.props.FloatProperty(name="Pose Frame", override=OVERRIDABLE)
+    pose_frame: bpy.props.FloatProperty(
+        name="Pose Frame",
+        description="Frame of the recording whose pose is taken",
+        precision=1,
+        step=100,
+        **ASKED,
+    )
     hard: bpy.props.BoolProperty(
         name="Hold Exactly",
         description="The pose is held; off, it is only preferred",
         default=True,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     weight: bpy.props.FloatProperty(
         name="Weight",
         description="How strongly the pose is preferred",
-        min=0.0,
+        min=0.01,
         default=1.0,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     slack: bpy.props.FloatProperty(
         name="Slack",
@@ -255,24 +289,22 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         subtype="ANGLE",
         min=0.0,
         max=pi,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     turn: bpy.props.FloatProperty(
         name="Turn",
         description="About the vertical, counter-clockwise seen from above",
         subtype="ANGLE",
-        override=OVERRIDABLE,
+        **ASKED,
     )
-    tilt: bpy.props.FloatProperty(
-        name="Tilt", description="Forwards", subtype="ANGLE", override=OVERRIDABLE
-    )
+    tilt: bpy.props.FloatProperty(name="Tilt", description="Forwards", subtype="ANGLE", **ASKED)
 
     # FORCE
     use_peak: bpy.props.BoolProperty(
         name="Limit Peak",
         description="Cap the largest contact force, for a softer landing",
         default=True,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     peak: bpy.props.FloatProperty(
         name="Peak",
@@ -280,94 +312,33 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
         min=0.1,
         soft_max=10.0,
         default=3.0,
-        override=OVERRIDABLE,
+        **ASKED,
     )
     use_friction: bpy.props.BoolProperty(
         name="Own Friction",
         description="Set how slippery the ground is; 1 otherwise",
-        override=OVERRIDABLE,
+        **ASKED,
     )
-    friction: bpy.props.FloatProperty(
-        name="Friction", min=0.0, soft_max=1.5, default=0.8, override=OVERRIDABLE
-    )
-    shape: bpy.props.EnumProperty(name="Shape", items=_items(ForceShape), override=OVERRIDABLE)
+    friction: bpy.props.FloatProperty(name="Friction", min=0.0, soft_max=1.5, default=0.8, **ASKED)
+    shape: bpy.props.EnumProperty(name="Shape", items=items(ForceShape), **ASKED)
     use_match: bpy.props.BoolProperty(
         name="Keep Forces",
         description="Keep all forces more like the recording's",
-        override=OVERRIDABLE,
+        **ASKED,
     )
     match: bpy.props.FloatProperty(
-        name="How Strongly", min=1.0, soft_max=100.0, default=10.0, override=OVERRIDABLE
+        name="How Strongly", min=1.0, soft_max=100.0, default=10.0, **ASKED
     )
 
     # TIMING, HOLD
-    timing_by: bpy.props.EnumProperty(name="By", items=_items(TimingBy), override=OVERRIDABLE)
-    factor: bpy.props.FloatProperty(
-        name="Times", min=0.1, max=10.0, default=1.0, override=OVERRIDABLE
-    )
-    seconds: bpy.props.FloatProperty(
-        name="Seconds", min=0.0, soft_max=5.0, default=0.5, override=OVERRIDABLE
-    )
+    timing_by: bpy.props.EnumProperty(name="By", items=items(TimingBy), **ASKED)
+    factor: bpy.props.FloatProperty(name="Times", min=0.1, max=10.0, default=1.0, **ASKED)
+    seconds: bpy.props.FloatProperty(name="Seconds", min=0.0, soft_max=5.0, default=0.5, **ASKED)
     ends: bpy.props.BoolProperty(
         name="Ends There",
         description="Leave out the recording after the held frame",
-        override=OVERRIDABLE,
+        **ASKED,
     )
 
 
-class HangtimeBodyChange(bpy.types.PropertyGroup):
-    """A row of the body changes' list; `name` is the artist's."""
-
-    kind: bpy.props.EnumProperty(
-        name="Kind", items=_items(BodyKind), options=HIDDEN, override=OVERRIDABLE
-    )
-    used: bpy.props.BoolProperty(
-        name="Use", description="Whether this counts", default=True, override=OVERRIDABLE
-    )
-    bones: bpy.props.CollectionProperty(type=HangtimeBone, override=OVERRIDABLE_LIST)
-    by_share: bpy.props.BoolProperty(
-        name="Share of the Body", description="Give the weight as a share", override=OVERRIDABLE
-    )
-    mass: bpy.props.FloatProperty(
-        name="Mass (kg)", min=0.0, soft_max=100.0, default=10.0, override=OVERRIDABLE
-    )
-    share: bpy.props.FloatProperty(
-        name="Share",
-        subtype="FACTOR",
-        min=0.0,
-        soft_max=1.0,
-        default=0.1,
-        override=OVERRIDABLE,
-    )
-    use_offset: bpy.props.BoolProperty(
-        name="Own Place",
-        description="Carry it elsewhere than at the bone's tail",
-        override=OVERRIDABLE,
-    )
-    offset: bpy.props.FloatVectorProperty(
-        name="Offset",
-        description="From the bone's head, in the bone's axes",
-        size=3,
-        subtype="TRANSLATION",
-        unit="LENGTH",
-        override=OVERRIDABLE,
-    )
-    length: bpy.props.FloatProperty(
-        name="Length",
-        description="Times as long",
-        min=0.2,
-        max=5.0,
-        default=1.0,
-        override=OVERRIDABLE,
-    )
-    mass_factor: bpy.props.FloatProperty(
-        name="Mass",
-        description="Times as heavy",
-        min=0.1,
-        max=10.0,
-        default=1.0,
-        override=OVERRIDABLE,
-    )
-
-
-CLASSES = (HangtimeBone, HangtimeConstraint, HangtimeBodyChange)
+CLASSES = (HangtimeConstraint,)

@@ -26,13 +26,12 @@ class ContactList(bpy.types.UIList):
         line.prop(row, "used", text="")
         line = line.row(align=True)
         line.active = row.used
-        x, y, z = row.at
-        line = line.split(factor=0.4, align=True)
+        wide = context.region.width > WIDE * context.preferences.system.ui_scale
+        line = line.split(factor=0.4 if wide else 0.6, align=True)
         line.label(text=row.name)
-        line.label(text=row.phase)
+        if wide:
+            line.label(text=row.phase)
         line.label(text=f"{row.start_frame:.0f} – {row.end_frame:.0f}")
-        if context.region.width > WIDE * context.preferences.system.ui_scale:
-            line.label(text=f"{x:.2f}, {y:.2f}, {z:.2f}")
 
 
 CLASSES = (ContactList,)

@@ -11,12 +11,12 @@ import bpy
 
 from ..bridge import stances
 from ..solver.body_tables import MassTable
+from .body_change_properties import CLASSES as BODY_CHANGE_CLASSES
+from .body_change_properties import HangtimeBodyChange
 from .constraint_properties import CLASSES as CONSTRAINT_CLASSES
-from .constraint_properties import (
-    OVERRIDABLE_LIST,
-    HangtimeBodyChange,
-    HangtimeConstraint,
-)
+from .constraint_properties import HangtimeConstraint
+from .row_properties import CLASSES as ROW_CLASSES
+from .row_properties import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
 from .view_properties import CLASSES as VIEW_CLASSES
 from .view_properties import HangtimeView
 
@@ -50,22 +50,35 @@ def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
 class HangtimeContact(bpy.types.PropertyGroup):
     """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2")."""
 
-    point: bpy.props.StringProperty(options=_HIDDEN)
-    bone: bpy.props.StringProperty(name="Bone", options=_HIDDEN)
-    phase: bpy.props.StringProperty(name="Phase", options=_HIDDEN)
-    found_start: bpy.props.FloatProperty(options=_HIDDEN)
-    found_end: bpy.props.FloatProperty(options=_HIDDEN)
-    found_at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
-    at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
+    point: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
+    bone: bpy.props.StringProperty(name="Bone", options=_HIDDEN, override=OVERRIDABLE)
+    phase: bpy.props.StringProperty(name="Phase", options=_HIDDEN, override=OVERRIDABLE)
+    found_start: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
+    found_end: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
+    found_at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
+    at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
 
+    added: bpy.props.BoolProperty(options=_HIDDEN, override=OVERRIDABLE)  # by the artist
+    # m, 0 before an analysis
     used: bpy.props.BoolProperty(
-        name="Touches", description="Whether this contact counts; off removes it", default=True
+        name="Touches",
+        description="Whether this contact counts; off removes it",
+        default=True,
+        override=OVERRIDABLE,
     )
     start_frame: bpy.props.FloatProperty(
-        name="Start", description="Frame at which the point begins to carry", precision=1, step=100
+        name="Start",
+        description="Frame at which the point begins to carry",
+        precision=1,
+        step=100,
+        override=OVERRIDABLE,
     )
     end_frame: bpy.props.FloatProperty(
-        name="End", description="Frame at which the point ceases to carry", precision=1, step=100
+        name="End",
+        description="Frame at which the point ceases to carry",
+        precision=1,
+        step=100,
+        override=OVERRIDABLE,
     )
     place: bpy.props.FloatVectorProperty(
         name="Place",
@@ -76,12 +89,14 @@ class HangtimeContact(bpy.types.PropertyGroup):
         unit="LENGTH",
         get=_get_place,
         set=_set_place,
+        override=OVERRIDABLE,
     )
     empty: bpy.props.PointerProperty(
         name="Empty",
         description="Where this empty is, the point shall touch",
         type=bpy.types.Object,
         poll=_is_empty,
+        override=OVERRIDABLE,
     )
 
 
@@ -96,7 +111,14 @@ def _shift(axis: int) -> dict[str, object]:
         shifted[axis] = to
         stances.shift_stance(stance.id_data.hangtime, stance, shifted)
 
-    return {"get": get, "set": put, "unit": "LENGTH", "subtype": "DISTANCE", "step": 1}
+    return {
+        "get": get,
+        "set": put,
+        "unit": "LENGTH",
+        "subtype": "DISTANCE",
+        "step": 1,
+        "override": OVERRIDABLE,
+    }
 
 
 def _get_turn(stance: HangtimeStance) -> float:
@@ -110,9 +132,9 @@ def _set_turn(stance: HangtimeStance, to: float) -> None:
 class HangtimeStance(bpy.types.PropertyGroup):
     """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2")."""
 
-    forward_axis: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
-    shifted: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN)
-    turned: bpy.props.FloatProperty(options=_HIDDEN)
+    forward_axis: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
+    shifted: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
+    turned: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
 
     forward: bpy.props.FloatProperty(
         name="Forward", description="Move the stance along the jump's travel", **_shift(0)
@@ -127,26 +149,51 @@ class HangtimeStance(bpy.types.PropertyGroup):
         subtype="ANGLE",
         get=_get_turn,
         set=_set_turn,
+        override=OVERRIDABLE,
     )
+
+
+class HangtimePart(bpy.types.PropertyGroup):
+    """A part of the body and the bone that moves it; `name` is the part ("left foot").
+
+    found: the bone that was found by itself; another one in `bone` is the artist's choice.
+    """
+
+    bone: bpy.props.StringProperty(
+        name="Bone", description="The bone that moves this part of the body", override=OVERRIDABLE
+    )
+    found: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
+    needed: bpy.props.BoolProperty(options=_HIDDEN, override=OVERRIDABLE)
 
 
 class HangtimeSettings(bpy.types.PropertyGroup):
     """An armature's edit; of an empty that marks a contact, whose contact it marks."""
 
-    marks: bpy.props.PointerProperty(type=bpy.types.Object, options=_HIDDEN, poll=_is_armature)
+    marks: bpy.props.PointerProperty(
+        type=bpy.types.Object, options=_HIDDEN, poll=_is_armature, override=OVERRIDABLE
+    )
 
     mass: bpy.props.FloatProperty(
-        name="Mass (kg)", description="The performer's mass", default=70.0, min=10.0, max=300.0
+        name="Mass (kg)",
+        description="The performer's mass",
+        default=70.0,
+        min=10.0,
+        max=300.0,
+        override=OVERRIDABLE,
     )
     mass_table: bpy.props.EnumProperty(
         name="Mass Table",
         description="How the mass is shared among the parts of the body",
         items=[(table.name, *words) for table, words in _TABLES.items()],
         default=MassTable.THESIS.name,
+        override=OVERRIDABLE,
     )
-    measured_height: bpy.props.FloatProperty(options=_HIDDEN)  # m, 0 before an analysis
+    measured_height: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
+    # lines, ready to be drawn
     use_height: bpy.props.BoolProperty(
-        name="Own Height", description="State the performer's height instead of the measured one"
+        name="Own Height",
+        description="State the performer's height instead of the measured one",
+        override=OVERRIDABLE,
     )
     height: bpy.props.FloatProperty(
         name="Height (m)",
@@ -154,45 +201,62 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         default=1.75,
         min=0.5,
         max=3.0,
+        override=OVERRIDABLE,
     )
     use_range: bpy.props.BoolProperty(
-        name="Frame Range", description="Adapt some frames only instead of the whole action"
+        name="Frame Range",
+        description="Adapt some frames only instead of the whole action",
+        override=OVERRIDABLE,
     )
     first_frame: bpy.props.IntProperty(
-        name="First", description="First frame that counts", default=1
+        name="First", description="First frame that counts", default=1, override=OVERRIDABLE
     )
     last_frame: bpy.props.IntProperty(
-        name="Last", description="Last frame that counts", default=250
+        name="Last", description="Last frame that counts", default=250, override=OVERRIDABLE
     )
 
-    analysed: bpy.props.StringProperty(options=_HIDDEN)  # digest of the recording
-    contacts: bpy.props.CollectionProperty(type=HangtimeContact)
-    active_contact: bpy.props.IntProperty(options=_HIDDEN)
-    stances: bpy.props.CollectionProperty(type=HangtimeStance)
+    parts: bpy.props.CollectionProperty(type=HangtimePart, override=OVERRIDABLE_LIST)
+
+    fit_quality: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
+    # digest of the recording
+    analysed: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
+    contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
+    active_contact: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
+    stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
+    # lines, ready to be drawn
     whole_stance: bpy.props.BoolProperty(
         name="Move Whole Stance",
         description="Moving a contact moves every contact of its phase, so that heels and toes "
         "stay as far apart as the feet are long",
         default=True,
+        override=OVERRIDABLE,
     )
 
     constraints: bpy.props.CollectionProperty(type=HangtimeConstraint, override=OVERRIDABLE_LIST)
-    active_constraint: bpy.props.IntProperty(options=_HIDDEN)
+    active_constraint: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
     body_changes: bpy.props.CollectionProperty(type=HangtimeBodyChange, override=OVERRIDABLE_LIST)
-    active_body_change: bpy.props.IntProperty(options=_HIDDEN)
+    active_body_change: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
     use_new_mass: bpy.props.BoolProperty(
-        name="Other Mass", description="Perform the motion with another mass than the recording's"
+        name="Other Mass",
+        description="Perform the motion with another mass than the recording's",
+        override=OVERRIDABLE,
     )
     new_mass: bpy.props.FloatProperty(
-        name="New Mass (kg)", default=70.0, min=10.0, max=300.0, description="The new total mass"
+        name="New Mass (kg)",
+        default=70.0,
+        min=10.0,
+        max=300.0,
+        description="The new total mass",
+        override=OVERRIDABLE,
     )
     gravity: bpy.props.FloatProperty(
-        name="Gravity",
+        name="Gravity (m/s²)",
         description="Of the place where the motion is performed; 1.62 m/s² on the Moon",
         default=9.81,
         min=0.1,
         max=50.0,
-        unit="ACCELERATION",
+        precision=3,
+        override=OVERRIDABLE,
     )
 
     requests: bpy.props.PointerProperty(
@@ -200,10 +264,47 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         description="A text with limits, poses, torques, loads and whatever else a recipe may "
         "hold; see the manual's page of recipes",
         type=bpy.types.Text,
+        override=OVERRIDABLE,
     )
 
-    adapted: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
-    status: bpy.props.StringProperty(options=_HIDDEN)  # lines, ready to be drawn
+    method: bpy.props.EnumProperty(
+        name="Method",
+        description="How the quick solution goes about it",
+        items=[
+            ("IMPLICIT", "Movement and Forces", "The nearest motion in shape and forces; fastest"),
+            (
+                "IMPLICIT_TORQUES",
+                "Movement, Forces and Torques",
+                "The nearest motion in shape, forces and the torques of all joints",
+            ),
+        ],
+        override=OVERRIDABLE,
+    )
+    objective: bpy.props.EnumProperty(
+        name="Lessen",
+        description="What Refine lessens, beside staying close",
+        items=[
+            ("TORQUE_SMOOTHNESS", "Jerky Torques", "Muscles that change evenly"),
+            ("TORQUE_OUTPUT", "Torque", "Muscles that work less hard"),
+            ("POWER", "Power", "Less work in less time"),
+            ("MASS_DISPLACEMENT", "Moved Mass", "Bodies stay nearer to where they were"),
+            ("ANGLE_DISPLACEMENT", "Changed Pose", "Joints stay nearer to what they were"),
+            ("ANGLE_SMOOTHNESS", "Jerky Joints", "Joints that move evenly"),
+            ("TOTAL_CHANGE", "All Change", "Poses, torques and forces stay near the recording's"),
+        ],
+        override=OVERRIDABLE,
+    )
+    stay_close: bpy.props.FloatProperty(
+        name="Stay Close",
+        description="How much staying near the quick solution counts, beside what is lessened",
+        default=1.0,
+        min=0.0,
+        soft_max=10.0,
+        override=OVERRIDABLE,
+    )
+
+    adapted: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN, override=OVERRIDABLE)
+    status: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
 
 
 class HangtimeScene(bpy.types.PropertyGroup):
@@ -220,14 +321,19 @@ class HangtimeScene(bpy.types.PropertyGroup):
 
 
 class HangtimeAction(bpy.types.PropertyGroup):
-    """Of an adapted action: the recording that it was made from."""
+    """Of an adapted action: the recording that it was made from, and what was found."""
 
     recording: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
+    accepted: bpy.props.BoolProperty(options=_HIDDEN)
+    report: bpy.props.StringProperty(options=_HIDDEN)  # the report's text
 
 
 CLASSES = (
+    *ROW_CLASSES,
     *CONSTRAINT_CLASSES,
+    *BODY_CHANGE_CLASSES,
     *VIEW_CLASSES,
+    HangtimePart,
     HangtimeContact,
     HangtimeStance,
     HangtimeSettings,
@@ -238,4 +344,5 @@ CARRIERS = {
     bpy.types.Scene: HangtimeScene,
     bpy.types.Object: HangtimeSettings,
     bpy.types.Action: HangtimeAction,
+    bpy.types.Bone: HangtimeBoneMark,
 }

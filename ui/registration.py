@@ -10,8 +10,42 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bridge import stances, worker
-from ..operators import adapt, analyze, names, place_by_empty, put_back, show
-from . import lists, panels, properties
+from ..operators import (
+    adapt,
+    aim_cone,
+    analyze,
+    body_changes,
+    constraints,
+    contacts,
+    drag_contact_edge,
+    drag_limit,
+    drag_pin,
+    exports,
+    names,
+    place_by_empty,
+    presets,
+    put_back,
+    results,
+    save_plots,
+    session,
+    show,
+    turn_stance,
+)
+from . import (
+    constraint_lists,
+    constraint_menus,
+    constraint_panels,
+    contact_panels,
+    display_panel,
+    lists,
+    properties,
+    setup_panels,
+    solve_panels,
+)
+from .gizmos import limit_handles, pin_handles
+from .overlay import handlers as overlay
+from .plots import handler as plots
+from .timeline import handler as timeline
 
 CLASSES = (
     *properties.CLASSES,
@@ -20,8 +54,28 @@ CLASSES = (
     *place_by_empty.CLASSES,
     *put_back.CLASSES,
     *show.CLASSES,
+    *contacts.CLASSES,
+    *constraints.CLASSES,
+    *body_changes.CLASSES,
+    *presets.CLASSES,
+    *results.CLASSES,
+    *exports.CLASSES,
+    *drag_pin.CLASSES,
+    *turn_stance.CLASSES,
+    *drag_limit.CLASSES,
+    *aim_cone.CLASSES,
+    *drag_contact_edge.CLASSES,
+    *save_plots.CLASSES,
     *lists.CLASSES,
-    *panels.CLASSES,
+    *setup_panels.CLASSES,
+    *contact_panels.CLASSES,
+    *constraint_lists.CLASSES,
+    *constraint_menus.CLASSES,
+    *constraint_panels.CLASSES,
+    *solve_panels.CLASSES,
+    *display_panel.CLASSES,
+    *pin_handles.CLASSES,
+    *limit_handles.CLASSES,
 )
 
 
@@ -36,10 +90,15 @@ def register() -> Callable[[], None]:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
         for carrier, group in properties.CARRIERS.items():
-            setattr(carrier, names.ATTRIBUTE, bpy.props.PointerProperty(type=group))
+            group_of = bpy.props.PointerProperty(type=group, override={"LIBRARY_OVERRIDABLE"})
+            setattr(carrier, names.ATTRIBUTE, group_of)
             undo.callback(delattr, carrier, names.ATTRIBUTE)
         bpy.app.handlers.depsgraph_update_post.append(_follow_empties)
         undo.callback(bpy.app.handlers.depsgraph_update_post.remove, _follow_empties)
+        undo.callback(session.session().end)
+        overlay.add(undo)
+        plots.add(undo)
+        timeline.add(undo)
         command = bpy.utils.register_cli_command(names.COMMAND, _run_command)
         undo.callback(bpy.utils.unregister_cli_command, command)
         return undo.pop_all().close

@@ -47,6 +47,10 @@ class HangtimeView(bpy.types.PropertyGroup):
         default=True,
     )
 
+    labels: bpy.props.BoolProperty(
+        name="Labels", description="Numbers beside pins, limits and arrows", default=True
+    )
+
     plots: bpy.props.BoolProperty(
         name="Plots", description="Curves over time at the foot of the viewport", default=False
     )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -20,12 +22,19 @@ from hangtime.bridge.import_clip import import_clip  # noqa: E402
 from hangtime.bridge.read import read_recording  # noqa: E402
 from hangtime.bridge.settings import problem_of  # noqa: E402
 from hangtime.bridge.takes import read_take  # noqa: E402
-from hangtime.operators.names import ATTRIBUTE, ListId, OperatorId, PanelId  # noqa: E402
+from hangtime.operators.names import (  # noqa: E402
+    ATTRIBUTE,
+    ListId,
+    MenuId,
+    OperatorId,
+    PanelId,
+)
 from hangtime.solver.problem import MotionProblem, Pin  # noqa: E402
 from hangtime.solver.session import analyse  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.blender.test_read_write import curves_of, snapshot  # noqa: E402
 from hangtime.tests.clips import mocap_path  # noqa: E402
+from hangtime.ui import properties  # noqa: E402
 
 JUMP = "cmu_bvh/forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
@@ -99,9 +108,9 @@ class SceneState:
 
 def every_name() -> set[str]:
     """The identifiers of all the extension's classes."""
-    groups = {f"Hangtime{g}" for g in ("Contact", "Stance", "Settings", "Scene", "Action")}
+    groups = {group.__name__ for group in properties.CLASSES}
     operators = {o.replace("hangtime.", "HANGTIME_OT_") for o in OperatorId}
-    return groups | operators | set(PanelId) | set(ListId)
+    return groups | operators | set(PanelId) | set(ListId) | set(MenuId)
 
 
 def names_in_blender() -> set[str]:
@@ -110,7 +119,10 @@ def names_in_blender() -> set[str]:
 
 
 def known(name: str) -> bool:
-    kinds = (bpy.types.Operator, bpy.types.Panel, bpy.types.UIList, bpy.types.PropertyGroup)
+    kinds = (
+        *(bpy.types.Operator, bpy.types.Panel, bpy.types.Menu),
+        *(bpy.types.UIList, bpy.types.PropertyGroup),
+    )
     return any(kind.bl_rna_get_subclass_py(name) is not None for kind in kinds)
 
 
@@ -164,8 +176,26 @@ def test_registering_five_times_leaves_nothing_behind(monkeypatch: pytest.Monkey
         assert names_in_blender() == set()
         assert commands == []
         assert handlers() == before
-        for carrier in (bpy.types.Scene, bpy.types.Object, bpy.types.Action):
+        for carrier in properties.CARRIERS:
             assert not hasattr(carrier, ATTRIBUTE)
+
+
+ENABLE = """
+import runpy, sys
+runpy.run_path(sys.argv[1])["load"]().register()
+from hangtime.operators import report_text, wording
+print("casadi" in sys.modules, flush=True)
+import os
+os._exit(0)
+"""
+
+
+def test_the_solver_stays_out_of_blenders_own_process() -> None:
+    """Loading CasADi takes a third of a second, in which Blender would stand still."""
+    loader = Path(__file__).parents[2] / "devtools" / "package.py"
+    command = [sys.executable, "-c", ENABLE, str(loader)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.stdout.split()[-1] == "False", done.stderr
 
 
 def test_unregistering_ends_the_worker(analysed: bpy.types.Object) -> None:

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hangtime.bridge.worker import Job, Kind, Worker
+from hangtime.bridge.worker import Chase, Job, Kind, Worker
 from hangtime.solver.faults import ClipTooShort, NoFlight, UnknownContactName, WorkerDied
 from hangtime.solver.messages import Adapted, Analysed, Failed, Fitted, Followed, Progress
-from hangtime.solver.problem import ContactEdit, MotionProblem, Pin
+from hangtime.solver.problem import ContactEdit, MotionProblem, Pin, UnknownPhase
 from hangtime.solver.recording import Recording
 from hangtime.tests.clips import load_recording
 
@@ -180,21 +180,50 @@ def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(
     assert told[0].worst
 
 
+def raised(up: float, name: str = "up") -> MotionProblem:
+    pin = Pin(name, "ground 2", offset=(0.0, 0.0, up))
+    return MotionProblem(frames=SPAN, pins=(pin,))
+
+
+def chased(chase: Chase) -> Iterator[Followed]:
+    """The motions that come, for at most a minute."""
+    until = time.monotonic() + 60.0
+    while time.monotonic() < until:
+        for message in chase.news():
+            if not isinstance(message, Progress):
+                assert isinstance(message, Followed), message
+                yield message
+        time.sleep(0.005)
+
+
 def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
-    worker.ask(Kind.FIT, jump, UP).wait()
+    chase = worker.chase(jump)
+    assert worker.busy
     apexes = []
     for up in (0.01, 0.05):
-        raised = Pin("up", "ground 2", offset=(0.0, 0.0, up))
-        problem = MotionProblem(frames=SPAN, pins=(raised,))
-        for _ in range(10):
-            answer = worker.ask(Kind.FOLLOW, None, problem).wait()
-            assert isinstance(answer, Followed)
-            if answer.arrived:
-                break
-        assert answer.arrived
-        assert answer.change["moved_cm"] == pytest.approx(100.0 * up, abs=0.1)
-        apexes.append(answer.traces.heads[:, 0, 2].max())
+        chase.want(raised(up))
+        reached = (seen for seen in chased(chase) if seen.arrived)
+        seen = next(s for s in reached if abs(s.change["moved_cm"] - 100.0 * up) < 0.1)
+        apexes.append(seen.traces.heads[:, 0, 2].max())
     assert apexes[1] > apexes[0] + 0.01
+    worker.drop()
+    assert not worker.busy
+    assert isinstance(worker.ask(Kind.ADAPT, None, raised(0.05)).wait(), Adapted)
+
+
+def test_what_cannot_be_followed_is_said_and_the_chase_goes_on(
+    worker: Worker, jump: Recording
+) -> None:
+    chase = worker.chase(jump)
+    nowhere = MotionProblem(frames=SPAN, pins=(Pin("Nowhere", "ground 9"),))
+    chase.want(nowhere)
+    failed = None
+    while failed is None:
+        failed = next((m for m in chase.news() if isinstance(m, Failed)), None)
+        time.sleep(0.005)
+    assert isinstance(failed.fault, UnknownPhase)
+    chase.want(raised(0.01))
+    assert next(chased(chase)).change["moved_cm"] == pytest.approx(1.0, abs=0.1)
 
 
 def test_a_worker_that_is_killed_answers_so_and_another_takes_over(

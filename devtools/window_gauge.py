@@ -1,0 +1,153 @@
+"""Measures how long a Blender with a window is held up, and by which of the extension's functions.
+
+Two measures, for neither is enough alone. A timer that Blender calls whenever it is free tells how
+long it was not, drawing included, which takes long where a processor draws. Python's own monitoring
+tells how long Blender was in the extension's code at a stretch: operators, panels, handlers, timers.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from threading import get_ident
+from types import CodeType, FunctionType, ModuleType
+
+import bpy
+
+TOOL = 3  # one of the numbers that Python leaves free for tools
+GENERATOR = 0x20  # of a code's flags: its calls are told by other events, and are never Blender's
+
+
+@dataclass
+class Spans:
+    """How often something took place, and how long it took at most and in all (s)."""
+
+    count: int = 0
+    longest: float = 0.0
+    total: float = 0.0
+
+    def add(self, seconds: float) -> None:
+        self.count += 1
+        self.longest = max(self.longest, seconds)
+        self.total += seconds
+
+
+@dataclass
+class Stretch:
+    """What was measured under one label. gaps: between Blender's free moments; calls: of the
+    package's functions by Blender, by their names."""
+
+    gaps: Spans = field(default_factory=Spans)
+    calls: dict[str, Spans] = field(default_factory=dict)
+
+    def longest_call(self) -> tuple[str, float]:
+        """The function that held Blender up the longest at a stretch; seconds."""
+        if not self.calls:
+            return "none", 0.0
+        name = max(self.calls, key=lambda each: self.calls[each].longest)
+        return name, self.calls[name].longest
+
+
+@dataclass
+class Gauge:
+    """Measures between `start` and `stop`. label: says what goes on; asked at each free moment."""
+
+    package: str
+    stretches: dict[str, Stretch] = field(default_factory=dict)
+    _label: Callable[[], str] | None = None
+    _now: str = ""  # the label as it was at the last free moment
+    _free_since: float = 0.0
+    _codes: set[CodeType] = field(default_factory=set)
+    _depth: int = 0
+    _entered: float = 0.0
+    _fresh: set[str] = field(default_factory=set)
+    _thread: int = field(default_factory=get_ident)
+
+    def start(self, label: Callable[[], str]) -> None:
+        """Measure from now on; what was measured under the same labels is forgotten."""
+        self._watch()
+        self._depth, self._label, self._now = 0, label, label()
+        self._fresh.clear()
+        self._free_since = time.perf_counter()
+        bpy.app.timers.register(self._free, first_interval=0.0, persistent=True)
+
+    def stop(self) -> None:
+        """Measure no more; the numbers stay."""
+        self._label = None
+        if bpy.app.timers.is_registered(self._free):
+            bpy.app.timers.unregister(self._free)
+
+    def _stretch(self) -> Stretch:
+        if self._now not in self._fresh:
+            self._fresh.add(self._now)
+            self.stretches[self._now] = Stretch()
+        return self.stretches[self._now]
+
+    def _free(self) -> float | None:
+        if self._label is None:
+            return None
+        now = time.perf_counter()
+        self._stretch().gaps.add(now - self._free_since)
+        self._free_since = now
+        self._now = self._label()
+        return 0.0
+
+    def _watch(self) -> None:
+        """Have Python tell of the calls of all the package's functions that are loaded by now."""
+        monitoring = sys.monitoring
+        events = monitoring.events
+        if monitoring.get_tool(TOOL) is None:
+            monitoring.use_tool_id(TOOL, "window")
+            monitoring.register_callback(TOOL, events.PY_START, self._enter)
+            monitoring.register_callback(TOOL, events.PY_RETURN, self._leave)
+            monitoring.register_callback(TOOL, events.PY_UNWIND, self._leave)
+            monitoring.set_events(TOOL, events.PY_UNWIND)  # Python offers it for all code only
+        for code in set(codes(self.package)) - self._codes:
+            monitoring.set_local_events(TOOL, code, events.PY_START | events.PY_RETURN)
+            self._codes.add(code)
+
+    def _enter(self, code: CodeType, _offset: int) -> None:
+        if get_ident() != self._thread:
+            return
+        if self._depth == 0:
+            self._entered = time.perf_counter()
+        self._depth += 1
+
+    def _leave(self, code: CodeType, _offset: int, _result: object) -> None:
+        if code not in self._codes or get_ident() != self._thread or self._depth == 0:
+            return
+        self._depth -= 1
+        if self._depth == 0 and self._label is not None:
+            spent = time.perf_counter() - self._entered
+            self._stretch().calls.setdefault(code.co_qualname, Spans()).add(spent)
+
+
+def codes(package: str) -> Iterator[CodeType]:
+    """The code of every function of the package's loaded modules, inner functions included."""
+    for name, module in list(sys.modules.items()):
+        if name == package or name.startswith(f"{package}."):
+            for function in functions(module):
+                yield from nested(function.__code__)
+
+
+def functions(owner: ModuleType | type) -> Iterator[FunctionType]:
+    """The functions that a module or class defines itself, its classes' included."""
+    name = owner.__name__ if isinstance(owner, ModuleType) else owner.__module__
+    for member in list(vars(owner).values()):
+        plain = getattr(member, "__func__", None) or getattr(member, "__wrapped__", member)
+        for each in (plain, getattr(member, "fget", None)):
+            if isinstance(each, FunctionType) and each.__module__ == name:
+                yield each
+            elif isinstance(each, type) and each.__module__ == name and each is not owner:
+                yield from functions(each)
+
+
+def nested(code: CodeType) -> Iterator[CodeType]:
+    """A code and those of the functions made in it; generators left out."""
+    if not code.co_flags & GENERATOR:
+        yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from nested(constant)

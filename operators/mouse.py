@@ -1,0 +1,47 @@
+"""The mouse in a 3D viewport: what it points at, and whether it drags or clicks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+from bpy_extras import view3d_utils
+
+from .rays import Ray
+
+SLACK = 3.0  # px, at an interface scale of 1, until a click becomes a drag
+
+Pixel = tuple[float, float]
+
+
+def ray_at(context: bpy.types.Context, at: Pixel) -> Ray:
+    """Through a pixel of the 3D viewport's region; Blender units, world."""
+    region, view = context.region, context.region_data
+    origin = view3d_utils.region_2d_to_origin_3d(region, view, at)
+    return Ray.of(origin, view3d_utils.region_2d_to_vector_3d(region, view, at))
+
+
+def pixel(event: bpy.types.Event) -> Pixel:
+    """Where the mouse is in the region."""
+    return event.mouse_region_x, event.mouse_region_y
+
+
+@dataclass
+class Press:
+    """Where the mouse took hold. A click moves nothing, however it trembles."""
+
+    at: Pixel
+    slack: float
+    dragging: bool
+
+    @staticmethod
+    def of(context: bpy.types.Context, event: bpy.types.Event, *, click: bool) -> Press:
+        """click: whether it may still be one, as the button is down."""
+        slack = SLACK * context.preferences.system.ui_scale
+        return Press(pixel(event), slack, dragging=not click)
+
+    def drags(self, event: bpy.types.Event) -> bool:
+        """Whether it has become a drag."""
+        x, y = pixel(event)
+        self.dragging = self.dragging or max(abs(x - self.at[0]), abs(y - self.at[1])) > self.slack
+        return self.dragging

@@ -1,0 +1,182 @@
+"""What becomes of an adapted motion: fit, compare, accept, discard, report, export, best so far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+import hangtime  # noqa: E402
+from hangtime.bridge.import_clip import import_clip  # noqa: E402
+from hangtime.bridge.takes import current_action  # noqa: E402
+from hangtime.bridge.traces_store import kept  # noqa: E402
+from hangtime.operators.session import session  # noqa: E402
+from hangtime.tests.blender import rigs  # noqa: E402
+from hangtime.tests.clips import mocap_path  # noqa: E402
+
+JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture(scope="module")
+def _enabled() -> Iterator[None]:
+    """Once for all, so that one worker and its fit serve them all."""
+    hangtime.register()
+    yield
+    hangtime.unregister()
+
+
+@pytest.fixture
+def analysed() -> bpy.types.Object:
+    """The recorded jump, active, its contacts found."""
+    rigs.reset()
+    armature = import_clip(mocap_path(JUMP)).armature
+    settings = armature.hangtime
+    settings.use_range = True
+    settings.first_frame, settings.last_frame = 73, 325
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    return armature
+
+
+@pytest.fixture
+def adapted(analysed: bpy.types.Object) -> bpy.types.Object:
+    analysed.hangtime.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    return analysed
+
+
+def test_the_parts_of_the_body_are_listed_with_what_is_missing() -> None:
+    rigs.reset()
+    armature = import_clip(mocap_path(JUMP)).armature
+    armature.data.bones["LeftFoot"].name = "Gubbins"
+    with pytest.raises(RuntimeError, match="left foot"):
+        bpy.ops.hangtime.analyze()
+    parts = armature.hangtime.parts
+    assert [p.name for p in parts if p.needed and not p.bone] == ["left foot"]
+    assert parts["right foot"].bone == "RightFoot"
+    parts["left foot"].bone = "Gubbins"
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert {c.bone for c in armature.hangtime.contacts} >= {"Gubbins", "RightFoot"}
+
+
+def test_the_fit_says_in_words_how_near_it_is(analysed: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.fit() == {"FINISHED"}
+    first, second = analysed.hangtime.fit_quality.splitlines()
+    assert first == "Very close to the recording"
+    assert " cm apart" in second
+    assert current_action(analysed).hangtime.recording is None
+
+
+def test_traces_are_kept_and_survive_saving(adapted: bpy.types.Object, tmp_path: Path) -> None:
+    name = adapted.name
+    was = kept(adapted.hangtime.adapted).traces
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
+    again = bpy.data.objects[name]
+    now, recorded = kept(again.hangtime.adapted), kept(again)
+    assert now is not None
+    assert recorded is not None
+    np.testing.assert_allclose(now.traces.heads, was.heads)
+    assert now.traces.flights[0].name == "flight 1"
+    assert recorded.traces.forces.size == 0
+    assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
+
+
+def test_what_is_drawn_follows_the_armature(adapted: bpy.types.Object) -> None:
+    stored = kept(adapted.hangtime.adapted)
+    adapted.location.x += 2.0
+    bpy.context.view_layer.update()
+    moved = stored.moved(adapted)
+    np.testing.assert_allclose(np.array(moved)[:3, 3], (2.0, 0.0, 0.0), atol=1e-6)
+
+
+def test_compare_goes_to_and_fro(adapted: bpy.types.Object) -> None:
+    result = current_action(adapted)
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert current_action(adapted) == result.hangtime.recording
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert current_action(adapted) == result
+
+
+def test_export_waits_for_a_result_that_is_accepted(
+    adapted: bpy.types.Object, tmp_path: Path
+) -> None:
+    assert not bpy.ops.hangtime.export_fbx.poll()
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    assert not bpy.ops.hangtime.accept.poll()
+    fbx, glb = tmp_path / "out.fbx", tmp_path / "out.glb"
+    assert bpy.ops.hangtime.export_fbx(filepath=str(fbx)) == {"FINISHED"}
+    assert bpy.ops.hangtime.export_gltf(filepath=str(glb)) == {"FINISHED"}
+    assert fbx.stat().st_size > 10_000
+    assert glb.read_bytes()[:4] == b"glTF"
+    before = set(bpy.data.objects)
+    bpy.ops.import_scene.gltf(filepath=str(glb))
+    made = next(o for o in set(bpy.data.objects) - before if o.type == "ARMATURE")
+    frames = made.animation_data.action.frame_range
+    assert frames[1] - frames[0] == pytest.approx(325 - 73, abs=1.0)
+    assert current_action(adapted) == adapted.hangtime.adapted
+
+
+def test_a_result_is_discarded_and_the_edit_stays(adapted: bpy.types.Object) -> None:
+    recorded = current_action(adapted).hangtime.recording
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(adapted) == recorded
+    assert [a.name for a in bpy.data.actions] == [recorded.name]
+    assert adapted.hangtime.adapted is None
+    assert adapted.hangtime.stances["ground 2"].up == pytest.approx(0.05)
+    assert not bpy.ops.hangtime.discard.poll()
+
+
+def test_the_report_becomes_a_text(adapted: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.show_report() == {"FINISHED"}
+    text = bpy.data.texts[f"{adapted.hangtime.adapted.name} report"].as_string()
+    assert "Solved" in text
+    assert "the pelvis rises to" in text
+
+
+def test_the_best_of_a_solve_that_failed_can_be_used(analysed: bpy.types.Object) -> None:
+    stance = analysed.hangtime.stances["ground 2"]
+    stance.forward = 8.0
+    with pytest.raises(RuntimeError, match="No motion was found"):
+        bpy.ops.hangtime.adapt()
+    assert len(bpy.data.actions) == 1
+    assert session().best is not None
+    assert bpy.ops.hangtime.use_best() == {"FINISHED"}
+    assert current_action(analysed).hangtime.recording is not None
+    assert "not all is met" in analysed.hangtime.status
+    assert not bpy.ops.hangtime.use_best.poll()
+
+
+@pytest.mark.slow
+def test_refining_lessens_what_is_chosen(adapted: bpy.types.Object) -> None:
+    adapted.hangtime.objective = "TORQUE_OUTPUT"
+    assert bpy.ops.hangtime.refine() == {"FINISHED"}
+    assert "objective" in adapted.hangtime.adapted.hangtime.report.lower()
+
+
+def test_a_contact_that_was_not_seen_is_added(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    gone = settings.contacts["Left heel 2"]
+    gone.used = False
+    found, end = np.array(gone.found_at), gone.end_frame  # adding moves the rows in memory
+    bpy.context.scene.frame_set(round(gone.start_frame) + 4)
+    assert bpy.ops.hangtime.add_contact(point="Left heel") == {"FINISHED"}
+    row = settings.contacts[settings.active_contact]
+    assert row.added
+    row.end_frame = end
+    place, count = np.array(row.at), len(settings.contacts)
+    assert np.linalg.norm(place - found) < 0.03
+    settings.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}  # what was added outlives an analysis
+    assert len(settings.contacts) == count
+    settings.active_contact = settings.contacts.find("Left heel added")
+    assert bpy.ops.hangtime.remove_contact() == {"FINISHED"}
+    assert "Left heel added" not in settings.contacts

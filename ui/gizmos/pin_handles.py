@@ -1,0 +1,125 @@
+"""Handles of contacts and points, and of the stance of the chosen contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+from mathutils import Vector
+
+from ...bridge.kinds import ConstraintKind
+from ...bridge.stances import active_stance, stance_contacts, stance_middle
+from ...operators.names import GizmoGroupId, OperatorId
+from ..overlay import palette
+from ..overlay.seen import Seen
+from ..overlay.shapes import faded
+from .shown import handled, knob, paint, put
+
+UNSEEN = 0.0  # opacity of those that show only under the mouse
+AROUND = 0.14  # m, by how much the ring is wider than the stance, of a figure of usual size
+ARROW = 0.7  # length, as a share of the size of gizmos in the preferences
+
+
+@dataclass(frozen=True)
+class Handle:
+    """Of a contact or of a point, one of which is -1. at: Blender units, world."""
+
+    contact: int
+    constraint: int
+    at: Vector
+    near: bool  # whether it belongs to what is chosen
+
+
+def handles(seen: Seen) -> list[Handle]:
+    """Of every contact that counts and of every point with a place of its own."""
+    settings = seen.settings
+    stance = active_stance(settings)
+    phase = stance.name if stance is not None else None
+    contacts = [
+        Handle(i, -1, Vector(row.at), row.phase == phase)
+        for i, row in enumerate(settings.contacts)
+        if row.used
+    ]
+    points = [
+        Handle(-1, i, Vector(row.place), True)
+        for i, row in enumerate(settings.constraints)
+        if row.kind == ConstraintKind.POINT.name
+        and row.used
+        and row.use_place
+        and row.target is None
+    ]
+    return contacts + points
+
+
+class PinHandles(bpy.types.GizmoGroup):
+    bl_idname = GizmoGroupId.PINS
+    bl_label = "Hangtime Pins"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "WINDOW"
+    bl_options = {"3D", "PERSISTENT"}  # noqa: RUF012 - Blender reads a set
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        seen = handled(context)
+        return seen is not None and seen.view.pins and len(seen.settings.contacts) > 0
+
+    def setup(self, _context: bpy.types.Context) -> None:
+        self._pins: list[tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]] = []
+        self._ring = self._new_ring()
+        self._arrow, self._lift = self._new_arrow()
+
+    def draw_prepare(self, context: bpy.types.Context) -> None:
+        """Blender calls this before each redraw; nothing else is told of undo or of scripts."""
+        seen = handled(context)
+        shown = handles(seen) if seen is not None else []
+        while len(self._pins) < len(shown):
+            self._pins.append(self._new_pin())
+        for gizmo, _ in self._pins[len(shown) :]:
+            gizmo.hide = True
+        for (gizmo, drag), handle in zip(self._pins, shown, strict=False):
+            put(gizmo, handle.at)
+            gizmo.alpha = palette.PIN[3] if handle.near else UNSEEN
+            drag.contact, drag.constraint = handle.contact, handle.constraint
+        self._place_stance(seen)
+
+    def _place_stance(self, seen: Seen | None) -> None:
+        stance = active_stance(seen.settings) if seen is not None else None
+        middle = stance_middle(seen.settings, stance.name) if stance is not None else None
+        self._ring.hide = self._arrow.hide = middle is None
+        if middle is None:
+            return
+        contacts = stance_contacts(seen.settings, stance.name)
+        reach = max((Vector(c.at) - middle).xy.length for c in contacts) + AROUND * seen.units
+        put(self._ring, middle, reach)
+        # in front of the feet, where it hides none of their handles
+        put(self._arrow, middle + reach * Vector(stance.forward_axis))
+        self._lift.contact = seen.settings.active_contact
+
+    def _new_pin(self) -> tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]:
+        gizmo = knob(self)
+        paint(gizmo, palette.PIN)
+        drag = gizmo.target_set_operator(OperatorId.DRAG_PIN)
+        drag.release_confirm = True
+        return gizmo, drag
+
+    def _new_ring(self) -> bpy.types.Gizmo:
+        ring = self.gizmos.new("GIZMO_GT_dial_3d")
+        ring.use_draw_scale = False
+        ring.line_width = 2.0
+        paint(ring, faded(palette.MOVE, 0.5))
+        turn = ring.target_set_operator(OperatorId.TURN_STANCE)
+        turn.release_confirm = True
+        return ring
+
+    def _new_arrow(self) -> tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]:
+        arrow = self.gizmos.new("GIZMO_GT_arrow_3d")
+        arrow.draw_style, arrow.draw_options = "NORMAL", {"STEM"}
+        arrow.length = ARROW
+        paint(arrow, faded(palette.MOVE, 0.5))
+        lift = arrow.target_set_operator(OperatorId.DRAG_PIN)
+        lift.release_confirm = lift.whole = True
+        lift.axis = "Z"
+        return arrow, lift
+
+
+CLASSES = (PinHandles,)

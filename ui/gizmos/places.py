@@ -1,0 +1,95 @@
+"""Where the handles of a limit are, from where ui/overlay draws it: numpy only; world.
+
+A limit's angles count on a circle about its joint; its ends are points of that circle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...operators.rays import Circle, Vector, scaled, unit
+from ..overlay.arcs import spoke
+from ..overlay.limit_shapes import ARC, CONE, RING, TWIST, Limit
+from ..overlay.shapes import FloatArray
+
+SIDEWAYS = 0.2  # sine of axis and view: below, one looks along the cone
+
+
+@dataclass(frozen=True)
+class Knob:
+    """Of an end of a limit; end: the constraint's property.
+
+    narrow: how much narrower than its half angle a stretched cone is there.
+    """
+
+    end: str
+    at: Vector
+    circle: Circle
+    narrow: float = 1.0
+
+
+@dataclass(frozen=True)
+class Tip:
+    """Of a cone's axis. turn: (3, 3) from directions in the world to the constraint's axis."""
+
+    at: Vector
+    centre: Vector
+    turn: FloatArray
+
+
+@dataclass(frozen=True)
+class Places:
+    """The handles of a limit."""
+
+    knobs: tuple[Knob, ...] = ()
+    tip: Tip | None = None
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Where a limit is drawn, in the armature's space; see ui/overlay/arcs.py for its axes.
+
+    axes: (3, 3) columns. origin: (3,). parent: (3, 3) the parent's turn from rest to now.
+    """
+
+    axes: FloatArray
+    origin: Vector
+    parent: FloatArray
+
+
+def places(limit: Limit, drawn: Drawn, armature: FloatArray, sight: Vector) -> Places:
+    """armature: (4, 4) its matrix in the world. sight: (3,) unit vector to the viewer, world."""
+    scale = float(np.linalg.norm(armature[:3, 0]))
+    to_world = armature[:3, :3] / scale
+    origin, axes = armature[:3, :3] @ drawn.origin + armature[:3, 3], to_world @ drawn.axes
+    length = scale * limit.length
+    if limit.kind == CONE:
+        knob = _rim(limit, Circle(origin, axes[:, 0], axes[:, 1], length), axes, sight)
+        turn = to_world @ drawn.parent.T @ to_world.T
+        return Places((knob,), Tip(_on(knob.circle, 0.0), origin, turn))
+    radius = (RING if limit.kind == TWIST else ARC) * length
+    return Places(tuple(_ends(limit, Circle(origin, axes[:, 0], axes[:, 1], radius))))
+
+
+def _ends(limit: Limit, circle: Circle) -> Iterator[Knob]:
+    for end, angle in (("lower", limit.lower), ("upper", limit.upper)):
+        if angle is not None:
+            yield Knob(end, _on(circle, angle), circle)
+
+
+def _rim(limit: Limit, circle: Circle, axes: FloatArray, sight: Vector) -> Knob:
+    """Of a cone, where its rim is seen from the side."""
+    across = np.cross(circle.zero, sight)
+    out = unit(across) if np.linalg.norm(across) > SIDEWAYS else circle.ahead
+    wide, deep = limit.stretch
+    narrow = float(np.hypot(out @ axes[:, 1] / wide, out @ axes[:, 2] / deep))
+    turned = Circle(circle.centre, circle.zero, out, circle.radius)
+    return Knob("half_angle", _on(turned, scaled(limit.upper or 0.0, 1.0 / narrow)), turned, narrow)
+
+
+def _on(circle: Circle, angle: float) -> Vector:
+    along, across, _ = spoke(angle)
+    return circle.centre + circle.radius * (along * circle.zero + across * circle.ahead)

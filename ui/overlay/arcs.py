@@ -1,0 +1,92 @@
+"""Cones around limbs, and arcs at joints, each in axes of its own: numpy only. Angles in rad.
+
+A cone opens along x, its first stretch is along y. An arc counts from x towards y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos, pi, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .shapes import Colour, FloatArray, Look, Shape, faded, lines, polyline
+
+AROUND = 32  # faces of a cone
+STEP = 0.1  # rad between the corners of an arc
+OPEN = 0.7  # rad of an arc that has no end there
+GLASS = 0.26  # a pane's opacity, as a share of its rim's
+RIBS = 4  # lines from a cone's apex to its rim
+
+
+def cone_rim(half_angle: float, stretch: tuple[float, float], length: float) -> FloatArray:
+    """(AROUND + 1, 3) where a limb of this length may lean at most; closed.
+
+    stretch: how many times as wide along y and z.
+    """
+    turn = np.linspace(0.0, 2 * pi, AROUND + 1)
+    wide, deep = stretch
+    along = np.stack(
+        [
+            np.full_like(turn, cos(half_angle)),
+            sin(half_angle) * wide * np.cos(turn),
+            sin(half_angle) * deep * np.sin(turn),
+        ],
+        axis=1,
+    )
+    return np.asarray(along * length / np.linalg.norm(along, axis=1, keepdims=True))
+
+
+def cone(rim: FloatArray, colour: Colour) -> Iterator[Shape]:
+    """A see-through cone with its rim (see `cone_rim`)."""
+    yield _pane(np.zeros_like(rim), rim, np.ones(len(rim)), colour)
+    yield polyline(rim, colour, Look.BOLD)
+    ribs = rim[:-1][:: AROUND // RIBS]
+    yield lines(np.stack([np.zeros_like(ribs), ribs], axis=1), faded(colour, 0.4))
+
+
+def arc(
+    lower: float | None, upper: float | None, radius: float, colour: Colour, hole: float = 0.0
+) -> Iterator[Shape]:
+    """How far something may turn.
+
+    A limit that is None is open: the arc fades away on that side. hole: share of the radius that
+    is left free about the centre.
+    """
+    low = lower if lower is not None else (upper or 0.0) - OPEN
+    high = upper if upper is not None else (lower or 0.0) + OPEN
+    low, high = min(low, high), max(low, high)
+    angles = np.linspace(low, high, max(int((high - low) / STEP), 1) + 1)
+    rim = radius * spoke(angles)
+    inner = hole * rim
+    strength = np.ones(len(angles))
+    if lower is None:
+        strength *= np.linspace(0.0, 1.0, len(angles))
+    if upper is None:
+        strength *= np.linspace(1.0, 0.0, len(angles))
+    yield _pane(inner, rim, strength, colour)
+    along = np.tile(np.asarray(colour), (len(angles) - 1, 1))
+    along[:, 3] *= 0.5 * (strength[:-1] + strength[1:])
+    yield lines(np.stack([rim[:-1], rim[1:]], axis=1), along)
+    ends = [k for k, limit in ((0, lower), (-1, upper)) if limit is not None]
+    yield lines([[inner[k], rim[k]] for k in ends] or np.zeros((0, 2, 3)), colour, Look.BOLD)
+
+
+def spoke(angles: ArrayLike) -> FloatArray:
+    """(..., 3) unit vectors at angles (...)."""
+    turn = np.asarray(angles, dtype=float)
+    return np.stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)], axis=-1)
+
+
+def _pane(inner: FloatArray, rim: FloatArray, strength: FloatArray, colour: Colour) -> Shape:
+    """Glass between two lines (N, 3), as opaque as `strength` (N,) says."""
+    n = len(rim)
+    k = np.arange(n - 1, dtype=np.int32)
+    faces = np.concatenate(
+        [np.stack([k, k + n, k + n + 1], axis=1), np.stack([k, k + n + 1, k + 1], axis=1)]
+    )
+    colours = np.tile(np.asarray(faded(colour, GLASS), np.float32), (2 * n, 1))
+    colours[:, 3] *= np.tile(strength, 2)
+    points = np.concatenate([inner, rim]).astype(np.float32)
+    return Shape(Look.GLASS, points, colours, faces)

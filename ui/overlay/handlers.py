@@ -1,0 +1,79 @@
+"""The viewport's draw handlers, and what they keep between redraws."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
+
+import bpy
+
+from . import labels
+from .figures import Figures
+from .picture import layers
+from .pictures import Pictures
+from .seen import look_at
+from .shapes import Shape
+
+if TYPE_CHECKING:
+    from .drawn import Drawn
+
+
+class Overlay:
+    """Draws what is seen. Nothing is built again while its content stays."""
+
+    def __init__(self) -> None:
+        self._figures = Figures()
+        self._pictures: Pictures[Drawn] = Pictures(_upload)
+        self._labels: list[labels.Placed] = []
+
+    def draw_view(self) -> None:
+        """In the world (POST_VIEW)."""
+        from .drawn import draw
+
+        self._labels = []
+        seen = look_at(bpy.context)
+        if seen is None:
+            return
+        built = [(self._pictures.of(each), each.matrix) for each in layers(seen, self._figures)]
+        draw([(b.drawn, matrix) for b, matrix in built], bpy.context.preferences.system.ui_scale)
+        if seen.view.labels:
+            self._labels = [labels.Placed(x, matrix) for b, matrix in built for x in b.labels]
+
+    def draw_labels(self) -> None:
+        """Over the picture (POST_PIXEL), which follows for the same region."""
+        if self._labels:
+            labels.draw(self._labels, bpy.context)
+
+    def clear(self) -> None:
+        """Forgets everything, the graphics card's memory included."""
+        self._figures.clear()
+        self._pictures.clear()
+        self._labels = []
+
+
+def _upload(shapes: Sequence[Shape]) -> Drawn:
+    from .drawn import upload  # the graphics card is there only once something is drawn
+
+    return upload(shapes)
+
+
+def add(undo: ExitStack) -> Overlay:
+    """Shows overlays in every 3D viewport until `undo` is closed."""
+    overlay = Overlay()
+    undo.callback(overlay.clear)
+    space = bpy.types.SpaceView3D
+    for draw, when in ((overlay.draw_view, "POST_VIEW"), (overlay.draw_labels, "POST_PIXEL")):
+        handle = space.draw_handler_add(draw, (), "WINDOW", when)
+        undo.callback(space.draw_handler_remove, handle, "WINDOW")
+    _redraw()
+    undo.callback(_redraw)
+    return overlay
+
+
+def _redraw() -> None:
+    windows = [window for manager in bpy.data.window_managers for window in manager.windows]
+    for window in windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()

@@ -1,0 +1,47 @@
+"""A part of the picture: named by its content, built only when that is new."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from mathutils import Matrix
+
+from .shapes import Label, Shape
+
+IDENTITY = Matrix.Identity(4).freeze()
+
+
+class Part(Enum):
+    """The parts of the picture."""
+
+    CONTACTS = auto()
+    POINTS = auto()
+    LIMITS = auto()
+    POSES = auto()
+    FORCES = auto()
+    CENTRE = auto()
+    RECORDED_PATH = auto()
+    ADAPTED_PATH = auto()
+    RECORDED_GHOSTS = auto()
+    ADAPTED_GHOSTS = auto()
+    GHOST_NOW = auto()
+
+
+@dataclass(frozen=True)
+class Layer:
+    """content: equal where the picture is. build: the picture. matrix: from there to the world."""
+
+    part: Part
+    content: Hashable
+    build: Callable[[], Iterable[Shape | Label]]
+    matrix: Matrix = IDENTITY
+
+
+class Standing(float, Enum):
+    """How much something counts at the frame that is shown: its opacity."""
+
+    NOW = 1.0
+    LATER = 0.4  # at other frames
+    OFF = 0.0  # it is switched off

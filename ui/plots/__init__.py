@@ -1,0 +1,1 @@
+"""Curves over time at the foot of the 3D viewport."""

@@ -1,0 +1,88 @@
+"""Solve, Result and Export."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..operators.common import chosen_armature
+from ..operators.names import OperatorId, PanelId
+from ..operators.session import session
+from .sidebar import ArmaturePanel, lines, split
+
+
+class SolvePanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.SOLVE
+    bl_label = "Solve"
+    bl_order = 5
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        solving = session().solving
+        if solving is not None:
+            layout.progress(factor=solving.share, text=solving.state.value.capitalize())
+            row = layout.row(align=True)
+            row.operator(OperatorId.USE_BEST, icon="CHECKMARK")
+            row.operator(OperatorId.CANCEL, icon="X")
+            return
+        row = layout.row(align=True)
+        row.scale_y = 1.5
+        row.operator(OperatorId.ADAPT, icon="PLAY")
+        row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
+        if session().best is not None:
+            layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
+
+
+class AdvancedPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.ADVANCED
+    bl_parent_id = PanelId.SOLVE
+    bl_label = "Advanced"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads a set
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        split(layout)
+        settings = chosen_armature(context).hangtime
+        layout.prop(settings, "method")
+        refine = layout.column(heading="Refine")
+        refine.prop(settings, "objective")
+        refine.prop(settings, "stay_close")
+        recipe = layout.column()
+        recipe.label(text="Recipe text, for what the lists do not hold:")
+        recipe.template_ID(settings, "requests", new="text.new", open="text.open")
+
+
+class ResultPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.RESULT
+    bl_label = "Result"
+    bl_order = 6
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        settings = chosen_armature(context).hangtime
+        if settings.adapted is None:
+            layout.label(text="Nothing has been adapted yet", icon="INFO")
+            return
+        icon = "CHECKMARK" if settings.adapted.hangtime.accepted else "ACTION"
+        layout.label(text=settings.adapted.name, icon=icon)
+        row = layout.row(align=True)
+        row.operator(OperatorId.ACCEPT, icon="CHECKMARK")
+        row.operator(OperatorId.DISCARD, icon="TRASH")
+        row = layout.row(align=True)
+        row.operator(OperatorId.COMPARE, icon="ARROW_LEFTRIGHT")
+        row.operator(OperatorId.SHOW_REPORT, icon="TEXT")
+        lines(layout, settings.status)
+
+
+class ExportPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.EXPORT
+    bl_label = "Export"
+    bl_order = 7
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads a set
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        row = self.layout.row(align=True)
+        row.operator(OperatorId.EXPORT_FBX, text="FBX", icon="EXPORT")
+        row.operator(OperatorId.EXPORT_GLTF, text="glTF", icon="EXPORT")
+
+
+CLASSES = (SolvePanel, AdvancedPanel, ResultPanel, ExportPanel)

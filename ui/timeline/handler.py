@@ -1,0 +1,49 @@
+"""The bars' draw handler, and the mouse's way to their edges."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+
+import bpy
+
+from ...operators.names import OperatorId
+from ...operators.timeline_bars import bars_in
+from .. import paint
+from . import looks
+from .drawing import drawn
+
+KEYMAP = "Dopesheet"  # the timeline's, too
+EDITOR = "DOPESHEET_EDITOR"
+# Those that are added last are asked first: edges before bars.
+CLICKED = (OperatorId.PICK_CONTACT, OperatorId.DRAG_CONTACT_EDGE)
+
+
+def add(undo: ExitStack) -> None:
+    """Shows bars in timelines and dope sheets, to be dragged, until `undo` is closed."""
+    overlay = BarOverlay()
+    space = bpy.types.SpaceDopeSheetEditor
+    handle = space.draw_handler_add(overlay.draw, (), "WINDOW", "POST_PIXEL")
+    undo.callback(space.draw_handler_remove, handle, "WINDOW")
+    configuration = bpy.context.window_manager.keyconfigs.addon
+    if configuration is None:  # Blender without an interface
+        return
+    keymap = configuration.keymaps.new(name=KEYMAP, space_type=EDITOR)
+    for operator in CLICKED:
+        item = keymap.keymap_items.new(operator, "LEFTMOUSE", "PRESS")
+        undo.callback(keymap.keymap_items.remove, item)
+
+
+class BarOverlay:
+    """Draws the bars; what it prepares is remembered for each content and zoom."""
+
+    def __init__(self) -> None:
+        self._easel = paint.Easel()
+
+    def draw(self) -> None:
+        """Called by Blender for each timeline and dope sheet."""
+        context = bpy.context
+        bars = bars_in(context)
+        if bars is None:
+            return
+        picture = self._easel.painting(bars, lambda: drawn(bars, paint.text_width))
+        paint.paint(picture, context.region, looks.STROKE * bars.scale)
