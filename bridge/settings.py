@@ -176,8 +176,7 @@ class _Added:
     def of(row: HangtimeContact) -> _Added:
         return _Added({name: _plain(getattr(row, name)) for name in _KEPT})
 
-    def put(self, settings: HangtimeSettings) -> None:
-        row = settings.contacts.add()
+    def put(self, row: HangtimeContact) -> None:
         for name, value in self.values.items():
             setattr(row, name, value)
 
@@ -195,24 +194,41 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     first, rate = float(recording.frames[0]), frames_per_second(bpy.context.scene)
     settings.measured_height = found.height
     settings.analysed = digest(recording)
-    settings.stances.clear()
-    for name, axes in found.axes.items():
-        stance = settings.stances.add()
-        stance.name = name
+    for stance, (name, axes) in zip(
+        _resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
+    ):
+        stance.name, stance.shifted, stance.turned = name, (0.0, 0.0, 0.0), 0.0
         stance.forward_axis = axes[:, 0]
-    settings.contacts.clear()
-    for contact in found.schedule.contacts:
-        row = settings.contacts.add()
+    contacts = found.schedule.contacts
+    rows = _resized(settings.contacts, len(contacts) + len(added))
+    for row, contact in zip(rows, contacts, strict=False):
+        row.used, row.added, row.empty = True, False, None
         phase = _ground_phase(found.schedule, contact)
         row.name, row.point, row.bone = contact.name, contact.point, contact.bone
         row.phase = phase.name if phase is not None else ""
         row.found_start = row.start_frame = first + contact.start * rate
         row.found_end = row.end_frame = first + contact.end * rate
         row.found_at = row.at = contact.place / metres
-    for contact in added:
-        contact.put(settings)
+    for row, kept in zip(rows[len(contacts) :], added, strict=True):
+        kept.put(row)
     settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
     _restore(settings, edits)
+
+
+def _resized(rows: bpy.types.bpy_prop_collection, count: int) -> list[bpy.types.PropertyGroup]:
+    """That many rows of a list, the old ones first.
+
+    An override cannot drop rows of the linked file: those left over are switched off.
+    """
+    while len(rows) < count:
+        rows.add()
+    for i in reversed(range(count, len(rows))):
+        rows.remove(i)
+    for row in rows[count:]:
+        row.name = ""
+        if hasattr(row, "used"):
+            row.used = False
+    return list(rows[:count])
 
 
 def _restore(settings: HangtimeSettings, edits: list[_Edit]) -> None:

@@ -25,6 +25,7 @@ from ..solver.faults import WorkerDied
 from ..solver.messages import (
     PROTOCOL,
     Answer,
+    Course,
     Ending,
     Failed,
     Followed,
@@ -147,7 +148,7 @@ class Chase:
     def deliver(self, message: Progress | Answer) -> None:
         """Called by the thread that listens; a motion that is still on its way is asked again."""
         self._arrived.put(message)
-        if isinstance(message, Followed) and not message.arrived:
+        if isinstance(message, Followed) and message.course is Course.ON_ITS_WAY:
             with self._changed:
                 self._problem = self._problem or self._last
 

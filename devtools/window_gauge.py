@@ -1,8 +1,9 @@
 """Measures how long a Blender with a window is held up, and by which of the extension's functions.
 
-Two measures, for neither is enough alone. A timer that Blender calls whenever it is free tells how
-long it was not, drawing included, which takes long where a processor draws. Python's own monitoring
-tells how long Blender was in the extension's code at a stretch: operators, panels, handlers, timers.
+A timer that Blender calls whenever it is free tells how long it was not. Where a processor draws the
+window, most of that is waiting for the picture; so the time that the thread itself computed is kept
+beside it, which is what a graphics card would leave. Python's own monitoring tells how long Blender
+was in the extension's code at a stretch: operators, panels, handlers, timers.
 """
 
 from __future__ import annotations
@@ -20,18 +21,38 @@ TOOL = 3  # one of the numbers that Python leaves free for tools
 GENERATOR = 0x20  # of a code's flags: its calls are told by other events, and are never Blender's
 
 
+@dataclass(frozen=True)
+class Moment:
+    """By the clock, and by what Blender's main thread has computed (s)."""
+
+    clock: float
+    busy: float
+
+    @staticmethod
+    def now() -> Moment:
+        return Moment(time.perf_counter(), time.thread_time())
+
+
+NEVER = Moment(0.0, 0.0)
+
+
 @dataclass
 class Spans:
-    """How often something took place, and how long it took at most and in all (s)."""
+    """How often something took place, and how long at most and in all (s). busy: computing."""
 
     count: int = 0
     longest: float = 0.0
     total: float = 0.0
+    busy_longest: float = 0.0
+    busy_total: float = 0.0
 
-    def add(self, seconds: float) -> None:
+    def add(self, since: Moment, until: Moment) -> None:
+        seconds, busy = until.clock - since.clock, until.busy - since.busy
         self.count += 1
         self.longest = max(self.longest, seconds)
         self.total += seconds
+        self.busy_longest = max(self.busy_longest, busy)
+        self.busy_total += busy
 
 
 @dataclass
@@ -42,13 +63,6 @@ class Stretch:
     gaps: Spans = field(default_factory=Spans)
     calls: dict[str, Spans] = field(default_factory=dict)
 
-    def longest_call(self) -> tuple[str, float]:
-        """The function that held Blender up the longest at a stretch; seconds."""
-        if not self.calls:
-            return "none", 0.0
-        name = max(self.calls, key=lambda each: self.calls[each].longest)
-        return name, self.calls[name].longest
-
 
 @dataclass
 class Gauge:
@@ -58,10 +72,10 @@ class Gauge:
     stretches: dict[str, Stretch] = field(default_factory=dict)
     _label: Callable[[], str] | None = None
     _now: str = ""  # the label as it was at the last free moment
-    _free_since: float = 0.0
+    _free_since: Moment = NEVER
     _codes: set[CodeType] = field(default_factory=set)
     _depth: int = 0
-    _entered: float = 0.0
+    _entered: Moment = NEVER
     _fresh: set[str] = field(default_factory=set)
     _thread: int = field(default_factory=get_ident)
 
@@ -70,7 +84,7 @@ class Gauge:
         self._watch()
         self._depth, self._label, self._now = 0, label, label()
         self._fresh.clear()
-        self._free_since = time.perf_counter()
+        self._free_since = Moment.now()
         bpy.app.timers.register(self._free, first_interval=0.0, persistent=True)
 
     def stop(self) -> None:
@@ -88,9 +102,8 @@ class Gauge:
     def _free(self) -> float | None:
         if self._label is None:
             return None
-        now = time.perf_counter()
-        self._stretch().gaps.add(now - self._free_since)
-        self._free_since = now
+        self._stretch().gaps.add(self._free_since, Moment.now())
+        self._free_since = Moment.now()
         self._now = self._label()
         return 0.0
 
@@ -108,11 +121,11 @@ class Gauge:
             monitoring.set_local_events(TOOL, code, events.PY_START | events.PY_RETURN)
             self._codes.add(code)
 
-    def _enter(self, code: CodeType, _offset: int) -> None:
+    def _enter(self, _code: CodeType, _offset: int) -> None:
         if get_ident() != self._thread:
             return
         if self._depth == 0:
-            self._entered = time.perf_counter()
+            self._entered = Moment.now()
         self._depth += 1
 
     def _leave(self, code: CodeType, _offset: int, _result: object) -> None:
@@ -120,8 +133,8 @@ class Gauge:
             return
         self._depth -= 1
         if self._depth == 0 and self._label is not None:
-            spent = time.perf_counter() - self._entered
-            self._stretch().calls.setdefault(code.co_qualname, Spans()).add(spent)
+            spans = self._stretch().calls.setdefault(code.co_qualname, Spans())
+            spans.add(self._entered, Moment.now())
 
 
 def codes(package: str) -> Iterator[CodeType]:

@@ -33,6 +33,7 @@ def start() -> None:
     """Begin the play once Blender's window is there; Blender is quit at its end."""
     preferences = bpy.context.preferences
     preferences.view.show_splash = False
+    preferences.system.viewport_aa = "FXAA"  # drawn once; the others draw again and again
     preferences.view.filebrowser_display_type = "SCREEN"  # the dialog in the window that is there
     ending = ExitStack()
     hands = ending.enter_context(Hands())

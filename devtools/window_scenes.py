@@ -58,7 +58,7 @@ def opens_sidebar(stage: Stage) -> Acting:
 
 
 def rests(stage: Stage) -> Acting:
-    """Measures what a redraw costs while nothing of ours goes on."""
+    """Measures redraws of the whole window while nothing of ours goes on."""
 
     def label() -> str:
         for area in stage.eyes.window.screen.areas:

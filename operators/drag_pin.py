@@ -11,13 +11,15 @@ from ..bridge.stances import place, stance_contacts
 from . import rays
 from .common import chosen_armature
 from .followed_drag import FollowedDrag
-from .mouse import Pixel, pixel, ray_at
+from .mouse import Pixel, pixel, pixel_of, ray_at
 from .names import OperatorId
 from .pin_drag import Axis, PinDrag
 
-FLAT = 0.2  # of the view's direction along the vertical: below, the ground is seen edge-on
-AXES = {None: "Slides over the ground", **{axis: f"Along {axis.name}" for axis in Axis}}
+FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
+FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon
+UP = Vector((0.0, 0.0, 1.0))
 NO_PIN = "There is no such contact or point"
+BEHIND = "Turn the view so that the pin is in front of you"
 
 
 class DragPinOperator(FollowedDrag, bpy.types.Operator):
@@ -72,6 +74,12 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         self._metres = metres_per_unit(context.scene)
         x, y, z = (self._metres * each for each in self._place)
         self._drag = PinDrag((x, y, z), Axis.__members__.get(self.axis))
+        sight = context.region_data.view_rotation @ UP
+        self._ground = abs(sight.z) > FLAT
+        self._normal = UP if self._ground else sight
+        self._pixel = pixel_of(context, self._place)
+        if self._pixel is None:
+            return BEHIND
         self._was = self._remembered()
         self._choose()
         return None
@@ -83,10 +91,12 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         return self._press.dragging
 
     def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
-        began, now = (self._aim(context, at) for at in (self._press.at, pixel(event)))
-        if began is None or now is None:
+        # As if the mouse had taken hold of the pin itself, wherever it did.
+        ways = zip(self._pixel, pixel(event), self._press.at, strict=True)
+        now = self._aim(context, tuple(pin + to - began for pin, to, began in ways))
+        if now is None:
             return  # above the horizon: it stays where it is
-        x, y, z = (float(each) for each in self._metres * (now - began))
+        x, y, z = (float(each) for each in self._metres * now - np.array(self._drag.start))
         to = self._drag.move((x, y, z), precise=event.shift, snap=event.ctrl)
         self._put(Vector(to) / self._metres)
 
@@ -110,7 +120,10 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
 
     def text(self) -> str:
         x, y, z = self._drag.shift
-        return f"{AXES[self._drag.axis]} {x:+.3f} {y:+.3f} {z:+.3f} m"
+        way = "Over the ground" if self._ground else "Across the view"
+        if self._drag.axis is not None:
+            way = f"Along {self._drag.axis.name}"
+        return f"{way} {x:+.3f} {y:+.3f} {z:+.3f} m"
 
     # -- where ---------------------------------------------------------------------------------
 
@@ -163,9 +176,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             axis = rays.unit([float(i == self._drag.axis.value) for i in range(3)])
             distance = rays.along_line(ray, start, axis)
             return start + distance * axis if distance is not None else None
-        sight = context.region_data.view_rotation @ Vector((0.0, 0.0, 1.0))
-        ground = abs(sight.z) > FLAT
-        return rays.on_plane(ray, start, (0.0, 0.0, 1.0) if ground else sight)
+        return rays.on_plane(ray, start, self._normal, FARTHEST)
 
 
 CLASSES = (DragPinOperator,)

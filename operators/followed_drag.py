@@ -10,7 +10,7 @@ from ..bridge.in_parts import Parts
 from ..bridge.settings import problem_of
 from ..bridge.worker import shared
 from ..solver.faults import Fault
-from ..solver.messages import Answer, Failed, Followed, Progress
+from ..solver.messages import Answer, Course, Failed, Followed, Progress
 from .adapt import NOT_ANALYSED, ask_for
 from .common import chosen_armature, hindrance, said
 from .live import live, redraw_viewports
@@ -20,6 +20,7 @@ from .task import LOOK_EVERY
 
 CONFIRM = {"RET", "NUMPAD_ENTER"}
 BACK = {"ESC", "RIGHTMOUSE"}
+LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 
 
@@ -165,7 +166,7 @@ class FollowedDrag:
             self._fault = said(message.fault)
             live().clear()
         elif isinstance(message, Followed):
-            self._fault = ""
+            self._fault = LOST if message.course is Course.LOST else ""
             live().show(self._armature.name, message)
 
     def _look(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -19,6 +20,12 @@ def ray_at(context: bpy.types.Context, at: Pixel) -> Ray:
     region, view = context.region, context.region_data
     origin = view3d_utils.region_2d_to_origin_3d(region, view, at)
     return Ray.of(origin, view3d_utils.region_2d_to_vector_3d(region, view, at))
+
+
+def pixel_of(context: bpy.types.Context, place: Sequence[float]) -> Pixel | None:
+    """Where a place is seen, Blender units, world; None for what is behind the viewer."""
+    at = view3d_utils.location_3d_to_region_2d(context.region, context.region_data, place)
+    return tuple(at) if at is not None else None
 
 
 def pixel(event: bpy.types.Event) -> Pixel:

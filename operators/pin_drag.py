@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from math import hypot
 
 Vector = tuple[float, float, float]
 
 PRECISE = 0.1
 SNAP = 0.05  # m
+FURTHEST = 10.0  # m
 
 
 class Axis(Enum):
@@ -60,7 +62,8 @@ class PinDrag:
         moved = [SNAP * round(each / SNAP) if snap else each for each in self._loose]
         if self.axis is not None:
             moved = [each if i == self.axis.value else 0.0 for i, each in enumerate(moved)]
-        self._shift = (moved[0], moved[1], moved[2])
+        far = max(hypot(*moved) / FURTHEST, 1.0)  # near the horizon a pixel is a mile
+        self._shift = (moved[0] / far, moved[1] / far, moved[2] / far)
         return self.place
 
     @property

@@ -6,7 +6,7 @@ Lengths in whatever unit the rays are in, angles in rad.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan2, cos, sin, tau
+from math import atan2, cos, inf, sin, tau
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,14 +53,21 @@ class Circle:
         return atan2(float(towards @ self.ahead), float(towards @ self.zero))
 
 
-def on_plane(ray: Ray, point: ArrayLike, normal: ArrayLike) -> Vector | None:
-    """Where a ray meets a plane; None where it only grazes it, or not in front of the viewer."""
+def on_plane(ray: Ray, point: ArrayLike, normal: ArrayLike, farthest: float = inf) -> Vector | None:
+    """Where a ray meets a plane through a point.
+
+    None where it only grazes it, or not in front of the viewer, or more than `farthest` times as
+    far away as the point is: towards the horizon a pixel is metres.
+    """
     n = unit(normal)
     slope = float(ray.along @ n)
     if abs(slope) < GRAZING:
         return None
-    distance = float((np.asarray(point, dtype=float) - ray.origin) @ n) / slope
-    return ray.origin + distance * ray.along if distance > 0.0 else None
+    way = np.asarray(point, dtype=float) - ray.origin
+    distance = float(way @ n) / slope
+    if not 0.0 < distance <= farthest * float(np.linalg.norm(way)):
+        return None
+    return ray.origin + distance * ray.along
 
 
 def along_line(ray: Ray, point: ArrayLike, axis: ArrayLike) -> float | None:

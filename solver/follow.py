@@ -16,6 +16,7 @@ from .arrange import Arrangement, arrange, goal_places
 from .carry import carry, stage_count, staged, stance_moves
 from .fit import Fit
 from .linearised import Linearised
+from .messages import Course
 from .motion import Motion
 from .problem import MotionProblem
 from .recording import FloatArray
@@ -23,6 +24,7 @@ from .traces import Traces
 
 CHORDS = 2  # steps an update on the same factor
 GAIN = 0.3  # of the violation: what a chord step must leave at most, or the factor is stale
+LOST = 1e5  # times the tolerances (1 m)
 NEAR = 100.0  # times the tolerances (1 mm): where the last factor still serves
 
 
@@ -38,14 +40,16 @@ class Follower:
             self._plan = last.plan
         self._metric = self._plan.metric if last is None else self._plan.metric_of(self.motion)
         self._line: Linearised | None = None
+        self._held = self.motion
         self.violation = np.inf
 
     @property
     def plan(self) -> Arrangement:
         return self._plan
 
-    def follow(self, problem: MotionProblem) -> bool:
-        """Steps towards what a problem asks for now. Returns whether it is reached.
+    def follow(self, problem: MotionProblem) -> Course:
+        """Steps towards what a problem asks for now; a motion that is lost goes back to where it
+        last held.
 
         Raises as arrange does, leaving the motion as it was.
         """
@@ -59,8 +63,13 @@ class Follower:
         if stages > 1:
             goal = staged(self._plan.schedule, was, goal, whole, 1.0 / stages)
         x = carry(self.motion, stance_moves(self._plan.schedule, was, goal))
-        self._settle(x, goal)
-        return stages == 1 and self.violation <= 1.0
+        if not self._settle(x, goal):
+            self.motion, self._line = self._held, None
+            return Course.LOST
+        if self.violation < NEAR:
+            self._held = self.motion
+        there = stages == 1 and self.violation <= 1.0
+        return Course.ARRIVED if there else Course.ON_ITS_WAY
 
     def _rearrange(self, problem: MotionProblem) -> None:
         """Other bounds or places of points: the same unknowns where the structure allows."""
@@ -70,23 +79,29 @@ class Follower:
         if new.basis is old.basis and new.layout == old.layout:
             start = Motion(new, self.motion.x, self.motion.places)
         self._plan, self.motion, self._metric = plan, start, plan.metric
-        self._line = None
+        self._line, self._held = None, start
 
-    def _settle(self, x: FloatArray, places: FloatArray) -> None:
+    def _settle(self, x: FloatArray, places: FloatArray) -> bool:
+        """A few steps from unknowns x; False, having changed nothing, where they lead astray."""
         t = self.motion.transcription
         value = t.values(x, places)
-        line = self._line or self._linearised(x, places)
+        try:
+            line = self._line or self._linearised(x, places)
+        except np.linalg.LinAlgError:  # too far from any motion
+            return False
         for _ in range(CHORDS):
             before = line.worst(value)
-            trial = x + line.step(value)[0]
-            left = t.values(trial, places)
-            after = line.worst(left)
-            x, value = trial, left
+            x = x + line.step(value)[0]
+            value = t.values(x, places)
+            after = line.worst(value)
             if after <= 1.0 or after > GAIN * before:
                 break
-        self.violation = line.worst(value)
-        self._line = line if self.violation < NEAR else None
+        if not after < LOST:
+            return False
+        self.violation = after
+        self._line = line if after < NEAR else None
         self.motion = Motion(t, x, places)
+        return True
 
     def _linearised(self, x: FloatArray, places: FloatArray) -> Linearised:
         t = self.motion.transcription

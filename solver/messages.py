@@ -164,14 +164,22 @@ class Adapted:
     fault: NoSolution | None
 
 
+class Course(Enum):
+    """How a motion gets on that follows a dragged pin."""
+
+    ON_ITS_WAY = "on its way"
+    ARRIVED = "arrived"  # the pin is reached and physics holds
+    LOST = "lost"  # it cannot follow, and stays where it last could
+
+
 @dataclass(frozen=True)
 class Followed:
-    """Where the motion has come that follows a dragged pin. arrived: whether the pin is reached
-    and physics holds; change: numbers by what they are, see follow.change."""
+    """Where the motion has come that follows a dragged pin. change: numbers by what they are, see
+    follow.change."""
 
     id: int
     traces: Traces
-    arrived: bool
+    course: Course
     change: dict[str, float]
 
 

@@ -144,10 +144,10 @@ class Service:
             )
             self._following = following
         follower = following.follower
-        arrived = follower.follow(problem)
+        course = follower.follow(problem)
         seen = _seen(measured, follower.motion, follower.plan.schedule, None)
         numbers = change(fitted, follower.plan, follower.motion, seen)
-        return Followed(request, seen, arrived, numbers)
+        return Followed(request, seen, course, numbers)
 
     def _similar(self, fitted: Fit, problem: MotionProblem) -> Adaptation | None:
         """The last adaptation, if it differs in nothing but where the pins are."""

@@ -1,4 +1,4 @@
-"""Dragging pins and angles, and asking for the motion that follows, without Blender."""
+"""Dragging pins and numbers, without Blender."""
 
 from math import inf, radians
 
@@ -42,6 +42,11 @@ def test_an_axis_holds_the_pin_until_its_key_comes_again() -> None:
     assert drag.move((0.2, 0.2, 0.4)) == pytest.approx((1.2, 2.0, 0.0))
     drag.key(Axis.X)
     assert drag.move((0.2, 0.2, 0.0)) == pytest.approx((1.2, 2.2, 0.0))
+
+
+def test_near_the_horizon_a_pin_does_not_fly_off() -> None:
+    drag = PinDrag((1.0, 0.0, 0.0))
+    assert drag.move((300.0, 400.0, 0.0)) == pytest.approx((7.0, 8.0, 0.0))
 
 
 def test_a_drag_may_begin_on_an_axis() -> None:

@@ -169,24 +169,22 @@ def test_a_play_without_fault_ends_well() -> None:
     assert Played(0, "Blender quit", [scene("imports")]).ending is None
 
 
-def stretch(gap: float, call: float) -> dict[str, object]:
-    return {"gaps": {"longest": gap}, "calls": {"f": {"longest": call}, "g": {"longest": 0.001}}}
+def stretch(gap: float, busy: float, calls: dict[str, float]) -> dict[str, object]:
+    spans = {name: {"longest": seconds} for name, seconds in calls.items()}
+    return {"gaps": {"longest": gap, "busy_longest": busy}, "calls": spans}
 
 
-def test_blocking_leaves_out_a_redraw_but_no_call_of_ours() -> None:
+def test_blocking_is_our_longest_call_or_the_busiest_gap_but_no_waiting_for_a_picture() -> None:
     stretches = {
-        "rest": stretch(0.05, 0.0),
-        "fit": stretch(0.075, 0.01),
-        "solve": stretch(0.05, 0.04),
+        "rest": stretch(0.05, 0.01, {}),
+        "fit": stretch(0.9, 0.02, {"Overlay.draw_view": 0.4, "Operator.modal": 0.03}),
+        "solve": stretch(0.9, 0.04, {"Operator.modal": 0.03}),
     }
     found = window_results.blocking(stretches)
-    assert found[window_results.BLOCKED + "fit"] == pytest.approx(25.0)
+    assert found[window_results.BLOCKED + "fit"] == pytest.approx(30.0)
     assert found[window_results.BLOCKED + "solve"] == pytest.approx(40.0)
+    assert found[window_results.BETWEEN + "solve"] == pytest.approx(900.0)
     assert window_results.BLOCKED + "analyse" not in found
-
-
-def test_blocking_is_not_told_where_rest_was_not_measured() -> None:
-    assert window_results.blocking({"fit": stretch(0.075, 0.01)}) == {}
 
 
 def test_clicks_count_only_on_the_way_to_an_adapted_landing() -> None:

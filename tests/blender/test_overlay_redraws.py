@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from math import radians
 from types import SimpleNamespace
 
@@ -30,11 +31,11 @@ from hangtime.tests.blender.overlays import (  # noqa: E402
 )
 from hangtime.ui.overlay import handlers, limits, pins, spans  # noqa: E402
 from hangtime.ui.overlay.figures import Figures  # noqa: E402
-from hangtime.ui.overlay.layer import Part, Standing  # noqa: E402
+from hangtime.ui.overlay.layer import Layer, Part, Standing  # noqa: E402
 from hangtime.ui.overlay.picture import layers  # noqa: E402
 from hangtime.ui.overlay.pictures import Pictures  # noqa: E402
 from hangtime.ui.overlay.seen import look_at  # noqa: E402
-from hangtime.ui.overlay.shapes import Shape, merged  # noqa: E402
+from hangtime.ui.overlay.shapes import Label, Shape  # noqa: E402
 from mathutils import Matrix  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -144,23 +145,30 @@ def test_the_live_ghost_takes_the_place_of_the_adapted_motion(armature: bpy.type
 
 
 class Counted:
-    """Stands in for the graphics card."""
+    """Draws without a graphics card, and counts."""
 
     def __init__(self) -> None:
+        self.built: list[Part] = []
         self.uploads = 0
         self.pictures = Pictures(self._upload)
         self.figures = Figures()
 
-    def _upload(self, shapes: list[Shape]) -> tuple[Shape, ...]:
+    def _upload(self, shapes: Sequence[Shape]) -> tuple[Shape, ...]:
         self.uploads += 1
-        return merged(shapes)
+        return tuple(shapes)
 
-    def draw(self, armature: bpy.types.Object, frame: float = FRAME) -> int:
-        """How many layers had to be made."""
-        before = self.uploads
-        for layer in layers(seen(armature, frame), self.figures):
-            self.pictures.of(layer)
-        return self.uploads - before
+    def draw(self, armature: bpy.types.Object, frame: float = FRAME) -> set[Part]:
+        """The layers that had to be made."""
+        self.built.clear()
+        self.pictures.of([self._counted(x) for x in layers(seen(armature, frame), self.figures)])
+        return set(self.built)
+
+    def _counted(self, layer: Layer) -> Layer:
+        def build() -> Iterator[Shape | Label]:
+            self.built.append(layer.part)
+            yield from layer.build()
+
+        return replace(layer, build=build)
 
 
 @pytest.fixture
@@ -175,8 +183,9 @@ def constrained(armature: bpy.types.Object) -> bpy.types.Object:
 
 def test_nothing_is_made_again_while_nothing_changes(constrained: bpy.types.Object) -> None:
     counted = Counted()
-    assert counted.draw(constrained) == len(shown(constrained))
-    assert counted.draw(constrained) == 0
+    assert counted.draw(constrained) == set(shown(constrained))
+    assert counted.draw(constrained) == set()
+    assert counted.uploads == 1
 
 
 def test_what_is_drawn_moves_along_with_the_armature(constrained: bpy.types.Object) -> None:
@@ -185,7 +194,8 @@ def test_what_is_drawn_moves_along_with_the_armature(constrained: bpy.types.Obje
     counted.draw(constrained)
     constrained.location.x += 1.0
     bpy.context.view_layer.update()
-    assert counted.draw(constrained) == len({Part.POINTS})
+    assert counted.draw(constrained) == {Part.POINTS}
+    assert counted.uploads == 2
 
 
 def test_another_frame_makes_again_what_depends_on_it(constrained: bpy.types.Object) -> None:
@@ -193,17 +203,24 @@ def test_another_frame_makes_again_what_depends_on_it(constrained: bpy.types.Obj
     counted.draw(constrained)
     bpy.context.scene.frame_set(10)
     again = {Part.POINTS, Part.LIMITS, Part.FORCES, Part.CENTRE, Part.GHOST_NOW}
-    assert counted.draw(constrained, 10.0) == len(again)
+    assert counted.draw(constrained, 10.0) == again
     bpy.context.scene.frame_set(int(FRAME))
-    assert counted.draw(constrained) == 0
+    assert counted.draw(constrained) == set()
+    assert counted.uploads == 2
 
 
 @pytest.mark.parametrize(
-    ("index", "change"),
-    [(0, "half_angle"), (1, "upper"), (2, "lower"), (3, "place"), (4, "pose_frame")],
+    ("index", "change", "part"),
+    [
+        (0, "half_angle", Part.LIMITS),
+        (1, "upper", Part.LIMITS),
+        (2, "lower", Part.LIMITS),
+        (3, "place", Part.POINTS),
+        (4, "pose_frame", Part.POSES),
+    ],
 )
 def test_a_changed_constraint_is_made_again(
-    constrained: bpy.types.Object, index: int, change: str
+    constrained: bpy.types.Object, index: int, change: str, part: Part
 ) -> None:
     counted = Counted()
     row = constrained.hangtime.constraints[index]
@@ -211,7 +228,7 @@ def test_a_changed_constraint_is_made_again(
     counted.draw(constrained)
     value = getattr(row, change)
     setattr(row, change, (1.0, 2.0, 3.0) if change == "place" else value + 0.1)
-    assert counted.draw(constrained) == 1
+    assert counted.draw(constrained) == {part}
 
 
 def test_other_traces_are_drawn_again(constrained: bpy.types.Object) -> None:
@@ -219,15 +236,15 @@ def test_other_traces_are_drawn_again(constrained: bpy.types.Object) -> None:
     counted.draw(constrained)
     keep(constrained.hangtime.adapted, traced(constrained), constrained.matrix_world)
     again = {Part.ADAPTED_PATH, Part.ADAPTED_GHOSTS, Part.FORCES, Part.CENTRE, Part.GHOST_NOW}
-    assert counted.draw(constrained) == len(again | {Part.POSES})
+    assert counted.draw(constrained) == again | {Part.POSES}
 
 
 def test_what_is_remembered_is_bounded(constrained: bpy.types.Object) -> None:
     counted = Counted()
     for frame in range(1, 20):
         counted.draw(constrained, float(frame))
-    assert counted.draw(constrained, 19.0) == 0
-    assert counted.draw(constrained, 1.0) > 0
+    assert counted.draw(constrained, 19.0) == set()
+    assert counted.draw(constrained, 1.0) != set()
 
 
 # ---------------------------------------------------------------- what may be missing
@@ -237,14 +254,14 @@ def test_a_renamed_or_missing_bone_is_no_trouble(constrained: bpy.types.Object) 
     constrained.data.bones["shin"].name = "calf"
     constrained.hangtime.constraints[0].bones[0].name = "nobody"
     constrained.hangtime.constraints[3].bones.clear()
-    assert Counted().draw(constrained) == len(shown(constrained))
+    assert Counted().draw(constrained) == set(shown(constrained))
 
 
 def test_a_figure_of_one_body_without_a_length_is_drawn() -> None:
     armature = motions.adapted()
     constrain(armature, ConstraintKind.CONE, "shin")
     constrain(armature, ConstraintKind.POSE)
-    assert Counted().draw(armature, motions.FIRST) == len(shown(armature, motions.FIRST))
+    assert Counted().draw(armature, motions.FIRST) == set(shown(armature, motions.FIRST))
 
 
 def test_an_armature_without_anything_shows_nothing() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hangtime.bridge.worker import Chase, Job, Kind, Worker
 from hangtime.solver.faults import ClipTooShort, NoFlight, UnknownContactName, WorkerDied
-from hangtime.solver.messages import Adapted, Analysed, Failed, Fitted, Followed, Progress
+from hangtime.solver.messages import Adapted, Analysed, Course, Failed, Fitted, Followed, Progress
 from hangtime.solver.problem import ContactEdit, MotionProblem, Pin, UnknownPhase
 from hangtime.solver.recording import Recording
 from hangtime.tests.clips import load_recording
@@ -202,7 +202,7 @@ def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
     apexes = []
     for up in (0.01, 0.05):
         chase.want(raised(up))
-        reached = (seen for seen in chased(chase) if seen.arrived)
+        reached = (seen for seen in chased(chase) if seen.course is Course.ARRIVED)
         seen = next(s for s in reached if abs(s.change["moved_cm"] - 100.0 * up) < 0.1)
         apexes.append(seen.traces.heads[:, 0, 2].max())
     assert apexes[1] > apexes[0] + 0.01

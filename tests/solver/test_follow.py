@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hangtime.solver.adapt import adapt
 from hangtime.solver.follow import Follower
+from hangtime.solver.messages import Course
 from hangtime.solver.motion import unexplained
 from hangtime.solver.problem import MotionProblem, Pin
 from hangtime.solver.requests import ForceRequest, Requests
@@ -20,7 +21,7 @@ def moved(forward: float, up: float = 0.0) -> MotionProblem:
 def settled(follower: Follower, problem: MotionProblem, most: int = 20) -> int:
     """Updates until the pin is reached."""
     for update in range(1, most + 1):
-        if follower.follow(problem):
+        if follower.follow(problem) is Course.ARRIVED:
             return update
     raise AssertionError(f"not there after {most} updates")
 
@@ -41,8 +42,22 @@ def test_the_ghost_is_near_the_solve() -> None:
 
 def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
     follower = Follower(fitted_hop(), moved(0.0))
-    assert not follower.follow(moved(0.9))
+    assert follower.follow(moved(0.9)) is Course.ON_ITS_WAY
     assert 1 < settled(follower, moved(0.9)) < 20
+
+
+def test_where_nobody_can_jump_the_motion_stays_where_it_last_could_follow() -> None:
+    follower = Follower(fitted_hop(), moved(0.0))
+    settled(follower, moved(0.1))
+    for _ in range(60):
+        if follower.follow(moved(30.0)) is Course.LOST:
+            break
+    else:
+        raise AssertionError("thirty metres were reached")
+    times = np.linspace(0.0, follower.motion.duration, 300)
+    forces = np.linalg.norm(follower.motion.forces(times).sum(axis=1), axis=1)
+    assert forces.max() / (follower.motion.transcription.character.mass * 9.81) < 100.0
+    settled(follower, moved(0.1), most=60)
 
 
 def test_it_goes_back_to_where_it_began() -> None:
@@ -59,7 +74,7 @@ def test_it_begins_at_an_adaptation_of_the_same_problem() -> None:
     fit = fitted_hop()
     last = adapt(fit, moved(0.2))
     follower = Follower(fit, moved(0.2), last)
-    assert follower.follow(moved(0.2))
+    assert follower.follow(moved(0.2)) is Course.ARRIVED
     np.testing.assert_allclose(follower.motion.x, last.motion.x, atol=1e-3)
     settled(follower, moved(0.22))
 

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ...operators import rays
 from ...operators.names import GizmoGroupId, OperatorId
 from ..overlay import palette
 from ..overlay.figures import Figures
@@ -16,6 +17,17 @@ from .places import Drawn, Knob, Places, Tip, places
 from .shown import handled, knob, paint, put
 
 ENDS = ("lower", "upper", "half_angle")
+
+
+def handles(seen: Seen, figures: Figures, sight: rays.Vector) -> Places:
+    """Of the limit that is chosen. sight: (3,) unit vector towards the viewer, world."""
+    limit = chosen_limit(seen)
+    if limit is None:
+        return Places()
+    figure = figures.of(seen, seen.recorded)
+    joints, drawn = seen_of([limit], figure, pose_of(seen.armature, (limit,)))
+    at = Drawn(drawn.axes[0], drawn.origins[0], joints.turns[0])
+    return places(limit, at, np.array(seen.armature.matrix_world), sight)
 
 
 class LimitHandles(bpy.types.GizmoGroup):
@@ -45,21 +57,12 @@ class LimitHandles(bpy.types.GizmoGroup):
         if seen is None:
             return
         sight = context.region_data.view_rotation @ Vector((0.0, 0.0, 1.0))
-        found = self._found(seen, sight)
+        found = handles(seen, self._figures, np.array(sight))
         chosen = seen.settings.active_constraint
         for each in found.knobs:
             _show_knob(*self._ends[each.end], each, chosen)
         if found.tip is not None:
             _show_tip(*self._tip, found.tip, chosen)
-
-    def _found(self, seen: Seen, sight: Vector) -> Places:
-        limit = chosen_limit(seen)
-        if limit is None:
-            return Places()
-        figure = self._figures.of(seen, seen.recorded)
-        joints, drawn = seen_of([limit], figure, pose_of(seen.armature, (limit,)))
-        at = Drawn(drawn.axes[0], drawn.origins[0], joints.turns[0])
-        return places(limit, at, np.array(seen.armature.matrix_world), np.array(sight))
 
     def _new(self, operator: OperatorId) -> tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]:
         gizmo = knob(self)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
 import gpu
 from gpu_extras.batch import batch_for_shader
-from mathutils import Matrix
 
-from .shapes import Look, Shape, merged
+from .shapes import Look, Shape
 
 SHADERS = {True: "POLYLINE_SMOOTH_COLOR", False: "SMOOTH_COLOR"}  # whether it is lines
 WIDTHS = {Look.THIN: 1.4, Look.BOLD: 2.6}  # px at the interface's usual scale
@@ -27,11 +26,10 @@ class Drawn:
     behind: dict[Look, gpu.types.GPUBatch]
 
 
-def upload(shapes: Iterable[Shape]) -> Drawn:
-    """Shapes as batches. Only while something is drawn."""
-    joined = merged(shapes)
-    front = {s.look: _batch(s, 1.0) for s in joined}
-    behind = {s.look: _batch(s, HIDDEN) for s in joined if s.look in SEEN_THROUGH}
+def upload(shapes: Sequence[Shape]) -> Drawn:
+    """Shapes, at most one for each look, as batches. Only while something is drawn."""
+    front = {s.look: _batch(s, 1.0) for s in shapes}
+    behind = {s.look: _batch(s, HIDDEN) for s in shapes if s.look in SEEN_THROUGH}
     return Drawn(front, behind)
 
 
@@ -46,33 +44,29 @@ def _shader(look: Look) -> gpu.types.GPUShader:
     return gpu.shader.from_builtin(SHADERS[look.lines])
 
 
-def draw(things: Sequence[tuple[Drawn, Matrix]], scale: float) -> None:
-    """Draws things, each where its matrix puts it. scale: of the interface.
+def draw(drawn: Drawn, scale: float) -> None:
+    """Draws what is in the world. scale: of the interface.
 
     The graphics state is afterwards what it was.
     """
     with _own_state():
         _state("GREATER", writes=False)
-        for look in SEEN_THROUGH:
-            _pass(look, [(d.behind[look], m) for d, m in things if look in d.behind], scale)
+        for look, batch in drawn.behind.items():
+            _draw(batch, look, scale)
         for look in Look:
-            _state("LESS_EQUAL", writes=look in SOLID)
-            gpu.state.face_culling_set("BACK" if look in SOLID else "NONE")
-            _pass(look, [(d.front[look], m) for d, m in things if look in d.front], scale)
+            if look in drawn.front:
+                _state("LESS_EQUAL", writes=look in SOLID)
+                gpu.state.face_culling_set("BACK" if look in SOLID else "NONE")
+                _draw(drawn.front[look], look, scale)
 
 
-def _pass(look: Look, shown: Sequence[tuple[gpu.types.GPUBatch, Matrix]], scale: float) -> None:
-    if not shown:
-        return
+def _draw(batch: gpu.types.GPUBatch, look: Look, scale: float) -> None:
     shader = _shader(look)
     shader.bind()
     if look.lines:
         shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
         shader.uniform_float("lineWidth", WIDTHS[look] * scale)
-    for batch, matrix in shown:
-        with gpu.matrix.push_pop():
-            gpu.matrix.multiply_matrix(matrix)
-            batch.draw(shader)
+    batch.draw(shader)
 
 
 def _state(test: str, *, writes: bool) -> None:

@@ -112,7 +112,11 @@ def poses(seen: Seen, figures: Figures) -> Layer | None:
             for pose in wanted:
                 yield from pose_shapes(pose, source, hung, size)
 
-    return Layer(Part.POSES, content, build, seen.armature.matrix_world.copy()) if wanted else None
+    return (
+        Layer(Part.POSES, content, build, seen.armature.matrix_world.copy().freeze())
+        if wanted
+        else None
+    )
 
 
 Wanted = tuple[

@@ -13,7 +13,7 @@ from .figures import Figures
 from .picture import layers
 from .pictures import Pictures
 from .seen import look_at
-from .shapes import Shape
+from .shapes import Label, Shape
 
 if TYPE_CHECKING:
     from .drawn import Drawn
@@ -25,20 +25,19 @@ class Overlay:
     def __init__(self) -> None:
         self._figures = Figures()
         self._pictures: Pictures[Drawn] = Pictures(_upload)
-        self._labels: list[labels.Placed] = []
+        self._labels: tuple[Label, ...] = ()
 
     def draw_view(self) -> None:
         """In the world (POST_VIEW)."""
         from .drawn import draw
 
-        self._labels = []
+        self._labels = ()
         seen = look_at(bpy.context)
         if seen is None:
             return
-        built = [(self._pictures.of(each), each.matrix) for each in layers(seen, self._figures)]
-        draw([(b.drawn, matrix) for b, matrix in built], bpy.context.preferences.system.ui_scale)
-        if seen.view.labels:
-            self._labels = [labels.Placed(x, matrix) for b, matrix in built for x in b.labels]
+        picture = self._pictures.of(list(layers(seen, self._figures)))
+        draw(picture.drawn, bpy.context.preferences.system.ui_scale)
+        self._labels = picture.labels if seen.view.labels else ()
 
     def draw_labels(self) -> None:
         """Over the picture (POST_PIXEL), which follows for the same region."""
@@ -49,7 +48,7 @@ class Overlay:
         """Forgets everything, the graphics card's memory included."""
         self._figures.clear()
         self._pictures.clear()
-        self._labels = []
+        self._labels = ()
 
 
 def _upload(shapes: Sequence[Shape]) -> Drawn:

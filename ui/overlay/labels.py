@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import blf
 import bpy
@@ -16,16 +15,8 @@ BESIDE = (10.0, 6.0)  # px from the place
 SHADE = (0.0, 0.0, 0.0, 0.8)
 
 
-@dataclass(frozen=True)
-class Placed:
-    """A label and the matrix that brings its place to the world."""
-
-    label: Label
-    matrix: Matrix
-
-
-def draw(placed: Iterable[Placed], context: bpy.types.Context) -> None:
-    """Draws labels where they are seen in this viewport."""
+def draw(labels: Iterable[Label], context: bpy.types.Context) -> None:
+    """Draws labels of the world where they are seen in this viewport."""
     region, view = context.region, context.region_data
     if region is None or view is None:
         return
@@ -33,13 +24,12 @@ def draw(placed: Iterable[Placed], context: bpy.types.Context) -> None:
     blf.size(FONT, POINTS * scale)
     blf.enable(FONT, blf.SHADOW)
     blf.shadow(FONT, 5, *SHADE)
-    for each in placed:
-        world = each.matrix @ Vector(each.label.place)
-        at = on_screen(world, view.perspective_matrix, region.width, region.height)
+    for label in labels:
+        at = on_screen(Vector(label.place), view.perspective_matrix, region.width, region.height)
         if at is not None:
-            blf.color(FONT, *each.label.colour[:3], 1.0)
+            blf.color(FONT, *label.colour[:3], 1.0)
             blf.position(FONT, at[0] + BESIDE[0] * scale, at[1] + BESIDE[1] * scale, 0.0)
-            blf.draw(FONT, each.label.words)
+            blf.draw(FONT, label.words)
     blf.disable(FONT, blf.SHADOW)
 
 

@@ -31,7 +31,10 @@ class Part(Enum):
 
 @dataclass(frozen=True)
 class Layer:
-    """content: equal where the picture is. build: the picture. matrix: from there to the world."""
+    """A part of the picture in a space of its own.
+
+    content: equal where the part is. build: makes it. matrix: from there to the world, frozen.
+    """
 
     part: Part
     content: Hashable

@@ -32,7 +32,7 @@ def layer(seen: Seen, figures: Figures) -> Layer:
         if limits:
             yield from limit_shapes(limits, figures.of(seen, shown), pose_of(seen.armature, limits))
 
-    return Layer(Part.LIMITS, content, build, seen.armature.matrix_world.copy())
+    return Layer(Part.LIMITS, content, build, seen.armature.matrix_world.copy().freeze())
 
 
 def chosen_limit(seen: Seen) -> Limit | None:

@@ -22,6 +22,7 @@ SHAFT = 0.011  # m, radius of an arrow
 PER_MOMENTUM = 1.6  # s, an arrow's length per angular momentum and kg
 GRAVITY = 9.81  # m/s², of which a weight is
 DASH, GAP = 0.05, 0.035  # m, of a parabola
+CORNERS = 80  # of a path at most
 CENTRE = 0.03  # m, radius of the centre of mass
 
 # Sizes are those of a grown person's figure; each is drawn as many times larger as its figure is.
@@ -67,9 +68,11 @@ def _colour_of(seen: Seen, part: Part) -> Colour:
 def path_shapes(traces: Traces, colour: Colour, size: float) -> Iterator[Shape]:
     """m, world."""
     for start, end in on_ground(traces):
-        when = (traces.frames >= start) & (traces.frames <= end)
-        if when.sum() > 1:
-            yield polyline(traces.com[when], colour, Look.BOLD if traces.flights else Look.THIN)
+        places = traces.com[(traces.frames >= start) & (traces.frames <= end)]
+        step = -(-len(places) // CORNERS)
+        if len(places) > 1:
+            few = np.concatenate([places[:-1:step], places[-1:]])
+            yield polyline(few, colour, Look.BOLD if traces.flights else Look.THIN)
     for flight in traces.flights:
         dash, gap = DASH * size, GAP * size
         yield dashed(flight.parabola, palette.PARABOLA, dash=dash, gap=gap, look=Look.BOLD)

@@ -66,7 +66,7 @@ def shapes(pins: Sequence[Pin], units: float) -> Iterator[Shape]:
         found = [place for _, place in moved]
         colours = [faded(palette.MOVE, pin.standing) for pin, _ in moved]
         yield dotted(found, [pin.place for pin, _ in moved], colours)
-        yield rings(found, FOUND * radius, colours)
+        yield solids.balls(found, FOUND * radius, [faded(colour, 0.5) for colour in colours])
     for pin in pins:
         if pin.box is not None:
             axes = np.array(pin.box.axes.copy())  # numpy cannot look into frozen ones

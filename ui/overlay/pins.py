@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ..properties import HangtimeContact
 
 REACH = 0.25  # m, how far a box is drawn along an axis that is not bounded
+ABOVE = 0.12  # m, of a stance's words
 SHIFTED = 1e-3  # Blender units
 
 
@@ -55,6 +56,7 @@ def _labels(seen: Seen) -> Iterator[Label]:
         if places:
             middle = sum(places, Vector()) / len(places)
             words = f"{stance.name}: {shift * seen.metres:.2f} m"
+            middle.z += ABOVE * seen.units
             yield Label(words, tuple(middle), palette.MOVE)
 
 

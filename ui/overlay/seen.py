@@ -37,7 +37,7 @@ class Same:
 
 @dataclass(frozen=True)
 class Shown:
-    """A motion. key: another for another motion; matrix: from its metres to the world now.
+    """A motion. key: another for another motion; matrix: from its metres to the world now, frozen.
 
     stood: the armature's world matrix when it was traced.
     """
@@ -84,7 +84,7 @@ class Seen:
         if traces is None or not len(traces.frames):
             return None
         stood = self.armature.matrix_world.copy()
-        return Shown(traces, Same(traces), Matrix.Scale(1.0 / self.metres, 4), stood)
+        return Shown(traces, Same(traces), Matrix.Scale(1.0 / self.metres, 4).freeze(), stood)
 
     @cached_property
     def performs_adapted(self) -> bool:
@@ -121,7 +121,7 @@ class Seen:
         if found is None or not len(found.traces.frames):
             return None
         matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)
-        return Shown(found.traces, found.key, matrix, found.stood)
+        return Shown(found.traces, found.key, matrix.freeze(), found.stood)
 
 
 def look_at(context: bpy.types.Context) -> Seen | None:

@@ -17,7 +17,7 @@ Colour = tuple[float, float, float, float]
 
 LIGHT = np.array([0.32, -0.48, 0.82])  # towards the lamp, world
 AMBIENT, AIRY = 0.55, 0.75  # share of a colour that is there without the lamp; of ghosts
-AROUND = 20  # lines of a ring
+AROUND = 16  # lines of a ring
 
 
 class Look(Enum):
@@ -133,7 +133,7 @@ def dashed(points: ArrayLike, colour: ArrayLike, *, dash: float, gap: float, loo
     return lines(np.stack([at[:-1], at[1:]], axis=1)[drawn], colour, look)
 
 
-def dotted(starts: ArrayLike, ends: ArrayLike, colours: ArrayLike, dashes: int = 9) -> Shape:
+def dotted(starts: ArrayLike, ends: ArrayLike, colours: ArrayLike, dashes: int = 7) -> Shape:
     """Straight lines between (N, 3) points, each in so many dashes."""
     a, b = np.asarray(starts, dtype=float)[:, None, None], np.asarray(ends, dtype=float)
     share = (np.arange(2 * dashes) / (2 * dashes - 1)).reshape(1, dashes, 2, 1)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from .shapes import AIRY, Faces, FloatArray, Look, Points, Shape, painted, shades
 
-AROUND, ALONG = 14, 8  # faces of a ball
+AROUND, ALONG = 12, 7  # faces of a ball
 SIDES = 10  # of an arrow
 TIP_LONG, TIP_WIDE = 4.5, 2.6  # an arrow's tip, in radii of its shaft
 TIP_MOST = 0.6  # of a short arrow is tip
