@@ -7,7 +7,7 @@
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
   gallery [NAMES...] [--out DIR]          make the thesis's results, with pictures and a table
-  window [--out DIR]                      use the built zip in a real Blender's window, and measure it
+  window [--out DIR]                      drive the zip in a real Blender's window, and measure
   benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
   build [--out DIR]                       make and validate the extension's zips
   lint                                    ruff and mypy

@@ -73,7 +73,7 @@ def force_chart(takes: Takes, caps: tuple[Cap, ...]) -> Chart:
     """Contact forces in body weights: their sum's size, which caps are about, and its vertical."""
     curves = []
     for take, traces in takes.items():
-        if not traces.contacts:
+        if not traces.forces.size:  # a recording knows none
             continue
         total = traces.forces.sum(axis=1) / traces.weight
         size = np.linalg.norm(total, axis=1)
@@ -142,7 +142,7 @@ def _point_chart(takes: Takes, point: str) -> Chart:
     curves = tuple(
         Curve(take, t.frames, t.forces[:, t.contacts.index(point), 2] / t.weight, "Vertical")
         for take, t in takes.items()
-        if point in t.contacts
+        if point in t.contacts and t.forces.size  # a recording has contacts without forces
     )
     return Chart(f"Force of {point}", "body weights", curves, 2)
 

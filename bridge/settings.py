@@ -14,6 +14,7 @@ import numpy as np
 from ..solver.body_tables import MassTable
 from ..solver.contacts import Contact, ContactSchedule, Phase, PhaseKind, numbered
 from ..solver.digest import digest
+from ..solver.faults import EmptyRange
 from ..solver.messages import Analysed
 from ..solver.problem import AddedContact, ContactEdit, MotionProblem, Pin
 from ..solver.recording import Recording
@@ -49,7 +50,10 @@ def problem_of(
     """What the settings ask of a recording.
 
     with_contacts: whether corrections and pins count; an analysis starts without them.
+    Raises EmptyRange for a contact that ends before it begins, BadRecipe, and as `requests_of`.
     """
+    if with_contacts:
+        _require_ordered(settings)
     span = (float(recording.frames[0]), float(recording.frames[-1]))
     return MotionProblem(
         frames=span,
@@ -75,6 +79,13 @@ def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests
     text = settings.requests
     written = parse_recipe(text.as_string(), text.name).problem.requests
     return joined(listed, written)
+
+
+def _require_ordered(settings: HangtimeSettings) -> None:
+    """Without a word the solver would leave such a contact out."""
+    for row in settings.contacts:
+        if row.used and row.end_frame < row.start_frame:
+            raise EmptyRange(row.name, row.start_frame, row.end_frame)
 
 
 def _edits(settings: HangtimeSettings) -> tuple[ContactEdit, ...]:

@@ -77,7 +77,6 @@ def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[b
         showing=partial(_showing, armature, original),
     )
     action.hangtime.recording = original
-    action.use_fake_user = True  # the next adaptation must not cost the artist this one
     show(armature, action, slot)
     armature.hangtime.adapted = action
     return action

@@ -12,7 +12,7 @@ RELEASE = Path("/etc/os-release")
 
 @dataclass(frozen=True)
 class Source:
-    """One place that packages come from, with the suites ("trixie") and components it is read for."""
+    """One place that packages come from; the suites ("trixie") and components it is read for."""
 
     place: str
     suites: tuple[str, ...]

@@ -15,7 +15,10 @@ CATEGORY = "Hangtime"
 CLIP = Path("/mnt/mocap/cmu_bvh/forward_jump_116cm.bvh")
 SCALE = 0.05644  # metres per unit of the recording
 LANDING = "ground 2"
-CHECKBOX = 0.12  # where a list's row has its checkbox, in the sidebar's width
+VALUE = 0.7  # where a number's field is, in the sidebar's width
+ASIDE = 0.93  # where the buttons beside a list are
+ROW = 20  # pixels from one of them to the next
+CHECKBOX = 0.12  # where a list's row has its checkbox, in the same
 
 
 def part(name: str) -> ModuleType:
@@ -28,7 +31,7 @@ def armature() -> bpy.types.Object:
     return bpy.data.objects[CLIP.stem]
 
 
-def shown_action() -> bpy.types.Action | None:
+def shown_action() -> bpy.types.Action:
     """The action that the armature performs."""
     return armature().animation_data.action
 
@@ -76,9 +79,9 @@ def worker_pid() -> int | None:
     return None
 
 
-def press(stage: Stage, what: str) -> Acting:
+def press(stage: Stage, what: str, *columns: float) -> Acting:
     """Click the sidebar's button of that command or property."""
-    place = yield from stage.eyes.find_button(what)
+    place = yield from stage.eyes.find_button(what, *columns)
     yield stage.hands.click(place, what)
     yield 0.1
 
@@ -107,7 +110,7 @@ def choose_row(stage: Stage, row: int) -> Acting:
 
 def fill_in(stage: Stage, what: str, text: str) -> Acting:
     """Type into a number field of the sidebar."""
-    place = yield from stage.eyes.find_button(what)
+    place = yield from stage.eyes.find_button(what, VALUE)
     yield stage.hands.click(place, what)
     yield 0.2
     yield stage.hands.key("ctrl+a")

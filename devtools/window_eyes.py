@@ -7,6 +7,7 @@ and asking Blender what lies under it, the way its own "copy data path" and "cop
 
 from __future__ import annotations
 
+import math
 from collections.abc import Generator
 from dataclasses import dataclass, field
 from typing import TypeVar
@@ -20,9 +21,9 @@ from .window_hands import Hands, Place
 Result = TypeVar("Result")
 Waits = Generator[float, None, Result]
 
-LINE = 9  # pixels between the places looked at; the smallest button is 18 high
+LINE = 12  # pixels between the places looked at; the smallest button is 18 high
 LOOK = 0.02  # s until Blender knows what lies under the pointer
-COLUMNS = (0.7, 0.3)  # of the sidebar's width, tabs left out
+COLUMNS = (0.3, 0.7)  # of the sidebar's width, tabs left out
 FOLDS = (-60, *(6,) * 8)  # notches of the wheel: up to the top, then down fold by fold
 TAB_WIDTH = 24  # pixels
 MARGIN = 12  # pixels beside lists and buttons
@@ -33,12 +34,20 @@ class NotSeen(Exception):
     """What was looked for is not there. Says what and where."""
 
 
+@dataclass(frozen=True)
+class Spot:
+    """A place of the sidebar's content: x on the screen, height as the content is scrolled."""
+
+    x: float
+    height: float
+
+
 @dataclass
 class Eyes:
     """Looks at the first window's 3D viewport and its sidebar."""
 
     hands: Hands
-    _seen: dict[str, Place] = field(default_factory=dict)  # what lay where, as long as it may
+    _seen: dict[str, Spot] = field(default_factory=dict)  # what lay where, as long as it may
 
     @property
     def window(self) -> bpy.types.Window:
@@ -103,16 +112,28 @@ class Eyes:
     def find_button(self, what: str, *columns: float) -> Waits[Place]:
         """Where the sidebar's button is whose command or data path has `what` in it, scrolling if
         need be. columns: where to look, in the sidebar's width. Raises NotSeen."""
-        for on, place in self._seen.items():
-            if what in on and what in (yield from self.look(place)):
-                return place
+        for on, spot in list(self._seen.items()):
+            if what in on:
+                place = yield from self._bring(spot)
+                if what in (yield from self.look(place)):
+                    return place
+                del self._seen[on]
+        columns = columns or COLUMNS
+        looked = dict.fromkeys(columns, math.inf)  # at all above that height, in each column
         for notches in (0, *FOLDS):
             if notches and not (yield from self._scroll(notches)):
                 continue
-            for column in columns or COLUMNS:
-                place = yield from self._find_in_column(what, column)
-                if place is not None:
-                    return place
+            for column in columns:
+                for place in self._column(column):
+                    spot = self._spot(place)
+                    if notches >= 0 and spot.height >= looked[column]:
+                        continue
+                    looked[column] = spot.height
+                    on = yield from self.look(place)
+                    if on:
+                        self._seen.setdefault(on, spot)
+                    if what in on:
+                        return place
         raise NotSeen(f"no button of the sidebar is {what}")
 
     def look(self, place: Place) -> Waits[str]:
@@ -125,32 +146,35 @@ class Eyes:
         """What lay where no longer counts."""
         self._seen.clear()
 
+    def _spot(self, place: Place) -> Spot:
+        """What a place on the screen is in the sidebar's content."""
+        region = self.region("UI")
+        y = self.window.height - 1 - place[1] - region.y
+        return Spot(place[0], region.view2d.region_to_view(0, y)[1])
+
+    def _bring(self, spot: Spot) -> Waits[Place]:
+        """Scroll until a spot of the sidebar's content can be seen, as far as that goes."""
+        region = self.region("UI")
+        for _ in range(20):
+            y = region.view2d.view_to_region(0, spot.height, clip=False)[1]
+            if y - LINE >= 0 and y + LINE < region.height:
+                break
+            if not (yield from self._scroll(-3 if y > 0 else 3)):
+                break
+        return self.on_screen(spot.x - self.window.x, region.y + y)
+
     def _scroll(self, notches: int) -> Waits[bool]:
         """Turn the wheel over the sidebar; whether that moved it."""
-        view = self.region("UI").view2d
-        before = tuple(view.region_to_view(0, 0))
         region = self.region("UI")  # at its left edge: over a list the wheel would turn that
         edge = self.on_screen(region.x + MARGIN, region.y + region.height / 2)
+        before = region.view2d.region_to_view(0, 0)[1]
         yield self.hands.wheel(edge, notches)
         yield 0.2
-        self.forget()
-        return before != tuple(view.region_to_view(0, 0))
+        return bool(region.view2d.region_to_view(0, 0)[1] != before)
 
     def scroll_down(self) -> Waits[None]:
         """To the sidebar's foot."""
         yield from self._scroll(-FOLDS[0])
-
-    def _find_in_column(self, what: str, column: float) -> Waits[Place | None]:
-        places = iter(self._column(column))
-        for place in places:
-            on = yield from self.look(place)
-            if not on:
-                continue
-            self._seen.setdefault(on, (place[0], place[1] + LINE / 2))  # well inside
-            if what in on:
-                return self._seen[on]
-            next(places, None)  # is on the same button
-        return None
 
     def _column(self, column: float) -> list[Place]:
         """Places down the sidebar, close enough that no button lies between them."""

@@ -1,9 +1,9 @@
 """Measures how long a Blender with a window is held up, and by which of the extension's functions.
 
-A timer that Blender calls whenever it is free tells how long it was not. Where a processor draws the
-window, most of that is waiting for the picture; so the time that the thread itself computed is kept
-beside it, which is what a graphics card would leave. Python's own monitoring tells how long Blender
-was in the extension's code at a stretch: operators, panels, handlers, timers.
+A timer that Blender calls whenever it is free tells how long it was not. Where a processor draws
+the window, most of that is waiting for the picture; so the time that the thread itself computed is
+kept beside it, which is what a graphics card would leave. Python's own monitoring tells how long
+Blender was in the extension's code at a stretch: operators, panels, handlers, timers.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ class Gauge:
 
     def _watch(self) -> None:
         """Have Python tell of the calls of all the package's functions that are loaded by now."""
-        monitoring = sys.monitoring
+        monitoring = vars(sys)["monitoring"]  # Python 3.12, which Debian's Blender has
         events = monitoring.events
         if monitoring.get_tool(TOOL) is None:
             monitoring.use_tool_id(TOOL, "window")

@@ -26,6 +26,7 @@ SCENES = (
     *window_scenes_feel.SCENES,
     *window_scenes_solve.SCENES,
     *window_scenes.LAST,
+    *window_scenes_solve.LAST,
 )
 
 
@@ -33,7 +34,7 @@ def start() -> None:
     """Begin the play once Blender's window is there; Blender is quit at its end."""
     preferences = bpy.context.preferences
     preferences.view.show_splash = False
-    preferences.system.viewport_aa = "FXAA"  # drawn once; the others draw again and again
+    preferences.system.viewport_aa = "OFF"  # drawn once; the others draw again and again
     preferences.view.filebrowser_display_type = "SCREEN"  # the dialog in the window that is there
     ending = ExitStack()
     hands = ending.enter_context(Hands())

@@ -1,4 +1,4 @@
-"""What a play in the window brought: its scenes and its figures beside promises, as a JUnit report."""
+"""What a play in the window brought: its scenes, its figures beside promises, a JUnit report."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ LIMITS = {
     # What is behind the figures of blocking; software draws the window here.
     **{BETWEEN + stage: Limit("ms") for stage in (REST, *STAGES)},
 }
-QUICKEST = ("opens_sidebar", "analyses", "chooses_landing", "moves_landing", "adapts")
+QUICKEST = ("opens_sidebar", "analyses", "chooses_landing", "drags_landing")
 # How lines of Blender's log begin that a sound extension does not cause.
-FAULTS = ("Traceback (most recent call last)", "rna_", "Exception in", "Python: ")
+FAULTS = ("Traceback (most recent call last)", "rna_", "Exception in", "Python: ", "LEFT ")
 Record = dict[str, Any]
 
 
@@ -115,20 +115,22 @@ def clicks(played: Played) -> dict[str, float]:
     return {CLICKS: sum(click["task"] in QUICKEST for click in played.clicks)}
 
 
-def verdicts(played: Played, figures: list[Figure]) -> list[Verdict]:
-    """Each scene, how the play ended, and each promise."""
+def scene_verdicts(played: Played) -> list[Verdict]:
+    """Each scene, and how the play ended."""
     found = []
     for scene in played.scenes:
         failure = scene["failure"]
         if failure is not None and scene["pictures"]:
             failure = f"{failure} (see {scene['pictures'][-1]})"
         found.append(Verdict(scene["name"], failure, scene["seconds"], scene["skipped"]))
-    found.append(Verdict("the play's end", played.ending))
+    return [*found, Verdict("the play's end", played.ending)]
+
+
+def figure_verdicts(figures: list[Figure]) -> list[Verdict]:
+    """Each promise."""
     measured = {figure.name: figure for figure in figures}
-    for name, limit in LIMITS.items():
-        if limit.must is not None:
-            found.append(Verdict(name, missed(measured.get(name))))
-    return found
+    promised = [name for name, limit in LIMITS.items() if limit.must is not None]
+    return [Verdict(name, missed(measured.get(name))) for name in promised]
 
 
 def missed(figure: Figure | None) -> str | None:

@@ -1,7 +1,7 @@
 """A room with a real Blender in it: Debian by debootstrap, entered with nothing of ours around it.
 
-Whatever is mounted for the room is mounted in a namespace that ends with the command that needed it,
-killed or not, so nothing is ever left mounted. Linux and root only. Standard library only.
+Whatever is mounted for the room is mounted in a namespace that ends with the command that needed
+it, killed or not, so nothing is ever left mounted. Linux and root only. Standard library only.
 """
 
 from __future__ import annotations
@@ -31,7 +31,18 @@ PACKAGES = (
     "xdotool",
     "xvfb",
 )
-ALONE = ("unshare", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc")
+# Ends with whoever started it, and then ends all that it started itself.
+ALONE = (
+    "setpriv",
+    "--pdeathsig",
+    "KILL",
+    "unshare",
+    "--mount",
+    "--pid",
+    "--fork",
+    "--kill-child",
+    "--mount-proc",
+)
 # dpkg waits for the disk after each file otherwise, and the pages are for people who read here.
 FAST = "force-unsafe-io\npath-exclude=/usr/share/doc/*\npath-exclude=/usr/share/man/*\n"
 VARIABLES = {

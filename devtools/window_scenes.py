@@ -1,16 +1,19 @@
-"""The way from a recording to a file: import, analyse, move the landing, adapt, undo, save, reload."""
+"""The way from a recording to a file: import, analyse, move the landing, adapt, export, save."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import bpy
+from mathutils import Vector
 
 from .window_acts import (
+    ASIDE,
     CATEGORY,
     CLIP,
     LANDING,
     PACKAGE,
+    ROW,
     SCALE,
     armature,
     choose_row,
@@ -27,6 +30,7 @@ from .window_acts import (
     search,
     shown_action,
 )
+from .window_scenes_feel import drags_landing
 from .window_stage import Acting, Scene, Stage, Until
 
 SHIFT = 0.3  # m that the landing goes forward
@@ -68,7 +72,7 @@ def rests(stage: Stage) -> Acting:
     stage.gauge.start(label)
     yield 2.0
     stage.gauge.stop()
-    assert stage.gauge.stretches["rest"].gaps.count > 5, "the window is hardly redrawn"
+    assert stage.gauge.stretches["rest"].gaps.count > 2, "the window is hardly redrawn"
 
 
 def analyses(stage: Stage) -> Acting:
@@ -90,25 +94,27 @@ def chooses_landing(stage: Stage) -> Acting:
 
 
 def moves_landing(stage: Stage) -> Acting:
-    before = [tuple(row.at) for row in armature().hangtime.contacts if row.phase == LANDING]
+    yield from press(stage, "hangtime.put_back")
     yield from fill_in(stage, landing_field("forward"), str(SHIFT))
     assert abs(landing().forward - SHIFT) < 1e-4, f"the landing went {landing().forward:g} m"
-    after = [tuple(row.at) for row in armature().hangtime.contacts if row.phase == LANDING]
-    for old, new in zip(before, after, strict=True):
-        went = sum((a - b) ** 2 for a, b in zip(old, new, strict=True)) ** 0.5
-        assert abs(went - SHIFT) < 1e-3, f"a contact of the landing went {went:g} m"
+    for row in armature().hangtime.contacts:
+        went = (Vector(row.at) - Vector(row.found_at)).length
+        wanted = SHIFT if row.phase == LANDING else 0.0
+        assert abs(went - wanted) < 1e-3, f"{row.name} went {went:g} m, not {wanted:g} m"
 
 
 def adapts(stage: Stage) -> Acting:
-    recorded = shown_action()
+    """With another mass, so that the fit is made anew and all stages can be measured."""
+    before = shown_action()
+    yield from fill_in(stage, "hangtime.mass", "75")
     yield from stage.eyes.find_button("hangtime.adapt")
     stage.gauge.start(doing)
     yield from press(stage, "hangtime.adapt")
-    yield Until("an adapted action", lambda: idle() and shown_action() != recorded, 90)
+    yield Until("an adapted action", lambda: idle() and shown_action() != before, 90)
     yield 0.5
     stage.gauge.stop()
-    assert recorded is not None
-    assert recorded.name in bpy.data.actions, "the recording's action is gone"
+    recorded = shown_action().hangtime.recording
+    assert recorded is not None, "the adapted action does not know its recording"
     yield from lands()
 
 
@@ -131,19 +137,42 @@ def lands() -> Acting:
 
 
 def undoes(stage: Stage) -> Acting:
-    adapted = shown_action()
-    assert adapted is not None
-    name, recorded = adapted.name, adapted.hangtime.recording.name
+    name = shown_action().name
     yield from over_viewport(stage, "ctrl+z")
-    yield Until("the recording after undo", lambda: shown_action().name == recorded)
+    yield Until("what was before it", lambda: name not in bpy.data.actions)
     yield from over_viewport(stage, "ctrl+shift+z")
     yield Until("the adapted motion after redo", lambda: shown_action().name == name)
     assert len(shown_action().fcurves) > 50, "redo brought an empty action"
 
 
+def pins_bone(stage: Stage) -> Acting:
+    """Adds a pin to a bone that is selected with the mouse in pose mode, and takes it back."""
+    settings = armature().hangtime
+    yield from over_viewport(stage, "ctrl+Tab")
+    yield Until("pose mode", lambda: armature().mode == "POSE")
+    bone = armature().pose.bones["LeftForeArm"]
+    middle = armature().matrix_world @ (bone.head + bone.tail) / 2
+    yield stage.hands.click(stage.eyes.place_of(middle), bone.name)
+    yield Until("a selected bone", lambda: bpy.context.active_object.data.bones.active)
+    x, y = yield from stage.eyes.find_button("hangtime.remove_constraint", ASIDE)
+    yield stage.hands.move((x, y - ROW))
+    yield 0.3  # a menu opens only where Blender has seen the pointer rest
+    yield stage.hands.click((x, y - ROW), "the menu of constraints")
+    yield 0.4
+    yield from stage.picture("menu_of_constraints")
+    yield stage.hands.key("p")
+    yield Until("a constraint", lambda: len(settings.constraints) == 1)
+    row, active = settings.constraints[0], armature().data.bones.active
+    found = row.kind, [each.name for each in row.bones]
+    assert found == ("POINT", [active.name]), f"{found} was added for {active.name}"
+    yield from stage.picture("pinned_bone")
+    yield from over_viewport(stage, "ctrl+Tab")
+    yield from press(stage, "hangtime.remove_constraint", ASIDE)
+    yield Until("no constraint", lambda: not armature().hangtime.constraints)
+
+
 def compares(stage: Stage) -> Acting:
     adapted = shown_action()
-    assert adapted is not None
     recorded = adapted.hangtime.recording
     yield from press(stage, "hangtime.compare")
     yield Until("the recording", lambda: shown_action() == recorded)
@@ -203,10 +232,12 @@ SCENES = (
     Scene("rests", rests, ("opens_sidebar",)),
     Scene("analyses", analyses, ("opens_sidebar",), 90),
     Scene("chooses_landing", chooses_landing, ("analyses",)),
+    Scene("drags_landing", drags_landing, ("chooses_landing",), 120),
     Scene("moves_landing", moves_landing, ("chooses_landing",)),
     Scene("adapts", adapts, ("moves_landing",), 120),
     Scene("undoes", undoes, ("adapts",)),
     Scene("compares", compares, ("adapts",)),
+    Scene("pins_bone", pins_bone, ("chooses_landing",)),
 )
 LAST = (
     Scene("accepts", accepts, ("adapts",)),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import bpy
 
@@ -14,14 +15,14 @@ from ..bridge.takes import read_take_in_parts, recorded_action, write_take_in_pa
 from ..bridge.traces_store import keep
 from ..bridge.worker import shared
 from ..bridge.write import write_action
-from ..solver.digest import digest
-from ..solver.faults import ChangedMeanwhile
+from ..solver.digest import alike, digest
+from ..solver.faults import ChangedMeanwhile, Fault
 from ..solver.messages import Adapted, Failed, Kind
 from ..solver.problem import MotionProblem
 from ..solver.proportions import changed_recording
 from ..solver.recording import Recording
 from ..solver.requests import Method, Objective, Solution
-from .common import chosen_armature, hindrance
+from .common import chosen_armature, hindrance, required_armature
 from .live import live
 from .names import OperatorId
 from .session import Best, session
@@ -34,10 +35,11 @@ STOPPED = "stopped"
 
 @dataclass(frozen=True)
 class Asked:
-    """A request: of which armature, what its recording was then, and what was asked."""
+    """A request: of which armature (its name then, and its number in this session), what its
+    recording was, and what was asked."""
 
     armature: str
-    content: str
+    uid: int
     recording: Recording
     problem: MotionProblem
 
@@ -60,18 +62,11 @@ class _Adapting(TaskOperator):
 
     def task(self, context: bpy.types.Context) -> Task:
         context.view_layer.update()  # empties that a script moved
-        solving = session().solving
-        assert solving is not None
-        asked = yield from ask_for(context)
-        solution = self.solution(chosen_armature(context).hangtime, asked.problem.requests.solution)
-        requests = replace(asked.problem.requests, solution=solution)
-        asked = replace(asked, problem=replace(asked.problem, requests=requests))
-        solving.advance(State.SOLVING)
-        job = shared().ask(Kind.ADAPT, asked.recording, asked.problem)
         try:
-            answer = yield from answered(job)
+            asked = yield from self._asked(context)
+            answer = yield from answered(shared().ask(Kind.ADAPT, asked.recording, asked.problem))
         finally:
-            live().clear()
+            live().clear()  # a drag's ghost stays until there is something better, or nothing
         if isinstance(answer, Failed):
             raise answer.fault
         assert isinstance(answer, Adapted)
@@ -80,6 +75,15 @@ class _Adapting(TaskOperator):
             session().best = Best(asked, answer)
             raise answer.fault
         return (yield from write_answer(asked, answer))
+
+    def _asked(self, context: bpy.types.Context) -> Parts[Asked]:
+        asked = yield from ask_for(context)
+        solving = session().solving
+        assert solving is not None
+        solving.advance(State.SOLVING)
+        settings, requests = required_armature(context).hangtime, asked.problem.requests
+        requests = replace(requests, solution=self.solution(settings, requests.solution))
+        return replace(asked, problem=replace(asked.problem, requests=requests))
 
 
 class AdaptOperator(_Adapting, bpy.types.Operator):
@@ -145,13 +149,13 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
 def ask_for(context: bpy.types.Context) -> Parts[Asked]:
     """What the settings ask, of the recording as it is. Raises any Fault of reading, and
     ChangedMeanwhile where it is not what was analysed."""
-    armature = chosen_armature(context)
+    armature = required_armature(context)
     settings = armature.hangtime
     recording = yield from read_take_in_parts(armature, *wanted_range(settings))
-    content = digest(recording)
-    if content != settings.analysed:
+    if digest(recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
-    return Asked(armature.name, content, recording, problem_of(settings, recording))
+    problem = problem_of(settings, recording)
+    return Asked(armature.name, armature.session_uid, recording, problem)
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
@@ -167,7 +171,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
     stood = armature.matrix_world.copy()
     action = yield from write_take_in_parts(armature, answer.track)
     keep(action, answer.traces, stood)
-    _note(armature, action, answer)
+    _note(armature, armature, action, answer)
     return f"Wrote the action {action.name}"
 
 
@@ -176,12 +180,19 @@ def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Obje
     other, track, _ = other_figure(recording, answer.track)
     other.name = f"{armature.name} changed"
     action = write_action(other, track, name=f"{recording.name} adapted")
-    keep(action, answer.traces, other.matrix_world)
-    _note(armature, action, answer)
+    action.hangtime.recording = recorded_action(armature)
+    armature.hangtime.adapted = action
+    keep(action, answer.traces, armature.matrix_world)
+    _note(armature, other, action, answer)
     return f"Made the armature {other.name}, which performs the adapted motion"
 
 
-def _note(armature: bpy.types.Object, action: bpy.types.Action, answer: Adapted) -> None:
+def _note(
+    armature: bpy.types.Object,
+    performer: bpy.types.Object,
+    action: bpy.types.Action,
+    answer: Adapted,
+) -> None:
     """Keeps what was found beside the action, and how each constraint came out."""
     from ..bridge.constraint_status import write_status
     from .report_text import as_text
@@ -190,15 +201,19 @@ def _note(armature: bpy.types.Object, action: bpy.types.Action, answer: Adapted)
     settings.status = summary(answer)
     write_status(settings, answer.report)
     action.hangtime.report = as_text(answer.report)
+    action.hangtime.performer = performer
 
 
 def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
     """The armature, if it and its recording are what they were. Raises ChangedMeanwhile."""
-    armature = bpy.data.objects.get(asked.armature)
+    armature = next((o for o in bpy.data.objects if o.session_uid == asked.uid), None)
     if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
         frames = asked.recording.frames
-        now = yield from read_take_in_parts(armature, frames[0], frames[-1])
-        if digest(now) == asked.content:
+        try:
+            now = yield from read_take_in_parts(armature, frames[0], frames[-1])
+        except Fault as fault:  # another action, a scale: whatever it is, it is new
+            raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
+        if alike(now, asked.recording):
             return armature
     raise ChangedMeanwhile(asked.armature, while_solving=True)
 
@@ -215,13 +230,16 @@ def summary(answer: Adapted) -> str:
         [
             f"{said} in {seconds:.1f} s",
             f"Pins: {worst['worst_violation_mm']:.2f} mm off at most ({worst['name']})",
-            *(
-                f"{each['name']}: {'held' if each['met'] else 'missed a little'}"
-                for each in report["conditions"]
-            ),
+            *(f"{each['name']}: {_held(each)}" for each in report["conditions"]),
             f"Peak force: {peak['peak_bw']:.1f} body weights (frame {peak['frame']:.0f})",
         ]
     )
+
+
+def _held(condition: Mapping[str, Any]) -> str:
+    if condition["met"]:
+        return "held"
+    return f"missed by {condition['worst_violation']:.0f} {condition['unit']}"
 
 
 CLASSES = (AdaptOperator, RefineOperator, UseBestOperator)

@@ -6,13 +6,15 @@ import bpy
 
 from ..bridge.parts_of_body import find_parts, missing_parts
 from ..bridge.settings import problem_of, wanted_range, write_analysis
-from ..bridge.takes import read_take_in_parts
+from ..bridge.takes import read_take_in_parts, recorded_action
 from ..bridge.traces_store import keep
 from ..bridge.worker import shared
-from ..solver.faults import MissingPart
+from ..solver.faults import Fault, MissingPart, NoFlight, OddHeight, OutsideKeys, UnseenSupport
 from ..solver.messages import Analysed, Failed, Fitted, Kind
+from ..solver.problem import MotionProblem
+from ..solver.recording import Recording
 from .adapt import ask_for
-from .common import FaultyOperator, chosen_armature, hindrance
+from .common import FaultyOperator, chosen_armature, hindrance, required_armature, said
 from .names import OperatorId
 from .session import session
 from .solving import State
@@ -20,6 +22,8 @@ from .task import Task, TaskOperator, answered
 
 # rms of the joint centres' distance, cm
 WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
+HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was imported at a wrong scale
+USUAL_HEIGHT = 1.75  # m
 LOOSE = "only roughly like the recording: check the contacts' frames, and the scale"
 
 
@@ -64,7 +68,7 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
     bl_options = {"UNDO"}  # noqa: RUF012 - Blender reads a set
 
     def task(self, context: bpy.types.Context) -> Task:
-        armature = chosen_armature(context)
+        armature = required_armature(context)
         settings = armature.hangtime
         recording = yield from read_take_in_parts(armature, *wanted_range(settings))
         find_parts(armature)
@@ -76,13 +80,38 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
         solving.advance(State.SOLVING)
         answer = yield from answered(shared().ask(Kind.ANALYSE, recording, problem))
         if isinstance(answer, Failed):
-            raise answer.fault
+            raise _telling(answer.fault, armature, recording, problem)
         assert isinstance(answer, Analysed)
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
         context.scene.hangtime.armature = armature
         contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
-        return f"Found {contacts} contacts and {flights} flights"
+        found = f"Found {contacts} contacts and {flights} flight{'s' if flights > 1 else ''}"
+        if problem.height is None and (odd := _odd_height(armature.name, answer.height)):
+            return f"{found}; but {said(odd)}"
+        return found
+
+
+def _telling(
+    fault: Fault, armature: bpy.types.Object, recording: Recording, problem: MotionProblem
+) -> Fault:
+    """Why an analysis failed: beside the keys nothing moves, and at a wrong scale feet seem to
+    slide and bodies to float."""
+    if not isinstance(fault, NoFlight | UnseenSupport):
+        return fault
+    first, last = recorded_action(armature).frame_range
+    if recording.frames[0] >= last or recording.frames[-1] <= first:
+        return OutsideKeys(armature.name, first, last)
+    from ..solver.character import build_character  # numpy's, but half of the solver
+
+    height = build_character(recording, mass=problem.mass, chosen=problem.bones).height
+    return _odd_height(armature.name, height) or fault
+
+
+def _odd_height(armature: str, height: float) -> OddHeight | None:
+    """A fault where a figure of this height, m, is nobody's."""
+    low, high = HEIGHTS
+    return None if low < height < high else OddHeight(armature, height, USUAL_HEIGHT / height)
 
 
 class FitOperator(_OnRecording, bpy.types.Operator):
@@ -95,7 +124,7 @@ class FitOperator(_OnRecording, bpy.types.Operator):
     bl_options = {"UNDO"}  # noqa: RUF012 - Blender reads a set
 
     def task(self, context: bpy.types.Context) -> Task:
-        armature = chosen_armature(context)
+        armature = required_armature(context)
         solving = session().solving
         assert solving is not None
         asked = yield from ask_for(context)

@@ -22,6 +22,14 @@ def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
     return active if active is not None and active.type == "ARMATURE" else None
 
 
+def required_armature(context: bpy.types.Context) -> bpy.types.Object:
+    """The same; raises NoArmature, for it may have been deleted since the button was pressed."""
+    armature = chosen_armature(context)
+    if armature is None:
+        raise NoArmature(None)
+    return armature
+
+
 def hindrance(context: bpy.types.Context) -> str | None:
     """Why the armature cannot be read now, in a sentence; None where it can."""
     armature = chosen_armature(context)

@@ -7,10 +7,12 @@ from pathlib import Path
 import bpy
 
 from ..bridge.export import export_fbx, export_gltf
+from ..solver.faults import OutputNotWritable
 from .common import FaultyOperator, chosen_armature
 from .names import OperatorId
-from .results import result_of
+from .results import performer_of, result_of
 
+NO_NAME = "no file name is given"
 NOT_ACCEPTED = "Accept a result first; what is exported is the accepted action"
 
 
@@ -41,8 +43,10 @@ class _Export(FaultyOperator):
 
     def run(self, context: bpy.types.Context) -> set[str]:
         armature = chosen_armature(context)
+        if not bpy.path.basename(self.filepath):
+            raise OutputNotWritable(self.filepath, NO_NAME)
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.extension)
-        self.write(armature, result_of(armature), path)
+        self.write(performer_of(armature), result_of(armature), path)
         self.report({"INFO"}, f"Exported {Path(path).name}")
         return {"FINISHED"}
 

@@ -11,8 +11,9 @@ from ..solver.adapt import Adaptation, adapt, unadapted
 from ..solver.faults import NoArmature, NoFit, NoSolution, OutputNotWritable, UnreadableClip
 from ..solver.fit import fit
 from ..solver.problem import MotionProblem, pinned_places
+from ..solver.recording import Recording
 from ..solver.report import Json, Origin, report
-from ..solver.session import Analysis, analyse
+from ..solver.session import Analysis, analyse, figure
 from ..solver.trajectory import save
 from ..solver.violations import most_telling
 from .outbox import Outbox, not_writable
@@ -98,10 +99,10 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> Loaded:
     with stages.stage("Importing the clip"):
         armature, origin = _import(clip)
     with stages.stage("Finding contacts"):
-        analysis = _analyse(armature, problem)
         if problem.height is not None:
-            _scale(armature, problem.height / analysis.performance.character.height)
-            analysis = _analyse(armature, problem)
+            measured = figure(_read(armature, problem), problem)[1].height
+            _scale(armature, problem.height / measured)
+        analysis = _analyse(armature, problem)
         # Wrong pins are said before the fit takes its seconds.
         pinned_places(problem, analysis.performance, analysis.schedule)
     return Loaded(armature, origin, analysis)
@@ -172,10 +173,14 @@ def _open(path: Path) -> "bpy.types.Object":
 
 
 def _analyse(armature: "bpy.types.Object", problem: MotionProblem) -> Analysis:
+    return analyse(_read(armature, problem), problem)
+
+
+def _read(armature: "bpy.types.Object", problem: MotionProblem) -> Recording:
     from ..bridge.read import read_recording
 
     first, last = _recorded_frames(armature, problem)
-    return analyse(read_recording(armature, first=first, last=last), problem)
+    return read_recording(armature, first=first, last=last)
 
 
 def _recorded_frames(

@@ -84,6 +84,7 @@ class ListId(StrEnum):
 class MenuId(StrEnum):
     """bl_idname of each menu."""
 
+    HANGTIME = "HANGTIME_MT_hangtime"
     ADD_CONSTRAINT = "HANGTIME_MT_add_constraint"
     PRESETS = "HANGTIME_MT_presets"
     CONSTRAINT_MORE = "HANGTIME_MT_constraint_more"

@@ -11,12 +11,19 @@ from .session import session
 from .task import CANCELLED
 
 NOTHING = "Nothing has been adapted yet"
+BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
 ACCEPTED = "The result is accepted already"
 
 
 def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
     """The action that was adapted last."""
     return armature.hangtime.adapted if armature is not None else None
+
+
+def performer_of(armature: bpy.types.Object) -> bpy.types.Object:
+    """Who performs the result: the armature, or one of other proportions."""
+    performer = result_of(armature).hangtime.performer
+    return performer if performer is not None else armature
 
 
 class _OfResult:
@@ -36,6 +43,16 @@ class CompareOperator(_OfResult, bpy.types.Operator):
     bl_description = "Switch between the recording and the adapted motion at this frame"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads a set
 
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
+        armature = chosen_armature(context)
+        if performer_of(armature) != armature:
+            cls.poll_message_set(BESIDE.format(performer_of(armature).name))
+            return False
+        return True
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         armature = chosen_armature(context)
         recorded, adapted = recorded_action(armature), result_of(armature)
@@ -47,8 +64,8 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
     bl_idname = OperatorId.ACCEPT
     bl_label = "Accept"
     bl_description = (
-        "Keep this result: it is shown, and it is what gets exported. Adapting again makes "
-        "another action beside it"
+        "Keep this result: it is shown, and it is what gets exported. Results that are not "
+        "accepted are dropped by Blender when the file is saved and opened again"
     )
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads a set
 
@@ -63,8 +80,8 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         armature = chosen_armature(context)
         result = result_of(armature)
-        result.hangtime.accepted = True
-        if current_action(armature) != result:
+        result.hangtime.accepted = result.use_fake_user = True
+        if performer_of(armature) == armature and current_action(armature) != result:
             show(armature, result)
         self.report({"INFO"}, f"Accepted {result.name}")
         return {"FINISHED"}
@@ -82,6 +99,8 @@ class DiscardOperator(_OfResult, bpy.types.Operator):
         recorded, name = result.hangtime.recording, result.name
         if current_action(armature) == result:
             show(armature, recorded)
+        if performer_of(armature) != armature:
+            bpy.data.objects.remove(performer_of(armature))
         bpy.data.actions.remove(result)
         left = [a for a in bpy.data.actions if a.hangtime.recording == recorded]
         armature.hangtime.adapted = left[-1] if left else None

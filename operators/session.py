@@ -22,9 +22,10 @@ class Running(Protocol):
 
 @dataclass
 class Session:
-    """The solve under way, who runs it, and the best that a failed one found."""
+    """The solve under way, who runs it, why the last one failed, and the best that it found."""
 
     solving: Solving | None = None
+    failure: str = ""
     best: Best | None = None
     running: list[Running] = field(default_factory=list)
 
@@ -32,7 +33,7 @@ class Session:
         """Ends what runs, without a word; for when the extension goes."""
         for operator in list(self.running):
             operator.leave()
-        self.best = None
+        self.best, self.failure = None, ""
 
 
 @dataclass(frozen=True)

@@ -76,12 +76,16 @@ class Solving:
         return self.state is not State.WRITING or event.startswith(("MOUSEMOVE", "WINDOW"))
 
     @property
+    def doing(self) -> str:
+        """What is being done."""
+        if self.state is State.SOLVING and self.progress is not None:
+            return STAGES.get(self.progress.stage, self.progress.stage)
+        return self.state.value
+
+    @property
     def text(self) -> str:
         """Stage, percent and the worst constraint."""
-        doing = self.state.value
-        if self.state is State.SOLVING and self.progress is not None:
-            doing = STAGES.get(self.progress.stage, self.progress.stage)
-        parts = [f"{doing}, {100.0 * self.share:.0f} %"]
+        parts = [f"{self.doing}, {100.0 * self.share:.0f} %"]
         if self.progress is not None and self.state is State.SOLVING:
             violation = self.progress.violation
             parts.append(f"furthest off: {self.progress.worst} ({violation:.3g} × allowed)")

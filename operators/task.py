@@ -62,6 +62,7 @@ class TaskOperator(FaultyOperator):
         if bpy.app.background or context.window is None:
             return self.execute(context)
         self._solving = session().solving = Solving()
+        session().failure = ""
         self._task = self.task(context)
         self._timer = context.window_manager.event_timer_add(LOOK_EVERY, window=context.window)
         self._workspace = context.workspace
@@ -85,23 +86,26 @@ class TaskOperator(FaultyOperator):
     def _work(self) -> set[str]:
         """As many parts as fit into a look."""
         until = perf_counter() + BUDGET
+        goes_on = False
         try:
             while perf_counter() < until:
                 job = next(self._task)
                 if job is not None and not self._heard(job):
                     break
+            goes_on = True
         except StopIteration as end:
-            self.leave()
             self.report({"INFO"}, end.value)
             return {"FINISHED"}
         except Fault as fault:
-            self.leave()
-            self.report({"ERROR"}, said(fault))
+            session().failure = said(fault)  # the report vanishes when the mouse moves
+            self.report({"ERROR"}, session().failure)
             return {"CANCELLED"}
         except ReferenceError:  # an undo took the armature away from under us
-            self.leave()
             self.report({"ERROR"}, TAKEN_AWAY)
             return {"CANCELLED"}
+        finally:
+            if not goes_on:  # also after a mistake of ours, or every button stayed grey
+                self.leave()
         self._show()
         return {"RUNNING_MODAL"}
 

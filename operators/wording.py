@@ -155,7 +155,24 @@ def _(fault: faults.UnseenSupport) -> str:
     return (
         f"From frame {fault.first:g} to {fault.last:g} neither foot touches the ground, yet the "
         "body does not fall, so something unseen carries it (a box, a rail, a hand); "
-        "choose frames without it."
+        "choose frames without it. If nothing does, give the scene the recording's frame rate."
+    )
+
+
+@sentence.register
+def _(fault: faults.OddHeight) -> str:
+    factor = float(f"{fault.factor:.2g}")  # 100, not 1e+02
+    return (
+        f"{_quoted(fault.armature)} is {fault.metres:.3g} m tall, so gravity does not fit its "
+        f"motion; import it again at {factor:g} times the scale, or scale its object so."
+    )
+
+
+@sentence.register
+def _(fault: faults.OutsideKeys) -> str:
+    return (
+        f"In the chosen frames {_quoted(fault.armature)} has no keys; they lie from frame "
+        f"{fault.first:g} to {fault.last:g}, so choose frames there."
     )
 
 
@@ -397,7 +414,7 @@ def _missed(name: str, amount: float, unit: str) -> str:
     """What of a constraint is left, by the unit that it is measured in."""
     match unit:
         case "mm":
-            return f"{_quoted(name)} stays {amount:.3g} mm from its place"
+            return f"{_quoted(name)} stays {_length(amount / 1000.0)} from its place"
         case "m/s":
             return f"{_quoted(name)} still slides at {amount:.3g} m/s"
         case "BW":
@@ -426,4 +443,6 @@ def _names(names: Sequence[str]) -> str:
 
 
 def _length(metres: float) -> str:
-    return f"{1000 * metres:.0f} mm" if metres < 0.02 else f"{100 * metres:.1f} cm"
+    if metres < 0.02:
+        return f"{1000 * metres:.3g} mm"
+    return f"{100 * metres:.1f} cm" if metres < 1.0 else f"{metres:.2f} m"

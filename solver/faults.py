@@ -141,6 +141,24 @@ class UnseenSupport(Fault):
 
 
 @dataclass
+class OddHeight(Fault):
+    """The figure is too tall or too short for a person, so that nothing it does obeys gravity."""
+
+    armature: str
+    metres: float
+    factor: float  # that makes a person of it
+
+
+@dataclass
+class OutsideKeys(Fault):
+    """The chosen frames lie beside the recording's, where nothing moves."""
+
+    armature: str
+    first: float  # frame with keys
+    last: float
+
+
+@dataclass
 class UnknownContactName(Fault):
     """A correction names a contact that was not found."""
 

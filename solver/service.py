@@ -33,7 +33,7 @@ from .projection import Step, Stopped
 from .recording import Recording
 from .report import Origin, closeness, report
 from .requests import Requests
-from .session import Analysis, analyse
+from .session import Analysis, analyse, figure
 from .stature import scaled_problem, scaled_recording, scaled_schedule, scaled_track
 from .traces import Traces, scaled_traces
 from .violations import most_telling
@@ -208,10 +208,11 @@ class _Watch:
 
 
 def _measure(recording: Recording, problem: MotionProblem) -> _Measured:
-    analysis = analyse(recording, problem)
-    height = analysis.performance.character.height
     if problem.height is None:
-        return _Measured(analysis, problem, height, 1.0)
+        analysis = analyse(recording, problem)
+        return _Measured(analysis, problem, analysis.performance.character.height, 1.0)
+    # Before any contact is sought: at a wrong scale none would be found.
+    height = figure(recording, problem)[1].height
     factor = problem.height / height
     problem = scaled_problem(problem, factor)
     analysis = analyse(scaled_recording(recording, factor), problem)

@@ -8,7 +8,7 @@ track = adaptation.motion.track(analysis.performance.recording)
 
 from dataclasses import dataclass, replace
 
-from .character import build_character
+from .character import Character, build_character
 from .contacts import Contact, ContactSchedule, snap
 from .detection import require_flight
 from .faults import BadTiming, ClipTooShort, UnknownContactName, UnseenSupport
@@ -32,6 +32,20 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
 
     Raises ClipTooShort, NoFlight, UnseenSupport, MissingPart, ZeroLengthBone, UnknownContactName.
     """
+    recording, character = figure(recording, problem)
+    performance = perform(recording, character)
+    schedule = _corrected(find_contacts(performance), problem, performance)
+    for gap in schedule.unseen:
+        raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
+    require_flight(schedule, contact_points(performance)[0])
+    return Analysis(performance, schedule)
+
+
+def figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:
+    """The problem's frames of a recording, and the figure that they show.
+
+    Raises ClipTooShort, MissingPart, ZeroLengthBone.
+    """
     if problem.frames is not None:
         recording = recording.window(*problem.frames)
     seconds = float(recording.times[-1]) if len(recording.times) else 0.0
@@ -40,12 +54,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     character = build_character(
         recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
     )
-    performance = perform(recording, character)
-    schedule = _corrected(find_contacts(performance), problem, performance)
-    for gap in schedule.unseen:
-        raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
-    require_flight(schedule, contact_points(performance)[0])
-    return Analysis(performance, schedule)
+    return recording, character
 
 
 def _frame(recording: Recording, time: float) -> float:

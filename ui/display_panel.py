@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import bpy
 
-from ..operators.names import CATEGORY, PanelId
+from ..operators.common import chosen_armature
+from ..operators.names import OperatorId, PanelId
+from .sidebar import SidebarPanel
 
 _CONSTRAINTS = ("pins", "limits", "poses")
 _MOTION = ("path", "forces", "momentum")
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
 
-class DisplayPanel(bpy.types.Panel):
+class DisplayPanel(SidebarPanel, bpy.types.Panel):
     bl_idname = PanelId.DISPLAY
     bl_label = "Display"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = CATEGORY
     bl_order = 8
-    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads a set
 
     def draw_header(self, context: bpy.types.Context) -> None:
         self.layout.prop(context.scene.hangtime.view, "show", text="")
@@ -33,7 +32,7 @@ class DisplayPanel(bpy.types.Panel):
         _draw_column(shown, view, "Motion", _MOTION)
         _draw_ghosts(shown, view)
         shown.column(heading="Numbers").prop(view, "labels")
-        _draw_plots(layout, view)
+        _draw_plots(shown, context)
         layout.column(heading="Timeline").prop(view, "timeline", text="Contacts")
 
 
@@ -51,17 +50,23 @@ def _draw_ghosts(layout: bpy.types.UILayout, view: bpy.types.PropertyGroup) -> N
     column = column.column()
     column.active = view.ghosts
     column.prop(view, "recording_too", text="Recording Too")
-    column.prop(view, "ghost_step", text="Every n Frames")
+    column.prop(view, "ghost_step", text="Frame Step")
 
 
-def _draw_plots(layout: bpy.types.UILayout, view: bpy.types.PropertyGroup) -> None:
+def _draw_plots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    view = context.scene.hangtime.view
     column = layout.column(heading="Plots")
     column.prop(view, "plots", text="Show")
     column = column.column()
     column.active = view.plots
     for name in _CURVES:
         column.prop(view, name)
-    column.prop(view, "plot_bone")
+    armature = chosen_armature(context)
+    if armature is None:
+        column.prop(view, "plot_bone")
+    else:
+        column.prop_search(view, "plot_bone", armature.data, "bones")
+    layout.operator(OperatorId.SAVE_PLOTS, icon="EXPORT")
 
 
 CLASSES = (DisplayPanel,)

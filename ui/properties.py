@@ -324,6 +324,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     """Of an adapted action: the recording that it was made from, and what was found."""
 
     recording: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
+    performer: bpy.props.PointerProperty(type=bpy.types.Object, options=_HIDDEN)
     accepted: bpy.props.BoolProperty(options=_HIDDEN)
     report: bpy.props.StringProperty(options=_HIDDEN)  # the report's text
 

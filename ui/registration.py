@@ -38,6 +38,7 @@ from . import (
     contact_panels,
     display_panel,
     lists,
+    menu,
     properties,
     setup_panels,
     solve_panels,
@@ -67,6 +68,7 @@ CLASSES = (
     *drag_contact_edge.CLASSES,
     *save_plots.CLASSES,
     *lists.CLASSES,
+    *menu.CLASSES,
     *setup_panels.CLASSES,
     *contact_panels.CLASSES,
     *constraint_lists.CLASSES,
@@ -96,6 +98,7 @@ def register() -> Callable[[], None]:
         bpy.app.handlers.depsgraph_update_post.append(_follow_empties)
         undo.callback(bpy.app.handlers.depsgraph_update_post.remove, _follow_empties)
         undo.callback(session.session().end)
+        menu.add(undo)
         overlay.add(undo)
         plots.add(undo)
         timeline.add(undo)

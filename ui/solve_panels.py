@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from textwrap import fill
+
 import bpy
 
 from ..operators.common import chosen_armature
@@ -10,16 +12,19 @@ from ..operators.session import session
 from .sidebar import ArmaturePanel, lines, split
 
 
+CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
+
+
 class SolvePanel(ArmaturePanel, bpy.types.Panel):
     bl_idname = PanelId.SOLVE
     bl_label = "Solve"
     bl_order = 5
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         solving = session().solving
         if solving is not None:
-            layout.progress(factor=solving.share, text=solving.state.value.capitalize())
+            layout.progress(factor=solving.share, text=solving.doing.capitalize())
             row = layout.row(align=True)
             row.operator(OperatorId.USE_BEST, icon="CHECKMARK")
             row.operator(OperatorId.CANCEL, icon="X")
@@ -28,6 +33,9 @@ class SolvePanel(ArmaturePanel, bpy.types.Panel):
         row.scale_y = 1.5
         row.operator(OperatorId.ADAPT, icon="PLAY")
         row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
+        if session().failure:
+            width = context.region.width / (CHARACTER_PX * context.preferences.system.ui_scale)
+            lines(layout, fill(session().failure, max(20, int(width))), icon="ERROR")
         if session().best is not None:
             layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
 

@@ -39,7 +39,7 @@ class HangtimeView(bpy.types.PropertyGroup):
         default=True,
     )
     ghost_step: bpy.props.IntProperty(
-        name="Every", description="Frames from one ghost to the next", default=20, min=1
+        name="Every", description="Frames from one ghost to the next", default=30, min=1
     )
     recording_too: bpy.props.BoolProperty(
         name="Recording's Ghosts",

@@ -166,7 +166,7 @@ def test_pins_are_where_contacts_shall_be(armature: bpy.types.Object) -> None:
 
 
 def test_a_held_point_is_hollow_unless_something_pushes_back(armature: bpy.types.Object) -> None:
-    row = constrain(armature, ConstraintKind.POINT, "foot", use_place=True, place=(1.0, 2.0, 3.0))
+    row = constrain(armature, ConstraintKind.POINT, "foot")
     assert looks(shown(armature)[Part.POINTS]) == {Look.BOLD, Look.THIN}
     row.environment = True
     assert looks(shown(armature)[Part.POINTS]) == {Look.SOLID, Look.THIN}

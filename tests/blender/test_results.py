@@ -200,3 +200,57 @@ def test_an_override_of_an_analysed_armature_is_analysed_again(
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert len(override.hangtime.contacts) == count
     assert override.hangtime.contacts["Left heel 2"].used
+
+
+def test_longer_legs_perform_and_are_exported_on_their_own_armature(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    first = analysed.hangtime.adapted
+    assert bpy.ops.hangtime.add_body_change(kind="LIMB") == {"FINISHED"}
+    row = analysed.hangtime.body_changes[-1]
+    row.bones.clear()
+    for bone in ("LeftLeg", "RightLeg"):
+        row.bones.add().name = bone
+    row.length = 1.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    result = analysed.hangtime.adapted
+    assert result != first
+    other = result.hangtime.performer
+    assert other != analysed
+    assert current_action(other) == result
+    assert not bpy.ops.hangtime.compare.poll()
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    fbx = tmp_path / "long.fbx"
+    assert bpy.ops.hangtime.export_fbx(filepath=str(fbx)) == {"FINISHED"}
+    assert other.name.encode() in fbx.read_bytes()
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert "changed" not in "".join(o.name for o in bpy.data.objects)
+    assert analysed.hangtime.adapted == first
+
+
+def test_a_stated_height_mends_a_wrong_scale() -> None:
+    rigs.reset()
+    armature = import_clip(mocap_path(JUMP)).armature
+    settings = armature.hangtime
+    settings.use_range = True
+    settings.first_frame, settings.last_frame = 73, 325
+    armature.scale = (20.0, 20.0, 20.0)
+    bpy.context.view_layer.update()
+    settings.use_height, settings.height = True, 1.7
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert settings.measured_height == pytest.approx(20.0 * 1.69, rel=0.02)
+    assert "Left heel 2" in settings.contacts
+
+
+def test_a_result_that_is_not_accepted_goes_with_the_file(
+    adapted: bpy.types.Object, tmp_path: Path
+) -> None:
+    first = adapted.hangtime.adapted.name
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    second = adapted.hangtime.adapted.name
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
+    assert second in bpy.data.actions
+    assert first not in bpy.data.actions

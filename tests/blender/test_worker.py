@@ -167,9 +167,7 @@ def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
     assert len(answer.track.frames) == len(answer.traces.frames)
 
 
-def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(
-    worker: Worker, jump: Recording
-) -> None:
+def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(worker: Worker, jump: Recording) -> None:
     told: list[Progress] = []
     answer = worker.ask(Kind.FIT, jump, UP).wait(told.append)
     assert isinstance(answer, Fitted)

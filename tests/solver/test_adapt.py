@@ -132,7 +132,8 @@ def test_feet_that_land_ten_metres_apart_end_soon_and_say_so() -> None:
         Pin("left", LANDING, touching=("LeftFoot", "LeftToeBase"), offset=(0.0, 5.0, 0.0)),
         Pin("right", LANDING, touching=("RightFoot", "RightToeBase"), offset=(0.0, -5.0, 0.0)),
     )
-    adaptation = adapt(fitted_hop(), MotionProblem(pins=pins), progress=lambda step, _: steps.append(step))
+    problem = MotionProblem(pins=pins)
+    adaptation = adapt(fitted_hop(), problem, progress=lambda step, _: steps.append(step))
     assert not adaptation.solved
     assert adaptation.outcome.violation > 1.0
     assert len(steps) < 100

@@ -63,6 +63,8 @@ class Drawn:
 def places(limit: Limit, drawn: Drawn, armature: FloatArray, sight: Vector) -> Places:
     """armature: (4, 4) its matrix in the world. sight: (3,) unit vector to the viewer, world."""
     scale = float(np.linalg.norm(armature[:3, 0]))
+    if scale == 0.0:  # nothing of it is to be seen
+        return Places()
     to_world = armature[:3, :3] / scale
     origin, axes = armature[:3, :3] @ drawn.origin + armature[:3, 3], to_world @ drawn.axes
     length = scale * limit.length

@@ -99,9 +99,9 @@ def other_now(seen: Seen) -> Layer | None:
 def poses(seen: Seen, figures: Figures) -> Layer | None:
     """The poses that are asked for, hung where the figure is then; in the armature's space."""
     recorded = seen.recorded
-    if recorded is None:
-        return None
     wanted = tuple(w for r, _ in seen.rows(ConstraintKind.POSE.name) for w in _wanted(seen, r))
+    if recorded is None or not wanted:
+        return None
     target = seen.adapted or recorded
     size = seen.units / max(seen.armature.matrix_world.median_scale, 1e-9)
     content = wanted, recorded.key, target.key, size
@@ -112,11 +112,7 @@ def poses(seen: Seen, figures: Figures) -> Layer | None:
             for pose in wanted:
                 yield from pose_shapes(pose, source, hung, size)
 
-    return (
-        Layer(Part.POSES, content, build, seen.armature.matrix_world.copy().freeze())
-        if wanted
-        else None
-    )
+    return Layer(Part.POSES, content, build, seen.armature.matrix_world.copy().freeze())
 
 
 Wanted = tuple[

@@ -71,8 +71,8 @@ def add(undo: ExitStack) -> Overlay:
 
 
 def _redraw() -> None:
-    windows = [window for manager in bpy.data.window_managers for window in manager.windows]
-    for window in windows:
+    managers = getattr(bpy.data, "window_managers", ())  # none while Blender starts
+    for window in (window for manager in managers for window in manager.windows):
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
