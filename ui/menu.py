@@ -1,4 +1,4 @@
-"""The menu *Hangtime* of the 3D viewport's Object and Pose menus: what is in a menu is found by F3."""
+"""The menu *Hangtime* in the 3D viewport's Object and Pose menus: F3 finds what is in a menu."""
 
 from __future__ import annotations
 

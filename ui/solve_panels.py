@@ -11,7 +11,6 @@ from ..operators.names import OperatorId, PanelId
 from ..operators.session import session
 from .sidebar import ArmaturePanel, lines, split
 
-
 CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
 
 
