@@ -45,6 +45,7 @@ ALONE = (
 )
 # dpkg waits for the disk after each file otherwise, and the pages are for people who read here.
 FAST = "force-unsafe-io\npath-exclude=/usr/share/doc/*\npath-exclude=/usr/share/man/*\n"
+FETCHING = ("Acquire::Check-", "Acquire::http", "Acquire::Retries")
 VARIABLES = {
     "DEBIAN_FRONTEND": "noninteractive",
     "HOME": "/root",
@@ -179,12 +180,20 @@ def make(room: Room, suite: str) -> None:
     bootstrap += [source] if source else []
     run_quietly(f"Fetching Debian {suite}", [*ALONE, *bootstrap], room.log)
     (room.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text(FAST)
+    (room.folder / "etc/apt/apt.conf.d/99machine").write_text(ways_to_fetch())
     install = "apt-get install -y --no-install-recommends " + " ".join(PACKAGES)
     inner = [f"{name}={value}" for name, value in VARIABLES.items()]
     chroot = ["chroot", str(room.folder), "env", "-i", *inner, "sh", "-ec"]
     chroot.append(f"mount -t proc proc /proc; apt-get update; {install}; apt-get clean")
     run_quietly("Installing Blender in it (400 MB to fetch)", [*ALONE, *chroot], room.log)
     room.stamp.write_text(json.dumps(PACKAGES))
+
+
+def ways_to_fetch() -> str:
+    """What this machine's apt is told about fetching, such as a proxy, for the room's to do so."""
+    told = subprocess.run(["apt-config", "dump", "Acquire"], capture_output=True, text=True)
+    lines = told.stdout.splitlines()
+    return "".join(f"{line}\n" for line in lines if line.startswith(FETCHING))
 
 
 def remove(folder: Path) -> None:

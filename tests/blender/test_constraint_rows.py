@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge import bone_keys  # noqa: E402
 from hangtime.bridge.constraint_rows import add_body_change  # noqa: E402
 from hangtime.bridge.constraint_status import write_status  # noqa: E402
@@ -29,13 +27,6 @@ from hangtime.tests.blender.rows import (  # noqa: E402
 )
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from math import pi
 
 import numpy as np
@@ -10,7 +10,6 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge.constraint_requests import joined  # noqa: E402
 from hangtime.bridge.constraint_rows import add_body_change  # noqa: E402
 from hangtime.bridge.kinds import BodyKind, ConstraintKind, Span  # noqa: E402
@@ -24,13 +23,6 @@ from mathutils import Vector  # noqa: E402
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 FLIGHT = When(phase="flight 1")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import degrees, radians
 
 import numpy as np
@@ -37,13 +36,6 @@ NEAR = 1e-4
 STANCE = ((0.0, 0.0, 0.0), (0.4, 0.0, 0.0), (0.4, 0.2, 0.0))
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture(params=WHERE)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge.kinds import ConstraintKind, Span  # noqa: E402
 from hangtime.tests.blender.overlays import (  # noqa: E402
     FIGURE,
@@ -32,13 +29,6 @@ from mathutils import Euler, Matrix, Quaternion, Vector  # noqa: E402
 TOLERANCE = 1e-4
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture(params=WHERE)

@@ -14,7 +14,6 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge.kinds import ConstraintKind, Span  # noqa: E402
 from hangtime.bridge.traces_store import keep  # noqa: E402
 from hangtime.operators.live import live  # noqa: E402
@@ -39,13 +38,6 @@ from hangtime.ui.overlay.shapes import Label, Shape  # noqa: E402
 from mathutils import Matrix  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture

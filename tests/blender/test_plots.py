@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,7 +11,6 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge.charts import plotted  # noqa: E402
 from hangtime.bridge.curves import Cap, Chart  # noqa: E402
 from hangtime.bridge.traces_store import keep  # noqa: E402
@@ -20,13 +18,6 @@ from hangtime.tests.blender import motions, regions, rigs  # noqa: E402
 from hangtime.ui.plots import handler  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture

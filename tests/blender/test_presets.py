@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import degrees, radians
 
 import numpy as np
@@ -10,10 +9,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge.constraint_requests import requests_of  # noqa: E402
 from hangtime.bridge.constraint_rows import add_constraint, hold_throughout  # noqa: E402
-from hangtime.bridge.import_clip import import_clip  # noqa: E402
 from hangtime.bridge.kinds import ConstraintKind  # noqa: E402
 from hangtime.bridge.phases import phases_of  # noqa: E402
 from hangtime.bridge.poses import sample  # noqa: E402
@@ -25,36 +22,11 @@ from hangtime.bridge.rest_figure import (  # noqa: E402
 )
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.blender.rows import asked, names, select  # noqa: E402
-from hangtime.tests.clips import mocap_path  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 JUMP = "cmu_bvh/forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
-
-
-@pytest.fixture
-def jump() -> bpy.types.Object:
-    """The recorded jump, active, its frames chosen."""
-    rigs.reset()
-    armature = import_clip(mocap_path(JUMP)).armature
-    settings = armature.hangtime
-    settings.use_range = True
-    settings.first_frame, settings.last_frame = FIRST, LAST
-    return armature
-
-
-@pytest.fixture
-def analysed(jump: bpy.types.Object) -> bpy.types.Object:
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    return jump
 
 
 def seen(armature: bpy.types.Object, bone: str, first: float, last: float) -> np.ndarray:

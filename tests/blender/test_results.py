@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge.import_clip import import_clip  # noqa: E402
 from hangtime.bridge.takes import current_action  # noqa: E402
 from hangtime.bridge.traces_store import kept  # noqa: E402
@@ -21,26 +19,6 @@ from hangtime.tests.clips import mocap_path  # noqa: E402
 JUMP = "cmu_bvh/forward_jump_116cm.bvh"
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    """Once for all, so that one worker and its fit serve them all."""
-    hangtime.register()
-    yield
-    hangtime.unregister()
-
-
-@pytest.fixture
-def analysed() -> bpy.types.Object:
-    """The recorded jump, active, its contacts found."""
-    rigs.reset()
-    armature = import_clip(mocap_path(JUMP)).armature
-    settings = armature.hangtime
-    settings.use_range = True
-    settings.first_frame, settings.last_frame = 73, 325
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    return armature
 
 
 @pytest.fixture

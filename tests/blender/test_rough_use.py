@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-import hangtime  # noqa: E402
 from hangtime.bridge.import_clip import import_clip  # noqa: E402
 from hangtime.bridge.in_parts import complete  # noqa: E402
 from hangtime.bridge.settings import problem_of  # noqa: E402
@@ -31,13 +29,6 @@ RUN = "cmu_bvh/run_1.bvh"
 TOO_LARGE = 14.0
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
 
@@ -19,13 +18,6 @@ from hangtime.tests.blender import motions, regions, rigs  # noqa: E402
 from hangtime.ui.timeline import handler  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    hangtime.register()
-    yield
-    hangtime.unregister()
 
 
 @pytest.fixture

@@ -18,7 +18,6 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import hangtime  # noqa: E402
 from hangtime.bridge import worker  # noqa: E402
-from hangtime.bridge.import_clip import import_clip  # noqa: E402
 from hangtime.bridge.read import read_recording  # noqa: E402
 from hangtime.bridge.settings import problem_of  # noqa: E402
 from hangtime.bridge.takes import read_take  # noqa: E402
@@ -33,7 +32,6 @@ from hangtime.solver.problem import MotionProblem, Pin  # noqa: E402
 from hangtime.solver.session import analyse  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.blender.test_read_write import curves_of, snapshot  # noqa: E402
-from hangtime.tests.clips import mocap_path  # noqa: E402
 from hangtime.ui import properties  # noqa: E402
 
 JUMP = "cmu_bvh/forward_jump_116cm.bvh"
@@ -44,23 +42,9 @@ OFFSET = np.array([0.3, 0.1, 0.2])  # forward, left, up
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 
-@pytest.fixture(scope="module")
-def _enabled() -> Iterator[None]:
-    """Once for all, so that one worker serves them all."""
-    hangtime.register()
-    yield
-    hangtime.unregister()
-
-
 @pytest.fixture
-def armature() -> bpy.types.Object:
-    """The recorded jump, active, its frames chosen."""
-    rigs.reset()
-    armature = import_clip(mocap_path(JUMP)).armature
-    settings = armature.hangtime
-    settings.use_range = True
-    settings.first_frame, settings.last_frame = FIRST, LAST
-    return armature
+def armature(jump: bpy.types.Object) -> bpy.types.Object:
+    return jump
 
 
 @pytest.fixture
@@ -70,12 +54,6 @@ def _disabled() -> Iterator[None]:
     rigs.reset()
     yield
     hangtime.register()
-
-
-@pytest.fixture
-def analysed(armature: bpy.types.Object) -> bpy.types.Object:
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    return armature
 
 
 @dataclass(frozen=True)
