@@ -130,7 +130,7 @@ def over_viewport(stage: Stage, *keys: str) -> Acting:
 def search(stage: Stage, words: str) -> Acting:
     """Run what F3 finds first."""
     yield from over_viewport(stage, "F3")
-    yield 0.3
+    yield 1.0  # letters that come before it is open would go to the viewport
     yield stage.hands.type(words)
     yield 0.4
     yield stage.hands.key("Return")

@@ -73,6 +73,7 @@ class Gauge:
     _label: Callable[[], str] | None = None
     _now: str = ""  # the label as it was at the last free moment
     _free_since: Moment = NEVER
+    _running: bool = False  # the timer is on
     _codes: set[CodeType] = field(default_factory=set)
     _depth: int = 0
     _entered: Moment = NEVER
@@ -85,13 +86,13 @@ class Gauge:
         self._depth, self._label, self._now = 0, label, label()
         self._fresh.clear()
         self._free_since = Moment.now()
-        bpy.app.timers.register(self._free, first_interval=0.0, persistent=True)
+        if not self._running:
+            self._running = True
+            bpy.app.timers.register(self._free, first_interval=0.0, persistent=True)
 
     def stop(self) -> None:
         """Measure no more; the numbers stay."""
         self._label = None
-        if bpy.app.timers.is_registered(self._free):
-            bpy.app.timers.unregister(self._free)
 
     def _stretch(self) -> Stretch:
         if self._now not in self._fresh:
@@ -101,6 +102,7 @@ class Gauge:
 
     def _free(self) -> float | None:
         if self._label is None:
+            self._running = False
             return None
         self._stretch().gaps.add(self._free_since, Moment.now())
         self._free_since = Moment.now()

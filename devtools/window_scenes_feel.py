@@ -97,9 +97,9 @@ def overlays(stage: Stage) -> Acting:
         return label
 
     yield 1.0
+    yield from stage.picture("overlays_of_constraints")
     stage.gauge.start(lambda: redraw("overlays"))
     yield REDRAWS
-    yield from stage.picture("overlays_of_constraints")
     view.show = False
     stage.gauge.start(lambda: redraw("no overlays"))
     yield REDRAWS

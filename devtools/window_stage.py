@@ -124,6 +124,7 @@ def _played(scene: Scene, stage: Stage) -> Generator[float, None, str | None]:
     except Exception as fault:  # noqa: BLE001 - whatever went wrong is this scene's failure
         stage.outcomes[-1].where = traceback.format_exc()
         acting.close()
+        stage.gauge.stop()
         yield stage.hands.let_go() + stage.hands.key("Escape")
         return f"{type(fault).__name__}: {fault}"
     return None
