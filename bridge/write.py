@@ -51,11 +51,27 @@ def write_in_parts(
     poses = yield from sample_in_parts(armature, track.frames, showing)
     made = bases(armature, poses, track)
     yield
-    recorded.use_fake_user = True
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False
-    curves = fcurves.holder_in(action, slot)
+    whole = False
+    try:
+        yield from _write_in_parts(armature, track, made, fcurves.holder_in(action, slot))
+        whole = True
+    finally:
+        if not whole:  # cancelled in between: half an action is of no use to anybody
+            bpy.data.actions.remove(action)
+    recorded.use_fake_user = True
+    return action
+
+
+def _write_in_parts(
+    armature: bpy.types.Object,
+    track: PoseTrack,
+    made: dict[str, FloatArray],
+    curves: fcurves.CurveHolder | None,
+) -> Parts[None]:
+    """Puts the channels (T, 4, 4) by bone into curves, a bone a part."""
     assert curves is not None
     carrier = carrier_of(armature.data.bones[track.bones[0]]).name
     for bone in track.bones:
@@ -65,7 +81,6 @@ def write_in_parts(
     _write_channels(curves, path, carrier, track.frames, made[carrier][:, :3, 3])
     for curve in curves.fcurves:
         fcurves.crop(curve, float(track.frames[0]), float(track.frames[-1]))
-    return action
 
 
 def _write_rotation(

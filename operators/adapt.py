@@ -22,6 +22,7 @@ from ..solver.problem import MotionProblem
 from ..solver.proportions import changed_recording
 from ..solver.recording import Recording
 from ..solver.requests import Method, Objective, Solution
+from ..solver.status import Status
 from .common import chosen_armature, hindrance, required_armature
 from .live import live
 from .names import OperatorId
@@ -30,7 +31,6 @@ from .solving import State
 from .task import Task, TaskOperator, answered, take_best
 
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
-STOPPED = "stopped"
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class _Adapting(TaskOperator):
             raise answer.fault
         assert isinstance(answer, Adapted)
         session().best = None
-        if answer.fault is not None and answer.fault.reason != STOPPED:
+        if answer.fault is not None and answer.fault.reason != Status.STOPPED.value:
             session().best = Best(asked, answer)
             raise answer.fault
         return (yield from write_answer(asked, answer))

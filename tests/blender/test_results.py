@@ -10,9 +10,14 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.import_clip import import_clip  # noqa: E402
-from hangtime.bridge.takes import current_action  # noqa: E402
+from hangtime.bridge.takes import (  # noqa: E402
+    current_action,
+    read_take,
+    write_take_in_parts,
+)
 from hangtime.bridge.traces_store import kept  # noqa: E402
 from hangtime.operators.session import session  # noqa: E402
+from hangtime.solver.recording import PoseTrack  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.clips import mocap_path  # noqa: E402
 
@@ -232,3 +237,23 @@ def test_a_result_that_is_not_accepted_goes_with_the_file(
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
     assert second in bpy.data.actions
     assert first not in bpy.data.actions
+
+
+def test_writing_that_is_cancelled_leaves_nothing_behind(analysed: bpy.types.Object) -> None:
+    recorded = current_action(analysed)
+    recorded.use_fake_user = False
+    recording = read_take(analysed, 73.0, 325.0)
+    bones = [recording.index(name) for name in ("Hips", "LeftUpLeg", "LeftLeg")]
+    track = PoseTrack(
+        recording.frames,
+        tuple(recording.bones[b].name for b in bones),
+        recording.rotations[:, bones],
+        recording.heads[:, bones[0]],
+    )
+    writing = write_take_in_parts(analysed, track)
+    while len(bpy.data.actions) == 1:
+        next(writing)
+    writing.close()
+    assert list(bpy.data.actions) == [recorded]
+    assert not recorded.use_fake_user
+    assert current_action(analysed) == recorded
