@@ -22,21 +22,22 @@ import os
 import subprocess
 import sys
 
-from devtools import environment, pythons
+from devtools.environment import pythons, virtual_environment
+from devtools.environment.problem import SetUpError
 
 PEERS = "benchmark"  # has an environment of its own
 # command: module of the package, arguments before the user's, whether it needs dev.txt
 COMMANDS = {
     "demo": ("devtools.demo", [], False),
-    "adapt": ("operators.cli", ["adapt"], False),
-    "analyze": ("operators.cli", ["analyze"], False),
-    "test": ("devtools.testing", [], True),
-    "figures": ("devtools.figures", [], True),
-    "gallery": ("devtools.gallery", [], True),
-    "window": ("devtools.window", [], False),
+    "adapt": ("operators.headless.cli", ["adapt"], False),
+    "analyze": ("operators.headless.cli", ["analyze"], False),
+    "test": ("devtools.checks.testing", [], True),
+    "figures": ("devtools.figures.main", [], True),
+    "gallery": ("devtools.gallery.main", [], True),
+    "window": ("devtools.window.main", [], False),
     PEERS: ("benchmarks.benchmark", [], False),
     "build": ("devtools.build", [], False),
-    "lint": ("devtools.lint", [], True),
+    "lint": ("devtools.checks.lint", [], True),
 }
 
 
@@ -44,12 +45,12 @@ def split_arguments(argv: list[str]) -> tuple[str, str | None, list[str]]:
     """The command, the Blender asked for, and the rest, which belongs to the command."""
     command, rest = argv[0], argv[1:]
     if command not in COMMANDS:
-        raise environment.SetUpError(f"Unknown command '{command}'; dev.py --help lists them all.")
+        raise SetUpError(f"Unknown command '{command}'; dev.py --help lists them all.")
     if "--blender" not in rest:
         return command, None, rest
     at = rest.index("--blender")
     if at + 1 == len(rest):
-        raise environment.SetUpError("--blender needs a version, such as 4.5.")
+        raise SetUpError("--blender needs a version, such as 4.5.")
     return command, rest[at + 1], rest[:at] + rest[at + 2 :]
 
 
@@ -62,18 +63,18 @@ def main(argv: list[str]) -> int:
         module, leading, tools = COMMANDS[command]
         blender, python = pythons.choose(wanted)
         if command == PEERS:
-            place = environment.prepare_peers(blender, python)
+            place = virtual_environment.prepare_peers(blender, python)
         else:
-            place = environment.prepare(blender, python, tools)
-    except environment.SetUpError as problem:
+            place = virtual_environment.prepare(blender, python, tools)
+    except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2
     return run(place, [module, *leading, *rest])
 
 
-def run(place: environment.Place, arguments: list[str]) -> int:
+def run(place: virtual_environment.Place, arguments: list[str]) -> int:
     """Run a module of the package in the environment; its exit code."""
-    launcher = os.path.join(environment.ROOT, "devtools", "package.py")
+    launcher = os.path.join(virtual_environment.ROOT, "devtools", "package.py")
     code = subprocess.call([place.python, launcher, *arguments], env=place.variables())
     return code if code >= 0 else 128 - code  # a signal, the way shells count it
 

@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ..devtools.environment import ROOT
+from ..devtools.environment.virtual_environment import ROOT
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 DOCUMENT = ROOT / "docs" / "benchmark.md"
@@ -25,7 +25,7 @@ a problem before it starts; ours is part of the stored fit. Our times are those 
 adaptation, stages and added knots included. SNOPT's iterations are the times that it asked for the
 rows: most of its time goes into its first quadratic programs, as it must find its Hessian from
 gradients. On figures of a few joints it and the others find the same motion
-(`tests/test_benchmark.py`).
+(`tests/benchmarks/test_benchmark.py`).
 """
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 
-from ..solver.adapt import Adaptation, adapt
-from ..solver.fit import Fit, fit
+from ..solver.stages.fit import Fit, fit
+from ..solver.stages.implicit import Adaptation, adapt
 from . import floor, ipopt_peer, naive_peer, scaling, snopt_peer
 from .recordings import JUMP, analysed, jump
 from .solutions import IMPLICIT, SOLUTIONS, with_solution

@@ -13,10 +13,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..solver.dynamics import GRAVITY, Moving, body_frames, carried, momentum_rate
-from ..solver.rows import RowKind, Rows
-from ..solver.splines import ORDER
-from ..solver.transcription import Transcription
+from ..solver.body.dynamics import GRAVITY, Moving, body_frames, carried, momentum_rate
+from ..solver.numerics.splines import ORDER
+from ..solver.transcription.rows import RowKind, Rows
+from ..solver.transcription.transcription import Transcription
 from .ipopt_peer import sparse
 from .task import Entries, FloatArray, IntArray, PeerResult, Task, judged, metric_entries
 

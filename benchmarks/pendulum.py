@@ -15,8 +15,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..solver.recording import FloatArray
-from ..solver.splines import Basis, gauss_instants
+from ..solver.arrays import FloatArray
+from ..solver.numerics.splines import Basis, gauss_instants
 
 MASS = 70.0  # kg
 LENGTH = 1.70  # m, of a uniform rod

@@ -1,4 +1,4 @@
-"""Which of the solvers that CasADi ships solves a step's small program fastest (solver/qp.py).
+"""Which solver that CasADi ships is fastest on a step's small QP (optimisation/bounded_qp.py).
 
 python devtools/package.py benchmarks.qp_solvers
 """

@@ -5,10 +5,10 @@ from functools import cache
 from ..bridge.formats.bvh import read_bvh
 from ..bridge.formats.guess import guess_unit, guess_up
 from ..bridge.formats.skeleton import to_recording
-from ..devtools.environment import ROOT
-from ..solver.problem import MotionProblem, Pin
-from ..solver.recording import Recording
-from ..solver.session import Analysis, analyse
+from ..devtools.environment.virtual_environment import ROOT
+from ..solver.analysis.analyse import Analysis, analyse
+from ..solver.data.problem import MotionProblem, Pin
+from ..solver.data.recording import Recording
 
 MOCAP = ROOT.parent / "shared" / "mocap"
 RATE = 120.0  # Hz, of every clip here

@@ -6,16 +6,16 @@ from functools import partial
 
 import numpy as np
 
-from ..solver.adapt import adapt
-from ..solver.anatomy import Part
-from ..solver.character import Character, Joint
-from ..solver.coordinates import Axes
-from ..solver.dynamics import MomentFunction
-from ..solver.fit import ADAPT_PRICES, Fit, fit, motion_metric
-from ..solver.motion import Motion
-from ..solver.performance import Performance
-from ..solver.projection import Outcome, restore
-from ..solver.rotations import mean_rotation
+from ..solver.analysis.performance import Performance
+from ..solver.body.anatomy import Part
+from ..solver.body.character import Character, Joint
+from ..solver.body.dynamics import MomentFunction
+from ..solver.body.joint_axes import Axes
+from ..solver.numerics.rotations import mean_rotation
+from ..solver.optimisation.sqp import Outcome, restore
+from ..solver.stages.fit import ADAPT_PRICES, Fit, fit, motion_metric
+from ..solver.stages.implicit import adapt
+from ..solver.transcription.motion import Motion
 from .recordings import HOPS, analysed, hops
 from .task import IntArray, Task
 from .timing import in_turns, timed

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from ..solver.problem import MotionProblem
-from ..solver.requests import Method, Solution
+from ..solver.data.problem import MotionProblem
+from ..solver.data.requests import Method, Solution
 
 IMPLICIT = "implicit (q, λ)"  # what everything else is measured against
 SOLUTIONS = {

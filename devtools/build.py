@@ -9,7 +9,7 @@ import tomllib
 from hashlib import sha256
 from pathlib import Path
 
-from .environment import REQUIREMENTS, ROOT
+from .environment.virtual_environment import REQUIREMENTS, ROOT
 
 PINS = REQUIREMENTS / "casadi.txt"
 

@@ -7,8 +7,8 @@ import tarfile
 import tempfile
 from pathlib import Path
 
-from ..operators import cli
-from .environment import CACHE, REQUIREMENTS, ROOT
+from ..operators.headless import cli
+from .environment.virtual_environment import CACHE, REQUIREMENTS, ROOT
 
 RECIPE = ROOT / "examples" / "demo_hop.toml"
 # member of the source archive, by the name that the recording goes by at its origin

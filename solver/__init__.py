@@ -1,1 +1,1 @@
-"""The mathematics of Hangtime: numpy and casadi, SI units, Z up; never imports Blender."""
+"""The mathematics of Hangtime: numpy and CasADi, SI units, Z up; never imports Blender."""

@@ -1,1 +1,1 @@
-"""Panels, lists and property groups; draw() reads cached text and computes nothing."""
+"""What the artist sees: panels, overlays, gizmos, plots, bars; and their registration."""

@@ -9,47 +9,24 @@ from contextlib import ExitStack
 import bpy
 from bpy.app.handlers import persistent
 
-from ..bridge import stances, worker
-from ..operators import (
-    adapt,
-    aim_cone,
-    analyze,
-    body_changes,
-    constraints,
-    contacts,
-    drag_contact_edge,
-    drag_limit,
-    drag_pin,
-    exports,
-    names,
-    place_by_empty,
-    presets,
-    put_back,
-    results,
-    save_plots,
-    session,
-    show,
-    turn_stance,
-)
-from . import (
-    constraint_lists,
-    constraint_menus,
-    constraint_panels,
-    contact_panels,
-    display_panel,
-    lists,
-    menu,
-    properties,
-    setup_panels,
-    solve_panels,
-)
+from ..bridge import worker_client
+from ..bridge.properties import settings, stances
+from ..operators import names
+from ..operators.drag import aim_cone, limit_operator, pin_operator, turn_stance
+from ..operators.export import exports, save_plots
+from ..operators.lists import body_changes, constraints, contacts, place_by_empty, presets, put_back
+from ..operators.solve import adapt, analyze, results, session, show
+from ..operators.timeline import contact_edge_operator
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
+from .panels import constraint_lists, constraint_menus, contact_list, display, menu, setup, solve
+from .panels import constraints as constraint_panels
+from .panels import contacts as contact_panels
 from .plots import handler as plots
 from .timeline import handler as timeline
 
 CLASSES = (
-    *properties.CLASSES,
+    *settings.CLASSES,
     *analyze.CLASSES,
     *adapt.CLASSES,
     *place_by_empty.CLASSES,
@@ -61,21 +38,21 @@ CLASSES = (
     *presets.CLASSES,
     *results.CLASSES,
     *exports.CLASSES,
-    *drag_pin.CLASSES,
+    *pin_operator.CLASSES,
     *turn_stance.CLASSES,
-    *drag_limit.CLASSES,
+    *limit_operator.CLASSES,
     *aim_cone.CLASSES,
-    *drag_contact_edge.CLASSES,
+    *contact_edge_operator.CLASSES,
     *save_plots.CLASSES,
-    *lists.CLASSES,
+    *contact_list.CLASSES,
     *menu.CLASSES,
-    *setup_panels.CLASSES,
+    *setup.CLASSES,
     *contact_panels.CLASSES,
     *constraint_lists.CLASSES,
     *constraint_menus.CLASSES,
     *constraint_panels.CLASSES,
-    *solve_panels.CLASSES,
-    *display_panel.CLASSES,
+    *solve.CLASSES,
+    *display.CLASSES,
     *pin_handles.CLASSES,
     *limit_handles.CLASSES,
 )
@@ -91,7 +68,7 @@ def register() -> Callable[[], None]:
         for cls in CLASSES:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
-        for carrier, group in properties.CARRIERS.items():
+        for carrier, group in settings.CARRIERS.items():
             group_of = bpy.props.PointerProperty(type=group, override={"LIBRARY_OVERRIDABLE"})
             setattr(carrier, names.ATTRIBUTE, group_of)
             undo.callback(delattr, carrier, names.ATTRIBUTE)
@@ -109,7 +86,7 @@ def register() -> Callable[[], None]:
 
 def _add_worker(undo: ExitStack) -> None:
     """The worker starts with the first request; it must not outlive Blender."""
-    end = worker.shared().close
+    end = worker_client.shared().close
     atexit.register(end)
     undo.callback(atexit.unregister, end)
     undo.callback(end)
@@ -123,6 +100,6 @@ def _follow_empties(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
 
 
 def _run_command(arguments: list[str]) -> int:
-    from ..operators import cli  # most sessions never run it
+    from ..operators.headless import cli  # most sessions never run it
 
     return int(cli.command(arguments))

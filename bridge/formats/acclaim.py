@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...solver.faults import UnreadableClip
-from ...solver.recording import FloatArray
+from ...solver.arrays import FloatArray
+from ...solver.data.faults import UnreadableClip
 from . import turns
 from .guess import likely_unit
 from .skeleton import Joint, MotionClip

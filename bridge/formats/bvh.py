@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...solver.recording import FloatArray
+from ...solver.arrays import FloatArray
 from . import turns
 from .skeleton import Joint, MotionClip
 from .text import Line, Reader, require_finite

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...solver.recording import FloatArray
+from ...solver.arrays import FloatArray
 from .skeleton import MotionClip, UpAxis, forward_kinematics, rest_axes
 
 ACCLAIM_UNIT = 0.0254 / 0.45  # an inch over the scale that the CMU recordings carry

@@ -9,7 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from ...solver.recording import Bone, FloatArray, Recording
+from ...solver.arrays import FloatArray
+from ...solver.data.recording import Bone, Recording
 
 UpAxis = Literal["Y", "Z"]
 

@@ -6,8 +6,8 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from ...solver.faults import NonFiniteKey, UnreadableClip
-from ...solver.recording import FloatArray
+from ...solver.arrays import FloatArray
+from ...solver.data.faults import NonFiniteKey, UnreadableClip
 
 
 class Line(NamedTuple):

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...solver.recording import FloatArray
-from ...solver.rotations import axis_rotation
+from ...solver.arrays import FloatArray
+from ...solver.numerics.rotations import axis_rotation
 
 
 def product(axes: Sequence[int], angles: FloatArray) -> FloatArray:

@@ -27,9 +27,9 @@ def _enabled() -> Iterator[None]:
 @pytest.fixture
 def jump() -> bpy.types.Object:
     """The recorded jump, active, its frames chosen."""
-    from hangtime.bridge.import_clip import import_clip
-    from hangtime.tests.blender import rigs
-    from hangtime.tests.clips import mocap_path
+    from hangtime.bridge.files.import_clip import import_clip
+    from hangtime.tests.blender.helpers import rigs
+    from hangtime.tests.helpers.clips import mocap_path
 
     rigs.reset()
     armature = import_clip(mocap_path(JUMP)).armature

@@ -6,13 +6,13 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ...operators import rays
+from ...operators.drag import rays
 from ...operators.names import GizmoGroupId, OperatorId
-from ..overlay import palette
-from ..overlay.figures import Figures
-from ..overlay.limit_shapes import seen_of
-from ..overlay.limits import chosen_limit, pose_of
-from ..overlay.seen import Seen
+from ..overlay.context.figure_cache import Figures
+from ..overlay.context.view_context import Seen
+from ..overlay.geometry import palette
+from ..overlay.geometry.limit_shapes import seen_of
+from ..overlay.layers.limits import chosen_limit, pose_of
 from .places import Drawn, Knob, Places, Tip, places
 from .shown import handled, knob, paint, put
 
@@ -35,7 +35,7 @@ class LimitHandles(bpy.types.GizmoGroup):
     bl_label = "Hangtime Joint Limits"
     bl_space_type = "VIEW_3D"
     bl_region_type = "WINDOW"
-    bl_options = {"3D", "PERSISTENT"}  # noqa: RUF012 - Blender reads a set
+    bl_options = {"3D", "PERSISTENT"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import bpy
 from mathutils import Vector
 
-from ...bridge.kinds import ConstraintKind
-from ...bridge.stances import active_stance, stance_contacts, stance_middle
+from ...bridge.properties.kinds import ConstraintKind
+from ...bridge.properties.stances import active_stance, stance_contacts, stance_middle
 from ...operators.names import GizmoGroupId, OperatorId
-from ..overlay import palette
-from ..overlay.seen import Seen
-from ..overlay.shapes import faded
+from ..overlay.context.view_context import Seen
+from ..overlay.geometry import palette
+from ..overlay.geometry.shapes import faded
 from .shown import handled, knob, paint, put
 
 UNSEEN = 0.0  # opacity of those that show only under the mouse
@@ -56,7 +56,7 @@ class PinHandles(bpy.types.GizmoGroup):
     bl_label = "Hangtime Pins"
     bl_space_type = "VIEW_3D"
     bl_region_type = "WINDOW"
-    bl_options = {"3D", "PERSISTENT"}  # noqa: RUF012 - Blender reads a set
+    bl_options = {"3D", "PERSISTENT"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...operators.rays import Circle, Vector, scaled, unit
-from ..overlay.arcs import spoke
-from ..overlay.limit_shapes import ARC, CONE, RING, TWIST, Limit
-from ..overlay.shapes import FloatArray
+from ...operators.drag.rays import Circle, Vector, scaled, unit
+from ..overlay.geometry.arcs import spoke
+from ..overlay.geometry.limit_shapes import ARC, CONE, RING, TWIST, Limit
+from ..overlay.geometry.shapes import FloatArray
 
 SIDEWAYS = 0.2  # sine of axis and view: below, one looks along the cone
 
@@ -50,7 +50,7 @@ class Places:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Where a limit is drawn, in the armature's space; see ui/overlay/arcs.py for its axes.
+    """Where a limit is drawn, in the armature's space; see overlay/geometry/arcs.py for its axes.
 
     axes: (3, 3) columns. origin: (3,). parent: (3, 3) the parent's turn from rest to now.
     """

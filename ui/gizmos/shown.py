@@ -5,11 +5,11 @@ from __future__ import annotations
 import bpy
 from mathutils import Matrix, Vector
 
-from ...bridge.takes import current_action
-from ...operators.session import session
-from ..overlay import palette
-from ..overlay.seen import Seen, look_at
-from ..overlay.shapes import Colour
+from ...bridge.armature.actions import current_action
+from ...operators.solve.session import session
+from ..overlay.context.view_context import Seen, look_at
+from ..overlay.geometry import palette
+from ..overlay.geometry.shapes import Colour
 
 HIGHLIGHT: Colour = palette.WITHIN
 KNOB = 0.1  # radius of a handle, as a share of the size of gizmos in the preferences

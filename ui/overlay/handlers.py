@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from . import labels
-from .figures import Figures
-from .picture import layers
-from .pictures import Pictures
-from .seen import look_at
-from .shapes import Label, Shape
+from .context.figure_cache import Figures
+from .context.view_context import look_at
+from .geometry.shapes import Label, Shape
+from .layer_selection import layers
+from .layers import labels
+from .picture_cache import Pictures
 
 if TYPE_CHECKING:
-    from .drawn import Drawn
+    from .gpu_batches import Drawn
 
 
 class Overlay:
@@ -29,7 +29,7 @@ class Overlay:
 
     def draw_view(self) -> None:
         """In the world (POST_VIEW)."""
-        from .drawn import draw
+        from .gpu_batches import draw
 
         self._labels = ()
         seen = look_at(bpy.context)
@@ -52,7 +52,7 @@ class Overlay:
 
 
 def _upload(shapes: Sequence[Shape]) -> Drawn:
-    from .drawn import upload  # the graphics card is there only once something is drawn
+    from .gpu_batches import upload  # the graphics card is there only once something is drawn
 
     return upload(shapes)
 

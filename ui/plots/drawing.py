@@ -6,9 +6,9 @@ from math import floor
 
 import numpy as np
 
-from ...bridge.curves import Cap, Curve
-from ...bridge.screen import Rect
-from ..sketch import Align, Colour, Measure, Picture, Sketch, Text
+from ...bridge.plots.curves import Cap, Curve
+from ...bridge.plots.screen import Rect
+from ..drawing.sketch import Align, Colour, Measure, Picture, Sketch, Text
 from . import looks
 from .figure import Figure, Panel
 from .numbers import number, thinned

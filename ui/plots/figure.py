@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...bridge.curves import Chart, Curve
-from ...bridge.phases import PhaseSpan
-from ...bridge.screen import Axis, Rect, round_range, round_step
-from ..sketch import Measure, Text
+from ...bridge.plots.curves import Chart, Curve
+from ...bridge.plots.screen import Axis, Rect, round_range, round_step
+from ...bridge.properties.phases import PhaseSpan
+from ..drawing.sketch import Measure, Text
 from . import looks
 from .numbers import decimals, number
 

@@ -7,10 +7,10 @@ from contextlib import ExitStack
 
 import bpy
 
-from ...bridge.charts import Plotted, plotted
-from ...bridge.screen import Rect
-from ...operators.common import chosen_armature
-from .. import paint
+from ...bridge.plots.charts import Plotted, plotted
+from ...bridge.plots.screen import Rect
+from ...operators.solve.common import chosen_armature
+from ..drawing import paint
 from . import looks
 from .drawing import playhead, readings, still
 from .figure import Figure, figure

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ...bridge.screen import Rect
+from ...bridge.plots.screen import Rect
 
 # px at an interface scale of 1
 MARGIN = 8.0

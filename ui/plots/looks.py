@@ -1,8 +1,8 @@
 """Colours and sizes of the plots; sizes in px at an interface scale of 1."""
 
-from ...bridge.curves import Take
-from ...solver.contacts import PhaseKind
-from ..sketch import Colour
+from ...bridge.plots.curves import Take
+from ...solver.data.contacts import PhaseKind
+from ..drawing.sketch import Colour
 
 CARD: Colour = (0.07, 0.07, 0.08, 0.8)
 TITLE: Colour = (0.95, 0.95, 0.95, 1.0)

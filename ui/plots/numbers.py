@@ -7,7 +7,7 @@ from math import floor, log10
 
 import numpy as np
 
-from ...bridge.screen import Array
+from ...bridge.plots.screen import Array
 
 
 def decimals(step: float) -> int:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...bridge.screen import Rect
-from ...operators.contact_bars import Bar, Bars
-from ..sketch import Align, Colour, Measure, Picture, Sketch, Text
+from ...bridge.plots.screen import Rect
+from ...operators.timeline.contact_bars import Bar, Bars
+from ..drawing.sketch import Align, Colour, Measure, Picture, Sketch, Text
 from . import looks
 
 

@@ -7,8 +7,8 @@ from contextlib import ExitStack
 import bpy
 
 from ...operators.names import OperatorId
-from ...operators.timeline_bars import bars_in
-from .. import paint
+from ...operators.timeline.timeline_bars import bars_in
+from ..drawing import paint
 from . import looks
 from .drawing import drawn
 

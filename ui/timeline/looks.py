@@ -1,6 +1,6 @@
 """Colours and sizes of the bars; sizes in px at an interface scale of 1."""
 
-from ..sketch import Colour
+from ..drawing.sketch import Colour
 
 BACK: Colour = (0.05, 0.05, 0.06, 0.55)
 LEFT: Colour = (0.3, 0.55, 0.95, 0.75)

@@ -1,0 +1,1 @@
+"""Armatures and actions, read and written: poses, channels, F-curves, bone keys."""

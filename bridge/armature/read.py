@@ -1,0 +1,142 @@
+"""An armature and its action, read as a Recording."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ...solver.arrays import FloatArray
+from ...solver.data.faults import BadScale, NoAction, NoArmature, NoBones, NonFiniteKey
+from ...solver.data.recording import Bone, Recording
+from . import fcurves
+from .channels import proper
+from .poses import Poses, frames_per_second, metres_per_unit, sample
+
+_SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
+_EPSILON = 1e-4  # frames
+
+
+def read_recording(
+    armature: bpy.types.Object | None, *, first: float | None = None, last: float | None = None
+) -> Recording:
+    """The evaluated pose of every bone at every whole scene frame in [first, last].
+
+    The range defaults to the action's. World space, m, s; the rotations carry no scale. The scene
+    is left as it was. The recording is called what the action is called.
+
+    Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
+    this armature), NonFiniteKey, BadScale.
+    """
+    return record(armature, whole_frames(armature, first, last))
+
+
+def whole_frames(
+    armature: bpy.types.Object | None, first: float | None, last: float | None
+) -> FloatArray:
+    """The frames of a recording, (T,). Raises as `read_recording`, but for what poses show."""
+    armature, curves = _require_animated(armature)
+    for curve in curves.fcurves:
+        _require_finite(armature, curve)
+    return _whole_frames(armature, curves, first, last)
+
+
+def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:
+    """The same at any frames (T,), whole or not, of an armature that has an action.
+
+    Raises NonFiniteKey, BadScale.
+    """
+    return recorded(armature, frames, sample(armature, frames))
+
+
+def recorded(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -> Recording:
+    """Poses sampled at frames (T,) as a Recording. Raises NonFiniteKey, BadScale."""
+    _require_uniform_scale(armature, poses.object_to_world)
+    metres = metres_per_unit(bpy.context.scene)
+    world = poses.object_to_world[:, None] @ poses.matrices
+    _require_finite_poses(poses, frames, world)
+    return Recording(
+        name=armature.animation_data.action.name,
+        bones=_rest(armature, poses, metres),
+        frames=frames,
+        times=(frames - frames[0]) / frames_per_second(bpy.context.scene),
+        heads=world[..., :3, 3] * metres,
+        rotations=proper(world[..., :3, :3]),
+    )
+
+
+def _rest(armature: bpy.types.Object, poses: Poses, metres: float) -> tuple[Bone, ...]:
+    """The rest skeleton where the object stands at the first frame."""
+    world = poses.object_to_world[0]
+
+    def place(point: Vector) -> FloatArray:
+        return (world[:3, :3] @ np.array(point) + world[:3, 3]) * metres
+
+    def bone(name: str, parent: int) -> Bone:
+        rest = armature.data.bones[name]
+        rotation = proper(world[:3, :3] @ np.array(rest.matrix_local)[:3, :3])
+        return Bone(name, parent, place(rest.head_local), place(rest.tail_local), rotation)
+
+    return tuple(map(bone, poses.bones, poses.parents))
+
+
+def _require_animated(
+    armature: bpy.types.Object | None,
+) -> tuple[bpy.types.Object, fcurves.CurveHolder]:
+    """The armature and what holds its action's curves."""
+    if armature is None or armature.type != "ARMATURE":
+        raise NoArmature(armature.name if armature is not None else None)
+    if len(armature.data.bones) == 0:
+        raise NoBones(armature.name)
+    curves = fcurves.holder(armature)
+    if curves is None or len(curves.fcurves) == 0:
+        raise NoAction(armature.name)
+    return armature, curves
+
+
+def _whole_frames(
+    armature: bpy.types.Object,
+    curves: fcurves.CurveHolder,
+    first: float | None,
+    last: float | None,
+) -> FloatArray:
+    """Every whole frame of the range, at least one."""
+    action = armature.animation_data.action
+    if action.use_frame_range:
+        spans = np.array([action.frame_range])
+    else:
+        spans = np.array([curve.range() for curve in curves.fcurves])
+    start = np.ceil((spans.min() if first is None else first) - _EPSILON)
+    end = np.floor((spans.max() if last is None else last) + _EPSILON)
+    return np.arange(start, max(start, end) + 1.0)
+
+
+def _require_finite(armature: bpy.types.Object, curve: bpy.types.FCurve) -> None:
+    keys = fcurves.keys(curve)
+    # Blender's own interface turns infinity into the largest float32.
+    bad = ~(np.abs(keys) < np.finfo(np.float32).max).all(axis=1)
+    if bad.any():
+        bone = fcurves.bone_of(curve.data_path) or armature.name
+        raise NonFiniteKey(bone, float(keys[bad][0, 0]))
+
+
+def _require_finite_poses(poses: Poses, frames: FloatArray, world: FloatArray) -> None:
+    """Handles, modifiers and drivers can spoil a pose as well as keys."""
+    bad = np.argwhere(~np.isfinite(world).all(axis=(2, 3)))
+    if len(bad) > 0:
+        frame, bone = bad[0]
+        raise NonFiniteKey(poses.bones[bone], float(frames[frame]))
+
+
+def _require_uniform_scale(armature: bpy.types.Object, object_to_world: FloatArray) -> None:
+    """One positive scale along all axes at every frame, the parents' included."""
+    linear = object_to_world[:, :3, :3]
+    gram = np.swapaxes(linear, 1, 2) @ linear
+    square = np.trace(gram, axis1=1, axis2=2) / 3.0
+    uneven = np.abs(gram - square[:, None, None] * np.eye(3)).max((1, 2)) > _SAME_SCALE * square
+    bad = uneven | (np.linalg.det(linear) <= 0.0)
+    if bad.any():
+        x, y, z = np.linalg.norm(linear[bad][0], axis=0)
+        own = tuple(armature.scale)
+        alone = armature.parent is None and np.allclose(np.abs(own), (x, y, z), rtol=1e-4)
+        raise BadScale(armature.name, own if alone else (float(x), float(y), float(z)))

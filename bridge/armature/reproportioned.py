@@ -1,0 +1,33 @@
+"""An armature of other proportions, for motions of a body whose limbs were changed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.data.recording import PoseTrack, Recording
+from ..formats.clip_of import clip_of
+from .build_armature import build_armature
+from .read import read_recording
+
+
+def other_figure(
+    recording: Recording, track: PoseTrack
+) -> tuple[bpy.types.Object, PoseTrack, dict[str, FloatArray]]:
+    """A new armature with a recording's bones, and a track of it in the new bones' axes.
+
+    recording: of the changed proportions, see solver/body/body_changes.py. The new bones are turned
+    about themselves against the recording's: the third value has by bone the (3, 3) rotation from
+    the new axes to the old ones.
+    """
+    armature = build_armature(clip_of(recording), 1.0, "Z")
+    built = read_recording(armature)
+    turn = {
+        bone.name: bone.rotation.T @ built.bones[built.index(bone.name)].rotation
+        for bone in recording.bones
+    }
+    rotations = track.rotations @ np.stack([turn[bone] for bone in track.bones])
+    return armature, replace(track, rotations=rotations), turn

@@ -1,0 +1,86 @@
+"""Traces of motions, kept in the artist's file: a recording's with its armature, an adapted one's
+with its action. What is drawn follows the armature wherever the artist moves it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from functools import lru_cache
+from io import BytesIO
+from typing import Any
+from zlib import crc32
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ...solver.data.traces import Flight, Traces
+
+_CONTENT, _KEY = "hangtime_traces", "hangtime_traces_key"
+_ARRAYS = tuple(f.name for f in fields(Traces) if f.type == "FloatArray")
+_NAMES = ("bones", "contacts", "joints")
+_STOOD, _WEIGHT, _FLIGHTS = "stood", "weight", "flights"
+_REMEMBERED = 8
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Traces as stored. stood: the armature's world matrix then; key: another for other traces."""
+
+    traces: Traces
+    stood: Matrix
+    key: str
+
+    def moved(self, armature: bpy.types.Object) -> Matrix:
+        """From where the motion was (world) to where it is now that the armature stands here."""
+        return armature.matrix_world @ self.stood.inverted_safe()
+
+
+def keep(owner: bpy.types.ID, traces: Traces, stood: Matrix) -> None:
+    """Stores traces with an armature or an action, in place of earlier ones."""
+    packed: dict[str, Any] = {n: np.asarray(getattr(traces, n), np.float32) for n in _ARRAYS}
+    packed |= {n: np.array(getattr(traces, n), dtype=np.str_) for n in _NAMES}
+    packed |= {_WEIGHT: traces.weight, _STOOD: np.array(stood)}
+    packed[_FLIGHTS] = np.array([flight.name for flight in traces.flights], dtype=np.str_)
+    for i, flight in enumerate(traces.flights):
+        packed[f"parabola {i}"] = np.asarray(flight.parabola, np.float32)
+        packed[f"span {i}"] = np.array([flight.start, flight.end])
+    stream = BytesIO()
+    np.savez(stream, **packed)
+    forget(owner)  # Blender would cut bytes that replace others off at the first zero
+    owner[_CONTENT] = stream.getvalue()
+    owner[_KEY] = str(crc32(stream.getbuffer()))
+
+
+def forget(owner: bpy.types.ID) -> None:
+    """Removes what `keep` stored."""
+    for name in (_CONTENT, _KEY):
+        if name in owner:
+            del owner[name]
+
+
+def kept(owner: bpy.types.ID | None) -> Kept | None:
+    """What `keep` stored with an owner; cheap when asked again and again."""
+    key = owner.get(_KEY) if owner is not None else None
+    return _unpacked(_Stored(key, owner)) if key is not None else None
+
+
+@dataclass(frozen=True)
+class _Stored:
+    """Where stored traces are; equal where the traces are."""
+
+    key: str
+    owner: bpy.types.ID = field(compare=False)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _unpacked(stored: _Stored) -> Kept:
+    with np.load(BytesIO(stored.owner[_CONTENT]), allow_pickle=False) as packed:
+        arrays = {n: packed[n].astype(float) for n in _ARRAYS}
+        names = {n: tuple(packed[n].tolist()) for n in _NAMES}
+        flights = tuple(
+            Flight(name, *packed[f"span {i}"].tolist(), packed[f"parabola {i}"].astype(float))
+            for i, name in enumerate(packed[_FLIGHTS].tolist())
+        )
+        weight, stood = float(packed[_WEIGHT]), Matrix(packed[_STOOD].tolist())
+    traces = Traces(**arrays, **names, weight=weight, flights=flights)
+    return Kept(traces, stood, stored.key)

@@ -1,0 +1,1 @@
+"""Between stored rows and the solver's records: constraints, contacts, body changes."""

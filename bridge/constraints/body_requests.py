@@ -1,0 +1,50 @@
+"""The list of body changes, and the other mass and gravity, as the solver's record of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ...solver.data.requests import AddedMass, BodyChange, LimbChange
+from ..properties.kinds import BodyKind
+from .row_parts import RowScene, bone_of, offset_of, some_bones
+
+if TYPE_CHECKING:
+    from ..properties.body_change import HangtimeBodyChange
+    from ..properties.settings import HangtimeSettings
+
+GRAVITY_DIGITS = 4  # what single precision keeps of 9.81
+
+
+def body_change(
+    settings: HangtimeSettings, changes: Sequence[HangtimeBodyChange], scene: RowScene
+) -> BodyChange:
+    """What of the body and of gravity shall be another. Raises NoBoneChosen, UnknownBone."""
+    loads = [row for row in changes if row.kind == BodyKind.LOAD.name]
+    # A limb that stays as it is would have the result written on an armature of its own.
+    limbs = [row for row in changes if row.kind == BodyKind.LIMB.name and changes_limb(row)]
+    return BodyChange(
+        mass=settings.new_mass if settings.use_new_mass else None,
+        gravity=round(settings.gravity, GRAVITY_DIGITS),
+        added=tuple(_load(row, scene) for row in loads),
+        limbs=tuple(_limb(row, scene) for row in limbs),
+    )
+
+
+def changes_limb(row: HangtimeBodyChange) -> bool:
+    """Whether a limb becomes any longer, shorter, heavier or lighter."""
+    return bool(row.length != 1.0 or row.mass_factor != 1.0)
+
+
+def _load(row: HangtimeBodyChange, scene: RowScene) -> AddedMass:
+    return AddedMass(
+        row.name,
+        bone_of(row, scene),
+        mass=None if row.by_share else row.mass,
+        share=row.share if row.by_share else None,
+        offset=offset_of(row, scene),
+    )
+
+
+def _limb(row: HangtimeBodyChange, scene: RowScene) -> LimbChange:
+    return LimbChange(row.name, some_bones(row, scene), row.length, row.mass_factor)

@@ -1,0 +1,256 @@
+"""The armature's stored settings as a MotionProblem, and an analysis as its settings.
+
+The solver's metres and seconds become Blender's units and scene frames here, and back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ...solver.data.contacts import Contact, ContactSchedule, Phase, PhaseKind, numbered
+from ...solver.data.digest import digest
+from ...solver.data.faults import EmptyRange
+from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
+from ...solver.data.recording import Recording
+from ...solver.data.requests import Requests
+from ...solver.worker.protocol import Analysed
+from ..armature.poses import frames_per_second, metres_per_unit
+from ..properties.stances import place
+from ..recipe.problem import parse_recipe
+from .bone_mapping import chosen_parts
+from .requests import joined, requests_of
+
+if TYPE_CHECKING:
+    from ..properties.settings import HangtimeContact, HangtimeSettings
+
+_KEPT = (
+    *("name", "point", "bone", "phase", "added", "used", "empty"),
+    *("found_start", "found_end", "start_frame", "end_frame", "found_at", "at"),
+)
+_UNMOVED = 1e-5  # Blender units
+_SAME_START = 2.0  # frames; how far apart two analyses may see the same contact begin
+_SAME_PLACE = 0.01  # Blender units
+
+
+def wanted_range(settings: HangtimeSettings) -> tuple[float, float] | tuple[None, None]:
+    """First and last frame that the artist chose; (None, None) for the action's own."""
+    if not settings.use_range:
+        return None, None
+    return float(settings.first_frame), float(settings.last_frame)
+
+
+def problem_of(
+    settings: HangtimeSettings, recording: Recording, *, with_contacts: bool = True
+) -> MotionProblem:
+    """What the settings ask of a recording.
+
+    with_contacts: whether corrections and pins count; an analysis starts without them.
+    Raises EmptyRange for a contact that ends before it begins, BadRecipe, and as `requests_of`.
+    """
+    if with_contacts:
+        _require_ordered(settings)
+    span = (float(recording.frames[0]), float(recording.frames[-1]))
+    return MotionProblem(
+        frames=span,
+        mass=settings.mass,
+        height=settings.height if settings.use_height else None,
+        mass_table=MassTable[settings.mass_table],
+        bones=chosen_parts(settings),
+        contacts=_edits(settings) if with_contacts else (),
+        added=_added(settings) if with_contacts else (),
+        pins=_pins(settings, span) if with_contacts else (),
+        requests=_requests(settings, span) if with_contacts else Requests(),
+    )
+
+
+def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests:
+    """What the lists ask for, and what the armature's text does, which is a recipe's.
+
+    span: first and last scene frame. Raises BadRecipe, NamedTwice and as `requests_of`.
+    """
+    listed = requests_of(settings, settings.id_data, span)
+    if settings.requests is None:
+        return listed
+    text = settings.requests
+    written = parse_recipe(text.as_string(), text.name).problem.requests
+    return joined(listed, written)
+
+
+def _require_ordered(settings: HangtimeSettings) -> None:
+    """Without a word the solver would leave such a contact out."""
+    for row in settings.contacts:
+        if row.used and row.end_frame < row.start_frame:
+            raise EmptyRange(row.name, row.start_frame, row.end_frame)
+
+
+def _edits(settings: HangtimeSettings) -> tuple[ContactEdit, ...]:
+    edits = []
+    for row in settings.contacts:
+        if row.added:
+            continue
+        start = row.start_frame if row.start_frame != row.found_start else None
+        end = row.end_frame if row.end_frame != row.found_end else None
+        if not row.used:
+            edits.append(ContactEdit(row.name, remove=True))
+        elif start is not None or end is not None:
+            edits.append(ContactEdit(row.name, start, end))
+    return tuple(edits)
+
+
+def _added(settings: HangtimeSettings) -> tuple[AddedContact, ...]:
+    return tuple(
+        AddedContact(row.point, row.start_frame, row.end_frame)
+        for row in settings.contacts
+        if row.added and row.used
+    )
+
+
+def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, ...]:
+    """A pin for each contact that has been moved.
+
+    Corrections renumber contacts and phases, so pins name both as they are called afterwards.
+    """
+    metres = metres_per_unit(bpy.context.scene)
+    rate = frames_per_second(bpy.context.scene)
+    duration = (span[1] - span[0]) / rate
+    used = [row for row in settings.contacts if row.used]
+    bare = [_bare_contact(row, span[0], rate, duration) for row in used]
+    schedule = ContactSchedule(numbered(bare), duration, floor_m=0.0)
+    called = {(c.point, c.start): c.name for c in schedule.contacts}
+    pins = []
+    for row, contact in zip(used, bare, strict=True):
+        phase = _ground_phase(schedule, contact)
+        if phase is None or not moved(row):
+            continue
+        x, y, z = (metres * value for value in row.at)
+        name = called[contact.point, contact.start]
+        pins.append(Pin(row.name, phase.name, (name,), place=(x, y, z)))
+    return tuple(pins)
+
+
+def moved(row: HangtimeContact) -> bool:
+    """Whether a contact is to be elsewhere than recorded."""
+    return any(abs(a - b) > _UNMOVED for a, b in zip(row.at, row.found_at, strict=True))
+
+
+def _bare_contact(row: HangtimeContact, first: float, rate: float, duration: float) -> Contact:
+    """When a row's point touches, after the artist's correction; nowhere in particular."""
+    start = max((row.start_frame - first) / rate, 0.0)
+    end = min((row.end_frame - first) / rate, duration)
+    return Contact(row.name, row.point, row.bone, np.zeros(3), start, end, np.zeros(3))
+
+
+def _ground_phase(schedule: ContactSchedule, contact: Contact) -> Phase | None:
+    ground = (p for p in schedule.phases if p.kind is PhaseKind.GROUND)
+    return next((p for p in ground if p.start < contact.end and p.end > contact.start), None)
+
+
+@dataclass(frozen=True)
+class _Edit:
+    """What the artist had made of a contact, to be found again after another analysis."""
+
+    point: str
+    found_start: float
+    found_at: tuple[float, ...]
+    at: tuple[float, ...]
+    used: bool
+    start_frame: float | None
+    end_frame: float | None
+    empty: bpy.types.Object | None
+
+    @staticmethod
+    def of(row: HangtimeContact) -> _Edit:
+        start = row.start_frame if row.start_frame != row.found_start else None
+        end = row.end_frame if row.end_frame != row.found_end else None
+        at, found = tuple(row.at), tuple(row.found_at)
+        return _Edit(row.point, row.found_start, found, at, row.used, start, end, row.empty)
+
+    def meant(self, row: HangtimeContact) -> bool:
+        """Whether the row is the contact that was edited."""
+        apart = max(abs(a - b) for a, b in zip(row.found_at, self.found_at, strict=True))
+        near = abs(row.found_start - self.found_start) < _SAME_START and apart < _SAME_PLACE
+        return row.point == self.point and near
+
+
+@dataclass(frozen=True)
+class _Added:
+    """A contact that the artist added, to be added again after another analysis."""
+
+    values: dict[str, object]
+
+    @staticmethod
+    def of(row: HangtimeContact) -> _Added:
+        return _Added({name: _plain(getattr(row, name)) for name in _KEPT})
+
+    def put(self, row: HangtimeContact) -> None:
+        for name, value in self.values.items():
+            setattr(row, name, value)
+
+
+def _plain(value: object) -> object:
+    """A vector as a tuple, which outlives its owner."""
+    return tuple(value) if isinstance(value, bpy.types.bpy_prop_array) else value
+
+
+def write_analysis(settings: HangtimeSettings, recording: Recording, found: Analysed) -> None:
+    """Fills the settings' contacts and stances; contacts that are found again keep their edits."""
+    edits = [_Edit.of(row) for row in settings.contacts if not row.added]
+    added = [_Added.of(row) for row in settings.contacts if row.added]
+    metres = metres_per_unit(bpy.context.scene)
+    first, rate = float(recording.frames[0]), frames_per_second(bpy.context.scene)
+    settings.measured_height = found.height
+    settings.analysed = digest(recording)
+    for stance, (name, axes) in zip(
+        _resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
+    ):
+        stance.name, stance.shifted, stance.turned = name, (0.0, 0.0, 0.0), 0.0
+        stance.forward_axis = axes[:, 0]
+    contacts = found.schedule.contacts
+    rows = _resized(settings.contacts, len(contacts) + len(added))
+    for row, contact in zip(rows, contacts, strict=False):
+        row.used, row.added, row.empty = True, False, None
+        phase = _ground_phase(found.schedule, contact)
+        row.name, row.point, row.bone = contact.name, contact.point, contact.bone
+        row.phase = phase.name if phase is not None else ""
+        row.found_start = row.start_frame = first + contact.start * rate
+        row.found_end = row.end_frame = first + contact.end * rate
+        row.found_at = row.at = contact.place / metres
+    for row, kept in zip(rows[len(contacts) :], added, strict=True):
+        kept.put(row)
+    settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
+    _restore(settings, edits)
+
+
+def _resized(rows: bpy.types.bpy_prop_collection, count: int) -> list[bpy.types.PropertyGroup]:
+    """That many rows of a list, the old ones first.
+
+    An override cannot drop rows of the linked file: those left over are switched off.
+    """
+    while len(rows) < count:
+        rows.add()
+    for i in reversed(range(count, len(rows))):
+        rows.remove(i)
+    for row in rows[count:]:
+        row.name = ""
+        if hasattr(row, "used"):
+            row.used = False
+    return list(rows[:count])
+
+
+def _restore(settings: HangtimeSettings, edits: list[_Edit]) -> None:
+    whole, settings.whole_stance = settings.whole_stance, False
+    for row in settings.contacts:
+        edit = next((e for e in edits if e.meant(row)), None)
+        if edit is None:
+            continue
+        row.used = edit.used
+        row.start_frame = row.start_frame if edit.start_frame is None else edit.start_frame
+        row.end_frame = row.end_frame if edit.end_frame is None else edit.end_frame
+        row.empty = edit.empty
+        by = [now - was for now, was in zip(edit.at, edit.found_at, strict=True)]
+        place(settings, row, [a + b for a, b in zip(row.found_at, by, strict=True)])
+    settings.whole_stance = whole

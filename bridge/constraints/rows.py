@@ -1,0 +1,204 @@
+"""Adding, copying and aiming rows of the lists of constraints and of body changes.
+
+Works on the property groups of bridge/properties/constraint.py; frames are the scene's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import radians
+from typing import TYPE_CHECKING
+
+import bpy
+from mathutils import Vector
+
+from ...solver.body.anatomy import Side, split_side
+from ..properties.kinds import BodyKind, ConstraintKind, Span
+from ..properties.phases import PhaseSpan, phases_of
+
+if TYPE_CHECKING:
+    from ..properties.body_change import HangtimeBodyChange
+    from ..properties.constraint import HangtimeConstraint
+    from ..properties.settings import HangtimeSettings
+
+AROUND = 5  # frames to either side of the playhead, where no phase is known
+USUAL_TWIST = radians(45.0)
+SHORT = {  # in names, which lists have little room for
+    ConstraintKind.ANGLE: "Bend",
+    ConstraintKind.TWIST: "Twist",
+    ConstraintKind.TORQUE: "Torque",
+    ConstraintKind.ORIENTATION: "Turn",
+}
+SINGLE_BONE = (
+    ConstraintKind.POINT,
+    ConstraintKind.ANGLE,
+    ConstraintKind.CONE,
+    ConstraintKind.TWIST,
+    ConstraintKind.ORIENTATION,
+)
+WITHOUT_BONES = (ConstraintKind.TIMING, ConstraintKind.HOLD)
+OF_TOUCHING = (ConstraintKind.LIFT, ConstraintKind.FORCE)  # their bones are of contacts
+ON_GROUND = OF_TOUCHING
+IN_A_PHASE = (ConstraintKind.LIFT, ConstraintKind.TIMING)  # must have one
+AT_A_FRAME = (  # a single frame is what is meant more often than not
+    ConstraintKind.POINT,
+    ConstraintKind.POSE,
+    ConstraintKind.ORIENTATION,
+    ConstraintKind.HOLD,
+)
+
+
+def add_constraint(
+    armature: bpy.types.Object, kind: ConstraintKind, bones: Sequence[str], frame: float
+) -> HangtimeConstraint:
+    """A new row at the end of the list, chosen, about these bones and about when `frame` is.
+
+    A point is to be where it is shown now. Bones that cannot count for the kind are left out.
+    """
+    settings: HangtimeSettings = armature.hangtime
+    row = settings.constraints.add()
+    row.kind = kind.name
+    if kind in OF_TOUCHING:
+        touching = {contact.bone for contact in settings.contacts}
+        bones = [bone for bone in bones if bone in touching]
+    set_bones(row, () if kind in WITHOUT_BONES else bones)
+    if kind in SINGLE_BONE and not bones:
+        row.bones.add()  # to be chosen
+    aim_at(settings, row, kind, frame)
+    row.name = free_name(settings, _called(row, kind, bones))
+    if kind is ConstraintKind.POINT and bones:
+        put_where_shown(armature, row)
+    if kind is ConstraintKind.TWIST:
+        row.lower, row.upper = -USUAL_TWIST, USUAL_TWIST
+    settings.active_constraint = len(settings.constraints) - 1
+    return row
+
+
+def add_body_change(
+    settings: HangtimeSettings, kind: BodyKind, bones: Sequence[str]
+) -> HangtimeBodyChange:
+    """A new row at the end of the list, chosen."""
+    row = settings.body_changes.add()
+    row.kind = kind.name
+    set_bones(row, bones)
+    if not bones:
+        row.bones.add()
+    of = f"{title(bones[0])} " if len(bones) == 1 else ""
+    what = "Weight" if kind is BodyKind.LOAD else "Limb" if not of else "Length"
+    row.name = free_name(settings, f"{of}{what}")
+    settings.active_body_change = len(settings.body_changes) - 1
+    return row
+
+
+def set_bones(row: HangtimeConstraint | HangtimeBodyChange, bones: Iterable[str]) -> None:
+    """Makes a row about these bones."""
+    row.bones.clear()
+    for bone in bones:
+        row.bones.add().name = bone
+
+
+def free_name(settings: HangtimeSettings, wanted: str) -> str:
+    """The name, with a number where a constraint, body change or contact has it already."""
+    lists = (settings.constraints, settings.body_changes, settings.contacts)
+    taken = {row.name for rows in lists for row in rows}
+    name, number = wanted, 1
+    while name in taken:
+        number += 1
+        name = f"{wanted} {number}"
+    return name
+
+
+def title(bone: str) -> str:
+    """A bone's name for people: "mixamorig:LeftHand" and "hand.L" are the left hand."""
+    side, word = split_side(bone)
+    if side is Side.MIDDLE:
+        return bone.rpartition(":")[2].replace("_", " ")
+    return f"{side.value} {word}".title()
+
+
+def _called(row: HangtimeConstraint, kind: ConstraintKind, bones: Sequence[str]) -> str:
+    if kind in SINGLE_BONE or len(bones) == 1:
+        return f"{title(bones[0])} {SHORT.get(kind, kind.value)}" if bones else kind.value
+    if kind is ConstraintKind.TIMING and row.phase:
+        return f"{row.phase.title()} {kind.value}"
+    return kind.value
+
+
+# ---------------------------------------------------------------- when
+
+
+def aim_at(
+    settings: HangtimeSettings, row: HangtimeConstraint, kind: ConstraintKind, frame: float
+) -> None:
+    """Lets a row hold about when `frame` is: then alone, in its phase, or some frames around."""
+    phases = phases_of(settings)
+    phase = _ground_near(phases, frame) if kind in ON_GROUND else phase_at(phases, frame)
+    row.first_frame, row.last_frame = frame - AROUND, frame + AROUND
+    row.pose_frame = frame
+    row.phase = phase.name if phase is not None else ""
+    if kind in AT_A_FRAME:
+        row.span, row.first_frame = Span.FRAME.name, frame
+    elif phase is not None or kind in IN_A_PHASE:
+        row.span = Span.PHASE.name
+    else:
+        row.span = Span.FRAMES.name
+
+
+def phase_at(phases: Iterable[PhaseSpan], frame: float) -> PhaseSpan | None:
+    """The phase at a scene frame, the later one where two meet."""
+    return next((p for p in reversed(tuple(phases)) if p.start <= frame <= p.end), None)
+
+
+def _ground_near(phases: Iterable[PhaseSpan], frame: float) -> PhaseSpan | None:
+    ground = [p for p in phases if p.is_ground]
+    return min(ground, key=lambda p: max(p.start - frame, frame - p.end, 0.0), default=None)
+
+
+def hold_during(row: HangtimeConstraint, first: float, last: float) -> None:
+    """Lets a row hold from frame to frame, or at one where they are the same."""
+    row.first_frame, row.last_frame = first, last
+    row.span = Span.FRAME.name if first == last else Span.FRAMES.name
+
+
+def hold_in(row: HangtimeConstraint, phase: str) -> None:
+    """Lets a row hold during a phase."""
+    row.span, row.phase = Span.PHASE.name, phase
+
+
+def hold_throughout(row: HangtimeConstraint) -> None:
+    """Lets a row hold during the whole clip."""
+    row.span = Span.ALWAYS.name
+
+
+# ---------------------------------------------------------------- where
+
+
+def put_where_shown(
+    armature: bpy.types.Object, row: HangtimeConstraint, *, keep_offset: bool = False
+) -> None:
+    """Lets a point be at the place where it is shown now: the middle of its bone.
+
+    keep_offset: where the artist chose the point in the bone, that one.
+    """
+    graph = bpy.context.evaluated_depsgraph_get()
+    posed = armature.evaluated_get(graph)
+    bone = posed.pose.bones[row.bones[0].name]
+    if not (keep_offset and row.use_offset):
+        # Said as an offset, because the solver's own middle is that of the body, not of the bone.
+        row.use_offset, row.offset = True, (0.0, 0.5 * bone.bone.length, 0.0)
+    row.use_place = True
+    row.place = posed.matrix_world @ bone.matrix @ Vector(row.offset)
+
+
+# ---------------------------------------------------------------- copies
+
+
+def copy_row(
+    row: HangtimeConstraint | HangtimeBodyChange, to: HangtimeConstraint | HangtimeBodyChange
+) -> None:
+    """Makes `to` ask for the same as `row`, under its own name."""
+    computed = ("rna_type", "name", "bones", "met", "status")
+    for prop in row.bl_rna.properties:
+        if prop.identifier not in computed and not prop.is_readonly:
+            setattr(to, prop.identifier, getattr(row, prop.identifier))
+    set_bones(to, [bone.name for bone in row.bones])

@@ -1,0 +1,104 @@
+"""Where the objects that points shall follow are over time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solver.data.requests import Path
+from ..armature import fcurves
+from ..properties.kinds import ConstraintKind
+from .times import Clip, frames_of
+
+if TYPE_CHECKING:
+    from ..properties.constraint import HangtimeConstraint
+
+FloatArray = NDArray[np.float64]
+
+
+def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> dict[str, Path]:
+    """The paths of those points that follow a target, by the row's name.
+
+    metres: per Blender unit. The scene's frame, and what is seen, are afterwards what they were.
+    Raises as `when_of`.
+    """
+    following = [r for r in rows if r.kind == ConstraintKind.POINT.name and r.target is not None]
+    frames = {row.name: _whole_frames(*frames_of(row, clip)) for row in following}
+    targets = {row.target for row in following}
+    moving = [target for target in targets if not _moves_by_keys_alone(target)]
+    needed = sorted({f for r in following if r.target in moving for f in frames[r.name].tolist()})
+    seen = _sampled(moving, needed)
+    paths = {}
+    for row in following:
+        mine = frames[row.name]
+        if row.target in moving:
+            places = seen[row.target][np.searchsorted(needed, mine)]
+        else:
+            places = _keyed(row.target, mine)
+        paths[row.name] = Path(tuple(mine.tolist()), tuple(map(tuple, (metres * places).tolist())))
+    return paths
+
+
+def _whole_frames(first: float, last: float) -> FloatArray:
+    """The whole frames within, and both ends."""
+    inside = np.arange(np.ceil(first), np.floor(last) + 1.0)
+    return np.unique([first, *inside, max(first, last)])
+
+
+def _moves_by_keys_alone(target: bpy.types.Object) -> bool:
+    """Whether an object is where its own keys put it, so that nothing else need be evaluated."""
+    data = target.animation_data
+    driven = data is not None and (len(data.drivers) > 0 or (data.use_nla and len(data.nla_tracks)))
+    physical = target.rigid_body is not None or len(target.constraints) > 0
+    return target.parent is None and not driven and not physical
+
+
+def _keyed(target: bpy.types.Object, frames: FloatArray) -> FloatArray:
+    """(T, 3) places of an object that is moved by keys alone, Blender units."""
+    places = np.tile(np.array(target.location), (len(frames), 1))
+    curves = fcurves.holder(target)
+    for index in range(3) if curves is not None else ():
+        curve = curves.fcurves.find("location", index=index)
+        if curve is not None and not curve.mute:
+            places[:, index] = [curve.evaluate(frame) for frame in frames]
+    return np.asarray(places + np.array(target.delta_location))
+
+
+def _sampled(
+    targets: Sequence[bpy.types.Object], frames: Sequence[float]
+) -> dict[bpy.types.Object, FloatArray]:
+    """(T, 3) places of each object in Blender's evaluated scene, Blender units."""
+    places = {target: np.empty((len(frames), 3)) for target in targets}
+    if not targets:
+        return places
+    scene = bpy.context.scene
+    with _evaluated(targets):
+        for t, frame in enumerate(frames):
+            whole = int(np.floor(frame))
+            scene.frame_set(whole, subframe=frame - whole)
+            graph = bpy.context.evaluated_depsgraph_get()
+            for target in targets:
+                places[target][t] = target.evaluated_get(graph).matrix_world.translation
+    return places
+
+
+@contextmanager
+def _evaluated(targets: Iterable[bpy.types.Object]) -> Iterator[None]:
+    """Have Blender evaluate objects: it skips what is hidden or excluded. Then as before."""
+    scene = bpy.context.scene
+    frame, subframe = scene.frame_current, scene.frame_subframe
+    with ExitStack() as undo:
+        undo.callback(lambda: scene.frame_set(frame, subframe=subframe))
+        for target in targets:
+            if target.hide_viewport:
+                undo.callback(setattr, target, "hide_viewport", True)
+                target.hide_viewport = False
+            if target.name not in scene.collection.objects:
+                scene.collection.objects.link(target)
+                undo.callback(scene.collection.objects.unlink, target)
+        yield

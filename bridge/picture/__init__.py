@@ -1,0 +1,1 @@
+"""The picture of a result: strobe figures with their constraints, rendered in Blender."""

@@ -1,0 +1,107 @@
+"""Which instants the picture shows, and how the figures slide apart as time passes: no Blender.
+
+A jump stays on one spot while it crouches and recovers; drawn in place, those figures would hide
+each other. So a row is spread: figures slide to the right as time passes, the faster the more the
+body moves without travelling. Every row slides by the same amount at the same time: a landing that
+is 0.3 m further in the world is 0.3 m further in the picture.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from .sheet import SheetRow
+
+CLOSE = 0.35  # m, figures nearer to each other than this hide each other
+KEYS_CLOSE = 0.55  # key times nearer than this share of an even spacing are not all shown
+SMOOTH = 0.15  # s, over which the spread's speed is averaged: a flight's path stays a parabola
+MOMENTARY = 0.15  # s, a mark that is shown no longer than this wants a figure of its own
+
+
+def spread(row: SheetRow, span: float) -> FloatArray:
+    """(T,) m, how far each instant slides to the right so that the row spans about `span` m.
+
+    Zero at the instant of fastest travel; never to the left as time passes.
+    """
+    if len(row.times) < 2:
+        return np.zeros(len(row.times))
+    step = np.diff(row.times)
+    centres = np.stack([limb.centre for limb in row.limbs], axis=1)
+    bustle = np.linalg.norm(np.diff(centres, axis=0), axis=2).mean(axis=1) / step
+    bustle = _smooth(np.sqrt(bustle), SMOOTH / step.mean())
+    travel = np.diff(row.com[:, 0]) / step
+
+    def slid(k: float) -> FloatArray:
+        rate = (k * bustle - travel).clip(min=0.0)
+        return np.concatenate([[0.0], np.cumsum(rate * step)])
+
+    low, high = 0.0, 100.0
+    for _ in range(40):  # the span grows with k
+        k = (low + high) / 2
+        low, high = (k, high) if np.ptp(row.com[:, 0] + slid(k)) < span else (low, k)
+    slide = slid(low)
+    return slide - slide[np.argmax(travel)]
+
+
+def _smooth(x: FloatArray, samples: float) -> FloatArray:
+    """Gaussian average over about so many samples; the ends are held."""
+    reach = max(int(samples), 1)
+    kernel = np.exp(-0.5 * np.linspace(-2.0, 2.0, 2 * reach + 1) ** 2)
+    return np.convolve(np.pad(x, reach, mode="edge"), kernel / kernel.sum(), mode="valid")
+
+
+def instants(row: SheetRow, x: FloatArray, count: int) -> list[int]:
+    """Indices of about `count` instants worth showing, x: (T,) m where each would be drawn.
+
+    Key times, momentary marks, ends, lowest and highest; the others are put where the gaps are
+    widest.
+    """
+    z = row.com[:, 2]
+    wished = [*_momentary(row), 0, len(x) - 1, int(z.argmin()), int(z.argmax())]
+    kept = with_keys(row, x, wished, count)
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
+    gaps = np.diff(along[kept])
+    parts = np.ones(len(gaps), dtype=int)
+    while parts.sum() < count - 1 and np.max(gaps / parts, initial=0.0) > 1.4 * CLOSE:
+        parts[np.argmax(gaps / parts)] += 1
+    shown = set(kept)
+    for start, gap, n in zip(along[kept], gaps, parts, strict=False):
+        between = start + gap * np.arange(1, n) / n
+        shown.update(np.searchsorted(along, between).tolist())
+    return sorted(shown)
+
+
+def with_keys(row: SheetRow, x: FloatArray, wished: Sequence[int], count: int) -> list[int]:
+    """Indices of the key times, then of those wished for, that none before hides; in order.
+
+    count: about how many figures the row will have.
+    """
+    kept: list[int] = []
+    keys = [nearest(row.times, t) for t in row.key_times]
+    even = float(np.ptp(x)) / max(count - 1, 1)
+    for apart, candidates in ((KEYS_CLOSE * even, keys), (CLOSE, wished)):
+        kept += (i for i in candidates if all(abs(x[i] - x[j]) >= apart for j in kept))
+    return sorted(kept)
+
+
+def nearest(times: FloatArray, t: float) -> int:
+    """Index of the instant nearest to t."""
+    return int(np.abs(times - t).argmin())
+
+
+def during(span: tuple[float, float], times: FloatArray, shown: Sequence[int]) -> list[int]:
+    """Which of the shown instants (indices) lie in a span; its own middle if none does.
+
+    A span that the row does not reach has none. Ends count to the nearest of the row's instants.
+    """
+    edge = 0.51 * float(np.ptp(times)) / max(len(times) - 1, 1)
+    held = [i for i in shown if span[0] - edge <= times[i] <= span[1] + edge]
+    if held or span[1] < times[0] or span[0] > times[-1]:
+        return held
+    return [nearest(times, (span[0] + span[1]) / 2)]
+
+
+def _momentary(row: SheetRow) -> list[int]:
+    spans = [mark.span for mark in row.marks]
+    return [nearest(row.times, (a + b) / 2) for a, b in spans if b - a < MOMENTARY]

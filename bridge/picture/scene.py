@@ -1,0 +1,238 @@
+"""Puts a sheet's layout into a Blender scene: solids, letters, lines, lamp and camera."""
+
+from dataclasses import dataclass
+from math import cos, pi, radians, sin
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solver.arrays import FloatArray
+from . import materials, meshes
+from .layout import Figure, Layout, Tier
+from .mark_materials import FINISHES, TONES
+from .mark_meshes import Solid
+from .materials import Colour, mix, srgb
+
+ACROSS = np.array([1.0, 0.0, 0.0])
+APART = 80.0  # m between tiers along the view: unseen, and they cast no shadow on each other
+
+DEPTH = 0.7  # m, half the depth of the floor, at least
+BESIDE = 0.2  # m of floor beyond what stands farthest from its middle
+THICKNESS, GRID_STEP = 0.05, 0.5
+MARGIN, GAP, EDGE = 0.3, 0.14, 0.12  # m beside the figures, between the rows, around it all
+CAPTION, LABEL = 1 / 46, 1 / 75  # heights of the letters, shares of the picture's width
+LETTER = 1.7  # cap heights to a letter's width, so that long captions are set smaller
+PATH, BEAD = 0.012, 0.024  # m, radii
+
+PAPER, FLOOR, GRID, INK = srgb("f7f8fa"), srgb("e9ebef"), srgb("c9ced6"), srgb("39424e")
+BODIES = (srgb("7e8c9d"), srgb("3f83c4"), srgb("3a9d86"), srgb("8a6fc0"))  # one for each row
+SHADED = 0.3  # how much darker limbs are that are away from the viewer
+ADAPTED = 1  # the row whose colour an adapted motion has
+BEFORE = 2.0  # m towards the viewer, by which is moved what nothing shall hide
+PATHS = (srgb("2f3a48"), srgb("123f70"), srgb("115445"), srgb("3f2a75"))
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The ground as drawn: its corners nearest and farthest, (3,) m, canvas frame."""
+
+    low: FloatArray
+    high: FloatArray
+
+
+@dataclass
+class Painter:
+    """Adds solids, letters and lines to a scene.
+
+    elevation: rad, of the viewer above the horizon.
+    """
+
+    scene: Any
+    elevation: float
+
+    def __post_init__(self) -> None:
+        slope = sin(self.elevation), cos(self.elevation)
+        self.up = np.array([0.0, slope[0], slope[1]])  # in the picture
+        self.away = np.array([0.0, slope[1], -slope[0]])  # from the viewer into the picture
+        self.before = -BEFORE * self.away
+        self.origin = np.zeros(3)  # the place of the current tier's canvas origin, m
+        self.matt, self.plain = materials.matt(), materials.plain()
+
+    def draw(self, layout: Layout, width: int) -> None:
+        left, right = layout.low[0] - MARGIN, layout.high[0] + MARGIN
+        wide = right - left + 2 * EDGE
+        caption, label = CAPTION * wide, LABEL * wide
+        ground = np.array([0.0, 0.0, layout.floor])
+        floor = Floor(
+            np.array([left, min(-DEPTH, layout.low[1] - BESIDE), layout.floor]),
+            np.array([right, max(DEPTH, layout.high[1] + BESIDE), layout.floor]),
+        )
+        foot = -floor.low[1] * sin(self.elevation) + THICKNESS + 2.2 * label
+        bottom = 0.0  # m in the picture, from the first tier's floor
+        for k, tier in enumerate(layout.tiers):
+            head = self.head(tier, layout.floor) + 0.6 * caption
+            top = bottom - (head + caption + GAP if k else 0.0)
+            self.origin = k * APART * self.away + top * self.up
+            self.stage(floor)
+            # a motion alone is an adapted one
+            self.tier(tier, k if len(layout.tiers) > 1 else ADAPTED, floor, label)
+            fitting = min(caption, LETTER * wide / max(len(tier.title), 1))
+            self.text(tier.title, ground + left * ACROSS + head * self.up, fitting)
+            bottom = top - foot
+            if k == 0:
+                crown = head + caption
+        self.origin = np.zeros(3)
+        self.light()
+        middle = ground + (left + right) / 2 * ACROSS + (crown + bottom) / 2 * self.up
+        self.camera(middle, wide, crown - bottom + 2 * EDGE, width)
+
+    def head(self, tier: Tier, floor: float) -> float:
+        """How far the tier reaches above the middle of its floor in the picture, m."""
+        _, back, top = tier.corners()[1]
+        return float(np.array([0.0, min(back, 0.2), top - floor]) @ self.up)
+
+    def stage(self, floor: Floor) -> None:
+        down = np.array([0.0, 0.0, THICKNESS])
+        self.mesh(meshes.block(floor.low - down, floor.high), FLOOR)
+        (left, near, z), (right, far, _) = floor.low, floor.high
+        for x in np.arange(np.ceil(left / GRID_STEP), right / GRID_STEP) * GRID_STEP:
+            # clear of the front of a step
+            self.line(np.array([x, near + 0.005, z]), np.array([x, far - 0.005, z]), 0.005)
+        for y in np.arange(np.ceil(near / GRID_STEP), far / GRID_STEP) * GRID_STEP:
+            self.line(np.array([left, y, z]), np.array([right, y, z]), 0.012)
+
+    def line(self, start: FloatArray, end: FloatArray, half_width: float) -> None:
+        """A line on the floor; those across the view are drawn wider, as they are foreshortened."""
+        reach = half_width * np.sign(end - start)[[1, 0, 2]] + [0.0, 0.0, 0.0015]
+        self.mesh(meshes.block(start - reach, end + reach), GRID)
+
+    def tier(self, tier: Tier, k: int, floor: Floor, label: float) -> None:
+        for step in tier.steps:
+            low = np.array([step.left, floor.low[1], floor.low[2]])
+            high = np.array([step.right, floor.high[1], step.top])
+            self.mesh(meshes.block(low, high), FLOOR)
+        solids = [
+            self.shape(meshes.limb(size, end, head="head" in name.lower()), self.matt)
+            for size, end, name in zip(tier.sizes, tier.proximal, tier.names, strict=True)
+        ]
+        colour = BODIES[k % len(BODIES)]
+        for age, figure in zip(np.linspace(1, 0, len(tier.figures)), tier.figures, strict=True):
+            self.figure(figure, solids, tier.far, mix(colour, PAPER, 0.5 * age))
+        self.labels(tier, floor, label)
+        self.path(tier, PATHS[k % len(PATHS)])
+        for mark in tier.marks:
+            self.mark(mark)
+
+    def mark(self, solid: Solid) -> None:
+        finish = FINISHES[solid.look]
+        mesh = (solid.vertices, solid.faces)
+        shape = self.shape(mesh, finish.material(), smooth=solid.smooth)
+        made = self.object(shape, finish.colour, self.before if finish.front else np.zeros(3))
+        if not finish.shadow:
+            _casts_nothing(made)
+
+    def figure(
+        self, figure: Figure, solids: list[Any], far: NDArray[np.bool_], colour: Colour
+    ) -> None:
+        for i, solid in enumerate(solids):
+            tone = figure.tones.get(i)
+            own = colour if tone is None else TONES[tone]
+            paint = mix(own, (0.0, 0.0, 0.0), SHADED) if far[i] else own
+            made = self.object(solid, paint, figure.centre[i])
+            made.rotation_mode = "QUATERNION"
+            made.rotation_quaternion = _quaternion(figure.rotation[i])
+
+    def labels(self, tier: Tier, floor: Floor, height: float) -> None:
+        """The time below each figure, where it does not run into the one before."""
+        end = -np.inf
+        for figure in tier.figures:
+            if figure.com[0] - end > 4.3 * height:
+                end = figure.com[0]
+                front = np.array([end, floor.low[1], floor.low[2] - THICKNESS])
+                place = front - 1.5 * height * self.up
+                self.text(f"{figure.time:.2f} s", place, height, centred=True)
+
+    def path(self, tier: Tier, colour: Colour) -> None:
+        """A tube along the centre of mass with a bead at each figure."""
+        import bpy
+
+        bead = self.shape(meshes.ball(BEAD), self.plain)
+        for figure in tier.figures:
+            _casts_nothing(self.object(bead, colour, figure.com + self.before))
+        curve = bpy.data.curves.new("path", "CURVE")
+        curve.dimensions = "3D"
+        curve.bevel_depth = PATH
+        curve.use_fill_caps = True
+        spline = curve.splines.new("POLY")
+        spline.points.add(len(tier.path) - 1)
+        four = np.column_stack([tier.path, np.ones(len(tier.path))])
+        spline.points.foreach_set("co", four.astype(np.float32).ravel())
+        curve.materials.append(self.plain)
+        _casts_nothing(self.object(curve, colour, self.before))
+
+    def text(self, body: str, place: FloatArray, height: float, *, centred: bool = False) -> None:
+        import bpy
+
+        curve = bpy.data.curves.new("text", "FONT")
+        curve.body = body
+        curve.size = height * 1.35  # the font's capitals fill three quarters of its size
+        curve.align_x = "CENTER" if centred else "LEFT"
+        curve.materials.append(self.plain)
+        made = self.object(curve, INK, place + self.before)
+        _casts_nothing(made)
+        made.rotation_euler = (pi / 2 - self.elevation, 0.0, 0.0)
+
+    def mesh(self, solid: meshes.Mesh, colour: Colour) -> None:
+        self.object(self.shape(solid, self.matt, smooth=False), colour, np.zeros(3))
+
+    def shape(self, solid: meshes.Mesh, material: Any, *, smooth: bool = True) -> Any:
+        import bpy
+
+        vertices, faces = solid
+        mesh = bpy.data.meshes.new("solid")
+        mesh.from_pydata(vertices.tolist(), [], faces.tolist())
+        mesh.polygons.foreach_set("use_smooth", np.full(len(faces), smooth))
+        mesh.materials.append(material)
+        return mesh
+
+    def object(self, data: Any, colour: Colour, place: FloatArray) -> Any:
+        import bpy
+
+        made = bpy.data.objects.new(data.name, data)
+        made.color = (*colour, 1.0)
+        made.location = self.origin + place
+        self.scene.collection.objects.link(made)
+        return made
+
+    def light(self) -> None:
+        import bpy
+
+        sun = bpy.data.lights.new("sun", "SUN")
+        sun.energy, sun.angle = 2.0, radians(25.0)
+        lamp = self.object(sun, PAPER, np.zeros(3))
+        lamp.rotation_euler = (radians(32), radians(-22), 0.0)
+        self.scene.world = materials.soft_light(PAPER)
+
+    def camera(self, centre: FloatArray, wide: float, high: float, width: int) -> None:
+        import bpy
+
+        camera = bpy.data.cameras.new("camera")
+        camera.type, camera.sensor_fit, camera.ortho_scale = "ORTHO", "HORIZONTAL", wide
+        camera.clip_end = 1000.0
+        self.scene.camera = self.object(camera, PAPER, centre - 20 * self.away)
+        self.scene.camera.rotation_euler = (pi / 2 - self.elevation, 0.0, 0.0)
+        self.scene.render.resolution_percentage = 100
+        self.scene.render.resolution_x = width
+        self.scene.render.resolution_y = max(round(width * high / wide), 4)
+
+
+def _quaternion(rotation: FloatArray) -> Any:
+    from mathutils import Matrix
+
+    return Matrix(rotation.tolist()).to_quaternion()
+
+
+def _casts_nothing(thing: Any) -> None:
+    """Neither a shadow nor its colour on others."""
+    thing.visible_shadow = thing.visible_diffuse = thing.visible_glossy = False

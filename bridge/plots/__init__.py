@@ -1,0 +1,1 @@
+"""Curves over time and where they lie on the screen; no GPU."""

@@ -1,0 +1,139 @@
+"""The charts that are switched on, of an armature's motions, with the bounds set on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING
+
+from ..properties.kinds import ConstraintKind, Instant, Span, TorqueBy
+from ..properties.phases import PhaseSpan, carried, clip_ends, phases
+from .curves import Cap, Chart, Take, force_chart, height_chart, speed_chart, torque_chart
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ...solver.data.traces import Traces
+    from ..armature.traces_store import Kept
+    from ..properties.constraint import HangtimeConstraint
+    from ..properties.settings import HangtimeSettings
+    from ..properties.view import HangtimeView
+
+AROUND = 0.5  # frames to either side of an instant, so that its bound is seen
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is plotted; equal as long as the plots are. motions: as they are stored, by key."""
+
+    motions: tuple[tuple[Take, str], ...]
+    bone: str
+    forces: bool
+    torque: bool
+    com: bool
+    phases: tuple[PhaseSpan, ...]
+    force_caps: tuple[Cap, ...]
+    torque_caps: tuple[Cap, ...]
+
+
+@dataclass(frozen=True)
+class Plotted:
+    """The motions to be plotted, and what of them."""
+
+    asked: Asked
+    takes: dict[Take, Traces]
+
+    def charts(self) -> tuple[Chart, ...]:
+        """The charts that are switched on, from left to right."""
+        takes, asked = self.takes, self.asked
+        charts = []
+        if asked.forces:
+            charts.append(force_chart(takes, asked.force_caps))
+        if asked.torque:
+            charts.append(torque_chart(takes, asked.bone, asked.torque_caps))
+        if asked.com:
+            charts += [height_chart(takes), speed_chart(takes)]
+        return tuple(charts)
+
+
+def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
+    """What is plotted of an armature; None where no motion of it is stored."""
+    motions = kept_takes(armature)
+    if not motions:
+        return None
+    takes = {take: kept.traces for take, kept in motions.items()}
+    bone = view.plot_bone or _active_bone(armature)
+    spans = _phases(armature.hangtime, takes)
+    rows = [row for row in armature.hangtime.constraints if row.used]
+    asked = Asked(
+        motions=tuple((take, kept.key) for take, kept in motions.items()),
+        bone=bone,
+        forces=view.plot_forces,
+        torque=view.plot_torque,
+        com=view.plot_com,
+        phases=spans,
+        force_caps=tuple(
+            Cap(row.name, *_span(row, spans), row.peak) for row in rows if _caps_forces(row)
+        ),
+        torque_caps=tuple(
+            Cap(row.name, *_span(row, spans), row.torque + abs(row.torque_value))
+            for row in rows
+            if _caps_torque(row, bone)
+        ),
+    )
+    return Plotted(asked, takes)
+
+
+def kept_takes(armature: bpy.types.Object) -> dict[Take, Kept]:
+    """The motions of an armature of which traces are stored."""
+    from ..armature.traces_store import kept  # loads half of the solver
+
+    owners = {Take.RECORDING: armature, Take.ADAPTED: armature.hangtime.adapted}
+    found = {take: kept(owner) for take, owner in owners.items()}
+    return {take: traces for take, traces in found.items() if traces is not None}
+
+
+def _phases(settings: HangtimeSettings, takes: dict[Take, Traces]) -> tuple[PhaseSpan, ...]:
+    """The adapted motion's, which may be retimed; before there is one, the recording's."""
+    adapted = takes.get(Take.ADAPTED)
+    if adapted is not None:
+        first, last = float(adapted.frames[0]), float(adapted.frames[-1])
+        edges = [first, *(e for f in adapted.flights for e in (f.start, f.end)), last]
+        return phases(zip(edges[::2], edges[1::2], strict=True), first, last)
+    ends = clip_ends(settings)
+    return phases(carried(settings), *ends) if ends is not None else ()
+
+
+def _active_bone(armature: bpy.types.Object) -> str:
+    bone = armature.data.bones.active
+    return bone.name if bone is not None else ""
+
+
+def _caps_forces(row: HangtimeConstraint) -> bool:
+    return row.kind == ConstraintKind.FORCE.name and row.use_peak
+
+
+def _caps_torque(row: HangtimeConstraint, bone: str) -> bool:
+    """Whether it bounds the bone's torque by a number; shares are of a torque not stored."""
+    mine = row.kind == ConstraintKind.TORQUE.name and any(b.name == bone for b in row.bones)
+    return mine and row.torque_by == TorqueBy.NEWTON_METRES.name
+
+
+def _span(row: HangtimeConstraint, spans: tuple[PhaseSpan, ...]) -> tuple[float, float]:
+    """From when to when, scene frames, a constraint holds; as drawn, without the solver's care."""
+    when = Span[row.span]
+    if when is Span.FRAMES:
+        return row.first_frame, row.last_frame
+    if when is Span.FRAME:
+        return row.first_frame - AROUND, row.first_frame + AROUND
+    phase = next((p for p in spans if p.name == row.phase), None)
+    if when is Span.ALWAYS or phase is None:
+        return -inf, inf
+    instants = {
+        Instant.START: phase.start,
+        Instant.MIDDLE: 0.5 * (phase.start + phase.end),
+        Instant.APEX: 0.5 * (phase.start + phase.end),  # of a flight, about
+        Instant.END: phase.end,
+    }
+    at = instants.get(Instant[row.instant])
+    return (phase.start, phase.end) if at is None else (at - AROUND, at + AROUND)

@@ -1,0 +1,1 @@
+"""What the extension stores in the artist's file, and what keeps it consistent."""

@@ -1,0 +1,135 @@
+"""Moving contacts' places, one by one or a whole stance at once, and what a stance's move is.
+
+Lengths in Blender units, angles in rad, world.
+A place has one truth, `row.at`; empties and the stances' offsets are kept to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, tau
+
+import bpy
+from mathutils import Matrix, Vector
+
+from .protocols import ContactRow, Settings, StanceRow
+
+_SAME = 1e-6  # Blender units
+_DIGITS = 6  # of a turn
+
+
+def place(
+    settings: Settings,
+    row: ContactRow,
+    to: Sequence[float],
+    *,
+    whole: bool | None = None,
+) -> None:
+    """Puts a contact somewhere; its whole stance makes the same move where `whole` says so.
+
+    whole: None is as the settings have it (`whole_stance`).
+    """
+    shift = Vector(to) - Vector(row.at)
+    whole = settings.whole_stance if whole is None else whole
+    moving = stance_contacts(settings, row.phase) if whole else [row]
+    for contact in moving:
+        _put(contact, Vector(contact.at) + shift)
+    _remember(settings, row.phase)
+
+
+def shift_stance(settings: Settings, stance: StanceRow, to: Sequence[float]) -> None:
+    """Moves a stance so that it stands (forward, left, up) of where it was recorded."""
+    shift = _axes(stance) @ (Vector(to) - Vector(stance.shifted))
+    for contact in stance_contacts(settings, stance.name):
+        _put(contact, Vector(contact.at) + shift)
+    stance.shifted = to
+
+
+def turn_stance(settings: Settings, stance: StanceRow, to: float) -> None:
+    """Turns a stance about the vertical through its middle, to `to` from as recorded."""
+    contacts = stance_contacts(settings, stance.name)
+    if not contacts:
+        return
+    middle = _middle([contact.at for contact in contacts])
+    turn = Matrix.Rotation(to - stance.turned, 3, "Z")
+    for contact in contacts:
+        _put(contact, middle + turn @ (Vector(contact.at) - middle))
+    stance.turned = to
+
+
+def put_back(settings: Settings, stance: StanceRow) -> None:
+    """Puts a stance's contacts where they were recorded."""
+    for contact in stance_contacts(settings, stance.name):
+        _put(contact, Vector(contact.found_at))
+    stance.shifted = (0.0, 0.0, 0.0)
+    stance.turned = 0.0
+
+
+def stance_contacts(settings: Settings, phase: str) -> list[ContactRow]:
+    """The contacts of a ground phase by its name."""
+    return [row for row in settings.contacts if row.phase == phase]
+
+
+def stance_middle(settings: Settings, phase: str) -> Vector | None:
+    """Where a stance stands, and about what it turns; None where no contact belongs to it."""
+    contacts = stance_contacts(settings, phase)
+    return _middle([contact.at for contact in contacts]) if contacts else None
+
+
+def active_contact(settings: Settings) -> ContactRow | None:
+    """The contact chosen in the list."""
+    index = settings.active_contact
+    return settings.contacts[index] if 0 <= index < len(settings.contacts) else None
+
+
+def active_stance(settings: Settings) -> StanceRow | None:
+    """The stance of the contact chosen in the list."""
+    row = active_contact(settings)
+    return settings.stances.get(row.phase) if row is not None else None
+
+
+def follow(empty: bpy.types.Object) -> None:
+    """Takes over where an empty that marks a contact has been moved to."""
+    armature = getattr(empty.hangtime, "marks", None)
+    if armature is None:
+        return
+    settings = armature.hangtime
+    for row in settings.contacts:
+        to = empty.matrix_world.translation
+        if row.empty == empty and (to - Vector(row.at)).length > _SAME:
+            place(settings, row, to)
+
+
+def _put(row: ContactRow, to: Vector) -> None:
+    row.at = to
+    if row.empty is None or (row.empty.matrix_world.translation - to).length <= _SAME:
+        return
+    world = row.empty.matrix_world.copy()
+    world.translation = to
+    row.empty.matrix_world = world
+
+
+def _remember(settings: Settings, phase: str) -> None:
+    """Keeps a stance's shift and turn to what its contacts' places say."""
+    stance = settings.stances.get(phase)
+    contacts = stance_contacts(settings, phase)
+    if stance is None or not contacts:
+        return
+    found, now = [c.found_at for c in contacts], [c.at for c in contacts]
+    old, new = _middle(found), _middle(now)
+    stance.shifted = _axes(stance).transposed() @ (new - old)
+    arms = [(Vector(a) - old, Vector(b) - new) for a, b in zip(found, now, strict=True)]
+    across = sum(a.x * b.y - a.y * b.x for a, b in arms)
+    along = sum(a.x * b.x + a.y * b.y for a, b in arms)
+    turn = round(atan2(across, along), _DIGITS)  # places are in single precision
+    stance.turned = turn + tau * round((stance.turned - turn) / tau)
+
+
+def _middle(points: Sequence[Sequence[float]]) -> Vector:
+    return sum((Vector(p) for p in points), Vector()) / len(points)
+
+
+def _axes(stance: StanceRow) -> Matrix:
+    """Columns forward, left and up, world."""
+    forward, up = Vector(stance.forward_axis), Vector((0.0, 0.0, 1.0))
+    return Matrix((forward, up.cross(forward), up)).transposed()

@@ -1,0 +1,1 @@
+"""Recipes: a MotionProblem as a TOML text that people write."""

@@ -1,0 +1,280 @@
+"""Recipes: a MotionProblem in the artist's words, as a TOML or JSON text that people write.
+
+clip = "hop.bvh"                # optional, relative to the recipe
+frames = [140, 260]             # scene frames, optional
+mass = 70.0                     # kg
+height = 1.69                   # m, optional
+mass_table = "thesis"           # or "de leva"
+[bones]                         # optional: part of the body = bone
+"left foot" = "Fuss.L"
+[[pin]]                         # any number of them
+name = "Landing"                # optional
+phase = "ground 2"              # as the analysis prints them
+points = ["Left heel"]          # or bones = [...]; default: everything that touches in the phase
+forward = 0.3                   # m along the travel; left, up; or offset = [x, y, z], world
+place = [0.0, 1.0, 0.2]         # m, world: where the middle of the points goes, optional
+turn = 90                       # degrees, counter-clockwise from above
+[[contact]]                     # corrects a contact that the analysis found
+name = "Left toe 2"
+start_frame = 183.5             # and / or end_frame; or remove = true
+
+What may be asked for beside is in recipe_requests.py.
+"""
+
+import json
+import tomllib
+from dataclasses import dataclass, fields
+from pathlib import Path as FilePath
+from typing import Any
+
+from ...solver.body.anatomy import SIDED
+from ...solver.data.faults import (
+    BadDimensions,
+    BadRecipe,
+    DependentRows,
+    Fault,
+    MissingPart,
+    UnknownContactName,
+    UnknownReductionBone,
+    WrongWeights,
+)
+from ...solver.data.problem import Axes3, ContactEdit, MassTable, MotionProblem, Pin
+from .items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
+from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
+from .source_lines import Path, json_lines, toml_lines
+from .table import ABOVE_ZERO, Source, Table
+from .toml_text import entries
+
+OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact")
+TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
+REDUCTION = ("solution", "reduction")
+CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
+PARTS = ("pelvis", "head", *(f"{side} {p.value}" for p in SIDED for side in ("left", "right")))
+
+_ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 brackets
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What a recipe says. clip: a path as written, relative to the recipe; None where not given."""
+
+    problem: MotionProblem
+    clip: str | None = None
+
+
+def read_recipe_text(path: str | FilePath) -> str:
+    """The text of a recipe's file. Raises BadRecipe."""
+    try:
+        return FilePath(path).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise BadRecipe(str(path), None, "not a text; save it as UTF-8") from error
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise BadRecipe(str(path), None, f"cannot be read ({reason}); check its path") from error
+
+
+def parse_recipe(text: str, path: str = "recipe") -> Recipe:
+    """The recipe in a text, TOML or (where it starts with a brace) JSON.
+
+    path is for faults alone. Raises BadRecipe with the line of what is wrong.
+    """
+    values, lines = _parse(text, path)
+    table = Table(Source(path, lines), (), values, TOP_KEYS)
+    problem = MotionProblem(
+        frames=_frames(table),
+        mass=_mass(table),
+        height=table.number("height", ABOVE_ZERO),
+        mass_table=table.choice("mass_table", MassTable) or MotionProblem.mass_table,
+        bones=_bones(table.table("bones", PARTS, "part of the body")),
+        contacts=CONTACT.read_all(table),
+        pins=PIN.read_all(table),
+        requests=read_requests(table),
+    )
+    _refuse_same_names(table)
+    return Recipe(problem, table.word("clip"))
+
+
+def locate(text: str, fault: Fault) -> int | None:
+    """The line of a valid recipe that a fault raised later is about, None where it is about none.
+
+    Raises BadRecipe.
+    """
+    values, lines = _parse(text, "recipe")
+    return next((lines[place] for place in _places(values, fault) if place in lines), None)
+
+
+def _places(values: dict[str, Any], fault: Fault) -> list[Path]:
+    """Where in a recipe a fault may come from, best first."""
+    match fault:
+        case UnknownContactName():
+            contacts = enumerate(values.get("contact", ()))
+            return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
+        case MissingPart():
+            return [("bones", fault.part)]
+        case UnknownReductionBone() | WrongWeights():
+            return [(*REDUCTION, "matrix", fault.row - 1)]
+        case DependentRows():
+            return [(*REDUCTION, "matrix")]
+        case BadDimensions():
+            return [(*REDUCTION, "dimensions"), REDUCTION]
+    named = [getattr(fault, field) for field in CULPRITS if hasattr(fault, field)]
+    places = [place for name in named for place, called in _names(values) if called == name]
+    return [inner for place in places for inner in _inside(values, place, fault)]
+
+
+def _names(values: dict[str, Any]) -> list[tuple[Path, str]]:
+    """Where each pin and each request is, and what it is called."""
+    return [
+        ((kind.header, i), entry.get("name", kind.default_name(i)))
+        for kind in (PIN, *NAMED)
+        for i, entry in enumerate(values.get(kind.header, ()))
+    ]
+
+
+def _inside(values: dict[str, Any], place: Path, fault: Fault) -> list[Path]:
+    """The keys and elements of a record that a fault quotes, then the record itself."""
+    header, i = place
+    texts = [getattr(fault, field.name) for field in fields(fault) if field.name not in CULPRITS]
+    quoted = [text for text in texts if isinstance(text, str)]
+    found: list[Path] = []
+    for key, held in values[header][i].items():
+        if isinstance(held, list):
+            found += [(*place, key, j) for j, element in enumerate(held) if element in quoted]
+        elif key != "name" and held in quoted:
+            found.append((*place, key))
+    return [*found, place]
+
+
+# ---------------------------------------------------------------- reading
+
+
+def _parse(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
+    """A recipe's values, and the line of each key and element."""
+    if text.lstrip().startswith("{"):
+        return _parse_json(text, path)
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        message, _, place = str(error).rpartition(" (at ")
+        # Past its last character tomllib says "end of document" instead of a line.
+        line = place.split()[1].rstrip(",") if place.startswith("line ") else text.count("\n") + 1
+        raise BadRecipe(path, int(line), f"not TOML ({message}); correct the line") from error
+    except _ABSURD as error:
+        raise BadRecipe(path, None, "not TOML that can be read; see the examples") from error
+    return values, dict(toml_lines(text))
+
+
+def _parse_json(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
+    try:
+        values = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise BadRecipe(path, error.lineno, f"not JSON ({error.msg}); correct the line") from error
+    except _ABSURD as error:
+        raise BadRecipe(path, None, "not JSON that can be read; see the examples") from error
+    lines: dict[Path, int] = {}
+    for place, line in json_lines(text):
+        if place in lines:
+            raise BadRecipe(path, line, f'"{place[-1]}" is there twice; keep one')
+        lines[place] = line
+    return values, lines
+
+
+def _frames(table: Table) -> tuple[float, float] | None:
+    frames = table.numbers("frames", "[first, last]")
+    if frames is None:
+        return None
+    first, last = frames
+    if first >= last:
+        table.refuse("frames", f"the last frame, {last:g}, must come after the first, {first:g}")
+    return first, last
+
+
+def _mass(table: Table) -> float:
+    if isinstance(table.values.get("mass"), list):
+        table.refuse("mass", '"mass" is of the body, in kg; what is carried is a [[load]]')
+    return table.number("mass", ABOVE_ZERO) or MotionProblem.mass
+
+
+def _bones(table: Table) -> dict[str, str]:
+    return {part: table.needed_word(part) for part in table.values}
+
+
+def _refuse_same_names(top: Table) -> None:
+    """Refuses a name that a pin or request before it in the text has already."""
+    lines = top.source.lines
+    taken: set[str] = set()
+    for place, name in sorted(_names(top.values), key=lambda named: lines.get(named[0], 0)):
+        if name in taken:
+            problem = f'another pin or request is called "{name}", too; give each its own name'
+            top.source.refuse((*place, "name"), problem)
+        taken.add(name)
+
+
+def _read_offset(table: Table) -> Values:
+    table.not_both("offset", TRAVEL_KEYS)
+    offset = table.numbers("offset", "[x, y, z]")
+    if offset is not None:
+        return {"offset": offset, "axes": Axes3.WORLD}
+    return {"offset": tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)}
+
+
+def _write_offset(pin: Pin) -> Values:
+    if pin.axes is Axes3.WORLD:
+        return {"offset": pin.offset}
+    return {key: amount or None for key, amount in zip(TRAVEL_KEYS, pin.offset, strict=True)}
+
+
+def _read_correction(table: Table) -> Values:
+    table.not_both("remove", ("start_frame", "end_frame"))
+    start, end = table.number("start_frame"), table.number("end_frame")
+    if start is not None and end is not None and start >= end:
+        table.refuse("end_frame", f"the end, {end:g}, must come after the start, {start:g}")
+    return {"start_frame": start, "end_frame": end, "remove": table.flag("remove")}
+
+
+def _write_correction(edit: ContactEdit) -> Values:
+    if edit.remove:
+        return {"remove": True}
+    return {"start_frame": edit.start_frame, "end_frame": edit.end_frame}
+
+
+PIN = Kind(
+    "pin",
+    Pin,
+    (
+        word("phase"),
+        TOUCHING,
+        Item((*TRAVEL_KEYS, "offset"), _read_offset, _write_offset),
+        vector("place"),
+        angle("turn"),
+    ),
+    needs=(("phase",),),
+)
+CONTACT = Kind(
+    "contact",
+    ContactEdit,
+    (
+        word("name"),
+        Item(("start_frame", "end_frame", "remove"), _read_correction, _write_correction),
+    ),
+    needs=(("name",),),
+    named=False,
+)
+
+# ---------------------------------------------------------------- writing
+
+
+def write_recipe(problem: MotionProblem, *, clip: str | None = None) -> str:
+    """The TOML text that `parse_recipe` reads as this problem."""
+    top = {
+        "clip": clip,
+        "frames": problem.frames,
+        "mass": problem.mass,
+        "height": problem.height,
+        "mass_table": problem.mass_table.value,
+    }
+    parts = [entries(top)]
+    if problem.bones:
+        parts.append("[bones]\n" + entries(problem.bones))
+    parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)
+    return "\n".join(parts + request_texts(problem.requests))

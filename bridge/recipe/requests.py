@@ -1,0 +1,286 @@
+"""Requests in a recipe: what may be asked for beside pins, and how it is written.
+
+Every table may have a `name`, by which it is reported; no two, nor a pin, may share one. Angles
+are in degrees, lengths in m, times in s, frames are the scene's, and vectors are [x, y, z].
+
+*When.* Tables marked (when) hold throughout, or
+    phase = "flight 1"          # during a phase, as the analysis prints it, or a hold's name
+    frames = [140, 160]         # or from frame to frame, of the phase where both; or frame = 150
+    moment = "apex"             # only then: start, middle, apex or end of the phase or frames
+
+[[point]]                       # a point of a bone is held at, or within bounds of, a place (when)
+bone = "Hand.L"
+offset = [0, 0.1, 0]            # from the bone's head, in its axes; default: its middle
+place = [1, 0, 2.4]             # in the world; default: where the recording has it
+path = [{ frame = 140, place = [1, 0, 2] }, { frame = 150, place = [1, 0.5, 2] }]  # it moves
+relative = [0, 0, 0.1]          # m from the place, in `axes`; or forward, left, up along the travel
+at_least = { z = 0.3 }          # bounds about the place instead of the place itself; by axis:
+at_most = { z = 0.5 }           # x, y, z; forward, left, up; or along, across, out of a surface
+axes = "world"                  # or "travel", "surface"; need not be said where the names say it
+normal = [0, -1, 0]             # of the surface
+environment = true              # what is there pushes back with a force;
+grip = true                     # ... and pulls, too
+
+[[lift]]                        # contacts shall not touch in a phase
+phase = "ground 2"
+points = ["Left heel"]          # or bones = [...]; default: everything that touches in the phase
+
+[[angle]]                       # how far a joint is bent (when)
+bone = "Shin.L"
+at_least = 10                   # and / or at_most; or fixed = 90
+
+[[twist]]                       # how far a bone is turned about itself; keys as for angle (when)
+
+[[cone]]                        # a bone stays in a cone (when)
+bone = "Thigh.L"
+half_angle = 40
+axis = [0, 0, -1]               # in the rest pose; default: where the recording points, on average
+stretch = [1, 1.5]              # wider sideways, forwards
+
+[[torque]]                      # of the bones' joints to their parents (when)
+bones = ["Foot.L"]
+bound = 50                      # N·m; or share = 0.5 of the recording's own peak; 0 is limp
+value = 20                      # N·m, about which the bound lies; default: 0
+dof = 0                         # only this angle of the joint: 0, 1 or 2
+
+[[pose]]                        # joints are posed as in the recording (when)
+bones = ["Thigh.L", "Shin.L"]   # default: the whole body
+reference = "fit"               # or "rest"
+pose_frame = 150                # the recording's frame that is taken; default: the same frame
+slack = 2                       # by which each angle may miss it; or
+weight = 1                      # it is only preferred, this much
+
+[[orientation]]                 # how a bone points in the world (when)
+bone = "Hips"
+turn = 180                      # about the vertical, counter-clockwise from above
+tilt = 10                       # forwards
+slack = 2
+
+[[force]]                       # forces of contacts (when)
+points = ["Left heel"]          # or bones = [...]; default: all contacts
+friction = 0.8                  # coefficient
+shape = "exact"                 # or "pyramid", of the friction cone
+peak = 3                        # body weights
+match = 10                      # how much more than usual they are kept as they were
+
+[body]
+mass = 80                       # kg; default: the recording's
+gravity = 1.62                  # m/s²
+[[load]]                        # a mass that is carried
+bone = "Hand.R"
+share = 0.2                     # of the body's mass; or mass = 14
+offset = [0, 0.1, 0]            # from the bone's head, in its axes; default: the bone's tail
+[[limb]]
+bones = ["Thigh.L", "Shin.L"]
+length = 0.8                    # times
+mass = 0.8                      # times
+
+[[timing]]
+phase = "flight 1"
+factor = 1.5                    # or seconds = 0.6
+[[hold]]                        # a frame is repeated, as a phase of its own by this name
+name = "Hanging"
+frame = 150
+seconds = 1
+ends = true                     # what came after it is left out
+
+[solution]
+method = "implicit"             # or "implicit with torques", "explicit"
+dynamics = "automatic"          # or "reduced", "standard"
+longest_span = 0.1              # s between knots; torque_span: of the torques
+[solution.objectives]           # weights, of the explicit solution
+"torque smoothness" = 1         # power, torque output, mass displacement, angle displacement,
+closeness = 1                   # angle smoothness, total change
+[solution.reduction]
+kind = "pca"                    # or varimax, quartimax, oblique, ica, mirror legs, matrix
+dimensions = 16                 # or explained = 0.99 of the variance
+matrix = [[{ bone = "Thigh.L", weights = [1, 0, 0] }, { bone = "Thigh.R", weights = [1, 0, 0] }]]
+"""
+
+from typing import Any
+
+from ...solver.data.requests import (
+    AddedMass,
+    AngleLimit,
+    BodyChange,
+    ConeLimit,
+    ConeShape,
+    ForceRequest,
+    Hold,
+    Lift,
+    LimbChange,
+    OrientationRequest,
+    PhaseTiming,
+    PointRequest,
+    PoseRequest,
+    Reference,
+    Requests,
+    TorqueLimit,
+    TwistLimit,
+)
+from .items import (
+    BONES,
+    LIMIT_KEYS,
+    LIMITS,
+    TOUCHING,
+    WHEN,
+    Kind,
+    angle,
+    choice,
+    direction,
+    flag,
+    number,
+    one,
+    vector,
+    whole,
+    word,
+)
+from .points import ENVIRONMENT, PATH, POINT_AXES
+from .solution import SOLUTION
+from .table import ABOVE_ZERO, NOT_NEGATIVE, Span, Table
+from .toml_text import sections
+
+HALF_ANGLE = Span("between 0 and 180 degrees", lambda value: 0.0 < value < 180.0)
+DOF = Span("0, 1 or 2", lambda value: value in (0.0, 1.0, 2.0))
+
+
+def read_requests(top: Table) -> Requests:
+    """What a recipe asks for. top: its outermost table. Raises BadRecipe."""
+    body = BODY.read(top)
+    records = {field: kind.read_all(top) for field, kind in RECORDS.items()}
+    parts = {field: kind.read_all(top) for field, kind in BODY_RECORDS.items()}
+    body = BodyChange(body.mass, body.gravity, **parts)
+    return Requests(**records, body=body, solution=SOLUTION.read(top))
+
+
+def request_texts(requests: Requests) -> list[str]:
+    """TOML tables that `read_requests` reads as these requests."""
+    texts = sections(BODY.header, BODY.write(requests.body))
+    texts += sections(SOLUTION.header, SOLUTION.write(requests.solution))
+    for field, kind in RECORDS.items():
+        texts += kind.text(getattr(requests, field))
+    for field, kind in BODY_RECORDS.items():
+        texts += kind.text(getattr(requests.body, field))
+    return texts
+
+
+def _stretch(table: Table, key: str) -> tuple[float, ...] | None:
+    values = table.numbers(key, "[sideways, forwards]")
+    if values is not None and min(values) <= 0.0:
+        table.refuse(key, f'"{key}" must be above zero in both directions')
+    return values
+
+
+BONE = word("bone")
+SLACK = angle("slack", NOT_NEGATIVE)
+POINT = Kind(
+    "point",
+    PointRequest,
+    (BONE, WHEN, vector("offset"), vector("place"), PATH, POINT_AXES, ENVIRONMENT),
+    needs=(("bone",),),
+    excludes=(("place", "path"),),
+)
+LIFT = Kind("lift", Lift, (word("phase"), TOUCHING), needs=(("phase",),))
+ANGLE = Kind("angle", AngleLimit, (BONE, LIMITS, WHEN), needs=(("bone",), LIMIT_KEYS))
+TWIST = Kind("twist", TwistLimit, (BONE, LIMITS, WHEN), needs=(("bone",), LIMIT_KEYS))
+CONE = Kind(
+    "cone",
+    ConeLimit,
+    (BONE, angle("half_angle", HALF_ANGLE), one("axis", direction), one("stretch", _stretch), WHEN),
+    needs=(("bone",), ("half_angle",)),
+)
+TORQUE = Kind(
+    "torque",
+    TorqueLimit,
+    (
+        BONES,
+        number("bound", NOT_NEGATIVE),
+        number("share", NOT_NEGATIVE),
+        number("value"),
+        whole("dof", DOF),
+        WHEN,
+    ),
+    needs=(("bones",), ("bound", "share")),
+    excludes=(("bound", "share"),),
+)
+POSE = Kind(
+    "pose",
+    PoseRequest,
+    (
+        BONES,
+        choice("reference", Reference),
+        number("pose_frame", attribute="frame"),
+        number("weight", ABOVE_ZERO),
+        SLACK,
+        WHEN,
+    ),
+    excludes=(("weight", "slack"),),
+)
+ORIENTATION = Kind(
+    "orientation",
+    OrientationRequest,
+    (BONE, angle("turn"), angle("tilt"), SLACK, WHEN),
+    needs=(("bone",),),
+)
+FORCE = Kind(
+    "force",
+    ForceRequest,
+    (
+        TOUCHING,
+        number("friction", NOT_NEGATIVE),
+        choice("shape", ConeShape),
+        number("peak", ABOVE_ZERO),
+        number("match", NOT_NEGATIVE),
+        WHEN,
+    ),
+    needs=(("friction", "shape", "peak", "match"),),
+)
+TIMING = Kind(
+    "timing",
+    PhaseTiming,
+    (word("phase"), number("factor", ABOVE_ZERO), number("seconds", ABOVE_ZERO)),
+    needs=(("phase",), ("factor", "seconds")),
+    excludes=(("factor", "seconds"),),
+)
+HOLD = Kind(
+    "hold",
+    Hold,
+    (number("frame"), number("seconds", ABOVE_ZERO), flag("ends")),
+    needs=(("frame",), ("seconds",)),
+)
+BODY = Kind(
+    "body",
+    BodyChange,
+    (number("mass", ABOVE_ZERO), number("gravity", ABOVE_ZERO)),
+    named=False,
+)
+LOAD = Kind(
+    "load",
+    AddedMass,
+    (BONE, number("mass", ABOVE_ZERO), number("share", ABOVE_ZERO), vector("offset")),
+    needs=(("bone",), ("mass", "share")),
+    excludes=(("mass", "share"),),
+)
+LIMB = Kind(
+    "limb",
+    LimbChange,
+    (BONES, number("length", ABOVE_ZERO), number("mass", ABOVE_ZERO)),
+    needs=(("bones",),),
+)
+
+RECORDS: dict[str, Kind[Any]] = {  # by field of Requests
+    "points": POINT,
+    "lifts": LIFT,
+    "angles": ANGLE,
+    "cones": CONE,
+    "twists": TWIST,
+    "torques": TORQUE,
+    "poses": POSE,
+    "orientations": ORIENTATION,
+    "forces": FORCE,
+    "timings": TIMING,
+    "holds": HOLD,
+}
+BODY_RECORDS: dict[str, Kind[Any]] = {"added": LOAD, "limbs": LIMB}  # by field of BodyChange
+NAMED = (*RECORDS.values(), *BODY_RECORDS.values())
+REQUEST_KEYS = (*(kind.header for kind in NAMED), BODY.header, SOLUTION.header)

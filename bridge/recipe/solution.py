@@ -1,0 +1,84 @@
+"""How to solve, in a recipe: method, objectives and reduction. Keys: see recipe_requests.py."""
+
+from ...solver.data.requests import Dynamics, Method, Objective, Reduction, ReductionKind, Solution
+from .items import Kind, Values, choice, number, one, whole
+from .table import ABOVE_ZERO, NOT_NEGATIVE, Span, Table, listed
+
+Rows = tuple[tuple[tuple[str, tuple[float, ...]], ...], ...]
+
+COUNT = Span("a whole number above zero", lambda value: value > 0.0 and value.is_integer())
+PART_OF_ALL = Span("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
+CHOSEN_BY_HAND = (ReductionKind.MATRIX, ReductionKind.MIRROR_LEGS)
+
+
+def _objectives(table: Table, key: str) -> tuple[tuple[Objective, float], ...]:
+    weights = table.table(key, [member.value for member in Objective], "objective")
+    if not weights.values:
+        table.refuse(key, f"nothing to weigh; known: {listed(weights.known)}")
+    return tuple((Objective(k), weights.number(k, NOT_NEGATIVE) or 0.0) for k in weights.values)
+
+
+def _weights(objectives: tuple[tuple[Objective, float], ...]) -> Values:
+    return {objective.value: weight for objective, weight in objectives}
+
+
+def _matrix(table: Table, key: str) -> Rows:
+    rows = table.values[key]
+    form = 'write every row as [{ bone = "...", weights = [...] }, ...]'
+    if not isinstance(rows, list) or not rows or not all(rows):
+        table.refuse(key, form)
+    return tuple(
+        tuple(map(_combined, table.inner((key, i), row, ("bone", "weights"), form)))
+        for i, row in enumerate(rows)
+    )
+
+
+def _combined(table: Table) -> tuple[str, tuple[float, ...]]:
+    table.needs(("weights",))
+    return table.needed_word("bone"), table.all_numbers("weights")
+
+
+def _rows(matrix: Rows) -> tuple[tuple[Values, ...], ...]:
+    return tuple(
+        tuple({"bone": bone, "weights": weights} for bone, weights in row) for row in matrix
+    )
+
+
+def _read_reduction(table: Table, key: str) -> Reduction:
+    inside = table.table(key, REDUCTION.keys, "key")
+    reduction = REDUCTION.read(table)
+    if (reduction.kind is ReductionKind.MATRIX) != bool(reduction.matrix):
+        wrong = "matrix" if reduction.matrix else "kind"
+        inside.refuse(wrong, 'kind = "matrix" and a "matrix" go together; add the other')
+    for choice_key in ("dimensions", "explained"):
+        if choice_key in inside.values and reduction.kind in CHOSEN_BY_HAND:
+            inside.refuse(choice_key, f'"{reduction.kind.value}" needs no "{choice_key}"; drop it')
+    return reduction
+
+
+REDUCTION = Kind(
+    "reduction",
+    Reduction,
+    (
+        choice("kind", ReductionKind),
+        whole("dimensions", COUNT),
+        number("explained", PART_OF_ALL),
+        one("matrix", _matrix, _rows),
+    ),
+    needs=(("kind",),),
+    excludes=(("dimensions", "explained"),),
+    named=False,
+)
+SOLUTION = Kind(
+    "solution",
+    Solution,
+    (
+        choice("method", Method),
+        choice("dynamics", Dynamics),
+        number("longest_span", ABOVE_ZERO),
+        number("torque_span", ABOVE_ZERO),
+        one("objectives", _objectives, _weights),
+        one("reduction", _read_reduction, REDUCTION.write),
+    ),
+    named=False,
+)

@@ -1,0 +1,378 @@
+"""Starts, asks and ends the process that solves, so that neither time nor a crash is Blender's.
+
+A request is made and its news gathered by a thread of its own; the thread that Blender runs on
+only looks at what has come (`Job.news`) or waits for it (`Job.wait`).
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from io import BufferedReader, RawIOBase
+from itertools import count
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Condition, Lock, Thread
+from time import monotonic
+
+from ..solver.data.faults import WorkerDied
+from ..solver.data.problem import MotionProblem
+from ..solver.data.recording import Recording
+from ..solver.data.status import Course
+from ..solver.worker.protocol import (
+    PROTOCOL,
+    Answer,
+    Ending,
+    Failed,
+    Followed,
+    Halt,
+    Hello,
+    Kind,
+    Message,
+    Progress,
+    ProtocolError,
+    Ready,
+    Request,
+    receive,
+    send,
+)
+
+_PROGRAM = Path(__file__).resolve().parents[1] / "solver" / "worker" / "main.py"
+# On a busy machine several threads make small factorisations a hundred times slower.
+_ONE_THREAD = dict.fromkeys(
+    (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+        "NUMEXPR_NUM_THREADS",
+    ),
+    "1",
+)
+_KEPT_LINES = 20
+_LAST_WORDS_S = 2.0
+_PATIENCE_S = 2.0  # with a request that was dropped, before the worker is ended for it
+
+
+class Job:
+    """One request on its way; `answer` is set once it has been seen in the news."""
+
+    def __init__(self, request: Request) -> None:
+        self.request = request
+        self.answer: Answer | None = None
+        self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
+
+    def requests(self) -> Iterator[Request]:
+        """The one."""
+        yield self.request
+
+    def deliver(self, message: Progress | Answer) -> None:
+        """Called by the thread that listens to the worker."""
+        self._arrived.put(message)
+
+    def news(self) -> Iterator[Progress | Answer]:
+        """What has arrived since the last look; never waits."""
+        while self.answer is None:
+            try:
+                yield self._seen(self._arrived.get_nowait())
+            except Empty:
+                return
+
+    def wait(self, told: Callable[[Progress], None] | None = None) -> Answer:
+        """The answer, however long it takes; each progress is told on the way."""
+        while self.answer is None:
+            message = self._seen(self._arrived.get())
+            if told is not None and isinstance(message, Progress):
+                told(message)
+        return self.answer
+
+    def _seen(self, message: Progress | Answer) -> Progress | Answer:
+        if not isinstance(message, Progress):
+            self.answer = message
+        return message
+
+
+class Chase:
+    """Follows what is wanted as it changes: the next request leaves as soon as the last one is
+    answered, without waiting until Blender looks, and is always about the latest problem."""
+
+    def __init__(self, recording: Recording, ids: Iterator[int]) -> None:
+        self._recording: Recording | None = recording
+        self._ids = ids
+        self._changed = Condition()
+        self._problem: MotionProblem | None = None
+        self._ended = False
+        self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
+
+    def want(self, problem: MotionProblem) -> None:
+        """This is what to follow from now on."""
+        with self._changed:
+            self._problem = problem
+            self._changed.notify()
+
+    def end(self) -> None:
+        """Nobody follows any more."""
+        with self._changed:
+            self._ended = True
+            self._changed.notify()
+
+    def news(self) -> Iterator[Progress | Answer]:
+        """What has arrived since the last look; never waits."""
+        while True:
+            try:
+                yield self._arrived.get_nowait()
+            except Empty:
+                return
+
+    def requests(self) -> Iterator[Request]:
+        """What to ask one after another; waits while there is nothing new. On the thread that
+        listens to the worker, which delivers what comes before it takes the next."""
+        problem: MotionProblem | None = None
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._ended or self._problem is not None)
+                if self._ended:
+                    return
+                problem, self._problem = self._problem, None
+            assert problem is not None
+            self._last = problem
+            yield Request(next(self._ids), Kind.FOLLOW, self._recording, problem)
+            self._recording = None  # the worker knows it now
+
+    def deliver(self, message: Progress | Answer) -> None:
+        """Called by the thread that listens; a motion that is still on its way is asked again."""
+        self._arrived.put(message)
+        if isinstance(message, Followed) and message.course is Course.ON_ITS_WAY:
+            with self._changed:
+                self._problem = self._problem or self._last
+
+
+class Worker:
+    """The worker process: started when it is needed, kept for the fits that it remembers."""
+
+    def __init__(self) -> None:
+        self._process: _Process | None = None
+        self._job: Job | None = None
+        self._chase: Chase | None = None
+        self._dropped: tuple[Job, float] | None = None  # and when
+        self._ids = count(1)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a request that has not been dropped has not had its answer seen."""
+        waits = self._job is not None and self._job.answer is None
+        return waits or self._chase is not None
+
+    @property
+    def pid(self) -> int | None:
+        """The process's number while it lives."""
+        alive = self._process is not None and self._process.alive
+        return self._process.pid if alive else None
+
+    def ask(self, kind: Kind, recording: Recording | None, problem: MotionProblem) -> Job:
+        """Makes a request, in a new process if there is none alive.
+
+        recording: None is the last request's. Raises WorkerDied where none can be started,
+        RuntimeError while another is under way.
+        """
+        self._ready()
+        assert self._process is not None
+        self._job = Job(Request(next(self._ids), kind, recording, problem))
+        self._process.ask(self._job)
+        return self._job
+
+    def chase(self, recording: Recording) -> Chase:
+        """Begins to follow what is wanted of a recording. Raises as `ask` does."""
+        self._ready()
+        assert self._process is not None
+        self._chase = Chase(recording, self._ids)
+        self._process.ask(self._chase)
+        return self._chase
+
+    def _ready(self) -> None:
+        """A process that is free."""
+        if self.busy:
+            raise RuntimeError("one request at a time")
+        if self.pid is None or self._stuck():
+            self.close()
+            self._process = _Process()
+
+    def drop(self) -> None:
+        """Nobody waits for the request under way any more; the worker ends it at its next step."""
+        if self._chase is not None:
+            self._chase.end()
+            self._chase = None
+        if self.busy and self._process is not None:
+            assert self._job is not None
+            self._dropped = (self._job, monotonic())
+            self._process.halt(self._job, Ending.CANCEL)
+        self._job = None
+
+    def as_it_stands(self) -> None:
+        """The request under way shall be answered with the motion as it stands."""
+        if self._job is not None and self._job.answer is None and self._process is not None:
+            self._process.halt(self._job, Ending.AS_IT_STANDS)
+
+    def close(self) -> None:
+        """Ends the process, whatever it is doing; the next request starts another."""
+        if self._chase is not None:
+            self._chase.end()
+        process, self._process, self._job, self._dropped = self._process, None, None, None
+        self._chase = None
+        if process is not None:
+            process.end()
+
+    def _stuck(self) -> bool:
+        """Whether a request that was dropped a while ago still goes on."""
+        if self._dropped is None:
+            return False
+        job, since = self._dropped
+        for _ in job.news():
+            pass  # nobody waits for it
+        return job.answer is None and monotonic() - since > _PATIENCE_S
+
+
+@cache
+def shared() -> Worker:
+    """The one worker of this Blender."""
+    return Worker()
+
+
+class _Process:
+    """One run of the worker program and the pipes to it."""
+
+    def __init__(self) -> None:
+        try:
+            self._popen = subprocess.Popen(
+                [sys.executable, "-I", str(_PROGRAM)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                bufsize=0,  # nothing is left for closing to write
+                env={**os.environ, **_ONE_THREAD},
+                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            )
+        except OSError as problem:
+            raise WorkerDied(f"{sys.executable} cannot be started: {problem}") from problem
+        assert self._popen.stdin is not None
+        assert isinstance(self._popen.stdout, RawIOBase)
+        self._to_worker = self._popen.stdin
+        self._from_worker = BufferedReader(self._popen.stdout)
+        self._greeted = False
+        self._sending = Lock()
+        self._jobs: SimpleQueue[Job | Chase | None] = SimpleQueue()
+        self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
+        self._listener = Thread(target=self._keep_errors, daemon=True)
+        self._listener.start()
+        Thread(target=self._converse, daemon=True).start()
+
+    @property
+    def pid(self) -> int:
+        return self._popen.pid
+
+    @property
+    def alive(self) -> bool:
+        return self._popen.poll() is None
+
+    def ask(self, job: Job | Chase) -> None:
+        """Has the job's request made once those before it are answered; never waits."""
+        self._jobs.put(job)
+
+    def halt(self, job: Job, how: Ending) -> None:
+        """Tells the worker to end the job's request; never waits."""
+        Thread(target=self._halt, args=(Halt(job.request.id, how),), daemon=True).start()
+
+    def _halt(self, halt: Halt) -> None:
+        _survive_broken_pipes()
+        with suppress(OSError, ValueError):  # a worker that has gone has ended it
+            self._send(halt)
+
+    def _converse(self) -> None:
+        """Makes the jobs' requests one after another, on a thread of its own."""
+        _survive_broken_pipes()
+        while (job := self._jobs.get()) is not None:
+            for request in job.requests():
+                self._meet(request, job.deliver)
+                if not self.alive:
+                    break
+
+    def _meet(self, request: Request, deliver: Callable[[Progress | Answer], None]) -> None:
+        try:
+            for message in self._talk(request):
+                deliver(message)
+        except (OSError, ValueError, EOFError):  # ValueError: the pipe was closed by end()
+            deliver(Failed(request.id, WorkerDied(self._last_words())))
+        except ProtocolError as problem:
+            self._popen.kill()
+            self._popen.wait()
+            deliver(Failed(request.id, WorkerDied(str(problem))))
+        except BaseException as problem:
+            # A mistake of ours; somebody waits for an answer all the same.
+            deliver(Failed(request.id, WorkerDied(repr(problem))))
+            raise
+
+    def end(self) -> None:
+        """Kills the process and lets go of it."""
+        self._popen.kill()
+        self._popen.wait()
+        self._jobs.put(None)
+        self._listener.join(_LAST_WORDS_S)
+        for pipe in (self._to_worker, self._from_worker, self._popen.stderr):
+            assert pipe is not None
+            pipe.close()
+
+    def _talk(self, request: Request) -> Iterator[Progress | Answer]:
+        if not self._greeted:
+            self._greet()
+        self._send(request)
+        while True:
+            message = self._hear()
+            if isinstance(message, Hello | Ready | Request | Halt) or message.id != request.id:
+                raise ProtocolError(f"{type(message).__name__} was not asked for")
+            yield message
+            if not isinstance(message, Progress):
+                return
+
+    def _send(self, message: Message) -> None:
+        with self._sending:
+            send(self._to_worker, message)
+
+    def _greet(self) -> None:
+        self._send(Hello(PROTOCOL, tuple(p for p in sys.path if p)))
+        ready = self._hear()
+        if not isinstance(ready, Ready) or ready.protocol != PROTOCOL:
+            raise ProtocolError(f"{ready} is no greeting of version {PROTOCOL}")
+        self._greeted = True
+
+    def _hear(self) -> Message:
+        message = receive(self._from_worker)
+        if message is None:
+            raise EOFError
+        return message
+
+    def _keep_errors(self) -> None:
+        assert self._popen.stderr is not None
+        for line in self._popen.stderr:
+            self._last_lines.append(line.decode(errors="replace").strip())
+
+    def _last_words(self) -> str:
+        """Why it ended: the last line that it wrote to its error stream, and its exit code."""
+        code = self._popen.wait()
+        self._listener.join(_LAST_WORDS_S)
+        said = [line for line in self._last_lines if line]
+        return f"{said[-1]} (exit code {code})" if said else f"exit code {code}"
+
+
+def _survive_broken_pipes() -> None:
+    """Have this thread get an error where the worker no longer listens.
+
+    Blender, unlike Python by itself, leaves the signal for it as it is, which ends the program.
+    """
+    if hasattr(signal, "pthread_sigmask"):  # Windows has no such signal
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})

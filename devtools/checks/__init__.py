@@ -1,0 +1,1 @@
+"""Tests, lint, types, and the physics checked by other engines."""

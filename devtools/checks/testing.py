@@ -1,0 +1,76 @@
+"""Runs pytest, each suite in a process of its own with a time limit: bpy may crash or hang."""
+
+import argparse
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import xml.sax.saxutils
+from pathlib import Path
+
+from ..environment.virtual_environment import ROOT
+from .summary import read_all
+
+RUNNER = Path(__file__).with_name("run_pytest.py")
+SUITES = {
+    "core": ["tests", "--ignore=tests/blender", "--ignore=tests/installed", "-m", "not slow"],
+    "blender": ["tests/blender", "-m", "not slow"],
+}
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(
+        prog="dev.py test",
+        description="Without arguments: every test that is not slow. Others go to pytest.",
+    )
+    parser.add_argument("--reports", type=Path, metavar="DIR", help="keep the JUnit reports here")
+    parser.add_argument("--limit", type=float, default=1200, metavar="S", help="seconds a suite")
+    own, rest = parser.parse_known_args(argv)
+    suites = {"chosen": rest} if rest else SUITES
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = (own.reports or Path(scratch)).resolve()
+        folder.mkdir(parents=True, exist_ok=True)
+        codes = [
+            run(arguments, folder / f"{name}.xml", own.limit) for name, arguments in suites.items()
+        ]
+        print(read_all(folder), flush=True)
+    return int(any(codes))
+
+
+def run(arguments: list[str], report: Path, limit: float) -> int:
+    """Exit code of one pytest process; a report is left even where the process was lost."""
+    report.unlink(missing_ok=True)
+    command = [sys.executable, str(RUNNER), f"--junitxml={report}", *arguments]
+    process = subprocess.Popen(command, cwd=ROOT, start_new_session=True)
+    try:
+        code = process.wait(timeout=limit)
+    except subprocess.TimeoutExpired:
+        write_loss(report, f"pytest's process took more than {limit:g} s")
+        return 1
+    finally:
+        end(process)
+    if not report.exists():
+        write_loss(report, f"pytest's process ended with code {code} before it could report")
+        return 1
+    return code
+
+
+def end(process: "subprocess.Popen[bytes]") -> None:
+    """End the process and, where there are process groups, whatever it started and left."""
+    if os.name == "posix":
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    else:
+        process.kill()
+
+
+def write_loss(report: Path, problem: str) -> None:
+    """A report of one failure, so that a lost process is counted."""
+    print(problem, file=sys.stderr, flush=True)
+    words = xml.sax.saxutils.quoteattr(problem)
+    report.write_text(
+        '<testsuites><testsuite name="pytest" tests="1" failures="1" errors="0" skipped="0">'
+        f'<testcase name="process"><failure message={words}/></testcase></testsuite></testsuites>'
+    )

@@ -1,0 +1,1 @@
+"""Virtual environments, Pythons and system libraries for dev.py; standard library only."""

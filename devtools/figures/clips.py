@@ -1,0 +1,51 @@
+"""What the figures are measured on: clips, the part of each that is used, and the edits."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...solver.data.problem import MotionProblem, Pin
+from ..environment.virtual_environment import ROOT
+
+MOCAP = ROOT.parent / "shared" / "mocap"
+RATE = 120.0  # Hz, of every clip here
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A jump in a recording: file below MOCAP, and the first and last second that are used."""
+
+    name: str
+    file: str
+    start: float
+    end: float
+
+    @property
+    def path(self) -> Path:
+        return MOCAP / self.file
+
+    @property
+    def frames(self) -> tuple[float, float]:
+        """First and last scene frame; the file's first frame is scene frame 1."""
+        return 1 + round(self.start * RATE), 1 + round(self.end * RATE)
+
+    def problem(self, edit: str) -> MotionProblem:
+        """The edit's problem on this clip."""
+        pin = Pin("landing", "ground 2", offset=EDITS[edit])
+        return MotionProblem(frames=self.frames, pins=(pin,))
+
+
+HOPS = "cmu_bvh/forward_hops_01_01.bvh"
+CLIPS = (
+    # The whole jump from standing upright to standing upright; before 0.6 s the subject waits.
+    Clip("broad jump 116 cm", "cmu_bvh/forward_jump_116cm.bvh", 0.6, 2.7),
+    Clip("broad jump 114 cm", "cmu_bvh/forward_jump_114cm.bvh", 1.1, 3.2),
+    # The first, the fourth and the ninth hop, between the landings of their neighbours.
+    Clip("hop 1", HOPS, 1.0, 3.2),
+    Clip("hop 4", HOPS, 5.7, 7.9),
+    Clip("hop 9", HOPS, 19.5, 21.4),
+)
+EDITS = {
+    "+0.3 m forward": (0.3, 0.0, 0.0),
+    "+0.2 m up": (0.0, 0.0, 0.2),
+    "+0.3 m forward, +0.2 m up": (0.3, 0.0, 0.2),
+}

@@ -1,0 +1,1 @@
+"""The thesis's results from recipes: solved, drawn, measured, tabulated."""

@@ -1,0 +1,128 @@
+"""One result of the gallery: what is solved, where its files lie, and the processes that make it.
+
+Blender reads the clip, a process of its own solves and measures, Blender writes and draws: the
+solver's memory and any crash are each one's own.
+"""
+
+import json
+import os
+import pickle
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...bridge.recipe.problem import parse_recipe, read_recipe_text
+from ...solver.data.problem import MotionProblem
+from ..environment.virtual_environment import ROOT
+
+GALLERY = ROOT / "examples" / "gallery"
+LONGEST = 400.0  # s, that solving one result may take by all methods together
+LEFT = ("sheet.png", "adapted.fbx", "report.json", "trajectory.npz")  # what a result leaves
+SCRATCH = ("recording.pickle", "drawn.pickle", "measured.json", "written.json")
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Result:
+    """One recipe of the gallery. title: its first comment. clip: the recording's file."""
+
+    name: str
+    title: str
+    problem: MotionProblem
+    clip: Path
+
+    @property
+    def heading(self) -> str:
+        """The title's first words, that fit above a picture."""
+        return self.title.partition(":")[0]
+
+
+def load(name: str) -> Result:
+    """Raises BadRecipe, and KeyError for a recipe that names no clip."""
+    path = GALLERY / f"{name}.toml"
+    text = read_recipe_text(path)
+    recipe = parse_recipe(text, str(path))
+    if recipe.clip is None:
+        raise KeyError(f"{path.name} names no clip")
+    title = text.lstrip().splitlines()[0].lstrip("# ").rstrip(".")
+    return Result(name, title, recipe.problem, (path.parent / recipe.clip).resolve())
+
+
+def names() -> list[str]:
+    """Jumps before runs, their fits first, by the thesis's figures where the title tells them."""
+
+    def order(path: Path) -> tuple[bool, bool, int, str]:
+        with path.open(encoding="utf-8") as file:
+            figure = re.search(r"figure 6-(\d+)", file.readline())
+        number = int(figure[1]) if figure else 0
+        return path.stem.startswith("run_"), not path.stem.endswith("_fit"), number, path.stem
+
+    return [path.stem for path in sorted(GALLERY.glob("*.toml"), key=order)]
+
+
+def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
+    """Makes one result in a folder; what was measured, with "failed" where something went wrong."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in (*LEFT, *SCRATCH):
+        (folder / name).unlink(missing_ok=True)
+    said = _run("blender", ["read", result.name, str(folder)])
+    if said is None:
+        said = _run("solve", [result.name, str(folder), *(["--quick"] if quick else [])])
+    found = _read(folder / "measured.json")
+    if said is None and (folder / "drawn.pickle").is_file():
+        words = ["write", result.name, str(folder), *([] if pictures else ["--no-picture"])]
+        said = _run("blender", words)
+    if said is not None:
+        found["failed"] = said
+    found |= {"name": result.name, "title": result.title} | _read(folder / "written.json")
+    for scratch in SCRATCH:
+        (folder / scratch).unlink(missing_ok=True)
+    return found
+
+
+def _run(module: str, arguments: list[str]) -> str | None:
+    """Runs a module of devtools in a process of its own; why it failed, or None."""
+    launcher = str(ROOT / "devtools" / "package.py")
+    command = [sys.executable, launcher, f"devtools.gallery.{module}", *arguments]
+    try:
+        done = subprocess.run(
+            command,
+            env={**os.environ, **ONE_THREAD},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=LONGEST,
+        )
+    except subprocess.TimeoutExpired:
+        return f"{module} took longer than {LONGEST:g} s"
+    if done.returncode == 0:
+        return None
+    lines = done.stdout.strip().splitlines() or [f"ended with code {done.returncode}"]
+    return lines[-1]
+
+
+def _read(path: Path) -> Json:
+    try:
+        content: Json = json.loads(path.read_text(encoding="utf-8"))
+    except OSError:
+        return {}
+    return content
+
+
+def dump(content: object, path: Path) -> None:
+    """A scratch file for the next process."""
+    path.write_bytes(pickle.dumps(content))
+
+
+def undump(path: Path) -> Any:
+    """What `dump` wrote; only ever of our own making."""
+    return pickle.loads(path.read_bytes())
+
+
+def write_json(content: Json, path: Path) -> None:
+    path.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

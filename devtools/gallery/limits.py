@@ -1,0 +1,150 @@
+"""What the gallery must reach (issue 3), and how a result and the whole measure up to it."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from statistics import median
+
+from .jobs import Json
+
+METHODS = ("implicit", "implicit with torques", "explicit")
+
+
+@dataclass(frozen=True)
+class Limit:
+    unit: str
+    must: float
+    aim: float
+
+
+SLACK = {"mm": 1.0, "degrees": 0.5, "% of the bound": 1.0}  # of a constraint, by its unit
+RESIDUALS = {
+    "flight_force": Limit("BW", 0.003, 0.0005),
+    "flight_moment": Limit("BW·m", 0.001, 0.0003),
+    "ground_force": Limit("BW", 0.02, 0.005),
+}
+SECONDS = {
+    "implicit": Limit("s", 0.5, 0.1),
+    "implicit with torques": Limit("s", 2.0, 0.5),
+    "explicit": Limit("s", 15.0, 5.0),
+}
+MEMORY = Limit("GB", 1.0, 0.4)
+LOOKS = {  # what a picture must not show, at any instant
+    "overlap_cm": Limit("cm that limbs are in each other", 3.0, 0.0),
+    "below_floor_cm": Limit("cm under the floor", 2.0, 0.0),
+    "jerk": Limit("times the fit's sharpest acceleration", 2.5, 1.0),
+}
+LEAST_KNEE = 0.0  # degrees; below zero a knee is bent backwards
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One measured number. must, aim: None where it is only told. result: whose, "all" of them."""
+
+    name: str
+    value: float | None
+    unit: str
+    must: float | None
+    aim: float | None
+    ok: bool
+    result: str
+
+
+def all_conditions(row: Json) -> list[Json]:
+    """Of every constraint its worst violation, contacts in Blender among them."""
+    return [*row.get("conditions", ()), *row.get("checks", ())]
+
+
+def worst(row: Json) -> Json | None:
+    """The constraint that is missed most, as a share of its slack."""
+    return max(
+        all_conditions(row), key=lambda c: c["worst"] / SLACK.get(c["unit"], 0.01), default=None
+    )
+
+
+def faults(row: Json) -> list[str]:
+    """Why a result is not as it should be, in words; empty where it is."""
+    found = [row["failed"]] if "failed" in row else []
+    first = row.get("methods", {}).get("implicit", {})
+    if not first.get("solved", False) and not found:
+        found.append(f"not solved ({first.get('status', 'no result')})")
+    for c in all_conditions(row):
+        if not c["worst"] <= SLACK.get(c["unit"], 0.01):
+            found.append(f"{c['name']}: {c['worst']:.3g} {c['unit']} off, by {c['by']}")
+    for name, limit in RESIDUALS.items():
+        value = row.get("residuals", {}).get(name)
+        if value is not None and not value <= limit.must:
+            found.append(f"{name.replace('_', ' ')} {value:.2g} {limit.unit}")
+    found += _ugly(row.get("looks", {}))
+    for method, solved in row.get("methods", {}).items():
+        if not solved.get("solved", True) and method != "implicit":
+            found.append(f"{method}: {solved['status']}")
+        if solved.get("peak_memory_gb", 0.0) > MEMORY.must:
+            found.append(f"{method}: {solved['peak_memory_gb']:.2f} GB")
+    return found
+
+
+def _ugly(looks: Json) -> Iterator[str]:
+    """What would be seen, in words."""
+    for name, limit in LOOKS.items():
+        if name in looks and not looks[name] <= limit.must:
+            where = looks.get(f"{name.removesuffix('_cm')}_at", "")
+            yield f"{looks[name]:.2g} {limit.unit} ({where})"
+    if looks.get("least_knee_deg", 0.0) < LEAST_KNEE:
+        yield f"a knee is bent backwards by {-looks['least_knee_deg']:.1f}°"
+
+
+def figures(rows: Sequence[Json]) -> list[Figure]:
+    """Every number of every result, and over all of them what has a limit."""
+    found = [figure for row in rows for figure in _of(row)]
+    adapted = [row for row in rows if not row["name"].endswith("_fit")]
+    good = sum(not faults(row) for row in adapted)
+    count = len(adapted)
+    found.append(Figure("results in order", good, "1", count, count, good == count, "all"))
+    for method, limit in SECONDS.items():
+        times = [s for row in adapted if (s := seconds(row, method)) is not None]
+        if times:
+            found.append(_figure(f"{method}, median", median(times), limit, "all"))
+    return found
+
+
+def seconds(row: Json, method: str) -> float | None:
+    value: float | None = row.get("methods", {}).get(method, {}).get("seconds")
+    return value
+
+
+def _of(row: Json) -> Iterator[Figure]:
+    name = row["name"]
+    yield Figure("in order", float(not faults(row)), "1 = yes", 1.0, 1.0, not faults(row), name)
+    for key, limit in RESIDUALS.items():
+        if key in row.get("residuals", {}):
+            yield _figure(key.replace("_", " "), row["residuals"][key], limit, name)
+    for method, solved in row.get("methods", {}).items():
+        if "seconds" in solved:
+            yield _told(f"{method}: time", solved["seconds"], "s", name)
+            yield _told(f"{method}: iterations", solved["iterations"], "1", name)
+            yield _told(f"{method}: unknowns", solved["unknowns"], "1", name)
+            yield _told(f"{method}: constraints", solved["rows"], "1", name)
+            yield _figure(f"{method}: peak memory", solved["peak_memory_gb"], MEMORY, name)
+    for c in all_conditions(row):
+        slack = SLACK.get(c["unit"], 0.01)
+        label = f"{c['kind']}: {c['name']}"
+        yield Figure(label, c["worst"], c["unit"], slack, None, c["worst"] <= slack, name)
+    for part in ("loads", "from_fit", "shape", "looks"):
+        for key, value in row.get(part, {}).items():
+            if isinstance(value, float):
+                yield _told(key, value, "", name)
+
+
+def _figure(name: str, value: float, limit: Limit, result: str) -> Figure:
+    ok = bool(value <= limit.must)
+    finite = value if math.isfinite(value) else None
+    return Figure(name, finite, limit.unit, limit.must, limit.aim, ok, result)
+
+
+def _told(name: str, value: float, unit: str, result: str) -> Figure:
+    return Figure(name, float(value), unit, None, None, True, result)
+
+
+def as_json(found: Sequence[Figure]) -> list[Json]:
+    return [asdict(figure) for figure in found]

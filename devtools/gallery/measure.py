@@ -1,0 +1,149 @@
+"""What a result is worth: its physics by MuJoCo, its torques and forces, how far it went."""
+
+import mujoco
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.body.dynamics import GRAVITY
+from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.results.mjcf import hinge_order
+from ...solver.results.violations import shown
+from ...solver.stages.implicit import Adaptation
+from ...solver.transcription.constraint import missed
+from ...solver.transcription.constraint_functions import PeakForce
+from ...solver.transcription.rows import RowKind
+from ...solver.transcription.torque_constraint import Torques
+from ..checks.mujoco_check import Residual, check_motion
+from .jobs import Json
+from .looks import looks
+
+IN_BLENDER = (RowKind.POINT, RowKind.BEND, RowKind.CONE)
+
+
+def measured(adaptation: Adaptation) -> Json:
+    """Everything that is measured without Blender, as JSON."""
+    residual, torques = check_motion(adaptation.motion)
+    return {
+        "mujoco": mujoco.__version__,
+        "residuals": _residuals(residual),
+        "loads": _loads(adaptation, residual, torques),
+        "conditions": conditions(adaptation, residual, torques),
+        "from_fit": from_fit(adaptation),
+        "shape": shape(adaptation),
+        "looks": looks(adaptation),
+    }
+
+
+def _residuals(residual: Residual) -> Json:
+    """Root force (BW) and moment (BW·m) that nothing explains, rms."""
+    return {
+        f"{where}_{part}": residual.rms(part, flying)
+        for where, flying in (("flight", True), ("ground", False))
+        for part in ("force", "moment")
+    }
+
+
+def _loads(adaptation: Adaptation, residual: Residual, torques: FloatArray) -> Json:
+    """The largest joint torque and the largest force of the contacts together."""
+    character = adaptation.motion.transcription.character
+    angle = int(hinge_order(character)[np.abs(torques).max(axis=0).argmax()])
+    joint = next(i for i, j in enumerate(character.joints) if j.first <= angle < j.dofs.stop)
+    return {
+        "peak_torque_nm": float(np.abs(torques).max()),
+        "peak_torque_at": character.bodies[joint].bone,
+        "peak_force_bw": float(np.linalg.norm(_needed(adaptation, residual), axis=1).max()),
+    }
+
+
+def _needed(adaptation: Adaptation, residual: Residual) -> FloatArray:
+    """(T, 3) BW: the contact force that MuJoCo finds the movement to need."""
+    weight = adaptation.motion.transcription.character.mass * GRAVITY
+    applied = adaptation.motion.forces(residual.times).sum(axis=1) / weight
+    return np.asarray(residual.force + applied)
+
+
+def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) -> list[Json]:
+    """How far each condition is missed at worst: torques and forces by MuJoCo, turns, poses and
+    orientations by the solver's own measure between its rows; the rest is checked in Blender."""
+    motion = adaptation.motion
+    t = motion.transcription
+    weight = t.character.mass * GRAVITY
+    order = hinge_order(t.character)
+    found = []
+    for c in t.conditions:
+        during = (residual.times >= c.start) & (residual.times <= c.end)
+        entry: Json = {"name": c.name, "kind": c.kind.value[0], "by": "MuJoCo"}
+        if isinstance(c.measure, Torques):
+            columns = [int(np.flatnonzero(order == a)[0]) for a in c.measure.function.angles]
+            applied = torques[during][:, columns]
+            lower, upper = weight * c.bounds.lower, weight * c.bounds.upper
+            over = np.maximum(np.maximum(applied - upper, lower - applied), 0.0)
+            share = over / (0.5 * (upper - lower))
+            entry |= {"worst": 100.0 * float(share.max(initial=0.0)), "unit": "% of the bound"}
+            entry |= {"bound_nm": (0.5 * (upper - lower)).tolist()}
+        elif isinstance(c.measure, PeakForce):
+            total = np.linalg.norm(_needed(adaptation, residual)[during], axis=1)
+            over = np.maximum(total - c.bounds.upper[0], 0.0) / c.bounds.upper[0]
+            entry |= {"worst": 100.0 * float(over.max(initial=0.0)), "unit": "% of the bound"}
+        elif c.kind in IN_BLENDER:
+            continue
+        else:
+            off = missed(c, t.character, t.basis, t.layout, motion.x)
+            amount, unit = shown(off.amount, off.kind, t.character)
+            entry |= {"worst": amount, "unit": unit, "by": "the solver"}
+        found.append(entry)
+    return found
+
+
+def from_fit(adaptation: Adaptation) -> Json:
+    """How far the motion is from the fit at the instants that correspond, root included."""
+    motion, fitted = adaptation.motion, adaptation.fit.motion
+    times = np.linspace(0.0, motion.duration, int(motion.duration * 240.0))
+    old = adaptation.plan.scene.timeline.to_old(times)
+    apart = np.linalg.norm(motion.joint_centres(times) - fitted.joint_centres(old), axis=2)
+    turned = (motion.angles(times) - fitted.angles(old))[:, 3:]
+    return {
+        "joint_centres_rms_cm": 100.0 * float(np.sqrt((apart**2).mean())),
+        "angles_rms_deg": float(np.degrees(np.sqrt((turned**2).mean()))),
+    }
+
+
+# ---------------------------------------------------------------- what the thesis tells of
+
+
+def shape(adaptation: Adaptation) -> Json:
+    """What the thesis's claims are about: the crouch, the flight, and where the hands go."""
+    motion, phases = adaptation.motion, adaptation.plan.schedule.phases
+    flights = [p for p in phases if p.kind is PhaseKind.FLIGHT]
+    if not flights:
+        return {}
+    flight = max(flights, key=lambda p: p.end - p.start)
+    before = [p for p in phases if p.end <= flight.start + 1e-9]
+    times = _during(flight)
+    centres, com = motion.joint_centres(times), motion.com(times)
+    content: Json = {
+        "flight_s": flight.end - flight.start,
+        "flight_length_m": float(np.linalg.norm((com[-1] - com[0])[:2])),
+        "apex_m": float(com[:, 2].max()),
+    }
+    if before:
+        content["crouch_m"] = float(motion.joint_centres(_during(before[-1]))[:, 0, 2].min())
+    character = motion.transcription.character
+    for i, body in enumerate(character.bodies):
+        if body.part.value == "hand":
+            shoulder = next(
+                k
+                for k, b in enumerate(character.bodies)
+                if b.part.value == "upper arm" and b.side is body.side
+            )
+            arm = centres[:, i] - centres[:, shoulder]
+            content[f"{body.side.value}_hand_highest_m"] = float(centres[:, i, 2].max())
+            content[f"{body.side.value}_hand_out_m"] = float(
+                np.linalg.norm((centres[:, i] - com)[:, :2], axis=1).mean()
+            )
+            content[f"{body.side.value}_arm_raised_m"] = float(arm[:, 2].max())
+    return content
+
+
+def _during(phase: Phase) -> FloatArray:
+    return np.linspace(phase.start, phase.end, 2 + int((phase.end - phase.start) * 240.0))

@@ -1,0 +1,1 @@
+"""A real Blender's window driven by mouse and keys, and measured."""

@@ -1,0 +1,121 @@
+"""Drives the built extension in a real Blender's window, by mouse and keys, and measures what the
+artist feels: python3 dev.py window --out DIR.
+
+Linux, Debian and root only; Blender comes from Debian and is kept in .hangtime/window. DIR gets a
+picture of every step, figures.json and a JUnit report.
+"""
+
+import argparse
+import platform
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from ..build import BuildError, build
+from ..checks.summary import read
+from ..environment.problem import SetUpError
+from ..environment.virtual_environment import ROOT
+from ..figures.limits import table, write
+from .results import LIMITS, Played, figure_verdicts, figures_of, junit, scene_verdicts
+from .room import SUITE, Room, View, prepare
+
+SIZE = (1280, 800)
+RECORDINGS = ROOT.parent / "shared" / "mocap"
+LIMIT = 540.0  # s for the whole play
+# What is left of the extension after Blender is told in lines that begin with LEFT.
+SCRIPT = """
+Xvfb :84 -screen 0 {width}x{height}x24 +extension GLX -nolisten tcp 2>/dev/null &
+blender --command extension install-file -r user_default -e /mnt/zip/{zip}
+until [ -S /tmp/.X11-unix/X84 ]; do sleep 0.1; done
+before=$(ls /tmp)
+blender --window-geometry 0 0 {width} {height} --python-exit-code 3 --python-expr \
+    "import sys; sys.path.insert(0, '/mnt/play'); from devtools.window.play import start; start()" \
+    && code=0 || code=$?
+cat /tmp/*.crash.txt 2>/dev/null || true
+sleep 1
+for process in /proc/[0-9]*; do
+    ! grep -sq 'solver/worker\\.py' $process/cmdline || echo "LEFT a worker: ${{process#/proc/}}"
+done
+for file in $(ls /tmp); do
+    case "$file" in artist.*|accepted.*|quit.blend|blender|pulse-*) ;; *)
+        echo "$before" | grep -qx "$file" || echo "LEFT /tmp/$file" ;;
+    esac
+done
+exit $code
+"""
+VARIABLES = {
+    "DISPLAY": ":84",
+    "LIBGL_ALWAYS_SOFTWARE": "1",
+    "PYTHONDONTWRITEBYTECODE": "1",
+    "PYTHONUNBUFFERED": "1",
+}
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="dev.py window", description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
+    parser.add_argument("--zip", type=Path, metavar="FILE", help="play this one; build none")
+    parser.add_argument("--reports", type=Path, metavar="DIR", help="also put the report there")
+    parser.add_argument(
+        "--tell", action="store_true", help="only tell the figures; fail for none of them"
+    )
+    parser.add_argument("--suite", default=SUITE, help="Debian's; has its own Blender")
+    parser.add_argument("--scenes", nargs="+", metavar="NAME", help="only these and their needs")
+    options = parser.parse_args(argv)
+    if not RECORDINGS.is_dir():
+        print(f"No recordings in {RECORDINGS}; the play imports one of them.", file=sys.stderr)
+        return 2
+    options.out.mkdir(parents=True, exist_ok=True)
+    try:
+        room = prepare(options.suite)
+        with tempfile.TemporaryDirectory() as folder:
+            zipped = options.zip or own_zip(Path(folder))
+            played = play(room, zipped.resolve(), options.out.resolve(), options.scenes or [])
+    except (SetUpError, BuildError) as problem:
+        print(problem, file=sys.stderr)
+        return 2
+    return report(played, options.out, options.reports, judged=not options.tell)
+
+
+def own_zip(folder: Path) -> Path:
+    """Build the extension; the zip for this machine."""
+    print("Building the extension", flush=True)
+    ending = f"-linux_{platform.machine().replace('x86_64', 'x64')}.zip"
+    return next(zipped for zipped in build(folder) if zipped.name.endswith(ending))
+
+
+def play(room: Room, zipped: Path, out: Path, scenes: list[str]) -> Played:
+    """Play the scenes in the room; pictures and Blender's log go to `out`."""
+    for stale in (*out.glob("*.png"), out / "play.json"):
+        stale.unlink(missing_ok=True)
+    views = [
+        View(zipped.parent, "/mnt/zip"),
+        View(ROOT / "devtools", "/mnt/play/devtools"),
+        View(RECORDINGS, "/mnt/mocap"),
+        View(out, "/mnt/out", writable=True),
+    ]
+    script = SCRIPT.format(width=SIZE[0], height=SIZE[1], zip=zipped.name)
+    variables = {**VARIABLES, "SCENES": " ".join(scenes)}
+    log = out / "blender.log"
+    print(f"Playing in Blender's window; its words go to {log}", flush=True)
+    code = room.run(script, views=views, variables=variables, limit=LIMIT, log=log)
+    return Played.read(out, code, log.read_text(errors="replace"))
+
+
+def report(played: Played, out: Path, reports: Path | None, *, judged: bool) -> int:
+    """Tell, write figures.json and the JUnit report; 1 where something failed.
+
+    judged: whether a figure that misses its promise is a failure.
+    """
+    figures = figures_of(played)
+    write(figures, out / "figures.json")
+    found = scene_verdicts(played) + (figure_verdicts(figures) if judged else [])
+    (out / "junit.xml").write_text(junit(found), encoding="utf-8")
+    if reports is not None:
+        reports.mkdir(parents=True, exist_ok=True)
+        shutil.copy(out / "junit.xml", reports / "window.xml")
+    print(table(figures, LIMITS))
+    print(*found, sep="\n")
+    print(read(out / "junit.xml"))
+    return int(any(verdict.failure and not verdict.skipped for verdict in found))

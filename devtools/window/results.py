@@ -1,0 +1,159 @@
+"""What a play in the window brought: its scenes, its figures beside promises, a JUnit report."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from ..figures.limits import Figure, Limit, figure
+
+CLIP = "forward_jump_116cm"
+BLOCKED = "interface blocked at most during "
+BETWEEN = "longest between Blender's free moments during "
+REST = "rest"  # what is measured under it is a window that is only redrawn
+STAGES = ("analyse", "fit", "solve", "write-back")
+OVERLAY = "overlay per redraw with 20 constraints"
+CLICKS = "clicks from an imported BVH to an adapted landing"
+LIMITS = {
+    "ghost updates per second during a drag": Limit("1/s", 5.0, 15.0, at_least=True),
+    "ghost updates per second during a drag, drawn or not": Limit("1/s"),
+    **{BLOCKED + stage: Limit("ms", 100.0, 30.0) for stage in STAGES},
+    "Esc to idle": Limit("s", 0.3, 0.1),
+    OVERLAY: Limit("ms", 4.0, 1.0),
+    f"{OVERLAY}, by the clock": Limit("ms"),
+    CLICKS: Limit("1", 6.0, 4.0),
+    # What is behind the figures of blocking; software draws the window here.
+    **{BETWEEN + stage: Limit("ms") for stage in (REST, *STAGES)},
+}
+QUICKEST = ("opens_sidebar", "analyses", "chooses_landing", "drags_landing")
+# How lines of Blender's log begin that a sound extension does not cause.
+FAULTS = ("Traceback (most recent call last)", "rna_", "Exception in", "Python: ", "LEFT ")
+Record = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Played:
+    """What the stage wrote; code: how Blender ended; log: its words."""
+
+    code: int
+    log: str
+    scenes: list[Record] = field(default_factory=list)
+    figures: dict[str, float] = field(default_factory=dict)
+    stretches: dict[str, Record] = field(default_factory=dict)
+    clicks: list[Record] = field(default_factory=list)
+
+    @staticmethod
+    def read(out: Path, code: int, log: str) -> Played:
+        """What the stage left in `out`, after Blender ended with that code."""
+        file = out / "play.json"
+        return Played(code, log, **(json.loads(file.read_text()) if file.is_file() else {}))
+
+    @property
+    def ending(self) -> str | None:
+        """What was wrong with the play as a whole; None where nothing was."""
+        if not self.scenes:
+            return f"the play did not begin; Blender ended with code {self.code}"
+        if self.code == 124:
+            return "the play took too long and was ended"
+        if self.code != 0:
+            return f"Blender ended with code {self.code}"
+        wrong = [line for line in self.log.splitlines() if line.startswith(FAULTS)]
+        return f"Blender's log says: {wrong[0]} ({len(wrong)} such lines)" if wrong else None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One thing that had to be so. failure: None where it is."""
+
+    name: str
+    failure: str | None
+    seconds: float = 0.0
+    skipped: bool = False
+
+    def __str__(self) -> str:
+        word = "skipped" if self.skipped else "failed" if self.failure else "ok"
+        why = f": {self.failure}" if word == "failed" else ""
+        return f"  {self.name:58} {word:8} {self.seconds:5.1f} s{why}"
+
+
+def figures_of(played: Played) -> list[Figure]:
+    """The measured numbers beside what they must reach."""
+    values = {**played.figures, **blocking(played.stretches), **clicks(played)}
+    return [figure(name, value, CLIP, "window", LIMITS) for name, value in values.items()]
+
+
+def blocking(stretches: dict[str, Record]) -> dict[str, float]:
+    """How long the interface was held up at most, ms: in a call into our code by the clock, drawing
+    left out, or between two free moments by what Blender's thread computed, whichever is longer.
+
+    The rest of the time between free moments is waiting for software to draw the window.
+    """
+    values = {}
+    for stage in (REST, *STAGES):
+        if stage in stretches:
+            gaps, calls = stretches[stage]["gaps"], stretches[stage]["calls"]
+            acting = [spans["longest"] for name, spans in calls.items() if not draws(name)]
+            values[BETWEEN + stage] = 1000 * gaps["longest"]
+            if stage != REST:
+                values[BLOCKED + stage] = 1000 * max([gaps["busy_longest"], *acting])
+    return values
+
+
+def draws(function: str) -> bool:
+    """Whether a function of ours is one that draws, by its qualified name."""
+    return function.rpartition(".")[2].startswith("draw")
+
+
+def clicks(played: Played) -> dict[str, float]:
+    """How many clicks the way to the adapted landing took, if it was gone to its end."""
+    done = {scene["name"] for scene in played.scenes if scene["failure"] is None}
+    if not done.issuperset(QUICKEST):
+        return {}
+    return {CLICKS: sum(click["task"] in QUICKEST for click in played.clicks)}
+
+
+def scene_verdicts(played: Played) -> list[Verdict]:
+    """Each scene, and how the play ended."""
+    found = []
+    for scene in played.scenes:
+        failure = scene["failure"]
+        if failure is not None and scene["pictures"]:
+            failure = f"{failure} (see {scene['pictures'][-1]})"
+        found.append(Verdict(scene["name"], failure, scene["seconds"], scene["skipped"]))
+    return [*found, Verdict("the play's end", played.ending)]
+
+
+def figure_verdicts(figures: list[Figure]) -> list[Verdict]:
+    """Each promise."""
+    measured = {figure.name: figure for figure in figures}
+    promised = [name for name, limit in LIMITS.items() if limit.must is not None]
+    return [Verdict(name, missed(measured.get(name))) for name in promised]
+
+
+def missed(figure: Figure | None) -> str | None:
+    """What is wrong with a promised figure; None where it is kept."""
+    if figure is None:
+        return "was not measured"
+    return None if figure.ok else f"{figure.value:.4g} {figure.unit}, must {figure.must:g}"
+
+
+def junit(found: list[Verdict]) -> str:
+    """The verdicts as pytest would report them."""
+    suite = ElementTree.Element("testsuite", name="window")
+    for verdict in found:
+        case = ElementTree.SubElement(
+            suite, "testcase", name=verdict.name, time=f"{verdict.seconds:.3f}"
+        )
+        if verdict.failure is not None:
+            kind = "skipped" if verdict.skipped else "failure"
+            ElementTree.SubElement(case, kind, message=verdict.failure)
+    failures, skipped = (len(suite.findall(f".//{kind}")) for kind in ("failure", "skipped"))
+    counts = {"tests": len(found), "failures": failures, "errors": 0, "skipped": skipped}
+    for name, count in counts.items():
+        suite.set(name, str(count))
+    suites = ElementTree.Element("testsuites")
+    suites.append(suite)
+    return ElementTree.tostring(suites, encoding="unicode")

@@ -1,0 +1,1 @@
+"""What the mouse drags in the 3D viewport: pins, limits, cones, stances."""

@@ -1,0 +1,214 @@
+"""What dragging contacts shares: the motion follows as a ghost, and letting go adapts."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import bpy
+
+from ...bridge.armature.incremental import Parts
+from ...bridge.constraints.motion_problem import problem_of
+from ...bridge.worker_client import shared
+from ...solver.data.faults import Fault
+from ...solver.data.status import Course
+from ...solver.worker.protocol import Answer, Failed, Followed, Progress
+from ..solve.adapt import NOT_ANALYSED, ask_for
+from ..solve.common import chosen_armature, hindrance, said
+from ..solve.live import live, redraw_viewports
+from ..solve.session import session
+from ..solve.task import LOOK_EVERY
+from .mouse import Press
+
+CONFIRM = {"RET", "NUMPAD_ENTER"}
+BACK = {"ESC", "RIGHTMOUSE"}
+LOST = "no motion follows there; the ghost stays where it last could"
+ELSEWHERE = "Drag in a 3D viewport"
+
+
+class FollowedDrag:
+    """Mixin of modal operators that drag contacts or points in a 3D viewport."""
+
+    release_confirm: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+    adapt: bpy.props.BoolProperty(
+        name="Adapt", description="Adapt the motion once the mouse lets go", default=True
+    )
+    keys = ""  # what the header says of keys
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        why = hindrance(context)
+        if why is None and not chosen_armature(context).hangtime.contacts:
+            why = NOT_ANALYSED
+        if why is not None:
+            cls.poll_message_set(why)
+        return why is None
+
+    # -- what is dragged -----------------------------------------------------------------------
+
+    def take(self, context: bpy.types.Context) -> str | None:
+        """The mouse takes hold; why it cannot, or None."""
+        raise NotImplementedError
+
+    def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        """The mouse is elsewhere."""
+        raise NotImplementedError
+
+    def press(self, _event: bpy.types.Event) -> bool:
+        """A key was pressed; whether it means something."""
+        return False
+
+    def put_back(self) -> None:
+        """All is as it was."""
+        raise NotImplementedError
+
+    def let_go(self) -> bool:
+        """The mouse lets go; whether anything has been dragged."""
+        raise NotImplementedError
+
+    def chosen(self) -> bool:
+        """It was clicked, not dragged; whether that has chosen anything."""
+        return False
+
+    def text(self) -> str:
+        """How far it is dragged, for the header."""
+        raise NotImplementedError
+
+    # -- Blender's way -------------------------------------------------------------------------
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self._armature = chosen_armature(context)
+        self._press = Press.of(context, event, click=self.release_confirm)
+        why = ELSEWHERE if context.region_data is None else self.take(context)
+        if why is not None:
+            self.report({"ERROR"}, why)
+            return {"CANCELLED"}
+        self._moved, self._share = True, 0.0
+        self._fault = self._shown = ""
+        self._task = self._follow(context)
+        self._window, self._area = context.window, context.area
+        self._timer = context.window_manager.event_timer_add(LOOK_EVERY, window=context.window)
+        session().running.append(self)
+        context.window_manager.modal_handler_add(self)
+        self._show()
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if self not in session().running:
+            return {"CANCELLED"}
+        pressed = event.value == "PRESS"
+        if event.type in BACK and pressed:
+            return self._back()
+        ends = event.type == "LEFTMOUSE" and event.value == self._confirming
+        if ends or (event.type in CONFIRM and pressed):
+            return self._end()
+        keyed = pressed and self.press(event)
+        if keyed or (event.type == "MOUSEMOVE" and self._press.drags(event)):
+            self.pull(context, event)
+            self._moved = True
+            redraw_viewports()
+        if event.type == "TIMER" and self._press.dragging:
+            self._look()
+        self._show()
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, _context: bpy.types.Context) -> None:
+        """Blender calls this when it opens another file or quits meanwhile."""
+        self.leave()
+
+    def leave(self) -> None:
+        """Nothing of the drag remains but where things are."""
+        running = session().running
+        if self in running:
+            running.remove(self)
+            shared().drop()
+            self._task.close()
+            bpy.context.window_manager.event_timer_remove(self._timer)
+            self._area.header_text_set(None)
+            redraw_viewports()
+
+    @property
+    def _confirming(self) -> str:
+        return "RELEASE" if self.release_confirm else "PRESS"
+
+    def _back(self) -> set[str]:
+        self.put_back()
+        self.leave()
+        live().clear()
+        return {"CANCELLED"}
+
+    def _end(self) -> set[str]:
+        moved = self.let_go()
+        self.leave()
+        if moved and self.adapt:
+            # Once this operator has ended, so that each has an undo step of its own.
+            bpy.app.timers.register(partial(_adapt, self._area.as_pointer()), first_interval=0.0)
+        else:
+            live().clear()
+        return {"FINISHED"} if moved or self.chosen() else {"CANCELLED"}
+
+    # -- the motion that follows ---------------------------------------------------------------
+
+    def _follow(self, context: bpy.types.Context) -> Parts[None]:
+        """Reads the recording in parts, then has the worker chase what is dragged."""
+        asked = yield from ask_for(context)
+        chase = shared().chase(asked.recording)
+        while True:
+            if self._moved:
+                self._moved = False
+                chase.want(problem_of(self._armature.hangtime, asked.recording))
+            for message in chase.news():
+                self._hear(message)
+            yield
+
+    def _hear(self, message: Progress | Answer) -> None:
+        if isinstance(message, Progress):
+            self._share = message.share
+        elif isinstance(message, Failed):
+            self._fault = said(message.fault)
+            live().clear()
+        elif isinstance(message, Followed):
+            self._fault = LOST if message.course is Course.LOST else ""
+            live().show(self._armature.name, message)
+
+    def _look(self) -> None:
+        """A part of the work; what cannot be followed is said, and the drag goes on without."""
+        try:
+            next(self._task)
+        except Fault as fault:
+            self._fault = said(fault)
+            live().clear()
+        except StopIteration:
+            pass  # after such a fault
+
+    def _show(self) -> None:
+        text = self.text() + self._found()
+        if text != self._shown:  # drawing the header again costs more than a look
+            self._shown = text
+            self._area.header_text_set(f"{text}   {self.keys}")
+
+    def _found(self) -> str:
+        seen = live().seen
+        if self._fault:
+            return f" · {self._fault}"
+        if not self._press.dragging:
+            return ""
+        if seen is None:
+            return f" · fitting the physics, {100.0 * self._share:.0f} %"
+        change = seen.change
+        return (
+            f" · pelvis {change['deeper_cm']:+.1f} cm deeper, {change['higher_cm']:+.1f} cm "
+            f"higher, force up to {change['peak_bw']:.1f} body weights"
+        )
+
+
+def _adapt(pointer: int) -> None:
+    """Letting go finishes the solve. pointer: of the area where the mouse was."""
+    for window in bpy.context.window_manager.windows:
+        areas = [a for a in window.screen.areas if a.type == "VIEW_3D"]
+        for area in sorted(areas, key=lambda a: a.as_pointer() != pointer):
+            region = next(r for r in area.regions if r.type == "WINDOW")
+            with bpy.context.temp_override(window=window, area=area, region=region):
+                if bpy.ops.hangtime.adapt.poll():
+                    bpy.ops.hangtime.adapt("INVOKE_DEFAULT")
+                    return
+    live().clear()

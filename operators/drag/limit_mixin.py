@@ -1,0 +1,114 @@
+"""What dragging a limit's handle in the viewport shares.
+
+The handles (ui/gizmos) say where a limit is drawn; what the mouse does there is the same for all.
+"""
+
+from __future__ import annotations
+
+from math import radians
+
+import bpy
+
+from ..solve.common import EDIT_MODE, chosen_armature
+from ..solve.live import redraw_viewports
+from .mouse import Press
+
+STEP = radians(5.0)
+KEYS = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
+NO_LIMIT = "There is no such joint limit or cone"
+BY_HANDLES = "Drag the limit's handles in a 3D viewport"
+CONFIRM, BACK = {"RET", "NUMPAD_ENTER"}, {"ESC", "RIGHTMOUSE"}
+
+
+class LimitDrag:
+    """Mixin of modal operators that change a limit of a joint."""
+
+    constraint: bpy.props.IntProperty(
+        name="Constraint", description="Its place in the list", options={"HIDDEN", "SKIP_SAVE"}
+    )
+    centre: bpy.props.FloatVectorProperty(
+        description="The joint, world", options={"HIDDEN", "SKIP_SAVE"}
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        why = None
+        if armature is None or not len(armature.hangtime.constraints):
+            why = NO_LIMIT
+        elif armature.mode == "EDIT":
+            why = EDIT_MODE
+        if why is not None:
+            cls.poll_message_set(why)
+        return why is None
+
+    # -- what is dragged -----------------------------------------------------------------------
+
+    def take(self, context: bpy.types.Context) -> bool:
+        """The mouse takes hold; whether it can."""
+        raise NotImplementedError
+
+    def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        """The mouse is elsewhere."""
+        raise NotImplementedError
+
+    def put_back(self, row: bpy.types.PropertyGroup) -> None:
+        """All is as it was."""
+        raise NotImplementedError
+
+    def let_go(self) -> bool:
+        """The mouse lets go; whether anything has changed."""
+        raise NotImplementedError
+
+    def text(self) -> str:
+        """What it is now, for the header."""
+        raise NotImplementedError
+
+    # -- Blender's way -------------------------------------------------------------------------
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self._armature = chosen_armature(context)
+        self._press = Press.of(context, event, click=True)
+        if self.row is None or context.region_data is None or not self.take(context):
+            self.report({"ERROR"}, NO_LIMIT if self.row is None else BY_HANDLES)
+            return {"CANCELLED"}
+        self._found = (self.row.met, self.row.status)
+        self._area = context.area
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if self.row is None:  # a script removed it
+            self._leave()
+            return {"CANCELLED"}
+        pressed = event.value == "PRESS"
+        if event.type in BACK and pressed:
+            self.cancel(context)
+            return {"CANCELLED"}
+        released = event.type == "LEFTMOUSE" and event.value == "RELEASE"
+        if released or (event.type in CONFIRM and pressed):
+            self._leave()
+            return {"FINISHED"} if self.let_go() else {"CANCELLED"}
+        if event.type == "MOUSEMOVE" and self._press.drags(event):
+            self.pull(context, event)
+            self._area.header_text_set(f"{self.row.name}: {self.text()}   {KEYS}")
+            redraw_viewports()
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, _context: bpy.types.Context) -> None:
+        """Also called by Blender when it opens another file or quits meanwhile."""
+        row = self.row
+        if row is not None:
+            self.put_back(row)
+            row.met, row.status = self._found
+        self._leave()
+
+    def _leave(self) -> None:
+        self._area.header_text_set(None)
+        redraw_viewports()
+
+    @property
+    def row(self) -> bpy.types.PropertyGroup | None:
+        """The constraint."""
+        rows = self._armature.hangtime.constraints
+        return rows[self.constraint] if 0 <= self.constraint < len(rows) else None

@@ -1,0 +1,98 @@
+"""Drag Joint Limit: an end of a joint's limit, or how wide a cone is, by its handle."""
+
+from __future__ import annotations
+
+from math import degrees, radians
+
+import bpy
+import numpy as np
+
+from ..names import OperatorId
+from ..solve.common import chosen_armature
+from .limit_mixin import NO_LIMIT, STEP, LimitDrag
+from .mouse import pixel, ray_at
+from .rays import Circle, angle_about, scaled
+from .value_state import ValueDrag
+
+WORDS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
+
+
+class DragLimitOperator(LimitDrag, bpy.types.Operator):
+    bl_idname = OperatorId.DRAG_LIMIT
+    bl_label = "Drag Joint Limit"
+    bl_description = "Change how far the joint may turn, or how wide the cone is"
+    bl_options = {"REGISTER", "UNDO", "BLOCKING", "INTERNAL"}
+
+    end: bpy.props.EnumProperty(
+        name="End",
+        items=[("lower", "At Least", ""), ("upper", "At Most", ""), ("half_angle", "Cone", "")],
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    zero: bpy.props.FloatVectorProperty(
+        description="Where the angle is zero, unit vector, world", options={"HIDDEN", "SKIP_SAVE"}
+    )
+    ahead: bpy.props.FloatVectorProperty(
+        description="Where it is a right angle", options={"HIDDEN", "SKIP_SAVE"}
+    )
+    radius: bpy.props.FloatProperty(default=1.0, options={"HIDDEN", "SKIP_SAVE"})
+    narrow: bpy.props.FloatProperty(
+        description="How much narrower a stretched cone is there",
+        default=1.0,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    angle: bpy.props.FloatProperty(name="Angle", subtype="ANGLE")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """In scripts and for redo: sets the angle, within its bounds."""
+        self._armature = chosen_armature(context)
+        row = self.row
+        if row is None:
+            self.report({"ERROR"}, NO_LIMIT)
+            return {"CANCELLED"}
+        low, high = bounds(row, self.end)
+        setattr(row, self.end, min(max(self.angle, low), high))
+        return {"FINISHED"}
+
+    def take(self, context: bpy.types.Context) -> bool:
+        vectors = (np.array(each) for each in (self.centre, self.zero, self.ahead))
+        self._circle = Circle(*vectors, self.radius)
+        if not self._circle.normal.any():
+            return False
+        value = getattr(self.row, self.end)
+        self._drag = ValueDrag(value, *bounds(self.row, self.end), STEP)
+        ray = ray_at(context, self._press.at)
+        self._seen = scaled(value, 1.0 / self.narrow)
+        self._began = self._angle = angle_about(ray, self._circle, self._seen)
+        return True
+
+    def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        self._angle = angle_about(ray_at(context, pixel(event)), self._circle, self._angle)
+        now = scaled(self._seen + self._angle - self._began, self.narrow)
+        value = self._drag.move(now - self._drag.start, precise=event.shift, snap=event.ctrl)
+        setattr(self.row, self.end, value)
+
+    def put_back(self, row: bpy.types.PropertyGroup) -> None:
+        setattr(row, self.end, self._drag.put_back())
+
+    def let_go(self) -> bool:
+        self.angle = self._drag.value
+        return self._drag.let_go()
+
+    def text(self) -> str:
+        change = degrees(self._drag.value - self._drag.start)
+        return f"{WORDS[self.end]} {degrees(self._drag.value):.1f}° ({change:+.1f}°)"
+
+
+def bounds(row: bpy.types.PropertyGroup, end: str) -> tuple[float, float]:
+    """How far an end of a limit goes, rad: its own bounds, and not past the other end."""
+    if end == "half_angle":
+        return radians(1.0), radians(179.0)
+    low, high = radians(-180.0), radians(180.0)
+    if end == "lower" and row.use_upper:
+        high = min(high, row.upper)
+    if end == "upper" and row.use_lower:
+        low = max(low, row.lower)
+    return low, high
+
+
+CLASSES = (DragLimitOperator,)

@@ -1,0 +1,182 @@
+"""Drag Pin: a contact's or a point's place by the mouse, while the motion follows as a ghost."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ...bridge.armature.poses import metres_per_unit
+from ...bridge.properties.stances import place, stance_contacts
+from ..names import OperatorId
+from ..solve.common import chosen_armature
+from . import rays
+from .follow_mixin import FollowedDrag
+from .mouse import Pixel, pixel, pixel_of, ray_at
+from .pin_state import Axis, PinDrag
+
+FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
+FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon
+UP = Vector((0.0, 0.0, 1.0))
+NO_PIN = "There is no such contact or point"
+BEHIND = "Turn the view so that the pin is in front of you"
+
+
+class DragPinOperator(FollowedDrag, bpy.types.Operator):
+    bl_idname = OperatorId.DRAG_PIN
+    bl_label = "Drag Pin"
+    bl_description = (
+        "Move a contact (with its stance, where Move Whole Stance is on) or a point while the "
+        "motion follows as a ghost; letting go adapts. A click chooses it in its list"
+    )
+    bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
+    keys = "X Y Z: along an axis · Shift: finer · Ctrl: in steps · Esc: back"
+
+    contact: bpy.props.IntProperty(
+        name="Contact",
+        description="Its place in the list; the chosen one if below 0",
+        default=-1,
+        options={"SKIP_SAVE"},
+    )
+    constraint: bpy.props.IntProperty(
+        name="Constraint",
+        description="A point in the list of constraints instead of a contact, if not below 0",
+        default=-1,
+        options={"SKIP_SAVE"},
+    )
+    whole: bpy.props.BoolProperty(
+        name="Whole Stance",
+        description="Move every contact of the phase, whatever Move Whole Stance says",
+        options={"SKIP_SAVE"},
+    )
+    axis: bpy.props.EnumProperty(
+        name="Axis",
+        description="What the drag is held to at first",
+        items=[("NONE", "None", "Over the ground"), *((a.name, a.name, "") for a in Axis)],
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    shift: bpy.props.FloatVectorProperty(
+        name="Shift", description="How far, in the world", subtype="TRANSLATION", unit="LENGTH"
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """In scripts and for redo: the pin moves by `shift`."""
+        self._armature = chosen_armature(context)
+        if self._row is None:
+            self.report({"ERROR"}, NO_PIN)
+            return {"CANCELLED"}
+        self._put(Vector(self._place) + Vector(self.shift))
+        return {"FINISHED"}
+
+    def take(self, context: bpy.types.Context) -> str | None:
+        if self._row is None:
+            return NO_PIN
+        self._metres = metres_per_unit(context.scene)
+        x, y, z = (self._metres * each for each in self._place)
+        self._drag = PinDrag((x, y, z), Axis.__members__.get(self.axis))
+        sight = context.region_data.view_rotation @ UP
+        self._ground = abs(sight.z) > FLAT
+        self._normal = UP if self._ground else sight
+        self._pixel = pixel_of(context, self._place)
+        if self._pixel is None:
+            return BEHIND
+        self._was = self._remembered()
+        self._choose()
+        return None
+
+    def press(self, event: bpy.types.Event) -> bool:
+        if event.type not in Axis.__members__:
+            return False
+        self._drag.key(Axis[event.type])
+        return self._press.dragging
+
+    def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        # As if the mouse had taken hold of the pin itself, wherever it did.
+        ways = zip(self._pixel, pixel(event), self._press.at, strict=True)
+        now = self._aim(context, tuple(pin + to - began for pin, to, began in ways))
+        if now is None:
+            return  # above the horizon: it stays where it is
+        x, y, z = (float(each) for each in self._metres * now - np.array(self._drag.start))
+        to = self._drag.move((x, y, z), precise=event.shift, snap=event.ctrl)
+        self._put(Vector(to) / self._metres)
+
+    def let_go(self) -> bool:
+        moved = self._drag.let_go()
+        self.shift = Vector(self._drag.shift) / self._metres
+        return moved
+
+    def put_back(self) -> None:
+        self._drag.put_back()
+        settings = self._armature.hangtime
+        settings.active_contact, settings.active_constraint, places, use_place = self._was
+        for index, at in places.items():
+            place(settings, settings.contacts[index], at, whole=False)
+        if self.constraint >= 0:
+            self._row.use_place, self._row.place = use_place
+
+    def chosen(self) -> bool:
+        settings = self._armature.hangtime
+        return (settings.active_contact, settings.active_constraint) != self._was[:2]
+
+    def text(self) -> str:
+        x, y, z = self._drag.shift
+        way = "Over the ground" if self._ground else "Across the view"
+        if self._drag.axis is not None:
+            way = f"Along {self._drag.axis.name}"
+        return f"{way} {x:+.3f} {y:+.3f} {z:+.3f} m"
+
+    # -- where ---------------------------------------------------------------------------------
+
+    @property
+    def _row(self) -> bpy.types.PropertyGroup | None:
+        settings = self._armature.hangtime
+        if self.constraint >= 0:
+            rows, index = settings.constraints, self.constraint
+        else:
+            rows = settings.contacts
+            index = self.contact if self.contact >= 0 else settings.active_contact
+        return rows[index] if 0 <= index < len(rows) else None
+
+    @property
+    def _place(self) -> tuple[float, ...]:
+        """Blender units, world."""
+        return tuple(self._row.place if self.constraint >= 0 else self._row.at)
+
+    def _put(self, to: Vector) -> None:
+        row = self._row
+        if self.constraint >= 0:
+            row.use_place, row.place = True, to
+        else:
+            place(self._armature.hangtime, row, to, whole=self.whole or None)
+
+    def _remembered(self) -> tuple[int, int, dict[int, Vector], tuple[bool, Vector] | None]:
+        """What the drag may change: what is chosen, contacts' places, the point's."""
+        settings, row = self._armature.hangtime, self._row
+        places, point = {}, None
+        if self.constraint >= 0:
+            point = (row.use_place, Vector(row.place))
+        else:
+            contacts = stance_contacts(settings, row.phase)
+            places = {settings.contacts.find(c.name): Vector(c.at) for c in contacts}
+        return settings.active_contact, settings.active_constraint, places, point
+
+    def _choose(self) -> None:
+        settings = self._armature.hangtime
+        if self.constraint >= 0:
+            settings.active_constraint = self.constraint
+        elif self.contact >= 0:
+            settings.active_contact = self.contact
+
+    def _aim(self, context: bpy.types.Context, at: Pixel) -> rays.Vector | None:
+        """What a pixel points at on the ground, the plane that faces the viewer, or the axis
+        through the pin; Blender units, world. None where it points at none of that."""
+        ray = ray_at(context, at)
+        start = np.array(self._drag.start) / self._metres
+        if self._drag.axis is not None:
+            axis = rays.unit([float(i == self._drag.axis.value) for i in range(3)])
+            distance = rays.along_line(ray, start, axis)
+            return start + distance * axis if distance is not None else None
+        return rays.on_plane(ray, start, self._normal, FARTHEST)
+
+
+CLASSES = (DragPinOperator,)

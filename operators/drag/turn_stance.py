@@ -1,0 +1,83 @@
+"""Turn Stance: about the vertical by the mouse, while the motion follows as a ghost."""
+
+from __future__ import annotations
+
+from math import degrees, inf, radians
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ...bridge.properties.stances import active_stance, stance_contacts, stance_middle
+from ..names import OperatorId
+from ..solve.common import chosen_armature
+from .follow_mixin import FollowedDrag
+from .mouse import pixel, ray_at
+from .rays import Circle, angle_about
+from .value_state import ValueDrag
+
+STEP = radians(5.0)
+NO_STANCE = "Choose a contact of the stance first"
+
+
+class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
+    bl_idname = OperatorId.TURN_STANCE
+    bl_label = "Turn Stance"
+    bl_description = (
+        "Turn the chosen contact's stance about the vertical while the motion follows as a ghost; "
+        "letting go adapts"
+    )
+    bl_options = {"REGISTER", "UNDO", "BLOCKING"}
+    keys = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
+
+    by: bpy.props.FloatProperty(
+        name="By", description="Counter-clockwise seen from above", subtype="ANGLE"
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """In scripts and for redo."""
+        stance = active_stance(chosen_armature(context).hangtime)
+        if stance is None:
+            self.report({"ERROR"}, NO_STANCE)
+            return {"CANCELLED"}
+        stance.turn += self.by
+        return {"FINISHED"}
+
+    def take(self, context: bpy.types.Context) -> str | None:
+        settings = self._armature.hangtime
+        stance = active_stance(settings)
+        middle = stance_middle(settings, stance.name) if stance is not None else None
+        if middle is None:
+            return NO_STANCE
+        self._name = stance.name
+        contacts = stance_contacts(settings, stance.name)
+        radius = max((Vector(c.at) - middle).xy.length for c in contacts)
+        x, y = np.eye(3)[:2]
+        self._circle = Circle(np.array(middle), x, y, max(radius, 1e-6))
+        self._began = self._angle = angle_about(ray_at(context, self._press.at), self._circle, 0.0)
+        self._drag = ValueDrag(stance.turn, -inf, inf, STEP)
+        return None
+
+    def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        self._angle = angle_about(ray_at(context, pixel(event)), self._circle, self._angle)
+        self._stance.turn = self._drag.move(
+            self._angle - self._began, precise=event.shift, snap=event.ctrl
+        )
+
+    def let_go(self) -> bool:
+        self.by = self._drag.value - self._drag.start
+        return self._drag.let_go()
+
+    def put_back(self) -> None:
+        self._stance.turn = self._drag.put_back()
+
+    def text(self) -> str:
+        turned = degrees(self._drag.value - self._drag.start)
+        return f"{self._name} turned by {turned:+.1f}° to {degrees(self._drag.value):.1f}°"
+
+    @property
+    def _stance(self) -> bpy.types.PropertyGroup:
+        return self._armature.hangtime.stances[self._name]
+
+
+CLASSES = (TurnStanceOperator,)

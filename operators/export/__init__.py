@@ -1,0 +1,1 @@
+"""Writing files from the interface: FBX, glTF, plots as tables."""

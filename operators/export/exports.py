@@ -1,0 +1,82 @@
+"""Export: the accepted action alone, as FBX or glTF."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bpy
+
+from ...bridge.files.export import export_fbx, export_gltf
+from ...solver.data.faults import OutputNotWritable
+from ..names import OperatorId
+from ..solve.common import FaultyOperator, chosen_armature
+from ..solve.results import performer_of, result_of
+
+NO_NAME = "no file name is given"
+NOT_ACCEPTED = "Accept a result first; what is exported is the accepted action"
+
+
+class _Export(FaultyOperator):
+    """Mixin: asks for a file, and writes the accepted action to it."""
+
+    extension = ""
+
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH")  # type: ignore[valid-type]
+    check_existing: bpy.props.BoolProperty(  # type: ignore[valid-type]
+        default=True, options={"HIDDEN"}
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        result = result_of(chosen_armature(context))
+        if result is None or not result.hangtime.accepted:
+            cls.poll_message_set(NOT_ACCEPTED)
+            return False
+        return True
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
+        name = bpy.path.clean_name(result_of(chosen_armature(context)).name)
+        self.filepath = str((folder / name).with_suffix(self.extension))
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def run(self, context: bpy.types.Context) -> set[str]:
+        armature = chosen_armature(context)
+        if not bpy.path.basename(self.filepath):
+            raise OutputNotWritable(self.filepath, NO_NAME)
+        path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.extension)
+        self.write(performer_of(armature), result_of(armature), path)
+        self.report({"INFO"}, f"Exported {Path(path).name}")
+        return {"FINISHED"}
+
+    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
+        """Writes the file. Raises OutputNotWritable."""
+        raise NotImplementedError
+
+
+class ExportFbxOperator(_Export, bpy.types.Operator):
+    bl_idname = OperatorId.EXPORT_FBX
+    bl_label = "Export FBX"
+    bl_description = "Write the armature with the accepted action, a key on every frame, as FBX"
+    extension = ".fbx"
+
+    filter_glob: bpy.props.StringProperty(default="*.fbx", options={"HIDDEN"})
+
+    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
+        export_fbx(armature, action, path)
+
+
+class ExportGltfOperator(_Export, bpy.types.Operator):
+    bl_idname = OperatorId.EXPORT_GLTF
+    bl_label = "Export glTF"
+    bl_description = "Write the armature with the accepted action as one binary glTF file"
+    extension = ".glb"
+
+    filter_glob: bpy.props.StringProperty(default="*.glb", options={"HIDDEN"})
+
+    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
+        export_gltf(armature, action, path)
+
+
+CLASSES = (ExportFbxOperator, ExportGltfOperator)

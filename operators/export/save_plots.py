@@ -1,0 +1,66 @@
+"""Save Plots: the plotted curves as a table that spreadsheets and scripts read."""
+
+from __future__ import annotations
+
+import csv
+from io import StringIO
+from pathlib import Path
+
+import bpy
+from bpy_extras.io_utils import ExportHelper
+
+from ...bridge.plots.charts import kept_takes
+from ...bridge.plots.curves import table
+from ..headless.outbox import Outbox
+from ..names import OperatorId
+from ..solve.common import FaultyOperator, chosen_armature
+
+NOTHING = "Press Analyze first: there is no motion to plot"
+DIGITS = 6
+
+
+class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):
+    bl_idname = OperatorId.SAVE_PLOTS
+    bl_label = "Save Plots"
+    bl_description = (
+        "Save centre of mass, contact forces and torques of the recording and of the adapted "
+        "motion as a table (CSV), frame by frame"
+    )
+
+    filename_ext = ".csv"
+    filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        possible = armature is not None and bool(kept_takes(armature))
+        if not possible:
+            cls.poll_message_set(NOTHING)
+        return possible
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if not self.filepath:
+            folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path()
+            self.filepath = str(folder / f"{chosen_armature(context).name} plots.csv")
+        return ExportHelper.invoke(self, context, event)
+
+    def run(self, context: bpy.types.Context) -> set[str]:
+        takes = {take: kept.traces for take, kept in kept_takes(chosen_armature(context)).items()}
+        path = Path(bpy.path.abspath(self.filepath))
+        with Outbox(path.parent) as outbox:
+            outbox.write_text(path.name, _csv(*table(takes)))
+            outbox.deliver()
+        self.report({"INFO"}, f"Saved {path.name}")
+        return {"FINISHED"}
+
+
+def _csv(headings: list[str], lines: list[list[float | None]]) -> str:
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(headings)
+    for line in lines:
+        writer.writerow("" if v is None else f"{v:.{DIGITS}g}" for v in line)
+    return text.getvalue()
+
+
+CLASSES = (SavePlotsOperator,)

@@ -1,0 +1,1 @@
+"""Without a window: the command line, its job, stages and output files."""

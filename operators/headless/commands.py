@@ -1,0 +1,178 @@
+"""What `adapt` and `analyze` take and do."""
+
+import argparse
+import math
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from io import TextIOWrapper
+from pathlib import Path
+
+from ...bridge.recipe.problem import Recipe, locate, parse_recipe, read_recipe_text
+from ...solver.data.faults import BadRecipe, Fault, NoSolution
+from ...solver.data.problem import MotionProblem
+from ..words.analysis_text import analysis_text, starter_recipe
+from ..words.wording import recipe_place, sentence
+from .job import Clip, Job, load
+from .job import run as run_job
+from .outbox import not_writable
+from .stages import WIDTH, Stages
+
+WRONG_INPUT = 2
+NO_SOLUTION = 3
+CANCELLED = 130
+
+
+def run(argv: Sequence[str]) -> int:
+    """Parses and runs; the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal that lacks a sign still gets the rest
+    try:
+        options = parser().parse_args(argv)
+    except SystemExit as end:  # argparse has said why
+        return WRONG_INPUT if end.code else 0
+    act: Callable[[argparse.Namespace], None] = options.act
+    try:
+        act(options)
+    except Fault as fault:
+        print(explained(fault, options.recipe), file=sys.stderr)
+        return NO_SOLUTION if isinstance(fault, NoSolution) else WRONG_INPUT
+    except KeyboardInterrupt:
+        print("\nCancelled; nothing was written.", file=sys.stderr)
+        return CANCELLED
+    return 0
+
+
+def explained(fault: Fault, recipe: Path | None) -> str:
+    """The fault in words, with the recipe's line where one is to blame."""
+    if recipe is None or isinstance(fault, BadRecipe):
+        return sentence(fault)
+    line = locate(read_recipe_text(recipe), fault)
+    return sentence(fault) if line is None else f"{recipe_place(recipe, line)}: {sentence(fault)}"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The commands and their options."""
+    top = argparse.ArgumentParser(prog="hangtime", description="Adapts recorded jumps by physics.")
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+    adapting = commands.add_parser("adapt", help="adapt a clip as a recipe says")
+    adapting.set_defaults(act=adapt)
+    adapting.add_argument("--recipe", type=Path, required=True, help="TOML or JSON file")
+    adapting.add_argument(
+        "--out",
+        type=Path,
+        default=Path("out"),
+        metavar="DIR",
+        help="for the results (default: out)",
+    )
+    analyzing = commands.add_parser("analyze", help="print a clip's phases and contacts")
+    analyzing.set_defaults(act=analyze, recipe=None)
+    analyzing.add_argument(
+        "--write-recipe", type=Path, metavar="FILE", help="leave a recipe to start from"
+    )
+    for each in (adapting, analyzing):
+        _add_clip_options(each, optional=each is adapting)
+    return top
+
+
+def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
+    count = "?" if optional else None
+    words = "BVH, FBX or AMC file, or .blend"
+    each.add_argument("clip", type=Path, nargs=count, metavar="CLIP", help=words)
+    each.add_argument("--first", type=_number, metavar="FRAME", help="first frame")
+    each.add_argument("--last", type=_number, metavar="FRAME", help="last frame")
+    each.add_argument("--mass", type=_positive, metavar="KG", help="mass (default: 70)")
+    each.add_argument("--height", type=_positive, metavar="M", help="scale the figure to this")
+    each.add_argument("--unit", type=_positive, metavar="M", help="metres per unit of the file")
+    each.add_argument("--up", choices=("Y", "Z"), type=str.upper, help="axis that points up")
+    each.add_argument("--rate", type=_positive, metavar="HZ", help="an AMC file's frames a second")
+    each.add_argument("--asf", type=Path, metavar="FILE", help="an AMC file's skeleton")
+    each.add_argument(
+        *("--bone", "--bones"),
+        type=_bone,
+        action="extend",
+        nargs="+",
+        default=[],
+        metavar="PART=BONE",
+        help='such as "left foot=Fuss.L"',
+    )
+
+
+def _number(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(text)
+    return number
+
+
+def _positive(text: str) -> float:
+    number = _number(text)
+    if number <= 0.0:
+        raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return number
+
+
+def _bone(text: str) -> tuple[str, str]:
+    part, equals, bone = text.partition("=")
+    if not (equals and part.strip() and bone.strip()):
+        raise argparse.ArgumentTypeError(f'{text!r} is not of the form "left foot=Fuss.L"')
+    return part.strip().lower(), bone.strip()
+
+
+# ---------------------------------------------------------------- the commands
+
+
+def adapt(options: argparse.Namespace) -> None:
+    """The main job. Raises Fault."""
+    recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
+    job = Job(_clip(options, recipe), overridden(recipe.problem, options), options.out)
+    stages = Stages(sys.stdout)
+    files = run_job(job, stages)
+    print(f"{'Total':<{WIDTH}}{stages.total:6.1f} s", "Written:", sep="\n")
+    for path in files:
+        print(f"  {path}")
+
+
+def analyze(options: argparse.Namespace) -> None:
+    """Prints what a clip holds; leaves a recipe where asked. Raises Fault."""
+    problem = overridden(MotionProblem(), options)
+    loaded = load(_clip(options, None), problem, Stages(sys.stdout))
+    print()
+    print(analysis_text(loaded.analysis, loaded.origin), end="")
+    target: Path | None = options.write_recipe
+    if target is not None:
+        text = starter_recipe(loaded.analysis, problem, options.clip, target)
+        try:
+            with target.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except OSError as error:
+            raise not_writable(target, error) from error
+        print(f"\nWritten:\n  {target}")
+
+
+def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:
+    """The clip given, else the recipe's. Raises BadRecipe where there is neither."""
+    path: Path | None = options.clip
+    if path is None:
+        if recipe is None or recipe.clip is None:
+            problem = 'no recording; name one on the command line, or here as clip = "..."'
+            raise BadRecipe(str(options.recipe), None, problem)
+        path = options.recipe.parent / recipe.clip
+    return Clip(path, options.unit, options.up, options.rate, options.asf)
+
+
+def overridden(problem: MotionProblem, options: argparse.Namespace) -> MotionProblem:
+    """The problem with what the command line says in place of what the recipe says."""
+    first, last = problem.frames or (-math.inf, math.inf)
+    frames = (
+        first if options.first is None else options.first,
+        last if options.last is None else options.last,
+    )
+    return replace(
+        problem,
+        frames=None if frames == (-math.inf, math.inf) else frames,
+        mass=problem.mass if options.mass is None else options.mass,
+        height=problem.height if options.height is None else options.height,
+        bones=problem.bones | dict(options.bone),
+    )

@@ -1,0 +1,88 @@
+"""Files that appear in the output folder together or not at all."""
+
+import os
+from pathlib import Path
+from types import TracebackType
+
+from ...solver.data.faults import OutputNotWritable
+
+PART = "unfinished-"
+
+
+class Outbox:
+    """An output folder. Files are written under other names until `deliver` gives them their own.
+
+    As a context it removes on leaving what was not delivered, and a folder that it made in vain.
+    Raises OutputNotWritable on entering where the folder cannot be made or written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._made: list[Path] = []
+        self._names: list[str] = []
+
+    def __enter__(self) -> "Outbox":
+        missing = [f for f in (self.folder, *self.folder.parents) if not f.exists()]
+        probe = self.folder / f"{PART}probe"
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self._made = missing
+            probe.write_bytes(b"")
+            probe.unlink()
+        except OSError as error:
+            self._remove_made()
+            raise not_writable(self.folder, error) from error
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for name in self._names:
+            self._part(name).unlink(missing_ok=True)
+        self._remove_made()
+
+    def path(self, name: str) -> Path:
+        """Where to write the file that shall be called `name`."""
+        if name not in self._names:
+            self._names.append(name)
+        return self._part(name)
+
+    def write_text(self, name: str, text: str) -> None:
+        """Writes a whole text file. Raises OutputNotWritable."""
+        try:
+            self.path(name).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise not_writable(self.folder / name, error) from error
+
+    def deliver(self) -> list[Path]:
+        """Gives every file its name, in the order in which they were asked for.
+
+        Raises OutputNotWritable.
+        """
+        delivered = []
+        for name in self._names:
+            try:
+                os.replace(self._part(name), self.folder / name)
+            except OSError as error:
+                raise not_writable(self.folder / name, error) from error
+            delivered.append(self.folder / name)
+        self._names = []
+        self._made = []
+        return delivered
+
+    def _part(self, name: str) -> Path:
+        return self.folder / f"{PART}{name}"
+
+    def _remove_made(self) -> None:
+        """Takes back the folders made, deepest first."""
+        for folder in self._made:
+            folder.rmdir()
+        self._made = []
+
+
+def not_writable(path: Path, error: OSError) -> OutputNotWritable:
+    """The fault of a path that could not be written."""
+    return OutputNotWritable(str(path), error.strerror or type(error).__name__)

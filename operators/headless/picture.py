@@ -1,0 +1,163 @@
+"""The pictures of a result: the body at instants, with what holds it (thesis 6)."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+
+from ...bridge.picture.annotations import Bar, Mark, Span, Sphere
+from ...bridge.picture.render import draw_sheet
+from ...bridge.picture.sheet import Limb, SheetRow, View
+from ...solver.arrays import FloatArray
+from ...solver.body.anatomy import Part
+from ...solver.body.character import Body
+from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.data.problem import Axes3, MotionProblem, Pin
+from ...solver.stages.implicit import Adaptation
+from ...solver.transcription.motion import Motion
+
+FEET = (Part.FOOT, Part.TOE)
+BESIDE_HANDS = 0.3  # m, how far a bar reaches beyond the hands that hold it
+FIGURES = 9  # of a motion alone
+TRAVELS = 0.3  # m, less is no direction
+
+
+def draw(
+    adaptation: Adaptation, problem: MotionProblem, path: Path, marks: Sequence[Mark] = ()
+) -> None:
+    """The recording above, the adapted motion with its marks below, as a PNG file.
+
+    The marks' arrays are constant, or sampled at `instants(adaptation.motion)`.
+    Raises OutputNotWritable.
+    """
+    asked = [*map(caption, problem.pins), *problem.requests.names]
+    edit = "; ".join(asked) or "made to obey physics"
+    rows = [recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)]
+    draw_sheet(rows, path, View(heading=heading(adaptation)))
+
+
+def draw_result(adaptation: Adaptation, title: str, path: Path, marks: Sequence[Mark] = ()) -> None:
+    """The adapted motion alone, as in the thesis's gallery; otherwise as `draw`."""
+    view = View(figures=FIGURES, heading=heading(adaptation))
+    draw_sheet([adapted_row(adaptation, title, marks)], path, view)
+
+
+def heading(adaptation: Adaptation) -> tuple[float, float] | None:
+    """Where the recording travels, so that a diagonal shows as one; None if it hardly does."""
+    com = adaptation.fit.performance.com
+    x, y = (com[-1] - com[0])[:2].tolist()
+    return (x, y) if np.hypot(x, y) > TRAVELS else None
+
+
+def instants(motion: Motion, rate: float = 120.0) -> FloatArray:
+    """(T,) s, at which a motion's row, and marks that vary, are sampled."""
+    return np.linspace(0.0, motion.duration, max(2, round(motion.duration * rate) + 1))
+
+
+def recorded_row(adaptation: Adaptation) -> SheetRow:
+    """The recording with the contacts found in it."""
+    performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
+    bodies = performance.character.bodies
+    return SheetRow(
+        f"Recording: {performance.recording.name}",
+        performance.times,
+        tuple(limbs(bodies, performance.rotations, performance.centres)),
+        performance.com,
+        np.array([c.place for c in schedule.contacts]).reshape(-1, 3),
+        key_times(adaptation.fit.motion, schedule.phases),
+        tuple((c.start, c.end) for c in schedule.contacts),
+    )
+
+
+def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) -> SheetRow:
+    """The adapted motion with its contacts: spheres, and a bar where hands hold on."""
+    motion, phases = adaptation.motion, adaptation.plan.schedule.phases
+    t, times = motion.transcription, instants(motion)
+    posed, com = motion.pose(times), motion.com(times)
+    holds = tuple(contact_holds(motion, times))
+    feet = [hold for hold in holds if hold.part in FEET and hold.place.ndim == 1]
+    others = [hold for hold in holds if hold not in feet]
+    ground = [*adaptation.fit.places[:, 2], *(hold.place[2] for hold in feet)]
+    return SheetRow(
+        title,
+        times,
+        tuple(limbs(t.character.bodies, posed.rotations, posed.centres + com[:, None])),
+        com,
+        np.array([hold.place for hold in feet]).reshape(-1, 3),
+        key_times(motion, phases),
+        tuple(hold.span for hold in feet),
+        (*(Sphere(hold.place, hold.span) for hold in others), *bars(others), *marks),
+        min(ground, default=None),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class ContactHold:
+    """Where and when a contact holds a part of the body. place: (3,), or (T, 3) if it moves, m."""
+
+    part: Part
+    place: FloatArray
+    span: Span
+
+
+def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
+    """Every contact of a motion; where it moves, at the instants (T,)."""
+    t = motion.transcription
+    for contact, place in zip(t.contacts, motion.places, strict=True):
+        body = t.character.bodies[t.points[contact.point].body]
+        if contact.track is not None:
+            moves = [np.interp(times, contact.track.times, x) for x in contact.track.moves.T]
+            place = place + np.stack(moves, axis=1)
+        yield ContactHold(body.part, place, (contact.contact.start, contact.contact.end))
+
+
+def bars(holds: Sequence[ContactHold]) -> Iterator[Bar]:
+    """A level bar through each two hands that hold on at the same time."""
+    hands = [hold for hold in holds if hold.part is Part.HAND]
+    for one, other in combinations(hands, 2):
+        span = max(one.span[0], other.span[0]), min(one.span[1], other.span[1])
+        along = (other.place - one.place) * [1.0, 1.0, 0.0]
+        length = np.linalg.norm(along, axis=-1, keepdims=True)
+        if span[0] < span[1] and length.min() > 1e-3:
+            reach = (0.5 + BESIDE_HANDS / length) * along
+            middle = 0.5 * (one.place + other.place)
+            yield Bar(middle - reach, middle + reach, span=span)
+
+
+def limbs(bodies: Iterable[Body], rotations: FloatArray, centres: FloatArray) -> Iterable[Limb]:
+    """Every body's box at (T, B) rotations and joint centres, m, world."""
+    for i, body in enumerate(bodies):
+        turn = rotations[:, i]
+        middle = centres[:, i] + turn @ body.box_centre
+        yield Limb(body.name, body.box_size, middle, turn @ body.box_rotation)
+
+
+def key_times(motion: Motion, phases: Iterable[Phase]) -> tuple[float, ...]:
+    """Take-off and landing of every flight, then its apex, s."""
+    edges: list[float] = []
+    apexes: list[float] = []
+    for phase in phases:
+        if phase.kind is PhaseKind.FLIGHT:
+            during = np.linspace(phase.start, phase.end, 100)
+            edges += [phase.start, phase.end]
+            apexes.append(float(during[motion.com(during)[:, 2].argmax()]))
+    return (*edges, *apexes)
+
+
+def caption(pin: Pin) -> str:
+    """Such as "Landing: 0.3 m forward, 0.2 m up, turned by 90°"."""
+    words = []
+    if pin.place is not None:
+        words.append(f"to ({', '.join(f'{x:g}' for x in pin.place)}) m")
+    if pin.axes is Axes3.WORLD and any(pin.offset):
+        words.append(f"by ({', '.join(f'{x:g}' for x in pin.offset)}) m")
+    elif pin.axes is Axes3.TRAVEL:
+        ways = (("forward", "back"), ("left", "right"), ("up", "down"))
+        for amount, (ahead, behind) in zip(pin.offset, ways, strict=True):
+            if amount:
+                words.append(f"{abs(amount):g} m {ahead if amount > 0.0 else behind}")
+    if pin.turn:
+        words.append(f"turned by {np.degrees(pin.turn):.4g}°")
+    return f"{pin.name}: {', '.join(words) or 'held'}"

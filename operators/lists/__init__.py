@@ -1,0 +1,1 @@
+"""Operators of the lists: contacts, constraints, body changes, presets."""

@@ -1,0 +1,143 @@
+"""The list of body changes: add and remove weights and limbs; and the bones of either list."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...bridge.constraints.rows import SINGLE_BONE, add_body_change, set_bones
+from ...bridge.properties.kinds import BodyKind
+from ..names import OperatorId
+from ..solve.common import chosen_armature
+from .chosen_bones import chosen_bones
+from .row_lists import FROM_LIBRARY, AddingOperator, RowList, RowOperator, list_items
+
+NONE_SELECTED = "Select bones in pose mode first"
+_OF_ONE_BONE = {kind.name for kind in (*SINGLE_BONE, BodyKind.LOAD)}
+DESCRIPTIONS = {
+    BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
+    BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",
+}
+
+
+def _items() -> list[tuple[str, str, str]]:
+    return [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
+
+
+class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
+    bl_idname = OperatorId.ADD_BODY_CHANGE
+    bl_label = "Add Body Change"
+    bl_description = "Add a weight or a limb of the selected pose bones"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: bpy.props.EnumProperty(name="Kind", items=_items())
+
+    @classmethod
+    def description(
+        cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties
+    ) -> str:
+        return DESCRIPTIONS[BodyKind[properties.kind]]
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        armature, kind = chosen_armature(context), BodyKind[self.kind]
+        bones = chosen_bones(armature)
+        groups = [[bone] for bone in bones] if kind is BodyKind.LOAD and bones else [bones]
+        for group in groups:
+            add_body_change(armature.hangtime, kind, group)
+        return {"FINISHED"}
+
+
+class RemoveBodyChangeOperator(RowOperator, bpy.types.Operator):
+    bl_idname = OperatorId.REMOVE_BODY_CHANGE
+    bl_label = "Remove Body Change"
+    bl_description = "Delete the chosen weight or limb"
+    bl_options = {"REGISTER", "UNDO"}
+    of = RowList.BODY_CHANGES
+    own = True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        settings = chosen_armature(context).hangtime
+        index = self.of.chosen(settings)
+        settings.body_changes.remove(index)
+        self.of.choose(settings, index)
+        return {"FINISHED"}
+
+
+class _BonesOperator(AddingOperator):
+    """Mixin: changes the bones of the chosen row of either list."""
+
+    def _row(self, context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
+        """None, reported, where there is none that can be changed."""
+        armature, of = chosen_armature(context), RowList[self.of]
+        index = of.chosen(armature.hangtime)
+        if index >= of.linked(armature):
+            return of.rows(armature.hangtime)[index]
+        self.report({"WARNING"}, of.nothing_chosen if index < 0 else FROM_LIBRARY)
+        return None
+
+
+class AssignBonesOperator(_BonesOperator, bpy.types.Operator):
+    bl_idname = OperatorId.ASSIGN_BONES
+    bl_label = "Assign Selected Bones"
+    bl_description = "Let the chosen row be about the bones that are selected in pose mode"
+    bl_options = {"REGISTER", "UNDO"}
+
+    of: bpy.props.EnumProperty(name="List", items=list_items())
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
+        if not chosen_bones(chosen_armature(context)):
+            cls.poll_message_set(NONE_SELECTED)
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        row = self._row(context)
+        if row is None:
+            return {"CANCELLED"}
+        bones = chosen_bones(chosen_armature(context))
+        set_bones(row, bones[:1] if row.kind in _OF_ONE_BONE else bones)
+        return {"FINISHED"}
+
+
+class AddBoneOperator(_BonesOperator, bpy.types.Operator):
+    bl_idname = OperatorId.ADD_BONE
+    bl_label = "Add Bone"
+    bl_description = "Add a field to choose one more bone in"
+    bl_options = {"REGISTER", "UNDO"}
+
+    of: bpy.props.EnumProperty(name="List", items=list_items())
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        row = self._row(context)
+        if row is None:
+            return {"CANCELLED"}
+        row.bones.add()
+        return {"FINISHED"}
+
+
+class RemoveBoneOperator(_BonesOperator, bpy.types.Operator):
+    bl_idname = OperatorId.REMOVE_BONE
+    bl_label = "Remove Bone"
+    bl_description = "Take this bone off the chosen row"
+    bl_options = {"REGISTER", "UNDO"}
+
+    of: bpy.props.EnumProperty(name="List", items=list_items())
+    index: bpy.props.IntProperty(name="Index", min=0)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        row = self._row(context)
+        if row is None or self.index >= len(row.bones):
+            return {"CANCELLED"}
+        row.bones.remove(self.index)
+        return {"FINISHED"}
+
+
+CLASSES = (
+    AddBodyChangeOperator,
+    RemoveBodyChangeOperator,
+    AssignBonesOperator,
+    AddBoneOperator,
+    RemoveBoneOperator,
+)

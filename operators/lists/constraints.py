@@ -1,0 +1,196 @@
+"""The list of constraints: add, remove, copy, move, aim at frames and place."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...bridge.constraints.rows import (
+    IN_A_PHASE,
+    SINGLE_BONE,
+    add_constraint,
+    copy_row,
+    free_name,
+    hold_during,
+    hold_in,
+    phase_at,
+    put_where_shown,
+)
+from ...bridge.properties.kinds import ConstraintKind
+from ...bridge.properties.phases import phases_of
+from ..names import OperatorId
+from ..solve.common import chosen_armature
+from .chosen_bones import chosen_bones
+from .row_lists import AddingOperator, RowOperator
+
+NOT_A_POINT = "Only a Point has a place"
+NO_BONE = "Choose the point's bone first"
+NO_PREVIEW = "Set a preview range in the timeline first"
+NO_PHASE = "No phase is known at this frame; press Analyze first"
+DESCRIPTIONS = {
+    ConstraintKind.POINT: "Hold a point of a bone at a place, or within bounds of one",
+    ConstraintKind.LIFT: "Let feet or hands that touch in a phase touch no more",
+    ConstraintKind.ANGLE: "Keep how far a joint is bent between two angles",
+    ConstraintKind.CONE: "Keep a bone's direction within a cone",
+    ConstraintKind.TWIST: "Keep how far a bone is turned about itself between two angles",
+    ConstraintKind.TORQUE: "Cap how strong joints are; zero makes them limp",
+    ConstraintKind.POSE: "Hold or prefer the recording's pose or the rest pose",
+    ConstraintKind.ORIENTATION: "Turn or tilt a bone, such as the hips, in the world",
+    ConstraintKind.FORCE: "Cap contact forces, or set how slippery the ground is",
+    ConstraintKind.TIMING: "Let a phase last longer or shorter",
+    ConstraintKind.HOLD: "Repeat a frame for some time",
+}
+
+
+def _items() -> list[tuple[str, str, str]]:
+    return [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in ConstraintKind]
+
+
+class AddConstraintOperator(AddingOperator, bpy.types.Operator):
+    bl_idname = OperatorId.ADD_CONSTRAINT
+    bl_label = "Add Constraint"
+    bl_description = "Add a constraint about the selected pose bones and the current frame"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: bpy.props.EnumProperty(name="Kind", items=_items())
+
+    @classmethod
+    def description(
+        cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties
+    ) -> str:
+        return DESCRIPTIONS[ConstraintKind[properties.kind]]
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        armature, kind = chosen_armature(context), ConstraintKind[self.kind]
+        bones = chosen_bones(armature)
+        frame = context.scene.frame_current_final
+        groups = [[bone] for bone in bones] if kind in SINGLE_BONE and bones else [bones]
+        for group in groups:
+            add_constraint(armature, kind, group, frame)
+        return {"FINISHED"}
+
+
+class RemoveConstraintOperator(RowOperator, bpy.types.Operator):
+    bl_idname = OperatorId.REMOVE_CONSTRAINT
+    bl_label = "Remove Constraint"
+    bl_description = "Delete the chosen constraint"
+    bl_options = {"REGISTER", "UNDO"}
+    own = True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        settings = chosen_armature(context).hangtime
+        index = self.of.chosen(settings)
+        self.of.rows(settings).remove(index)
+        self.of.choose(settings, index)
+        return {"FINISHED"}
+
+
+class CopyConstraintOperator(RowOperator, bpy.types.Operator):
+    bl_idname = OperatorId.COPY_CONSTRAINT
+    bl_label = "Duplicate Constraint"
+    bl_description = "Add a copy of the chosen constraint"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        settings = chosen_armature(context).hangtime
+        source = self.of.chosen(settings)
+        copy = settings.constraints.add()  # may move the others in memory: look rows up after it
+        row = settings.constraints[source]
+        copy.name = free_name(settings, row.name)
+        copy_row(row, copy)
+        self.of.choose(settings, len(settings.constraints) - 1)
+        return {"FINISHED"}
+
+
+class MoveConstraintOperator(RowOperator, bpy.types.Operator):
+    bl_idname = OperatorId.MOVE_CONSTRAINT
+    bl_label = "Move Constraint"
+    bl_description = "Move the chosen constraint in the list"
+    bl_options = {"REGISTER", "UNDO"}
+    own = True
+
+    direction: bpy.props.EnumProperty(
+        name="Direction", items=[("UP", "Up", ""), ("DOWN", "Down", "")]
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        armature = chosen_armature(context)
+        settings = armature.hangtime
+        index = self.of.chosen(settings)
+        to = index + (-1 if self.direction == "UP" else 1)
+        if not self.of.linked(armature) <= to < len(settings.constraints):
+            return {"CANCELLED"}
+        settings.constraints.move(index, to)
+        self.of.choose(settings, to)
+        return {"FINISHED"}
+
+
+class SetRangeOperator(RowOperator, bpy.types.Operator):
+    bl_idname = OperatorId.SET_CONSTRAINT_RANGE
+    bl_label = "Set Range"
+    bl_description = "Choose when the chosen constraint holds"
+    bl_options = {"REGISTER", "UNDO"}
+
+    to: bpy.props.EnumProperty(
+        name="To",
+        items=[
+            ("FRAME", "Current Frame", "The frame at the playhead alone"),
+            ("PHASE", "Current Phase", "The phase of the clip at the playhead"),
+            ("PREVIEW", "Preview Range", "The preview range of the timeline"),
+        ],
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        scene, row = context.scene, self.row(context)
+        why = None
+        if self.to == "PHASE":
+            why = self._set_phase(context, row)
+        elif ConstraintKind[row.kind] in IN_A_PHASE:
+            why = f"A {ConstraintKind[row.kind].value} holds in a phase; choose one"
+        elif self.to == "PREVIEW" and not scene.use_preview_range:
+            why = NO_PREVIEW
+        elif self.to == "PREVIEW":
+            hold_during(row, scene.frame_preview_start, scene.frame_preview_end)
+        else:
+            hold_during(row, scene.frame_current_final, scene.frame_current_final)
+        if why is not None:
+            self.report({"WARNING"}, why)
+        return {"FINISHED"} if why is None else {"CANCELLED"}
+
+    def _set_phase(self, context: bpy.types.Context, row: bpy.types.PropertyGroup) -> str | None:
+        """Why not; None where done."""
+        settings = chosen_armature(context).hangtime
+        phase = phase_at(phases_of(settings), context.scene.frame_current_final)
+        if phase is None:
+            return NO_PHASE
+        hold_in(row, phase.name)
+        return None
+
+
+class PlaceConstraintOperator(RowOperator, bpy.types.Operator):
+    bl_idname = OperatorId.PLACE_CONSTRAINT
+    bl_label = "Place Where Shown"
+    bl_description = "Put the point where its bone is shown at the current frame"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        armature, row = chosen_armature(context), self.row(context)
+        why = None
+        if row.kind != ConstraintKind.POINT.name:
+            why = NOT_A_POINT
+        elif not row.bones or row.bones[0].name not in armature.pose.bones:
+            why = NO_BONE
+        if why is not None:
+            self.report({"WARNING"}, why)
+            return {"CANCELLED"}
+        put_where_shown(armature, row, keep_offset=True)
+        return {"FINISHED"}
+
+
+CLASSES = (
+    AddConstraintOperator,
+    RemoveConstraintOperator,
+    CopyConstraintOperator,
+    MoveConstraintOperator,
+    SetRangeOperator,
+    PlaceConstraintOperator,
+)

@@ -1,0 +1,1 @@
+"""Analyze, Fit, Adapt, Refine and what becomes of their results; never blocks Blender."""

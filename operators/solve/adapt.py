@@ -1,0 +1,233 @@
+"""Adapt and Refine: a new action in which the contacts are where the artist put them."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import bpy
+
+from ...bridge.armature.actions import read_take_in_parts, recorded_action, write_take_in_parts
+from ...bridge.armature.incremental import Parts
+from ...bridge.armature.reproportioned import other_figure
+from ...bridge.armature.traces_store import keep
+from ...bridge.armature.write import write_action
+from ...bridge.constraints.motion_problem import problem_of, wanted_range
+from ...bridge.worker_client import shared
+from ...solver.body.proportions import changed_recording
+from ...solver.data.digest import alike, digest
+from ...solver.data.faults import ChangedMeanwhile, Fault
+from ...solver.data.recording import Recording
+from ...solver.data.requests import Method, Objective, Solution
+from ...solver.data.status import Status
+from ...solver.worker.protocol import Adapted, Failed, Kind
+from ..names import OperatorId
+from .common import chosen_armature, hindrance, required_armature
+from .live import live
+from .session import Asked, Best, session
+from .solving import State
+from .task import Task, TaskOperator, answered, take_best
+
+NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
+
+
+class _Adapting(TaskOperator):
+    """What Adapt and Refine share."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        why = hindrance(context)
+        if why is None and not chosen_armature(context).hangtime.contacts:
+            why = NOT_ANALYSED
+        if why is not None:
+            cls.poll_message_set(why)
+        return why is None
+
+    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+        """How to solve; asked: what a recipe says of it."""
+        raise NotImplementedError
+
+    def task(self, context: bpy.types.Context) -> Task:
+        context.view_layer.update()  # empties that a script moved
+        try:
+            asked = yield from self._asked(context)
+            answer = yield from answered(shared().ask(Kind.ADAPT, asked.recording, asked.problem))
+        finally:
+            live().clear()  # a drag's ghost stays until there is something better, or nothing
+        if isinstance(answer, Failed):
+            raise answer.fault
+        assert isinstance(answer, Adapted)
+        session().best = None
+        if answer.fault is not None and answer.fault.reason != Status.STOPPED.value:
+            session().best = Best(asked, answer)
+            raise answer.fault
+        return (yield from write_answer(asked, answer))
+
+    def _asked(self, context: bpy.types.Context) -> Parts[Asked]:
+        asked = yield from ask_for(context)
+        solving = session().solving
+        assert solving is not None
+        solving.advance(State.SOLVING)
+        settings, requests = required_armature(context).hangtime, asked.problem.requests
+        requests = replace(requests, solution=self.solution(settings, requests.solution))
+        return replace(asked, problem=replace(asked.problem, requests=requests))
+
+
+class AdaptOperator(_Adapting, bpy.types.Operator):
+    bl_idname = OperatorId.ADAPT
+    bl_label = "Adapt"
+    bl_description = (
+        "Make a new action that obeys physics, with every contact where you put it. "
+        "The recording's action is kept unchanged"
+    )
+    bl_options = {"UNDO"}
+
+    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+        if asked.method is not Method.IMPLICIT:  # a recipe's own choice
+            return asked
+        return replace(asked, method=Method[settings.method])
+
+
+class RefineOperator(_Adapting, bpy.types.Operator):
+    bl_idname = OperatorId.REFINE
+    bl_label = "Refine"
+    bl_description = (
+        "Adapt, then go on to the motion that costs the performer least, as chosen under "
+        "Advanced. Takes some seconds more"
+    )
+    bl_options = {"UNDO"}
+
+    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+        weights = ((Objective[settings.objective], 1.0), (Objective.CLOSENESS, settings.stay_close))
+        if asked.method is Method.EXPLICIT:
+            return asked
+        return replace(asked, method=Method.EXPLICIT, objectives=weights)
+
+
+class UseBestOperator(TaskOperator, bpy.types.Operator):
+    bl_idname = OperatorId.USE_BEST
+    bl_label = "Use Best So Far"
+    bl_description = (
+        "Take the motion as it stands: of the solve under way, or the best that a failed one "
+        "found. The report says what it misses"
+    )
+    bl_options = {"UNDO"}
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        solving = session().solving
+        if session().best is None and (solving is None or not solving.can_stop):
+            cls.poll_message_set("No solve is under way, and none has failed")
+            return False
+        return True
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        return {"FINISHED"} if take_best() else super().invoke(context, event)
+
+    def task(self, _context: bpy.types.Context) -> Task:
+        best, solving = session().best, session().solving
+        assert best is not None
+        assert solving is not None
+        done = yield from write_answer(best.asked, best.answer)
+        session().best = None
+        return done
+
+
+def ask_for(context: bpy.types.Context) -> Parts[Asked]:
+    """What the settings ask, of the recording as it is. Raises any Fault of reading, and
+    ChangedMeanwhile where it is not what was analysed."""
+    armature = required_armature(context)
+    settings = armature.hangtime
+    recording = yield from read_take_in_parts(armature, *wanted_range(settings))
+    if digest(recording) != settings.analysed:
+        raise ChangedMeanwhile(armature.name, while_solving=False)
+    problem = problem_of(settings, recording)
+    return Asked(armature.name, armature.session_uid, recording, problem)
+
+
+def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
+    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
+    solving = session().solving
+    assert solving is not None
+    solving.advance(State.CHECKING)
+    armature = yield from _unchanged(asked)
+    solving.advance(State.WRITING)
+    limbs = asked.problem.requests.body.limbs
+    if limbs:
+        return _write_other(changed_recording(asked.recording, limbs), answer, armature)
+    stood = armature.matrix_world.copy()
+    action = yield from write_take_in_parts(armature, answer.track)
+    keep(action, answer.traces, stood)
+    _note(armature, armature, action, answer)
+    return f"Wrote the action {action.name}"
+
+
+def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Object) -> str:
+    """The answer on an armature of its own, for the artist's keeps its proportions."""
+    other, track, _ = other_figure(recording, answer.track)
+    other.name = f"{armature.name} changed"
+    action = write_action(other, track, name=f"{recording.name} adapted")
+    action.hangtime.recording = recorded_action(armature)
+    armature.hangtime.adapted = action
+    keep(action, answer.traces, armature.matrix_world)
+    _note(armature, other, action, answer)
+    return f"Made the armature {other.name}, which performs the adapted motion"
+
+
+def _note(
+    armature: bpy.types.Object,
+    performer: bpy.types.Object,
+    action: bpy.types.Action,
+    answer: Adapted,
+) -> None:
+    """Keeps what was found beside the action, and how each constraint came out."""
+    from ...bridge.constraints.status import write_status
+    from ..words.report_text import as_text
+
+    settings = armature.hangtime
+    settings.status = summary(answer)
+    write_status(settings, answer.report)
+    action.hangtime.report = as_text(answer.report)
+    action.hangtime.performer = performer
+
+
+def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
+    """The armature, if it and its recording are what they were. Raises ChangedMeanwhile."""
+    armature = next((o for o in bpy.data.objects if o.session_uid == asked.uid), None)
+    if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
+        frames = asked.recording.frames
+        try:
+            now = yield from read_take_in_parts(armature, frames[0], frames[-1])
+        except Fault as fault:  # another action, a scale: whatever it is, it is new
+            raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
+        if alike(now, asked.recording):
+            return armature
+    raise ChangedMeanwhile(asked.armature, while_solving=True)
+
+
+def summary(answer: Adapted) -> str:
+    """Lines for the sidebar: how well it holds, how long it took, how hard the ground pushes."""
+    report = answer.report
+    contacts = report["contacts"]
+    worst = max(contacts, key=lambda contact: contact["worst_violation_mm"])
+    seconds = sum(stage["seconds"] for stage in report["stages"])
+    peak = max(report["forces"]["peaks"], key=lambda peak: peak["peak_bw"])
+    said = "Solved" if answer.fault is None else "Best found, not all is met;"
+    return "\n".join(
+        [
+            f"{said} in {seconds:.1f} s",
+            f"Pins: {worst['worst_violation_mm']:.2f} mm off at most ({worst['name']})",
+            *(f"{each['name']}: {_held(each)}" for each in report["conditions"]),
+            f"Peak force: {peak['peak_bw']:.1f} body weights (frame {peak['frame']:.0f})",
+        ]
+    )
+
+
+def _held(condition: Mapping[str, Any]) -> str:
+    if condition["met"]:
+        return "held"
+    return f"missed by {condition['worst_violation']:.0f} {condition['unit']}"
+
+
+CLASSES = (AdaptOperator, RefineOperator, UseBestOperator)

@@ -1,0 +1,163 @@
+"""Analyze and Fit: what touches when in a recording, and how near physics comes to it."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...bridge.armature.actions import read_take_in_parts, recorded_action
+from ...bridge.armature.traces_store import keep
+from ...bridge.constraints.bone_mapping import find_parts, missing_parts
+from ...bridge.constraints.motion_problem import problem_of, wanted_range, write_analysis
+from ...bridge.worker_client import shared
+from ...solver.data.faults import (
+    Fault,
+    MissingPart,
+    NoFlight,
+    OddHeight,
+    OutsideKeys,
+    UnseenSupport,
+)
+from ...solver.data.problem import MotionProblem
+from ...solver.data.recording import Recording
+from ...solver.worker.protocol import Analysed, Failed, Fitted, Kind
+from ..names import OperatorId
+from .adapt import ask_for
+from .common import FaultyOperator, chosen_armature, hindrance, required_armature, said
+from .session import session
+from .solving import State
+from .task import Task, TaskOperator, answered
+
+# rms of the joint centres' distance, cm
+WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
+HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was imported at a wrong scale
+USUAL_HEIGHT = 1.75  # m
+LOOSE = "only roughly like the recording: check the contacts' frames, and the scale"
+
+
+class FindBonesOperator(FaultyOperator, bpy.types.Operator):
+    bl_idname = OperatorId.FIND_BONES
+    bl_label = "Find Bones"
+    bl_description = "Find by their names which bone moves which part of the body"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        if armature is None:
+            cls.poll_message_set("Choose or select an armature first")
+        return armature is not None
+
+    def run(self, context: bpy.types.Context) -> set[str]:
+        armature = chosen_armature(context)
+        find_parts(armature)
+        missing = missing_parts(armature.hangtime)
+        if missing:
+            self.report({"WARNING"}, f"No bone was found for the {', '.join(missing)}")
+        return {"FINISHED"}
+
+
+class _OnRecording(TaskOperator):
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        why = hindrance(context)
+        if why is not None:
+            cls.poll_message_set(why)
+        return why is None
+
+
+class AnalyzeOperator(_OnRecording, bpy.types.Operator):
+    bl_idname = OperatorId.ANALYZE
+    bl_label = "Analyze"
+    bl_description = (
+        "Find when and where heels and toes touch the ground. Contacts that are found again keep "
+        "what you changed about them"
+    )
+    bl_options = {"UNDO"}
+
+    def task(self, context: bpy.types.Context) -> Task:
+        armature = required_armature(context)
+        settings = armature.hangtime
+        recording = yield from read_take_in_parts(armature, *wanted_range(settings))
+        find_parts(armature)
+        for missing in missing_parts(settings):
+            raise MissingPart(missing)
+        problem = problem_of(settings, recording, with_contacts=False)
+        solving = session().solving
+        assert solving is not None
+        solving.advance(State.SOLVING)
+        answer = yield from answered(shared().ask(Kind.ANALYSE, recording, problem))
+        if isinstance(answer, Failed):
+            raise _telling(answer.fault, armature, recording, problem)
+        assert isinstance(answer, Analysed)
+        write_analysis(settings, recording, answer)
+        keep(armature, answer.traces, armature.matrix_world)
+        context.scene.hangtime.armature = armature
+        contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
+        found = f"Found {contacts} contacts and {flights} flight{'s' if flights > 1 else ''}"
+        if problem.height is None and (odd := _odd_height(armature.name, answer.height)):
+            return f"{found}; but {said(odd)}"
+        return found
+
+
+def _telling(
+    fault: Fault, armature: bpy.types.Object, recording: Recording, problem: MotionProblem
+) -> Fault:
+    """Why an analysis failed: beside the keys nothing moves, and at a wrong scale feet seem to
+    slide and bodies to float."""
+    if not isinstance(fault, NoFlight | UnseenSupport):
+        return fault
+    first, last = recorded_action(armature).frame_range
+    if recording.frames[0] >= last or recording.frames[-1] <= first:
+        return OutsideKeys(armature.name, first, last)
+    from ...solver.body.character import build_character  # numpy's, but half of the solver
+
+    height = build_character(recording, mass=problem.mass, chosen=problem.bones).height
+    return _odd_height(armature.name, height) or fault
+
+
+def _odd_height(armature: str, height: float) -> OddHeight | None:
+    """A fault where a figure of this height, m, is nobody's."""
+    low, high = HEIGHTS
+    return None if low < height < high else OddHeight(armature, height, USUAL_HEIGHT / height)
+
+
+class FitOperator(_OnRecording, bpy.types.Operator):
+    bl_idname = OperatorId.FIT
+    bl_label = "Fit"
+    bl_description = (
+        "Find the motion nearest to the recording that obeys physics, and say how near it is. "
+        "Adapt does this by itself where it is not done yet"
+    )
+    bl_options = {"UNDO"}
+
+    def task(self, context: bpy.types.Context) -> Task:
+        armature = required_armature(context)
+        solving = session().solving
+        assert solving is not None
+        asked = yield from ask_for(context)
+        solving.advance(State.SOLVING)
+        answer = yield from answered(shared().ask(Kind.FIT, asked.recording, asked.problem))
+        if isinstance(answer, Failed):
+            raise answer.fault
+        assert isinstance(answer, Fitted)
+        armature.hangtime.fit_quality = quality(answer.closeness)
+        return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.closeness)}"
+
+
+def in_words(closeness: dict[str, float]) -> str:
+    """How near a fit is (report.closeness)."""
+    off = closeness["joint_centres_rms_cm"]
+    return next((words for limit, words in WORDS if off < limit), LOOSE)
+
+
+def quality(closeness: dict[str, float]) -> str:
+    """Lines for the sidebar."""
+    words = in_words(closeness)
+    return (
+        f"{words[0].upper()}{words[1:]}\n"
+        f"Joints {closeness['joint_centres_rms_cm']:.1f} cm apart, "
+        f"apex {closeness['pelvis_apex_difference_cm']:+.1f} cm"
+    )
+
+
+CLASSES = (FindBonesOperator, AnalyzeOperator, FitOperator)

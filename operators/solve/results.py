@@ -1,0 +1,163 @@
+"""What becomes of an adapted motion: compare, accept, discard, read the report."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...bridge.armature.actions import current_action, recorded_action, show
+from ..names import OperatorId
+from .common import chosen_armature
+from .session import session
+from .task import CANCELLED
+
+NOTHING = "Nothing has been adapted yet"
+BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
+ACCEPTED = "The result is accepted already"
+
+
+def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
+    """The action that was adapted last."""
+    return armature.hangtime.adapted if armature is not None else None
+
+
+def performer_of(armature: bpy.types.Object) -> bpy.types.Object:
+    """Who performs the result: the armature, or one of other proportions."""
+    performer = result_of(armature).hangtime.performer
+    return performer if performer is not None else armature
+
+
+class _OfResult:
+    """Mixin: needs a result."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if result_of(chosen_armature(context)) is None:
+            cls.poll_message_set(NOTHING)
+            return False
+        return True
+
+
+class CompareOperator(_OfResult, bpy.types.Operator):
+    bl_idname = OperatorId.COMPARE
+    bl_label = "Compare"
+    bl_description = "Switch between the recording and the adapted motion at this frame"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
+        armature = chosen_armature(context)
+        if performer_of(armature) != armature:
+            cls.poll_message_set(BESIDE.format(performer_of(armature).name))
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        armature = chosen_armature(context)
+        recorded, adapted = recorded_action(armature), result_of(armature)
+        show(armature, recorded if current_action(armature) == adapted else adapted)
+        return {"FINISHED"}
+
+
+class AcceptOperator(_OfResult, bpy.types.Operator):
+    bl_idname = OperatorId.ACCEPT
+    bl_label = "Accept"
+    bl_description = (
+        "Keep this result: it is shown, and it is what gets exported. Results that are not "
+        "accepted are dropped by Blender when the file is saved and opened again"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        result = result_of(chosen_armature(context))
+        if result is None or result.hangtime.accepted:
+            cls.poll_message_set(NOTHING if result is None else ACCEPTED)
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        armature = chosen_armature(context)
+        result = result_of(armature)
+        result.hangtime.accepted = result.use_fake_user = True
+        if performer_of(armature) == armature and current_action(armature) != result:
+            show(armature, result)
+        self.report({"INFO"}, f"Accepted {result.name}")
+        return {"FINISHED"}
+
+
+class DiscardOperator(_OfResult, bpy.types.Operator):
+    bl_idname = OperatorId.DISCARD
+    bl_label = "Discard"
+    bl_description = "Delete the adapted action and show the recording; what you asked for stays"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        armature = chosen_armature(context)
+        result = result_of(armature)
+        recorded, name = result.hangtime.recording, result.name
+        if current_action(armature) == result:
+            show(armature, recorded)
+        if performer_of(armature) != armature:
+            bpy.data.objects.remove(performer_of(armature))
+        bpy.data.actions.remove(result)
+        left = [a for a in bpy.data.actions if a.hangtime.recording == recorded]
+        armature.hangtime.adapted = left[-1] if left else None
+        armature.hangtime.status = ""
+        self.report({"INFO"}, f"Discarded {name}")
+        return {"FINISHED"}
+
+
+class ShowReportOperator(_OfResult, bpy.types.Operator):
+    bl_idname = OperatorId.SHOW_REPORT
+    bl_label = "Show Report"
+    bl_description = (
+        "What changed, and how well physics and everything asked for hold; also kept as a text"
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        result = result_of(chosen_armature(context))
+        name = f"{result.name} report"
+        text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
+        text.from_string(result.hangtime.report)
+        self.report({"INFO"}, f"The report is the text {name}")
+        return {"FINISHED"}
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        self.execute(context)
+        return context.window_manager.invoke_popup(self, width=760)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.layout.column(align=True)
+        column.scale_y = 0.7
+        for line in result_of(chosen_armature(context)).hangtime.report.splitlines():
+            column.label(text=line)
+
+
+class CancelOperator(bpy.types.Operator):
+    bl_idname = OperatorId.CANCEL
+    bl_label = "Cancel"
+    bl_description = "End what Hangtime is doing; nothing is changed"
+
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        if not session().running:
+            cls.poll_message_set("Nothing is under way")
+            return False
+        return True
+
+    def execute(self, _context: bpy.types.Context) -> set[str]:
+        for operator in list(session().running):
+            operator.leave()
+        self.report({"INFO"}, CANCELLED)
+        return {"FINISHED"}
+
+
+CLASSES = (
+    CompareOperator,
+    AcceptOperator,
+    DiscardOperator,
+    ShowReportOperator,
+    CancelOperator,
+)

@@ -1,0 +1,60 @@
+"""What goes on in this Blender beside what is in its file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Protocol
+
+from ...solver.data.problem import MotionProblem
+from ...solver.data.recording import Recording
+from ...solver.worker.protocol import Adapted
+from .solving import Solving
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A request: of which armature (its name then, and its number in this session), what its
+    recording was, and what was asked."""
+
+    armature: str
+    uid: int
+    recording: Recording
+    problem: MotionProblem
+
+
+class Running(Protocol):
+    """A modal operator at work."""
+
+    def leave(self) -> None:
+        """Nothing of the work remains."""
+
+
+@dataclass
+class Session:
+    """The solve under way, who runs it, why the last one failed, and the best that it found."""
+
+    solving: Solving | None = None
+    failure: str = ""
+    best: Best | None = None
+    running: list[Running] = field(default_factory=list)
+
+    def end(self) -> None:
+        """Ends what runs, without a word; for when the extension goes."""
+        for operator in list(self.running):
+            operator.leave()
+        self.best, self.failure = None, ""
+
+
+@dataclass(frozen=True)
+class Best:
+    """The best motion that a solve found which failed, and what was asked."""
+
+    asked: Asked
+    answer: Adapted
+
+
+@cache
+def session() -> Session:
+    """The one session of this Blender."""
+    return Session()

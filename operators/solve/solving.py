@@ -1,0 +1,92 @@
+"""The states of a solve that the artist waits for, without Blender: what may happen when, and
+what the status bar says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from ...solver.worker.protocol import Progress
+
+STAGES = {
+    "fit": "fitting the physics",
+    "refine": "refining",
+    "adapt": "adapting",
+    "bounds": "checking in between",
+    "explicit": "lessening effort",
+}
+
+
+class State(Enum):
+    """Where a solve is."""
+
+    READING = "reading the recording"
+    SOLVING = "starting"
+    STOPPING = "taking the motion as it stands"
+    CHECKING = "checking that nothing has changed"
+    WRITING = "writing keyframes"
+    ENDED = "done"
+
+
+@dataclass
+class Solving:
+    """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
+    ValueError, for it would be a mistake of ours."""
+
+    state: State = State.READING
+    progress: Progress | None = None
+
+    def advance(self, to: State) -> None:
+        """The next part begins."""
+        order = list(State)
+        if order.index(to) <= order.index(self.state):
+            raise ValueError(f"{to.name} after {self.state.name}")
+        self.state = to
+
+    def heard(self, progress: Progress) -> None:
+        """The worker told of a step."""
+        if self.state not in (State.SOLVING, State.STOPPING):
+            raise ValueError(f"a step while {self.state.value}")
+        self.progress = progress
+
+    @property
+    def can_stop(self) -> bool:
+        """Whether the motion as it stands can be asked for."""
+        return self.state is State.SOLVING
+
+    def stop(self) -> None:
+        """The artist takes the motion as it stands."""
+        if not self.can_stop:
+            raise ValueError(f"stopped while {self.state.value}")
+        self.state = State.STOPPING
+
+    @property
+    def share(self) -> float:
+        """Of the whole, 0 to 1."""
+        if self.state in (State.SOLVING, State.STOPPING):
+            return 0.05 + 0.85 * (self.progress.share if self.progress is not None else 0.0)
+        return {State.READING: 0.0, State.CHECKING: 0.9, State.WRITING: 0.95}.get(self.state, 1.0)
+
+    def passes(self, event: str) -> bool:
+        """Whether an event of Blender's ("Z", "LEFTMOUSE") goes on to Blender.
+
+        Nearly all do, so that playback, selection and saving go on; while keys are being written
+        an undo would pull the action away from under them.
+        """
+        return self.state is not State.WRITING or event.startswith(("MOUSEMOVE", "WINDOW"))
+
+    @property
+    def doing(self) -> str:
+        """What is being done."""
+        if self.state is State.SOLVING and self.progress is not None:
+            return STAGES.get(self.progress.stage, self.progress.stage)
+        return self.state.value
+
+    @property
+    def text(self) -> str:
+        """Stage, percent and the worst constraint."""
+        parts = [f"{self.doing}, {100.0 * self.share:.0f} %"]
+        if self.progress is not None and self.state is State.SOLVING:
+            violation = self.progress.violation
+            parts.append(f"furthest off: {self.progress.worst} ({violation:.3g} × allowed)")
+        return ", ".join(parts)

@@ -1,0 +1,162 @@
+"""Operators whose work is long: in parts and with a worker, so that Blender is never frozen."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from time import perf_counter
+
+import bpy
+
+from ...bridge.worker_client import Job, shared
+from ...solver.data.faults import Fault
+from ...solver.worker.protocol import Answer, Progress
+from .common import FaultyOperator, said
+from .session import session
+from .solving import Solving, State
+
+LOOK_EVERY = 0.02  # s
+BUDGET = 0.012  # s of work at each look
+STATUS = "Hangtime: {} (Esc cancels)"
+CANCELLED = "Cancelled; nothing was changed"
+TAKEN_AWAY = "Stopped, because the scene changed meanwhile; nothing was written. Try again"
+
+Task = Generator[Job | None, None, str]
+"""Work in parts; where it yields a job it waits for that. Returns what to tell the artist."""
+
+
+def answered(job: Job) -> Generator[Job, None, Answer]:
+    """Waits for a job in a task."""
+    while job.answer is None:
+        yield job
+    return job.answer
+
+
+class TaskOperator(FaultyOperator):
+    """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
+
+    def task(self, context: bpy.types.Context) -> Task:
+        """The work. Raises any Fault, having changed nothing."""
+        raise NotImplementedError
+
+    def run(self, context: bpy.types.Context) -> set[str]:
+        solving = session().solving = Solving()
+        task = self.task(context)
+        finished = False
+        try:
+            while True:
+                job = next(task)
+                if job is not None:
+                    job.wait()
+        except StopIteration as end:
+            finished = True
+            self.report({"INFO"}, end.value)
+            return {"FINISHED"}
+        finally:
+            session().solving = None
+            if not finished:
+                task.close()
+                if solving.state is State.SOLVING and shared().busy:  # interrupted
+                    shared().close()
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        self._solving = session().solving = Solving()
+        session().failure = ""
+        self._task = self.task(context)
+        self._timer = context.window_manager.event_timer_add(LOOK_EVERY, window=context.window)
+        self._workspace = context.workspace
+        self._shown = ""
+        session().running.append(self)
+        self._show()
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, _context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if self not in session().running:  # ended from outside
+            return {"CANCELLED"}
+        if event.value == "PRESS" and event.type == "ESC":
+            self.leave()
+            self.report({"INFO"}, CANCELLED)
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"} if self._solving.passes(event.type) else {"RUNNING_MODAL"}
+        return self._work()
+
+    def _work(self) -> set[str]:
+        """As many parts as fit into a look."""
+        until = perf_counter() + BUDGET
+        goes_on = False
+        try:
+            while perf_counter() < until:
+                job = next(self._task)
+                if job is not None and not self._heard(job):
+                    break
+            goes_on = True
+        except StopIteration as end:
+            self.report({"INFO"}, end.value)
+            return {"FINISHED"}
+        except Fault as fault:
+            session().failure = said(fault)  # the report vanishes when the mouse moves
+            self.report({"ERROR"}, session().failure)
+            return {"CANCELLED"}
+        except ReferenceError:  # an undo took the armature away from under us
+            self.report({"ERROR"}, TAKEN_AWAY)
+            return {"CANCELLED"}
+        finally:
+            if not goes_on:  # also after a mistake of ours, or every button stayed grey
+                self.leave()
+        self._show()
+        return {"RUNNING_MODAL"}
+
+    def _heard(self, job: Job) -> bool:
+        """Takes in a job's news; whether its answer is among them."""
+        for message in job.news():
+            if isinstance(message, Progress):
+                self._solving.heard(message)
+        return job.answer is not None
+
+    def cancel(self, _context: bpy.types.Context) -> None:
+        """Blender calls this when it opens another file or quits meanwhile."""
+        self.leave()
+
+    def leave(self) -> None:
+        """Nothing of the work remains; a solve under way is dropped."""
+        running = session().running
+        if self not in running:
+            return
+        running.remove(self)
+        session().solving = None
+        shared().drop()
+        self._task.close()
+        bpy.context.window_manager.event_timer_remove(self._timer)
+        self._workspace.status_text_set(None)
+        _redraw()
+
+    def _show(self) -> None:
+        """Only what is new: drawing the sidebar again costs more than a look."""
+        text = self._solving.text
+        if text != self._shown:
+            self._shown = text
+            self._workspace.status_text_set(STATUS.format(text))
+            _redraw()
+
+
+def take_best() -> bool:
+    """Has the solve under way end with the motion as it stands; whether there was one to end."""
+    solving = session().solving
+    if solving is None or not solving.can_stop or not shared().busy:
+        return False
+    solving.stop()
+    shared().as_it_stands()
+    return True
+
+
+def _redraw() -> None:
+    """The sidebar shows how far a solve is."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()

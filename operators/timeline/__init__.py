@@ -1,0 +1,1 @@
+"""Contacts and phases as bars in the timeline, and dragging their ends."""

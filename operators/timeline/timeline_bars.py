@@ -1,0 +1,73 @@
+"""The bars of the chosen armature's contacts in a timeline or dope sheet."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...bridge.plots.screen import Axis
+from ...bridge.properties.phases import carried, clip_ends, phases
+from ...solver.data.contacts import PhaseKind
+from ..solve.common import chosen_armature
+from .contact_bars import Bar, Bars, Row, lay_out
+
+if TYPE_CHECKING:
+    from ...bridge.properties.settings import HangtimeSettings
+
+SIDES = ("Left", "Right")
+PHASES = "Phases"
+
+
+def bars_in(context: bpy.types.Context) -> Bars | None:
+    """The bars in the editor of a context; None where there are none to be seen."""
+    armature, region = chosen_armature(context), context.region
+    if armature is None or region is None or not _wanted(context):
+        return None
+    rows = rows_of(armature.hangtime)
+    axis = frames_axis(region)
+    if not rows or axis is None:
+        return None
+    scale = context.preferences.system.ui_scale
+    return lay_out(rows, axis, region.height, scale, markers=_markers(context))
+
+
+def frames_axis(region: bpy.types.Region) -> Axis | None:
+    """From frames to px, as the editor is scrolled and zoomed."""
+    first, _ = region.view2d.region_to_view(0.0, 0.0)
+    last, _ = region.view2d.region_to_view(float(region.width), 0.0)
+    return Axis(first, last, 0.0, float(region.width)) if last > first else None
+
+
+def rows_of(settings: HangtimeSettings) -> tuple[Row, ...]:
+    """A row for each point that touches, left before right, and the phases; none if none do."""
+    ends = clip_ends(settings)
+    if ends is None:
+        return ()
+    points: dict[str, list[Bar]] = {}
+    for index, row in enumerate(settings.contacts):
+        chosen = index == settings.active_contact
+        bar = Bar(row.name, row.start_frame, row.end_frame, row.used, chosen)
+        points.setdefault(row.point, []).append(bar)
+    rows = [Row(point, tuple(bars)) for point, bars in sorted(points.items(), key=_order)]
+    spans = phases(carried(settings), *ends)
+    bars = tuple(
+        Bar(s.name, s.start, s.end, is_phase=True, firm=s.kind is PhaseKind.FLIGHT) for s in spans
+    )
+    return (*rows, Row(PHASES, bars))
+
+
+def _order(item: tuple[str, list[Bar]]) -> tuple[int, str]:
+    side = item[0].split(" ", maxsplit=1)[0]
+    return SIDES.index(side) if side in SIDES else len(SIDES), item[0]
+
+
+def _wanted(context: bpy.types.Context) -> bool:
+    overlays = getattr(context.space_data, "overlays", None)  # since Blender 4.4
+    shown = overlays is None or overlays.show_overlays
+    return bool(shown and context.scene.hangtime.view.timeline)
+
+
+def _markers(context: bpy.types.Context) -> bool:
+    """Whether the editor shows markers, which have a strip of their own at its foot."""
+    return bool(context.space_data.show_markers and context.scene.timeline_markers)

@@ -1,0 +1,1 @@
+"""Faults, outcomes, analyses and reports in the artist's words."""

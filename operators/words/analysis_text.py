@@ -1,0 +1,127 @@
+"""What an analysis found, for a person who is about to write a recipe."""
+
+import json
+import os
+from pathlib import Path
+
+from ...solver.analysis.analyse import Analysis
+from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.data.problem import MotionProblem
+from ...solver.results.report import Origin
+
+
+def analysis_text(analysis: Analysis, origin: Origin) -> str:
+    """Figure, phases and contacts; frames are the scene's."""
+    recording, figure = analysis.performance.recording, analysis.performance.character
+    lines = [
+        f"{origin.clip}: frames {recording.frames[0] + 0.0:g} to {recording.frames[-1]:g}, "
+        f"{recording.times[-1]:.2f} s at {_rate(analysis):.4g} frames a second",
+        f"figure: {figure.height:.2f} m tall, {figure.mass:g} kg, {len(figure.bodies)} bodies, "
+        f"{figure.n_dofs} degrees of freedom; floor at {analysis.schedule.floor_m:.3f} m",
+    ]
+    if origin.unit_guessed:
+        lines.append(f"guessed: one unit of the file is {origin.unit_m:.4g} m (else say --unit)")
+    if origin.up_guessed:
+        lines.append(f"guessed: {origin.up} points up (else say --up)")
+    lines += ["", f"{'phase':<12}{'frames':>17}{'seconds':>9}"]
+    lines += [_phase_line(analysis, phase) for phase in analysis.schedule.phases]
+    lines += ["", f"{'contact':<16}{'frames':>17}  {'bone':<16}place (m)"]
+    for contact in analysis.schedule.contacts:
+        span = _span(analysis, contact.start, contact.end)
+        place = ", ".join(f"{x:.3f}" for x in contact.place)
+        lines.append(f"{contact.name:<16}{span:>17}  {contact.bone:<16}{place}")
+    return "\n".join(lines) + "\n"
+
+
+def _phase_line(analysis: Analysis, phase: Phase) -> str:
+    line = f"{phase.name:<12}{_span(analysis, phase.start, phase.end):>17}"
+    line += f"{phase.end - phase.start:>9.2f}"
+    if phase.kind is PhaseKind.FLIGHT:
+        return f"{line}  apex {_apex(analysis, phase):.2f} m (centre of mass)"
+    return line
+
+
+def _apex(analysis: Analysis, phase: Phase) -> float:
+    performance = analysis.performance
+    inside = (performance.times >= phase.start) & (performance.times <= phase.end)
+    return float(performance.com[inside, 2].max()) if inside.any() else float("nan")
+
+
+def _rate(analysis: Analysis) -> float:
+    recording = analysis.performance.recording
+    return (len(recording.times) - 1) / float(recording.times[-1])
+
+
+def _span(analysis: Analysis, start: float, end: float) -> str:
+    """The scene's frames from start to end, s."""
+    first, rate = float(analysis.performance.recording.frames[0]), _rate(analysis)
+    return f"{first + start * rate:.1f} to {first + end * rate:.1f}"
+
+
+def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recipe: Path) -> str:
+    """A commented recipe that pins the first landing where it is, for the artist to change."""
+    recording = analysis.performance.recording
+    landing = _first_landing(analysis)
+    contacts = analysis.schedule.of_phase(landing)
+    points = ", ".join(dict.fromkeys(_quoted(c.point) for c in contacts))
+    phases, found = (
+        [f"#   {each.name}: {_span(analysis, each.start, each.end)}" for each in several]
+        for several in (analysis.schedule.phases, analysis.schedule.contacts)
+    )
+    return "\n".join(
+        [
+            "# What to change in a recorded jump. Metres, degrees, the scene's frames.",
+            f"clip = {_quoted(_relative(clip, recipe))}",
+            f"frames = [{recording.frames[0] + 0.0:g}, {recording.frames[-1]:g}]",
+            f"mass = {problem.mass:g}  # kg",
+            f"# height = {analysis.performance.character.height:.2f}  # m, as measured; "
+            "another one scales the figure",
+            f"mass_table = {_quoted(problem.mass_table.value)}",
+            *_bones(problem),
+            "",
+            "# Phases found, with their frames:",
+            *phases,
+            "",
+            "[[pin]]",
+            'name = "Landing"',
+            f"phase = {_quoted(landing.name)}",
+            f"# points = [{points}]  # only these; else all that touches",
+            "forward = 0.0  # along the jump; negative is back",
+            "left = 0.0",
+            "up = 0.0",
+            "turn = 0  # counter-clockwise from above",
+            "",
+            "# Contacts found, with their frames; correct one by its name:",
+            *found,
+            "# [[contact]]",
+            f"# name = {_quoted(contacts[0].name)}",
+            "# start_frame = 0  # or end_frame, or remove = true",
+            "",
+        ]
+    )
+
+
+def _bones(problem: MotionProblem) -> list[str]:
+    if not problem.bones:
+        return []
+    chosen = [f"{_quoted(part)} = {_quoted(bone)}" for part, bone in problem.bones.items()]
+    return ["", "[bones]", *chosen]
+
+
+def _first_landing(analysis: Analysis) -> Phase:
+    """The first stance after a flight, or the only one before it."""
+    phases = analysis.schedule.phases
+    ground = [p for p in phases if p.kind is PhaseKind.GROUND]
+    flight = next(p for p in phases if p.kind is PhaseKind.FLIGHT)
+    return next((p for p in ground if p.start >= flight.end - 1e-9), ground[0])
+
+
+def _relative(clip: Path, recipe: Path) -> str:
+    try:
+        return Path(os.path.relpath(clip.resolve(), recipe.resolve().parent)).as_posix()
+    except ValueError:  # on another drive
+        return clip.resolve().as_posix()
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

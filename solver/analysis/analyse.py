@@ -1,0 +1,106 @@
+"""From a recording and what the artist asks to an adapted motion: the calls that others make.
+
+analysis = analyse(recording, problem)      # character, contacts
+fitted = fit(analysis.performance, analysis.schedule)
+adaptation = adapt(fitted, problem)
+track = adaptation.motion.track(analysis.performance.recording)
+"""
+
+from dataclasses import dataclass, replace
+
+from ..body.character import Character, build_character
+from ..data.contacts import Contact, ContactSchedule, snap
+from ..data.faults import BadTiming, ClipTooShort, UnknownContactName, UnseenSupport
+from ..data.problem import MotionProblem
+from ..data.recording import Recording
+from .contact_detection import require_flight
+from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
+
+SHORTEST_CLIP = 0.3  # s
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What a recording shows: the figure's movement and its contacts."""
+
+    performance: Performance
+    schedule: ContactSchedule
+
+
+def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
+    """Finds character and contacts in the problem's frames of a recording.
+
+    Raises ClipTooShort, NoFlight, UnseenSupport, MissingPart, ZeroLengthBone, UnknownContactName.
+    """
+    recording, character = figure(recording, problem)
+    performance = perform(recording, character)
+    schedule = _corrected(find_contacts(performance), problem, performance)
+    for gap in schedule.unseen:
+        raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
+    require_flight(schedule, contact_points(performance)[0])
+    return Analysis(performance, schedule)
+
+
+def figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:
+    """The problem's frames of a recording, and the figure that they show.
+
+    Raises ClipTooShort, MissingPart, ZeroLengthBone.
+    """
+    if problem.frames is not None:
+        recording = recording.window(*problem.frames)
+    seconds = float(recording.times[-1]) if len(recording.times) else 0.0
+    if seconds < SHORTEST_CLIP:
+        raise ClipTooShort(seconds, SHORTEST_CLIP)
+    character = build_character(
+        recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
+    )
+    return recording, character
+
+
+def _frame(recording: Recording, time: float) -> float:
+    rate = (len(recording.times) - 1) / float(recording.times[-1])
+    return float(round(recording.frames[0] + time * rate))
+
+
+def _corrected(
+    schedule: ContactSchedule, problem: MotionProblem, performance: Performance
+) -> ContactSchedule:
+    """The schedule with the artist's corrections; unchanged contacts keep their exact instants."""
+    if not problem.contacts and not problem.added:
+        return schedule
+    contacts: dict[str, Contact] = {c.name: c for c in schedule.contacts}
+    first = float(performance.recording.frames[0])
+    rate = (len(performance.times) - 1) / float(performance.times[-1])
+    for edit in problem.contacts:
+        if edit.name not in contacts:
+            raise UnknownContactName(edit.name, tuple(contacts))
+        contact = contacts[edit.name]
+        if edit.remove:
+            del contacts[edit.name]
+            continue
+        start, end = contact.start, contact.end
+        if edit.start_frame is not None:
+            start = (edit.start_frame - first) / rate
+        if edit.end_frame is not None:
+            end = (edit.end_frame - first) / rate
+        span = (max(start, 0.0), min(end, schedule.duration))
+        contacts[edit.name] = replace(contact, start=span[0], end=span[1])
+    every = [*contacts.values()]
+    for added in problem.added:
+        span = ((added.start_frame - first) / rate, (added.end_frame - first) / rate)
+        within = (max(span[0], 0.0), min(span[1], schedule.duration))
+        every.append(_added(added.point, within, performance))
+    return snap(replace(schedule, contacts=tuple(every)), snap_tolerance(performance))
+
+
+def _added(name: str, span: tuple[float, float], performance: Performance) -> Contact:
+    """A contact of a point during (start, end) s, where the point then is on average."""
+    points, _ = contact_points(performance)
+    if name not in points:
+        raise UnknownContactName(name, tuple(points))
+    point = points[name]
+    during = (performance.times >= span[0]) & (performance.times <= span[1])
+    if not during.any():
+        raise BadTiming(name, span[1] - span[0])
+    place = point.track[during].mean(axis=0)
+    return Contact(name, name, point.bone, point.offset, *span, place)

@@ -1,0 +1,118 @@
+"""A recording seen through a character: joint angles, centre of mass, feet, contacts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..body.anatomy import Part, Side
+from ..body.character import Character, body_rotations
+from ..body.kinematics import BodyPoint
+from ..data.contacts import ContactPoint, ContactSchedule, PointKind, snap
+from ..data.recording import Recording
+from ..numerics.interpolation import interpolate
+from .contact_detection import detect_contacts
+from .soles import FootTracks, floor_height, foot_points
+
+SNAP_FRAMES = 1.5
+SNAP_LEAST = 0.012  # s; instants nearer than this share a knot
+
+
+@dataclass(frozen=True)
+class Performance:
+    """The recording in the character's terms, at the recording's frames (T,).
+
+    rotations: (T, B, 3, 3) body to world. centres: (T, B, 3) m, joint centres as recorded.
+    angles: (T, n_angles). com: (T, 3) m.
+    """
+
+    recording: Recording
+    character: Character
+    rotations: FloatArray
+    centres: FloatArray
+    angles: FloatArray
+    com: FloatArray
+
+    @property
+    def times(self) -> FloatArray:
+        return self.recording.times
+
+    def points(self, points: tuple[BodyPoint, ...], times: FloatArray) -> FloatArray:
+        """(N, P, 3) world places of bodies' points at any instants, cubic between frames."""
+        bodies = [p.body for p in points]
+        local = np.stack([p.place for p in points])
+        turned = np.einsum("tpij,pj->tpi", self.rotations[:, bodies], local)
+        return interpolate(self.times, self.centres[:, bodies] + turned, times)
+
+
+def perform(recording: Recording, character: Character) -> Performance:
+    """Reads joint angles and centre of mass out of a recording."""
+    bones = [recording.index(body.bone) for body in character.bodies]
+    rotations = body_rotations(recording, bones)
+    centres = recording.heads[:, bones]
+    columns = []
+    for i, joint in enumerate(character.joints):
+        relative = rotations[:, i]
+        if joint.parent >= 0:
+            relative = np.swapaxes(rotations[:, joint.parent], -1, -2) @ relative
+        columns.append(joint.axes.angles(relative))
+    masses = np.array([body.mass for body in character.bodies])
+    local = np.stack([body.com for body in character.bodies])
+    coms = centres + np.einsum("tbij,bj->tbi", rotations, local)
+    com = np.einsum("b,tbi->ti", masses / masses.sum(), coms)
+    return Performance(
+        recording, character, rotations, centres, np.concatenate(columns, axis=1), com
+    )
+
+
+def find_contacts(performance: Performance) -> ContactSchedule:
+    """What of feet and hands touches, instants snapped so that no span is needlessly short."""
+    points, floor_m = contact_points(performance)
+    schedule = detect_contacts(performance.times, points, floor_m=floor_m, com=performance.com)
+    return snap(schedule, snap_tolerance(performance))
+
+
+def snap_tolerance(performance: Performance) -> float:
+    """Instants nearer than this, s, are made one."""
+    frame = float(np.median(np.diff(performance.times)))
+    return max(SNAP_FRAMES * frame, SNAP_LEAST)
+
+
+def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], float]:
+    """The points that may touch, by name (heel and toe of each foot, hands), and the floor, m."""
+    feet = [_foot(performance, side) for side in (Side.LEFT, Side.RIGHT)]
+    floor_m = floor_height(performance.times, feet)
+    points = foot_points(performance.times, feet, floor_m)
+    for side in (Side.LEFT, Side.RIGHT):
+        hand = performance.character.body(Part.HAND, side)
+        if hand is not None:
+            points[f"{side.value.capitalize()} hand"] = _palm(performance, hand)
+    return points, floor_m
+
+
+def _palm(performance: Performance, hand: int) -> ContactPoint:
+    body, recording = performance.character.bodies[hand], performance.recording
+    place = 0.5 * body.tip
+    track = performance.centres[:, hand] + performance.rotations[:, hand] @ place
+    rest = recording.bones[recording.index(body.bone)].rotation
+    return ContactPoint(PointKind.HAND, body.bone, rest.T @ place, track)
+
+
+def _foot(performance: Performance, side: Side) -> FootTracks:
+    character, recording = performance.character, performance.recording
+    foot, toe = character.body(Part.FOOT, side), character.body(Part.TOE, side)
+    assert foot is not None
+    last = foot if toe is None else toe
+    ankle = performance.centres[:, foot]
+    tip = performance.centres[:, last] + performance.rotations[:, last] @ character.bodies[last].tip
+    bones = [recording.index(character.bodies[body].bone) for body in (foot, last)]
+    return FootTracks(
+        side=side.value.capitalize(),
+        foot_bone=character.bodies[foot].bone,
+        toe_bone=character.bodies[last].bone,
+        ankle=ankle,
+        ball=tip if toe is None else performance.centres[:, toe],
+        tip=tip,
+        foot_rotation=recording.rotations[:, bones[0]],
+        toe_rotation=recording.rotations[:, bones[1]],
+    )

@@ -1,0 +1,137 @@
+"""Where every contact shall be: the recorded places, moved by the artist's pins (thesis 6.2)."""
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.contacts import ContactSchedule, Phase, PhaseKind
+from ..data.faults import ContradictoryPins, UnknownContact, UnknownPhase
+from ..data.problem import Axes3, MotionProblem, Pin
+from .performance import Performance
+
+SAME_BODY_SLACK = 0.003  # m
+SAME_FOOT_SLACK = 0.02  # m; toes bend
+
+
+def pinned_places(
+    problem: MotionProblem, performance: Performance, schedule: ContactSchedule
+) -> FloatArray:
+    """(n_contacts, 3) m: where every contact shall be.
+
+    Raises UnknownPhase, UnknownContact, ContradictoryPins.
+    """
+    places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
+    moved_by: dict[int, Pin] = {}
+    for pin in problem.pins:
+        phase = phase_of(pin, schedule)
+        chosen = chosen_contacts(pin, phase, schedule)
+        target = _moved(pin, phase, chosen, performance, schedule)
+        for i, place in zip(chosen, target, strict=True):
+            if i in moved_by:
+                apart = float(np.linalg.norm(places[i] - place))
+                if apart > SAME_BODY_SLACK:
+                    raise ContradictoryPins(moved_by[i].name, pin.name, apart)
+            places[i] = place
+            moved_by[i] = pin
+    _check_rigid(schedule, performance, places, moved_by)
+    return places
+
+
+def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:
+    """The ground phase that a pin names. Raises UnknownPhase."""
+    ground = [p for p in schedule.phases if p.kind is PhaseKind.GROUND]
+    for phase in ground:
+        if phase.name == pin.phase:
+            return phase
+    raise UnknownPhase(pin.name, pin.phase, tuple(p.name for p in ground))
+
+
+def chosen_contacts(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[int]:
+    """Indices of the contacts that a pin moves. Raises UnknownContact."""
+    there = [
+        i for i, c in enumerate(schedule.contacts) if c.start < phase.end and c.end > phase.start
+    ]
+    if not pin.touching:
+        return there
+    chosen = []
+    for what in pin.touching:
+        hits = [
+            i
+            for i in there
+            if what in (schedule.contacts[i].bone, schedule.contacts[i].point)
+            or what == schedule.contacts[i].name
+        ]
+        if not hits:
+            known = sorted({c.point for c in schedule.of_phase(phase)})
+            known += sorted({c.bone for c in schedule.of_phase(phase)})
+            raise UnknownContact(pin.name, what, tuple(known))
+        chosen += [i for i in hits if i not in chosen]
+    return chosen
+
+
+def _moved(
+    pin: Pin,
+    phase: Phase,
+    chosen: list[int],
+    performance: Performance,
+    schedule: ContactSchedule,
+) -> FloatArray:
+    places = np.array([schedule.contacts[i].place for i in chosen])
+    centre = places.mean(axis=0)
+    c, s = np.cos(pin.turn), np.sin(pin.turn)
+    turned = centre + (places - centre) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    offset = np.array(pin.offset, dtype=float)
+    if pin.axes is Axes3.TRAVEL:
+        offset = travel_axes(performance, schedule, phase) @ offset
+    goal = centre if pin.place is None else np.array(pin.place, dtype=float)
+    return np.asarray(turned - centre + goal + offset)
+
+
+def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phase) -> FloatArray:
+    """(3, 3) columns forward, left and up: along the flight that ends (or else starts) a phase."""
+    flights = [p for p in schedule.phases if p.kind is PhaseKind.FLIGHT]
+    before = [f for f in flights if f.end <= phase.start + 1e-9]
+    flight = before[-1] if before else (flights[0] if flights else phase)
+    com = performance.com
+    start, end = (
+        np.array([np.interp(t, performance.times, com[:, k]) for k in range(3)])
+        for t in (flight.start, flight.end)
+    )
+    ahead = (end - start) * np.array([1.0, 1.0, 0.0])
+    if np.linalg.norm(ahead) < 0.05:  # a jump on the spot: where the pelvis faces
+        ahead = _facing(performance, 0.5 * (flight.start + flight.end))
+    ahead /= np.linalg.norm(ahead)
+    up = np.array([0.0, 0.0, 1.0])
+    return np.stack([ahead, np.cross(up, ahead), up], axis=1)
+
+
+def _facing(performance: Performance, time: float) -> FloatArray:
+    frame = int(np.argmin(np.abs(performance.times - time)))
+    width = performance.rotations[frame, 0] @ performance.character.bodies[0].box_rotation[:, 0]
+    return np.asarray(np.cross(width, [0.0, 0.0, 1.0]) * np.array([1.0, 1.0, 0.0]))
+
+
+def _check_rigid(
+    schedule: ContactSchedule,
+    performance: Performance,
+    places: FloatArray,
+    moved_by: dict[int, Pin],
+) -> None:
+    """Heel and toe of one foot cannot part: pins that ask for it contradict each other."""
+    contacts = schedule.contacts
+    bodies = {body.bone: body for body in performance.character.bodies}
+    for i, first in enumerate(contacts):
+        for j in range(i + 1, len(contacts)):
+            second = contacts[j]
+            one, two = bodies[first.bone], bodies[second.bone]
+            together = first.start < second.end and second.start < first.end
+            feet = {one.part.value, two.part.value} <= {"foot", "toe"}
+            if not together or one.side is not two.side or not feet:
+                continue
+            slack = SAME_BODY_SLACK if first.bone == second.bone else SAME_FOOT_SLACK
+            was = np.linalg.norm(first.place - second.place)
+            now = np.linalg.norm(places[i] - places[j])
+            if abs(now - was) > slack:
+                names = [moved_by[k].name if k in moved_by else contacts[k].name for k in (i, j)]
+                if names[0] == names[1]:
+                    names = [contacts[i].name, contacts[j].name]
+                raise ContradictoryPins(names[0], names[1], float(abs(now - was)))

@@ -1,0 +1,1 @@
+"""The performer as a tree of rigid bodies: anatomy, kinematics, dynamics, human limits."""

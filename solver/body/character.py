@@ -1,0 +1,374 @@
+"""The artist's figure as a tree of rigid bodies (thesis 3.3.1), built from a recording.
+
+A body's frame sits at its joint's centre (the bone's head) and is aligned with the world in the
+rest pose, so a body's rotation is its bone's rotation times the inverse of the rest rotation.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.faults import ZeroLengthBone
+from ..data.problem import MassTable
+from ..data.recording import Recording
+from ..numerics.rotations import unit
+from .anatomy import Part, Segment, Side, map_anatomy
+from .joint_axes import Axes, ball_axes, hinge_axes, residual_angle, universal_axes
+from .mass_tables import ABSENT_GOES_TO, ASPECT, DENSITY, TABLES, Share
+
+UP = np.array([0.0, 0.0, 1.0])
+DOFS: Mapping[Part, int] = {
+    Part.SHANK: 1,
+    Part.TOE: 1,
+    Part.FOREARM: 1,
+    Part.FOOT: 2,
+    Part.CLAVICLE: 2,
+    Part.HAND: 2,
+}  # every other part has 3
+MAY_GROW = (Part.FOREARM, Part.FOOT, Part.CLAVICLE, Part.HAND)
+FOLLOWED = np.radians(4.0)  # a joint that misses the recording by more gets another DOF, if it may
+SHORTEST = 1e-4  # m
+NECK_SECTION = 0.5  # a neck's cross-section as a share of the head's, to part their mass
+LEAF_LENGTH: Mapping[Part, tuple[float, float]] = {
+    # Bounds on a leaf's length as a share of body height: where a skeleton ends, files often lie.
+    Part.HEAD: (0.09, 0.16),
+    Part.HAND: (0.06, 0.11),
+    Part.TOE: (0.03, 0.07),
+    Part.FOOT: (0.10, 0.16),
+}
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body. Vectors in the body's frame, m; com and inertia (about com) in kg·m²."""
+
+    name: str
+    bone: str
+    part: Part
+    side: Side
+    mass: float
+    com: FloatArray
+    inertia: FloatArray
+    tip: FloatArray
+    box_size: FloatArray  # (3,) extents along the box's own axes, the last is its length
+    box_rotation: FloatArray  # (3, 3) box to body
+    box_centre: FloatArray
+
+
+@dataclass(frozen=True)
+class Joint:
+    """Joins a body to its parent: `offset` (3,) m from parent's joint centre, parent's frame.
+
+    parent: index of the parent body, -1 for the root, whose position is free.
+    first: index of its first angle in the joint angles (n_angles,).
+    """
+
+    parent: int
+    offset: FloatArray
+    axes: Axes
+    first: int
+
+    @property
+    def dofs(self) -> slice:
+        return slice(self.first, self.first + self.axes.dofs)
+
+
+@dataclass(frozen=True)
+class Character:
+    """Bodies and joints, one joint a body, parents first; the root is body 0.
+
+    Configuration: centre of mass (3,) m and joint angles (n_angles,) rad, the root's three first.
+    gravity: m/s², of the world that the figure is in.
+    """
+
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    height: float
+    gravity: float = 9.81
+
+    @property
+    def mass(self) -> float:
+        return sum(body.mass for body in self.bodies)
+
+    @property
+    def n_angles(self) -> int:
+        last = self.joints[-1]
+        return last.first + last.axes.dofs
+
+    @property
+    def n_dofs(self) -> int:
+        """Degrees of freedom: the joint angles and the root's three translations."""
+        return self.n_angles + 3
+
+    def body(self, part: Part, side: Side = Side.MIDDLE) -> int | None:
+        """Index of the first such body, None where the figure has none."""
+        for i, body in enumerate(self.bodies):
+            if body.part is part and body.side is side:
+                return i
+        return None
+
+    def lineage(self, body: int) -> list[int]:
+        """The body and its ancestors up to the root."""
+        line = []
+        while body >= 0:
+            line.append(body)
+            body = self.joints[body].parent
+        return line
+
+
+def build_character(
+    recording: Recording,
+    *,
+    mass: float = 70.0,
+    table: MassTable = MassTable.THESIS,
+    chosen: Mapping[str, str] | None = None,
+) -> Character:
+    """The figure of a recording: bodies from bones, axes from the clip, mass from a table.
+
+    mass: total, kg. chosen: segment label -> bone name, see `map_anatomy`.
+    Raises MissingPart, ZeroLengthBone.
+    """
+    segments = map_anatomy(recording.bones, chosen)
+    parents = [_parent(recording, segments, i) for i in range(len(segments))]
+    rotations = body_rotations(recording, [s.bone for s in segments])
+    offsets = _offsets(recording, segments, parents, rotations)
+    rest = [recording.bones[s.bone].head for s in segments]
+    height = _height(segments, offsets)
+    tips = [_tip(recording, segments, parents, offsets, i, height) for i in range(len(segments))]
+    _check_lengths(recording, segments, tips)
+    lengths = np.array([np.linalg.norm(tip) for tip in tips])
+    masses, shares = _masses(segments, lengths, mass, table)
+    forward = _forward(segments, rest)
+    bodies, joints, first = [], [], 0
+    for i, segment in enumerate(segments):
+        bodies.append(_body(recording, segment, masses[i], shares[i], tips[i], forward))
+        parent = parents[i]
+        relative = rotations[:, i]
+        if parent >= 0:
+            relative = np.swapaxes(rotations[:, parent], -1, -2) @ relative
+        axes = _axes(segment, relative, tips[i], forward, root=parent < 0)
+        joints.append(Joint(parent, offsets[i], axes, first))
+        first += axes.dofs
+    return Character(tuple(bodies), tuple(joints), height)
+
+
+def body_rotations(recording: Recording, bones: Sequence[int]) -> FloatArray:
+    """(T, len(bones), 3, 3) rotations of the bodies on these bones: rest to current, world."""
+    rest = np.stack([recording.bones[b].rotation for b in bones])
+    return np.asarray(recording.rotations[:, bones] @ np.swapaxes(rest, -1, -2))
+
+
+def _parent(recording: Recording, segments: Sequence[Segment], i: int) -> int:
+    by_bone = {s.bone: k for k, s in enumerate(segments)}
+    bone = recording.bones[segments[i].bone].parent
+    while bone >= 0:
+        if bone in by_bone:
+            return by_bone[bone]
+        bone = recording.bones[bone].parent
+    return -1
+
+
+def _offsets(
+    recording: Recording,
+    segments: Sequence[Segment],
+    parents: Sequence[int],
+    rotations: FloatArray,
+) -> list[FloatArray]:
+    """Each joint's centre in its parent's frame: the median over the clip, as bones may slide."""
+    offsets = []
+    for i, parent in enumerate(parents):
+        if parent < 0:
+            offsets.append(np.zeros(3))
+            continue
+        apart = recording.heads[:, segments[i].bone] - recording.heads[:, segments[parent].bone]
+        local = np.einsum("tji,tj->ti", rotations[:, parent], apart)
+        offsets.append(np.median(local, axis=0))
+    return offsets
+
+
+def _children(parents: Sequence[int], i: int) -> list[int]:
+    return [k for k, parent in enumerate(parents) if parent == i]
+
+
+def _height(segments: Sequence[Segment], offsets: Sequence[FloatArray]) -> float:
+    """Standing height, m, from the segments' lengths: leg, trunk, neck, head and a sole."""
+    leg = trunk = 0.0
+    for i, segment in enumerate(segments):
+        length = float(np.linalg.norm(offsets[i]))
+        if segment.part in (Part.SHANK, Part.FOOT):
+            leg += 0.5 * length
+        elif segment.part in (Part.SPINE, Part.NECK, Part.HEAD):
+            trunk += length
+        elif segment.part is Part.THIGH:
+            trunk += 0.5 * abs(float(offsets[i][2]))
+    # Ankle's height and head's length by Drillis and Contini (1966): 0.039 H and about 0.12 H.
+    return (leg + trunk) / (1 - 0.039 - 0.12)
+
+
+def _tip(
+    recording: Recording,
+    segments: Sequence[Segment],
+    parents: Sequence[int],
+    offsets: Sequence[FloatArray],
+    i: int,
+    height: float,
+) -> FloatArray:
+    """The far end of a body in its frame: the next joint of its chain, or the end of a leaf."""
+    part = segments[i].part
+    children = _children(parents, i)
+    if part is Part.PELVIS:
+        hips = [offsets[k] for k in children if segments[k].part is Part.THIGH]
+        tip = np.mean(hips, axis=0)
+        shortest = 0.06 * height
+        return np.asarray(tip if np.linalg.norm(tip) > shortest else -UP * shortest)
+    follow = {Part.FOOT: (Part.TOE,), Part.SPINE: (Part.SPINE, Part.NECK, Part.HEAD)}.get(part)
+    chain = [k for k in children if follow is None or segments[k].part in follow]
+    if chain:
+        # Some rigs hang neck and shoulders on the chest's own head: then it reaches to the next.
+        short = float(np.linalg.norm(offsets[chain[0]])) < 0.01 * height
+        after = _children(parents, chain[0]) if short and part is Part.SPINE else []
+        return offsets[chain[0]] + (offsets[after[0]] if after else 0.0)
+    bone = recording.bones[segments[i].bone]
+    end = _farthest(recording, segments[i].bone)
+    span = end - bone.head
+    length = float(np.linalg.norm(span))
+    if length < SHORTEST:
+        return np.asarray(span)
+    low, high = LEAF_LENGTH.get(part, (0.0, np.inf))
+    return np.asarray(span / length * np.clip(length, low * height, high * height))
+
+
+def _farthest(recording: Recording, bone: int) -> FloatArray:
+    """The farthest rest point of a bone and of everything below it."""
+    below = {bone}
+    for i, other in enumerate(recording.bones):
+        if other.parent in below:
+            below.add(i)
+    head = recording.bones[bone].head
+    ends = [recording.bones[i].tail for i in below] + [recording.bones[i].head for i in below]
+    return max(ends, key=lambda end: float(np.linalg.norm(end - head)))
+
+
+def _check_lengths(
+    recording: Recording, segments: Sequence[Segment], tips: Sequence[FloatArray]
+) -> None:
+    may_be_short = (Part.PELVIS, Part.SPINE, Part.NECK, Part.CLAVICLE)
+    for segment, tip in zip(segments, tips, strict=True):
+        if segment.part not in may_be_short and np.linalg.norm(tip) < SHORTEST:
+            raise ZeroLengthBone(recording.bones[segment.bone].name)
+
+
+def _masses(
+    segments: Sequence[Segment], lengths: FloatArray, total: float, table: MassTable
+) -> tuple[list[float], list[Share]]:
+    """Mass of every segment and the share it comes from; they sum to the total exactly.
+
+    Spine bones share the spine's mass by length, neck and head the head's, foot and toe the
+    foot's; what has no bone gives its mass to the part it hangs on.
+    """
+    shares = TABLES[table]
+    parts = {(s.part, s.side) for s in segments}
+    amounts: dict[tuple[Part, Side], float] = {}
+    for part, share in shares.items():
+        middle = part in (Part.PELVIS, Part.SPINE, Part.HEAD)
+        for side in (Side.MIDDLE,) if middle else (Side.LEFT, Side.RIGHT):
+            home = part if (part, side) in parts else ABSENT_GOES_TO.get(part, part)
+            home_side = Side.MIDDLE if home is Part.SPINE else side
+            amounts[home, home_side] = amounts.get((home, home_side), 0.0) + share.mass
+    owner = {Part.NECK: Part.HEAD, Part.TOE: Part.FOOT}
+    keys = [(owner.get(s.part, s.part), s.side) for s in segments]
+    # A bone of almost no length (a spine joint that sits on the next) still needs some inertia.
+    weights = np.maximum(lengths, 0.02)
+    for i, segment in enumerate(segments):
+        if segment.part is Part.NECK:
+            weights[i] *= NECK_SECTION
+    masses = []
+    for i, key in enumerate(keys):
+        together = sum(weights[k] for k, other in enumerate(keys) if other == key)
+        masses.append(total * amounts[key] * float(weights[i] / together))
+    scale = total / sum(masses)
+    alone = [keys.count(key) == 1 for key in keys]
+    used = [
+        shares[key[0]] if single else Share(0.0) for key, single in zip(keys, alone, strict=True)
+    ]
+    return [m * scale for m in masses], used
+
+
+def _forward(segments: Sequence[Segment], rest: Sequence[FloatArray]) -> FloatArray:
+    """The rest pose's forward direction: up x (right hip to left hip) turned ahead, (3,)."""
+    hips = {s.side: rest[i] for i, s in enumerate(segments) if s.part is Part.THIGH}
+    left = hips[Side.LEFT] - hips[Side.RIGHT]
+    ahead = np.cross(left, UP)
+    return unit(ahead) if np.linalg.norm(ahead) > 1e-6 else np.array([0.0, -1.0, 0.0])
+
+
+def _body(
+    recording: Recording,
+    segment: Segment,
+    mass: float,
+    share: Share,
+    tip: FloatArray,
+    forward: FloatArray,
+) -> Body:
+    length = max(float(np.linalg.norm(tip)), 0.02)
+    direction = unit(tip) if np.linalg.norm(tip) > SHORTEST else UP
+    box = _box_frame(direction, forward)
+    section = mass / (DENSITY * length)
+    aspect = ASPECT.get(segment.part, 1.0)
+    size = np.array([np.sqrt(section * aspect), np.sqrt(section / aspect), length])
+    if share.gyration is None:
+        squared = (size @ size - size**2) / 12.0  # a uniform box about its centre
+    else:
+        sagittal, transverse, longitudinal = share.gyration
+        squared = (np.array([transverse, sagittal, longitudinal]) * length) ** 2
+    centre = direction * length
+    return Body(
+        name=segment.label
+        if segment.part not in (Part.SPINE, Part.NECK)
+        else f"{segment.label} {recording.bones[segment.bone].name}",
+        bone=recording.bones[segment.bone].name,
+        part=segment.part,
+        side=segment.side,
+        mass=mass,
+        com=share.centre * centre,
+        inertia=mass * box @ np.diag(squared) @ box.T,
+        tip=tip,
+        box_size=size,
+        box_rotation=box,
+        box_centre=0.5 * centre,
+    )
+
+
+def _box_frame(direction: FloatArray, forward: FloatArray) -> FloatArray:
+    """Box axes as columns: width (sideways), depth, length."""
+    depth = forward if abs(float(forward @ direction)) < 0.8 else UP
+    width = unit(np.cross(depth, direction))
+    return np.stack([width, np.cross(direction, width), direction], axis=1)
+
+
+def _axes(
+    segment: Segment, relative: FloatArray, tip: FloatArray, forward: FloatArray, *, root: bool
+) -> Axes:
+    sideways = np.cross(UP, forward)
+    frame = np.stack([sideways, forward, UP], axis=1)
+    if root:
+        return ball_axes(relative, (UP, sideways), frame)
+    along = unit(tip) if np.linalg.norm(tip) > SHORTEST else UP
+    hinge = (
+        sideways if abs(float(sideways @ along)) < 0.8 else UP
+    )  # arms may point sideways at rest
+    dofs = DOFS.get(segment.part, 3)
+    grow = segment.part in MAY_GROW
+    if dofs == 1:
+        axes = hinge_axes(relative, hinge)
+        if not grow or residual_angle(axes, relative) < FOLLOWED:
+            return axes
+        dofs = 2
+    if dofs == 2:
+        other = {Part.FOREARM: along, Part.FOOT: along}.get(segment.part, np.cross(along, hinge))
+        axes = universal_axes(relative, (hinge, unit(other)))
+        if not grow or residual_angle(axes, relative) < FOLLOWED:
+            return axes
+    return ball_axes(relative, frame=frame)

@@ -1,0 +1,223 @@
+"""How far human joints turn, as limits on a figure's bones.
+
+The ranges are those of active motion that the American Academy of Orthopaedic Surgeons gives
+(Joint Motion: Method of Measuring and Recording, 1965), as tabulated by Norkin and White
+(Measurement of Joint Motion, appendix A), degrees from the anatomical position. Spine and neck
+share theirs evenly among their bones. A foot's zero is its rest pose, a hand's the forearm's line.
+
+Hinges become ranges of the bend; ball joints become cones. A hip's and a spine's cone goes through
+the four ends of its table and is wider forwards than sideways; a shoulder's is the narrowest round
+one about forward and outward that holds its table; wrist and neck take their largest angle.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from math import acos, radians, tan
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..numerics.rotations import perpendicular, unit
+from .anatomy import Part, Side
+
+UP = np.array([0.0, 0.0, 1.0])
+KNEE = (-10.0, 135.0)  # hyperextension, flexion
+ELBOW = (0.0, 150.0)
+ANKLE = (-50.0, 20.0)  # plantar flexion, dorsiflexion
+HIP_FORWARD = (-30.0, 120.0)  # extension, flexion
+HIP_OUTWARD = (-30.0, 45.0)  # adduction, abduction
+SHOULDER_FORWARD = (-60.0, 180.0)  # extension, flexion
+WRIST = 80.0  # flexion; extension 70, to the sides 20 and 30
+SPINE_FORWARD = (-25.0, 80.0)  # extension, flexion of chest and loins together
+SPINE_SIDEWAYS = 35.0
+NECK = 45.0  # flexion, extension and to either side
+LEAST_BEND = 0.05  # of a bone's length; a joint that bends less does not tell its direction
+SIDES = (Side.LEFT, Side.RIGHT)
+
+
+@dataclass(frozen=True)
+class RestFigure:
+    """The bones of a figure at rest, world axes. parts: the bones of each part, parents first.
+    parents: the mapped bone above each. along: (3,) unit, to the next joint. left: (3,) unit."""
+
+    parts: Mapping[tuple[Part, Side], tuple[str, ...]]
+    parents: Mapping[str, str]
+    along: Mapping[str, FloatArray]
+    left: FloatArray
+
+    @property
+    def forward(self) -> FloatArray:
+        return unit(np.cross(self.left, UP))
+
+    def outward(self, side: Side) -> FloatArray:
+        """Away from the body's middle, (3,)."""
+        return self.left if side is Side.LEFT else -self.left
+
+
+@dataclass(frozen=True)
+class BendRange:
+    """A joint's bend from the straight limb, rad; see requests.AngleLimit."""
+
+    name: str
+    bone: str
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class ConeRange:
+    """A cone of a bone's directions; see requests.ConeLimit."""
+
+    name: str
+    bone: str
+    axis: FloatArray
+    half_angle: float
+    stretch: tuple[float, float] = (1.0, 1.0)
+
+
+Range = BendRange | ConeRange
+
+
+def human_ranges(figure: RestFigure) -> tuple[Range, ...]:
+    """The limits of all joints of the table whose bones the figure has."""
+    ranges: list[Range] = []
+    for side in SIDES:
+        for part, joint, make in _SIDED:
+            for bone in figure.parts.get((part, side), ()):
+                if bone in figure.parents:
+                    ranges.append(make(f"{side.value.title()} {joint} Range", bone, side, figure))
+    ranges += _chain("Spine", figure.parts.get((Part.SPINE, Side.MIDDLE), ()), figure, _vertebra)
+    neck = figure.parts.get((Part.NECK, Side.MIDDLE), ())
+    head = figure.parts.get((Part.HEAD, Side.MIDDLE), ())
+    ranges += _chain("Neck", (*neck, *head), figure, _neck)
+    return tuple(ranges)
+
+
+def missing_joints(figure: RestFigure) -> tuple[str, ...]:
+    """Joints of the table for which the figure has no bone, such as "left wrist"."""
+    wanted = [(part, side, joint) for part, joint, _ in _SIDED for side in SIDES]
+    lost = [
+        f"{s.value} {joint.lower()}" for part, s, joint in wanted if (part, s) not in figure.parts
+    ]
+    middle = {"spine": Part.SPINE, "neck": Part.HEAD}
+    return (*lost, *(n for n, part in middle.items() if (part, Side.MIDDLE) not in figure.parts))
+
+
+def beyond(limit: Range, directions: FloatArray, figure: RestFigure) -> float:
+    """By how much, rad, a recording leaves a limit at worst; 0 where it never does.
+
+    directions: (T, 3) unit, the bone's against its parent, in the axes of the rest pose.
+    """
+    if isinstance(limit, ConeRange):
+        return max(float(_lean(limit, directions, figure).max()) - limit.half_angle, 0.0)
+    straight = figure.along[figure.parents[limit.bone]]
+    mean = directions.mean(axis=0)
+    across = mean - straight * (mean @ straight)
+    if np.linalg.norm(across) < LEAST_BEND:
+        return 0.0
+    bend = np.arctan2(directions @ unit(across), directions @ straight)
+    return max(limit.lower - float(bend.min()), float(bend.max()) - limit.upper, 0.0)
+
+
+def _lean(limit: ConeRange, directions: FloatArray, figure: RestFigure) -> FloatArray:
+    """As measures.Cone has it, (T,) rad."""
+    side = figure.left - limit.axis * (figure.left @ limit.axis)
+    side = unit(side) if np.linalg.norm(side) > 0.3 else perpendicular(limit.axis)
+    crosses = np.stack([side, np.cross(limit.axis, side)]) / np.array(limit.stretch)[:, None]
+    across = np.linalg.norm(directions @ crosses.T, axis=1)
+    return np.asarray(np.arctan2(across, directions @ limit.axis))
+
+
+# ---------------------------------------------------------------- of each joint
+
+
+def _bend(name: str, bone: str, table: tuple[float, float], zero: float = 0.0) -> BendRange:
+    return BendRange(name, bone, zero + radians(table[0]), zero + radians(table[1]))
+
+
+def _knee(name: str, bone: str, _side: Side, _figure: RestFigure) -> BendRange:
+    return _bend(name, bone, KNEE)
+
+
+def _elbow(name: str, bone: str, _side: Side, _figure: RestFigure) -> BendRange:
+    return _bend(name, bone, ELBOW)
+
+
+def _ankle(name: str, bone: str, _side: Side, figure: RestFigure) -> BendRange:
+    at_rest = _angle(figure.along[bone], figure.along[figure.parents[bone]])
+    return _bend(name, bone, ANKLE, at_rest)
+
+
+def _hip(name: str, bone: str, side: Side, figure: RestFigure) -> ConeRange:
+    ahead, aside = radians(_middle(HIP_FORWARD)), radians(_middle(HIP_OUTWARD))
+    forwards = np.sin(ahead) * figure.forward - np.cos(ahead) * UP
+    axis = np.cos(aside) * forwards + np.sin(aside) * figure.outward(side)
+    return _elliptic(name, bone, axis, _half(HIP_OUTWARD), _half(HIP_FORWARD))
+
+
+def _shoulder(name: str, bone: str, side: Side, figure: RestFigure) -> ConeRange:
+    axis = unit(figure.forward + figure.outward(side))
+    ends = [np.sin(e) * figure.forward - np.cos(e) * UP for e in map(radians, SHOULDER_FORWARD)]
+    widest = max(_angle(axis, end) for end in (*ends, -UP))
+    return ConeRange(name, bone, axis, widest)
+
+
+def _wrist(name: str, bone: str, _side: Side, figure: RestFigure) -> ConeRange:
+    return ConeRange(name, bone, figure.along[figure.parents[bone]], radians(WRIST))
+
+
+_SIDED = (
+    (Part.THIGH, "Hip", _hip),
+    (Part.SHANK, "Knee", _knee),
+    (Part.FOOT, "Ankle", _ankle),
+    (Part.UPPER_ARM, "Shoulder", _shoulder),
+    (Part.FOREARM, "Elbow", _elbow),
+    (Part.HAND, "Wrist", _wrist),
+)
+
+
+def _vertebra(name: str, bone: str, count: int, figure: RestFigure) -> ConeRange:
+    tilt = radians(_middle(SPINE_FORWARD)) / count
+    along = figure.along[bone]
+    ahead = figure.forward - along * (figure.forward @ along)
+    axis = np.cos(tilt) * along + np.sin(tilt) * unit(ahead)
+    return _elliptic(name, bone, axis, SPINE_SIDEWAYS / count, _half(SPINE_FORWARD) / count)
+
+
+def _neck(name: str, bone: str, count: int, figure: RestFigure) -> ConeRange:
+    return ConeRange(name, bone, figure.along[bone], radians(NECK) / count)
+
+
+def _chain(
+    joint: str,
+    bones: Iterable[str],
+    figure: RestFigure,
+    make: Callable[[str, str, int, RestFigure], ConeRange],
+) -> list[Range]:
+    """Limits of bones that share a range."""
+    jointed = [bone for bone in bones if bone in figure.parents]
+    numbers = [f" {i}" for i in range(1, len(jointed) + 1)] if len(jointed) > 1 else [""]
+    return [
+        make(f"{joint}{number} Range", bone, len(jointed), figure)
+        for number, bone in zip(numbers, jointed, strict=False)
+    ]
+
+
+def _elliptic(
+    name: str, bone: str, axis: FloatArray, sideways: float, forwards: float
+) -> ConeRange:
+    """A cone as wide as these two, degrees."""
+    side, ahead = radians(sideways), radians(forwards)
+    return ConeRange(name, bone, unit(axis), side, (1.0, tan(ahead) / tan(side)))
+
+
+def _middle(ends: tuple[float, float]) -> float:
+    return 0.5 * (ends[0] + ends[1])
+
+
+def _half(ends: tuple[float, float]) -> float:
+    return 0.5 * (ends[1] - ends[0])
+
+
+def _angle(a: FloatArray, b: FloatArray) -> float:
+    return acos(float(np.clip(a @ b, -1.0, 1.0)))

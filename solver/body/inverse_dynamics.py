@@ -1,0 +1,109 @@
+"""Inverse dynamics of the whole tree: what a movement and its contact forces ask of every joint.
+
+Newton and Euler per body, summed from the leaves inwards (Featherstone 2008, ch. 5.3).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from ..arrays import FloatArray
+from .character import Character
+from .dynamics import body_frames, carried, evaluate, turned
+from .kinematics import BodyPoint
+
+
+@dataclass(frozen=True)
+class Efforts:
+    """Generalised forces at N instants.
+
+    root_force (N, 3) N and root_moment (N, 3) N·m about the centre of mass, world axes: what
+    nothing explains, zero for a valid motion; taken to act on the root body. torques
+    (N, n_angles - 3) N·m at the joint angles after the root's three, positive along the angle.
+    """
+
+    root_force: FloatArray
+    root_moment: FloatArray
+    torques: FloatArray
+
+
+@dataclass(frozen=True)
+class _Wrench:
+    """Force, and moment about a point at x."""
+
+    x: ca.SX
+    force: ca.SX
+    moment: ca.SX
+
+    def about(self, x: ca.SX) -> ca.SX:
+        return self.moment + ca.cross(self.x - x, self.force)
+
+
+class InverseDynamics:
+    """The equations of motion of a character that touches the ground at chosen points."""
+
+    def __init__(self, character: Character, points: Sequence[BodyPoint] = ()) -> None:
+        n = character.n_angles
+        self.n_angles, self.n_points = n, len(points)
+        q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
+        fall = ca.SX.sym("fall", 3)
+        forces = ca.SX.sym("forces", 3, len(points))
+        every = efforts(character, points, q, v, a, fall, forces)
+        x = ca.vertcat(q, v, a, fall, ca.vec(forces))
+        self._function = ca.Function("efforts", [x], [ca.densify(ca.cse(every))])
+
+    def __call__(
+        self,
+        q: FloatArray,
+        v: FloatArray,
+        a: FloatArray,
+        com_acceleration: FloatArray,
+        forces: FloatArray,
+    ) -> Efforts:
+        """At angles, velocities, accelerations (N, n_angles), centre of mass's acceleration
+        (N, 3) m/s² and forces on the body (N, P, 3) N, world axes."""
+        x = np.concatenate([q, v, a, com_acceleration, forces.reshape(len(q), -1)], axis=1)
+        (out,) = evaluate(self._function, x, [(self.n_angles + 3,)])
+        return Efforts(out[:, :3], out[:, 3:6], out[:, 6:])
+
+
+def efforts(
+    character: Character,
+    points: Sequence[BodyPoint],
+    q: ca.SX,
+    v: ca.SX,
+    a: ca.SX,
+    fall: ca.SX,
+    forces: ca.SX,
+) -> ca.SX:
+    frames = body_frames(character, q, v, a)
+    moving = [carried(f, ca.SX(b.com)) for f, b in zip(frames, character.bodies, strict=True)]
+    shares = [body.mass / character.mass for body in character.bodies]
+    com = sum((s * m[0] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
+    sway = sum((s * m[2] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
+    wrenches: list[_Wrench] = []  # that each body and all beyond it need, about its joint
+    for frame, body, (x, _, acceleration) in zip(frames, character.bodies, moving, strict=True):
+        force = body.mass * (fall - sway + acceleration + ca.SX([0.0, 0.0, character.gravity]))
+        inertia = frame.R @ ca.SX(body.inertia) @ frame.R.T
+        spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
+        wrenches.append(_Wrench(frame.x, force, spin + ca.cross(x - frame.x, force)))
+    for p, point in enumerate(points):
+        held = wrenches[point.body]
+        at = carried(frames[point.body], ca.SX(point.place))[0]
+        push = _Wrench(at, -forces[:, p], ca.SX.zeros(3))
+        wrenches[point.body] = _sum(held, push)
+    torques = ca.SX.zeros(character.n_angles)
+    for i in reversed(range(1, len(character.joints))):
+        joint = character.joints[i]
+        R = frames[joint.parent].R @ ca.SX(joint.axes.before)
+        for k in range(joint.axes.dofs):
+            torques[joint.first + k] = ca.dot(R[:, k], wrenches[i].moment)
+            R = turned(R, k, q[joint.first + k])
+        wrenches[joint.parent] = _sum(wrenches[joint.parent], wrenches[i])
+    return ca.vertcat(wrenches[0].force, wrenches[0].about(com), torques[3:])
+
+
+def _sum(held: _Wrench, added: _Wrench) -> _Wrench:
+    return _Wrench(held.x, held.force + added.force, held.moment + added.about(held.x))

@@ -1,0 +1,166 @@
+"""Joint angles without gimbal lock: axes chosen from the clip (architecture: `q`).
+
+Every joint turns by R = A Rx(a) Ry(b) Rz(c) B (fewer factors with fewer DOFs), with constant
+frames A and B. Let u be the joint's first axis (fixed in the parent, A's first column) and w its
+last (fixed in the child, B's third row). Then sin b = u . R w for every pose, so how near a clip
+comes to gimbal lock depends on the two directions u and w alone, and the best pair can simply be
+searched for. A somersault with twist, for example, finds u across the body's path and w along
+the spine.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..numerics.rotations import (
+    axis_rotation,
+    mean_rotation,
+    perpendicular,
+    rotation_matrix,
+    rotation_vector,
+    unit,
+)
+
+GOOD_SINE = np.sin(np.radians(45.0))  # the preferred axes stand if the middle angle stays below
+
+
+@dataclass(frozen=True)
+class Axes:
+    """A joint's rotation R = before @ Rx(a) Ry(b) Rz(c) @ after, with `dofs` of the factors.
+
+    before, after: (3, 3) constant rotations.
+    """
+
+    dofs: int
+    before: FloatArray
+    after: FloatArray
+
+    def rotation(self, angles: FloatArray) -> FloatArray:
+        """(..., 3, 3) rotations, child to parent, of (..., dofs) angles in rad."""
+        R = np.broadcast_to(self.before, (*angles.shape[:-1], 3, 3))
+        for i in range(self.dofs):
+            R = R @ axis_rotation(i, angles[..., i])
+        return np.asarray(R @ self.after)
+
+    def angles(self, R: FloatArray) -> FloatArray:
+        """(T, dofs) angles of (T, 3, 3) rotations, unwrapped over time.
+
+        What the joint cannot follow (with one or two DOFs) is left out.
+        """
+        E = self.before.T @ R @ self.after.T
+        if self.dofs == 3:
+            a = np.arctan2(-E[:, 1, 2], E[:, 2, 2])
+            b = np.arcsin(np.clip(E[:, 0, 2], -1.0, 1.0))
+            c = np.arctan2(-E[:, 0, 1], E[:, 0, 0])
+            columns = [a, b, c]
+        elif self.dofs == 2:
+            b = np.arctan2(E[:, 0, 2], E[:, 0, 0])
+            columns = [np.arctan2(E[:, 2, 1], E[:, 1, 1]), b]
+        else:
+            columns = [np.arctan2(E[:, 2, 1] - E[:, 1, 2], E[:, 1, 1] + E[:, 2, 2])]
+        return np.unwrap(np.stack(columns, axis=1), axis=0)
+
+
+def middle_sine(R: FloatArray, u: FloatArray, w: FloatArray) -> float:
+    """Largest |sin| of the middle angle over (T, 3, 3) rotations for first axis u, last axis w."""
+    return float(np.abs((R @ w) @ u).max())
+
+
+def ball_axes(
+    R: FloatArray,
+    preferred: tuple[FloatArray, FloatArray] | None = None,
+    frame: FloatArray | None = None,
+) -> Axes:
+    """Axes of a 3-DOF joint that keep far from gimbal lock over (T, 3, 3) rotations.
+
+    preferred: (u, w), taken if the middle angle stays below 45 degrees with it. frame: (3, 3)
+    the figure's own directions as columns, so that the choice does not depend on where it faces.
+    """
+    if preferred is not None and middle_sine(R, *preferred) < GOOD_SINE:
+        u, w = preferred
+    else:
+        u, w = _search(R, np.eye(3) if frame is None else frame)
+    mean = mean_rotation(R)
+    along = mean @ w
+    third = along - u * (u @ along)
+    third = unit(third) if np.linalg.norm(third) > 1e-6 else perpendicular(u)
+    before = np.stack([u, np.cross(third, u), third], axis=1)
+    middle = axis_rotation(1, np.arcsin(np.clip(u @ along, -1.0, 1.0)))
+    return Axes(3, before, (before @ middle).T @ mean)
+
+
+def _search(R: FloatArray, frame: FloatArray) -> tuple[FloatArray, FloatArray]:
+    sample = R[:: max(1, len(R) // 80)]
+    directions = _half_sphere(180) @ frame.T
+    turned = np.einsum("tij,wj->twi", sample, directions)
+    worst = np.zeros((len(directions), len(directions)))
+    for block in turned:
+        np.maximum(worst, np.abs(directions @ block.T), out=worst)
+    i, j = np.unravel_index(int(np.argmin(worst)), worst.shape)
+    return directions[i], directions[j]
+
+
+def _half_sphere(count: int) -> FloatArray:
+    """(count, 3) directions spread evenly over a half sphere (a Fibonacci spiral), poles first."""
+    k = np.arange(count) + 0.5
+    z = 1 - k / count
+    turn = k * np.pi * (3 - np.sqrt(5))
+    r = np.sqrt(1 - z**2)
+    return np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
+
+
+def hinge_axes(R: FloatArray, expected: FloatArray) -> Axes:
+    """A 1-DOF joint about the axis that (T, 3, 3) rotations mostly turn about.
+
+    expected: (3,) the anatomical axis in the child's frame; it decides where the clip hardly bends.
+    """
+    mean = mean_rotation(R)
+    turns = rotation_vector(np.swapaxes(mean[None], -1, -2) @ R)
+    spread = turns.T @ turns / len(turns) + 0.05**2 * np.outer(expected, expected)
+    axis = np.linalg.eigh(spread)[1][:, -1]
+    axis = axis if axis @ expected >= 0 else -axis
+    second = perpendicular(axis)
+    after = np.stack([axis, second, np.cross(axis, second)])
+    return Axes(1, mean @ after.T, after)
+
+
+def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Axes:
+    """A 2-DOF joint (u fixed in the parent, v in the child) that best follows (T, 3, 3) rotations.
+
+    R = A Rx Ry B holds exactly if u . R v = 0; the pair minimising the sum of squares is found by
+    alternating eigenvectors. expected: the two anatomical axes in the child's frame, which decide
+    where the clip hardly moves.
+    """
+    mean = mean_rotation(R)
+    turns = 0.1 * np.array([sign * axis for axis in expected for sign in (1.0, -1.0)])
+    prior = mean @ rotation_matrix(turns)
+    poses = np.concatenate([R, prior])
+    weight = np.concatenate([np.full(len(R), 1 / len(R)), np.full(len(prior), 0.1 / len(prior))])
+    best: tuple[float, FloatArray, FloatArray] | None = None
+    for fixed, carried in (expected, expected[::-1]):
+        u, v = mean @ fixed, carried
+        for _ in range(50):
+            moved = poses @ v
+            u = np.linalg.eigh(np.einsum("t,ti,tj->ij", weight, moved, moved))[1][:, 0]
+            back = np.swapaxes(poses, -1, -2) @ u
+            v = np.linalg.eigh(np.einsum("t,ti,tj->ij", weight, back, back))[1][:, 0]
+        error = float(weight @ ((poses @ v) @ u) ** 2)
+        if best is None or error < best[0] - 1e-12:
+            best = (error, u, v)
+    assert best is not None
+    _, u, v = best
+    v_parent = mean @ v
+    second = unit(v_parent - u * (u @ v_parent))
+    before = np.stack([u, second, np.cross(u, second)], axis=1)
+    E = before.T @ mean
+    first_row = E[0] - v * (E[0] @ v)
+    row = unit(first_row)
+    after = np.stack([row, v, np.cross(row, v)])
+    return Axes(2, before, after)
+
+
+def residual_angle(axes: Axes, R: FloatArray) -> float:
+    """RMS angle in rad that the joint cannot follow of (T, 3, 3) rotations."""
+    missed = np.swapaxes(axes.rotation(axes.angles(R)), -1, -2) @ R
+    return float(np.sqrt((rotation_vector(missed) ** 2).sum(axis=-1).mean()))

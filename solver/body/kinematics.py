@@ -1,0 +1,161 @@
+"""Positions of the figure and their Jacobians, for many instants at once (thesis 3.3.1).
+
+Everything is relative to the centre of mass: the configuration holds the centre of mass itself,
+so a point's place in the world is the centre of mass plus what is computed here.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..numerics.rotations import cross_matrix
+from .character import Character
+
+
+@dataclass(frozen=True)
+class BodyPoint:
+    """A point fixed in a body: index of the body, place (3,) m in the body's frame."""
+
+    body: int
+    place: FloatArray
+
+
+@dataclass(frozen=True)
+class Pose:
+    """The figure at N instants. Positions (N, ..., 3) m relative to the centre of mass."""
+
+    character: Character
+    rotations: FloatArray  # (N, B, 3, 3) body to world
+    centres: FloatArray  # (N, B, 3) joint centres
+    axes: FloatArray  # (N, n_angles, 3) world axis that each angle turns about
+
+    def at(self, instants: slice | IntArray) -> "Pose":
+        """The figure at some of the instants."""
+        parts = (self.rotations, self.centres, self.axes)
+        return Pose(self.character, *(part[instants] for part in parts))
+
+    @cached_property
+    def body_coms(self) -> FloatArray:
+        """(N, B, 3) centres of mass of the bodies."""
+        local = np.stack([body.com for body in self.character.bodies])
+        return np.asarray(self.centres + np.einsum("nbij,bj->nbi", self.rotations, local))
+
+    def points(self, points: Sequence[BodyPoint]) -> FloatArray:
+        """(N, P, 3) the points' positions."""
+        bodies = [p.body for p in points]
+        local = np.stack([p.place for p in points])
+        turned = np.einsum("npij,pj->npi", self.rotations[:, bodies], local)
+        return np.asarray(self.centres[:, bodies] + turned)
+
+    def point_jacobian(self, points: Sequence[BodyPoint]) -> FloatArray:
+        """(N, P, 3, n_angles) derivatives of `points` by the joint angles."""
+        moves = _moves(self.character)[[p.body for p in points]]  # (P, n)
+        at = self.points(points)
+        n, count, angles = len(at), len(points), self.axes.shape[1]
+        # axis x (point - origin), as one product per instant instead of a cross per pair
+        turn = cross_matrix(self.axes)  # (N, n, 3, 3)
+        spin = (turn.reshape(n, 3 * angles, 3) @ np.swapaxes(at, 1, 2)).reshape(n, angles, 3, count)
+        about = np.cross(self.axes, self.centres[:, _owner(self.character)])
+        moved = (spin - about[..., None]) * moves.T[None, :, None, :]
+        moved -= self._com_jacobian[..., None]
+        return np.ascontiguousarray(moved.transpose(0, 3, 2, 1))
+
+    @cached_property
+    def _com_jacobian(self) -> FloatArray:
+        """(N, n_angles, 3) how the centre of mass moves when the pelvis's centre stays."""
+        masses = np.array([body.mass for body in self.character.bodies])
+        share = _moves(self.character) * (masses / masses.sum())[:, None]  # (B, n)
+        moment = np.einsum("bk,nbi->nki", share, self.body_coms)
+        owner = _owner(self.character)
+        carried = moment - share.sum(axis=0)[:, None] * self.centres[:, owner]
+        return np.cross(self.axes, carried)
+
+
+def point_velocity(
+    posed: Pose, points: Sequence[BodyPoint], speeds: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Velocities relative to the centre of mass, for joint speeds (N, n_angles) in rad/s.
+
+    Returns velocities (N, P, 3) in m/s and their derivatives by angle and by speed, each
+    (N, P, 3, n_angles). The derivative of a column J_j by an angle k nearer the root is
+    axis_k x J_j, and by one farther out axis_j x J_k (Featherstone 2008, ch. 2.10).
+    """
+    character = posed.character
+    places = [BodyPoint(p.body, p.place) for p in points]
+    places += [BodyPoint(i, body.com) for i, body in enumerate(character.bodies)]
+    moves = _moves(character)[[p.body for p in places]]
+    arm = posed.points(places)[:, :, None] - posed.centres[:, None, _owner(character)]
+    columns = np.cross(posed.axes[:, None], arm) * moves[None, :, :, None]  # (N, P + B, n, 3)
+    carried = columns * speeds[:, None, :, None]
+    outward = np.cumsum(carried[:, :, ::-1], axis=2)[:, :, ::-1]  # sum over j >= k
+    spin = posed.axes[:, None] * speeds[:, None, :, None] * moves[None, :, :, None]
+    before = np.cumsum(spin, axis=2) - spin  # angular velocity of what joint k turns in
+    by_angle = np.cross(posed.axes[:, None], outward) * moves[None, :, :, None]
+    by_angle += np.cross(before, columns)
+    velocity = carried.sum(axis=2)
+    count = len(points)
+    masses = np.array([body.mass for body in character.bodies])
+    share = masses / masses.sum()
+
+    def relative(each: FloatArray) -> FloatArray:
+        return np.asarray(
+            each[:, :count] - np.einsum("b,nb...->n...", share, each[:, count:])[:, None]
+        )
+
+    return (
+        relative(velocity),
+        np.swapaxes(relative(by_angle), -1, -2),
+        np.swapaxes(relative(columns), -1, -2),
+    )
+
+
+def _owner(character: Character) -> IntArray:
+    """(n_angles,) the body whose joint each angle belongs to."""
+    return np.repeat(
+        np.arange(len(character.bodies)), [joint.axes.dofs for joint in character.joints]
+    )
+
+
+def _moves(character: Character) -> FloatArray:
+    """(B, n_angles) 1 where an angle moves a body."""
+    moves = np.zeros((len(character.bodies), character.n_angles))
+    for i in range(len(character.bodies)):
+        for ancestor in character.lineage(i):
+            moves[i, character.joints[ancestor].dofs] = 1.0
+    return moves
+
+
+def pose(character: Character, angles: FloatArray) -> Pose:
+    """The figure at (N, n_angles) joint angles in rad."""
+    n = len(angles)
+    rotations = np.empty((n, len(character.bodies), 3, 3))
+    centres = np.zeros((n, len(character.bodies), 3))
+    axes = np.empty((n, character.n_angles, 3))
+    for i, joint in enumerate(character.joints):
+        turn = np.broadcast_to(np.eye(3), (n, 3, 3))
+        if joint.parent >= 0:
+            turn = rotations[:, joint.parent]
+            centres[:, i] = centres[:, joint.parent] + turn @ joint.offset
+        turn = turn @ joint.axes.before
+        for k in range(joint.axes.dofs):
+            axes[:, joint.first + k] = turn[:, :, k]
+            turn = _turn_columns(turn, k, angles[:, joint.first + k])
+        rotations[:, i] = turn @ joint.axes.after
+    masses = np.array([body.mass for body in character.bodies])
+    local = np.stack([body.com for body in character.bodies])
+    coms = centres + np.einsum("nbij,bj->nbi", rotations, local)
+    centres -= np.einsum("b,nbi->ni", masses / masses.sum(), coms)[:, None]
+    return Pose(character, rotations, centres, axes)
+
+
+def _turn_columns(R: FloatArray, axis: int, angle: FloatArray) -> FloatArray:
+    """R times the rotation by `angle` about coordinate axis `axis`: mixes two columns."""
+    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    turned = np.array(R)
+    turned[:, :, i] = R[:, :, i] * c + R[:, :, j] * s
+    turned[:, :, j] = R[:, :, j] * c - R[:, :, i] * s
+    return turned

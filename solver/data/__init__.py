@@ -1,0 +1,1 @@
+"""Plain data that everything else is stated in: recordings, contacts, problems, faults."""

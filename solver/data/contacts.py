@@ -1,0 +1,207 @@
+"""Which points of the body touch the ground, when and where, and the phases that follow from it."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from itertools import groupby, pairwise
+
+from ..arrays import FloatArray
+
+
+class PhaseKind(Enum):
+    """Whether anything carries the body."""
+
+    GROUND = "ground"
+    FLIGHT = "flight"
+
+
+@dataclass(frozen=True)
+class Habit:
+    """How one kind of point behaves when it touches.
+
+    low: m above the floor, slow: m/s; what a point must be to touch at all. landed, lifted: m
+    above the point's own height in this contact, at which its force begins and ends (a sole is
+    still pressed when it is a little up). lead: s before reaching `landed` at which the force
+    begins (a heel's pad gives). skid: m/s along the floor at most. shortest: s; the shortest
+    contact believed.
+    """
+
+    low: float
+    slow: float
+    landed: float
+    lifted: float
+    lead: float
+    skid: float
+    shortest: float
+
+
+class PointKind(Enum):
+    """What touches; the numbers were set on recordings with measured ground forces."""
+
+    HEEL = Habit(low=0.03, slow=0.5, landed=0.005, lifted=0.005, lead=0.02, skid=2.5, shortest=0.04)
+    TOE = Habit(low=0.05, slow=0.5, landed=0.004, lifted=0.015, lead=0.0, skid=2.5, shortest=0.04)
+    HAND = Habit(low=0.06, slow=0.15, landed=0.005, lifted=0.005, lead=0.0, skid=0.3, shortest=0.15)
+
+
+@dataclass(frozen=True)
+class ContactPoint:
+    """A point fixed in a bone. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up."""
+
+    kind: PointKind
+    bone: str
+    offset: FloatArray
+    track: FloatArray
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One interval during which one point of one bone touches.
+
+    name: the point and its count in time, such as "Left heel 2"; point: "Left heel".
+    offset: (3,) m, bone-local, from the bone's head. place: (3,) m, world, Z up.
+    start, end: s; the instants at which the force begins and ends. A contact that the clip cuts
+    off starts at 0 or ends at the schedule's duration.
+    """
+
+    name: str
+    point: str
+    bone: str
+    offset: FloatArray
+    start: float
+    end: float
+    place: FloatArray
+
+    @property
+    def asked_for(self) -> bool:
+        """Whether the artist made it; those that were found are numbered."""
+        return self.name == self.point
+
+
+@dataclass(frozen=True)
+class Flight:
+    """An interval, s, in which nothing touches."""
+
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of the clip on the ground or in flight, s; number counts from 1 in each kind."""
+
+    kind: PhaseKind
+    number: int
+    start: float
+    end: float
+
+    @property
+    def name(self) -> str:
+        """Such as "flight 1"."""
+        return f"{self.kind.value} {self.number}"
+
+
+@dataclass(frozen=True)
+class ContactSchedule:
+    """Every contact of a clip of `duration` seconds; floor_m is the floor's height, world.
+
+    unseen: intervals without a contact in which the body does not fall, so something that the
+    recording does not show carries it (a box, a rail, a drifting floor): they are not flights.
+    """
+
+    contacts: tuple[Contact, ...]
+    duration: float
+    floor_m: float
+    unseen: tuple[Flight, ...] = ()
+
+    @property
+    def flights(self) -> tuple[Flight, ...]:
+        """What neither a contact nor unseen support covers, in order."""
+        carried = [(c.start, c.end) for c in self.contacts]
+        carried += [(u.start, u.end) for u in self.unseen]
+        return gaps(carried, self.duration)
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """Ground and flight in turn, covering [0, duration]."""
+        flights = self.flights
+        ground = gaps(((f.start, f.end) for f in flights), self.duration)
+        named = [Phase(PhaseKind.FLIGHT, i + 1, f.start, f.end) for i, f in enumerate(flights)]
+        named += [Phase(PhaseKind.GROUND, i + 1, g.start, g.end) for i, g in enumerate(ground)]
+        return tuple(sorted(named, key=lambda p: p.start))
+
+    @property
+    def boundaries(self) -> tuple[float, ...]:
+        """The clip's ends and every instant at which a contact begins or ends, ascending, s."""
+        ends = {0.0, self.duration}
+        ends |= {t for c in self.contacts for t in (c.start, c.end)}
+        ends |= {t for u in self.unseen for t in (u.start, u.end)}
+        return tuple(sorted(ends))
+
+    def of_phase(self, phase: Phase) -> tuple[Contact, ...]:
+        """The contacts that carry during part of `phase`."""
+        return tuple(c for c in self.contacts if c.start < phase.end and c.end > phase.start)
+
+
+def gaps(covered: Iterable[tuple[float, float]], duration: float) -> tuple[Flight, ...]:
+    """What the intervals (start, end) leave of [0, duration], in order."""
+    free = []
+    reached = 0.0
+    for start, end in sorted(covered):
+        if start > reached:
+            free.append(Flight(reached, start))
+        reached = max(reached, end)
+    if reached < duration:
+        free.append(Flight(reached, duration))
+    return tuple(free)
+
+
+def snap(schedule: ContactSchedule, tolerance_s: float) -> ContactSchedule:
+    """The schedule with instants that lie within tolerance_s of each other made one.
+
+    The solver puts knots at these instants, and spans of a few milliseconds would spoil its
+    equations. The clip's ends and the ends of flights keep their places; other instants go to
+    the middle of their group. A contact that shrinks to nothing is dropped.
+    """
+    fixed = {0.0, schedule.duration}
+    for flight in schedule.flights:
+        fixed |= {flight.start, flight.end}
+    goes_to = _merged(schedule.boundaries, fixed, tolerance_s)
+    moved = (replace(c, start=goes_to[c.start], end=goes_to[c.end]) for c in schedule.contacts)
+    unseen = (Flight(goes_to[u.start], goes_to[u.end]) for u in schedule.unseen)
+    return replace(
+        schedule,
+        contacts=numbered(c for c in moved if c.end > c.start),
+        unseen=tuple(u for u in unseen if u.end > u.start),
+    )
+
+
+def numbered(contacts: Iterable[Contact]) -> tuple[Contact, ...]:
+    """The contacts by start, then point, each named by its point and its count in time."""
+    by_point = groupby(sorted(contacts, key=lambda c: (c.point, c.start)), key=lambda c: c.point)
+    named = [
+        replace(contact, name=f"{point} {count}")
+        for point, group in by_point
+        for count, contact in enumerate(group, start=1)
+    ]
+    return tuple(sorted(named, key=lambda c: (c.start, c.point)))
+
+
+def _merged(instants: Iterable[float], fixed: set[float], tolerance: float) -> dict[float, float]:
+    """Where each instant goes: the nearest groups are joined until all are further apart."""
+    groups = [[t] for t in sorted({*instants, *fixed})]
+    while True:
+        centres = [_centre(group, fixed) for group in groups]
+        near = [
+            (b - a, i)
+            for i, (a, b) in enumerate(pairwise(centres))
+            if b - a <= tolerance and not {a, b} <= fixed
+        ]
+        if not near:
+            return {t: c for group, c in zip(groups, centres, strict=True) for t in group}
+        _, i = min(near)
+        groups[i : i + 2] = [groups[i] + groups[i + 1]]
+
+
+def _centre(group: Sequence[float], fixed: set[float]) -> float:
+    """The group's fixed instant, else its middle."""
+    return next((t for t in group if t in fixed), (group[0] + group[-1]) / 2)

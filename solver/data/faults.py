@@ -1,0 +1,395 @@
+"""What can be wrong with what the artist gave us, as data. Worded in operators/words only."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+
+@dataclass
+class Fault(Exception):
+    """Base of every fault that an artist can mend; each subclass carries where and by how much."""
+
+    def __reduce__(self) -> tuple[Callable[..., "Fault"], tuple[object, ...]]:
+        """Pickled by its fields: an exception's own way forgets those that were given by name."""
+        return type(self), tuple(getattr(self, field.name) for field in fields(self))
+
+
+@dataclass
+class NoArmature(Fault):
+    """Nothing to adapt: the object chosen is not an armature (or there is none)."""
+
+    object_name: str | None = None
+
+
+@dataclass
+class NoAction(Fault):
+    """The armature carries no action."""
+
+    armature: str
+
+
+@dataclass
+class NoBones(Fault):
+    """The armature has no bones."""
+
+    armature: str
+
+
+@dataclass
+class ClipTooShort(Fault):
+    """The clip is shorter than the shortest that can hold a jump."""
+
+    seconds: float
+    minimum_s: float
+
+
+@dataclass
+class NoFlight(Fault):
+    """No instant found at which every foot is off the ground."""
+
+    lowest_cm: float
+
+
+@dataclass
+class ZeroLengthBone(Fault):
+    """A bone that must carry mass has no length."""
+
+    bone: str
+
+
+@dataclass
+class MissingPart(Fault):
+    """A body part that the physics needs has no bone."""
+
+    part: str
+    tried: tuple[str, ...] = ()
+
+
+@dataclass
+class NonFiniteKey(Fault):
+    """A key is NaN or infinite."""
+
+    bone: str
+    frame: float
+
+
+@dataclass
+class BadScale(Fault):
+    """The object's scale is not uniform and positive."""
+
+    object_name: str
+    scale: tuple[float, float, float]
+
+
+@dataclass
+class UnreadableClip(Fault):
+    """A motion file that cannot be read; line is 1-based, None where the format has no lines."""
+
+    path: str
+    line: int | None
+    problem: str
+
+
+@dataclass
+class BadRecipe(Fault):
+    """A recipe with an unknown key, bone or phase, or a value of the wrong kind."""
+
+    path: str
+    line: int | None
+    problem: str
+
+
+@dataclass
+class OutputNotWritable(Fault):
+    """The output folder cannot be made or written."""
+
+    path: str
+    problem: str
+
+
+@dataclass
+class ContradictoryPins(Fault):
+    """Two pins that no pose can hold at once."""
+
+    first: str
+    second: str
+    metres: float
+
+
+@dataclass
+class NoSolution(Fault):
+    """The solver ended without meeting every constraint; worst first: (name, violation, unit).
+
+    reached: the share of the way that the best motion found goes.
+    """
+
+    reason: str
+    worst: tuple[tuple[str, float, str], ...] = ()
+    reached: float = 0.0
+
+
+@dataclass
+class NoFit(NoSolution):
+    """The same for the recording's own motion, before any pin has moved."""
+
+
+@dataclass
+class UnseenSupport(Fault):
+    """Nothing touches, yet the body does not fall: something unrecorded carries it (frames)."""
+
+    first: float
+    last: float
+
+
+@dataclass
+class OddHeight(Fault):
+    """The figure is too tall or too short for a person, so that nothing it does obeys gravity."""
+
+    armature: str
+    metres: float
+    factor: float  # that makes a person of it
+
+
+@dataclass
+class OutsideKeys(Fault):
+    """The chosen frames lie beside the recording's, where nothing moves."""
+
+    armature: str
+    first: float  # frame with keys
+    last: float
+
+
+@dataclass
+class UnknownContactName(Fault):
+    """A correction names a contact that was not found."""
+
+    name: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class UnknownBone(Fault):
+    """A request names a bone that the armature does not have."""
+
+    request: str
+    bone: str
+
+
+@dataclass
+class NotAboveZero(Fault):
+    """A request's mass, or factor on a length or a mass, is zero, negative or not given."""
+
+    request: str
+    amount: float
+
+
+@dataclass
+class WorkerDied(Fault):
+    """The process that solves ended without an answer; detail: what it last said, or its code."""
+
+    detail: str
+
+
+@dataclass
+class ChangedMeanwhile(Fault):
+    """The armature, its action or its keys are no longer what was analysed or sent to be solved.
+
+    while_solving: whether a result had to be thrown away for it.
+    """
+
+    armature: str
+    while_solving: bool
+
+
+@dataclass
+class BadDimensions(Fault):
+    """A model reduction to no dimension at all, or to more than the joints have."""
+
+    given: int
+    most: int
+
+
+@dataclass
+class UnknownReductionBone(Fault):
+    """A row (1-based) of the reduction's matrix names a bone whose joint it cannot tie."""
+
+    row: int
+    bone: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class WrongWeights(Fault):
+    """A row (1-based) of the reduction's matrix has more or fewer weights than a joint angles."""
+
+    row: int
+    bone: str
+    given: int
+    needed: int
+
+
+@dataclass
+class DependentRows(Fault):
+    """Rows of the reduction's matrix that say the same, or nothing: fewer count than there are."""
+
+    rows: int
+    rank: int
+
+
+@dataclass
+class UnknownPhaseIn(Fault):
+    """A request names a phase that the clip does not have."""
+
+    request: str
+    phase: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class StillBone(Fault):
+    """A request names a bone that the figure's bodies do not move."""
+
+    request: str
+    bone: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class BadTiming(Fault):
+    """A request's time is empty, too short, or outside the clip; seconds: how long it would be."""
+
+    request: str
+    seconds: float
+
+
+@dataclass
+class RootHasNoJoint(Fault):
+    """A joint's limit or torque was asked of the root bone, which has no joint to a parent."""
+
+    request: str
+    bone: str
+
+
+@dataclass
+class NeedsTorques(Fault):
+    """A torque was limited, but the reduced dynamics that were chosen have none."""
+
+    request: str
+
+
+@dataclass
+class NothingTouches(Fault):
+    """A request names contacts, points or bones of which none touches; none named means all."""
+
+    request: str
+    touching: tuple[str, ...]
+
+
+@dataclass
+class WrongAngle(Fault):
+    """A request names an angle that a joint does not have; count: how many it has."""
+
+    request: str
+    bone: str
+    count: int
+
+
+@dataclass
+class FreePoint(Fault):
+    """A point that the world shall push at is held in no direction."""
+
+    request: str
+
+
+@dataclass
+class TakenName(Fault):
+    """A point that the world shall push at is called like a contact that was found."""
+
+    request: str
+
+
+@dataclass
+class TimedTwice(Fault):
+    """A second request for the duration of one phase."""
+
+    request: str
+    phase: str
+
+
+@dataclass
+class NoBoneChosen(Fault):
+    """A request of a kind that is about a bone names none."""
+
+    request: str
+
+
+@dataclass
+class NoPhaseChosen(Fault):
+    """A request that is to hold in a phase names none."""
+
+    request: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class EmptyRange(Fault):
+    """A request's last frame comes before its first."""
+
+    request: str
+    first: float
+    last: float
+
+
+@dataclass
+class CrossedBounds(Fault):
+    """A request's least value is above its greatest; both in `unit`."""
+
+    request: str
+    at_least: float
+    at_most: float
+    unit: str
+
+
+@dataclass
+class AsksNothing(Fault):
+    """A request in which everything that it could ask for is switched off."""
+
+    request: str
+
+
+@dataclass
+class NoDirection(Fault):
+    """An axis or a normal of a request that is zero, so that it points nowhere."""
+
+    request: str
+
+
+@dataclass
+class NamedTwice(Fault):
+    """Two requests, or a request and a contact, of the same name; reports could not tell them."""
+
+    request: str
+
+
+@dataclass
+class NameMissing(Fault):
+    """A request without a name; kind: what it is, in the artist's words."""
+
+    kind: str
+
+
+@dataclass
+class UnknownPhase(Fault):
+    """A pin names a phase that the clip does not have."""
+
+    pin: str
+    phase: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class UnknownContact(Fault):
+    """A pin names a bone or point that does not touch in its phase."""
+
+    pin: str
+    what: str
+    known: tuple[str, ...]

@@ -1,0 +1,21 @@
+"""How a solve ends; apart, so that it can be worded where CasADi is missing."""
+
+from enum import Enum
+
+
+class Status(Enum):
+    """How a solve ended."""
+
+    SOLVED = "solved"
+    STALLED = "stalled"
+    TOO_MANY_STEPS = "too many steps"
+    MISSED = "missed between the nodes"
+    STOPPED = "stopped"  # by the artist, who takes the motion as it stands
+
+
+class Course(Enum):
+    """How a motion gets on that follows a dragged pin."""
+
+    ON_ITS_WAY = "on its way"
+    ARRIVED = "arrived"  # the pin is reached and physics holds
+    LOST = "lost"  # it cannot follow, and stays where it last could

@@ -1,0 +1,177 @@
+"""When things happen after phases were retimed and frames held (thesis 6.2, 6.3).
+
+A timeline maps the recording's time to the adapted motion's, linear in pieces: a phase that takes
+longer stretches, a held frame opens a gap in which the old time stands still.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from ..arrays import FloatArray
+from .contacts import ContactSchedule, Phase
+from .faults import BadTiming, TimedTwice, UnknownPhaseIn
+from .requests import Hold, Moment, PhaseTiming, When
+
+SHORTEST_PHASE = 0.03  # s
+EASE = 0.2  # s
+DIGITS = 9  # of an instant in s, so that those that are one stay one
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of time with a name, s."""
+
+    name: str
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """old, new: (T,) s, the corners of the map, both ascending. holds: what was inserted, in new
+    time. first_frame, rate: of the recording's scene frames, frames a second."""
+
+    old: FloatArray
+    new: FloatArray
+    holds: tuple[Span, ...]
+    first_frame: float
+    rate: float
+
+    @property
+    def duration(self) -> float:
+        return float(self.new[-1])
+
+    @cached_property
+    def unchanged(self) -> bool:
+        return len(self.holds) == 0 and bool(np.allclose(self.old, self.new))
+
+    def to_new(self, old: FloatArray | float) -> FloatArray:
+        """New instants of old ones; a held frame's is the beginning of its hold."""
+        apart = self.old + 1e-12 * np.arange(len(self.old))
+        return np.round(np.interp(old, apart, self.new), DIGITS)
+
+    def to_old(self, new: FloatArray | float) -> FloatArray:
+        """Old instants of new ones."""
+        return np.asarray(np.interp(new, self.new, self.old))
+
+    def eased(self, new: FloatArray) -> FloatArray:
+        """Old instants as `to_old`, but gliding into holds and out of them instead of stopping.
+
+        A moving average over EASE to both sides (less near the ends), with a parabola's weights.
+        """
+        if not self.holds:
+            return self.to_old(new)
+        share = np.linspace(-1.0, 1.0, 21)
+        weight = 1.0 - share**2
+        reach = np.minimum(EASE, np.minimum(new, self.duration - new))
+        around = new[:, None] + share * np.maximum(reach, 0.0)[:, None]
+        return np.asarray(self.to_old(around) @ (weight / weight.sum()))
+
+    def instant(self, frame: float) -> float:
+        """New time of a scene frame of the recording."""
+        return float(self.to_new((frame - self.first_frame) / self.rate))
+
+    def schedule(self, schedule: ContactSchedule) -> ContactSchedule:
+        """The contacts at their new instants; those after the end are gone."""
+        moved = []
+        for contact in schedule.contacts:
+            start, end = (float(self.to_new(t)) for t in (contact.start, contact.end))
+            if contact.end >= self.old[-1] - 1e-9:  # also through a hold of the last frame
+                end = self.duration
+            if contact.start < self.old[-1] - 1e-9 and end > start:
+                moved.append(replace(contact, start=start, end=end))
+        return replace(schedule, contacts=tuple(moved), duration=self.duration)
+
+
+def timeline(
+    schedule: ContactSchedule,
+    first_frame: float,
+    rate: float,
+    timings: Sequence[PhaseTiming],
+    holds: Sequence[Hold],
+) -> Timeline:
+    """The map that phases' new durations and held frames make. Raises UnknownPhaseIn, BadTiming."""
+    phases = {phase.name: phase for phase in schedule.phases}
+    wanted: dict[str, float] = {}
+    for timing in timings:
+        phase = _known(timing.name, timing.phase, phases)
+        length = phase.end - phase.start
+        factor = 1.0 if timing.factor is None else timing.factor
+        seconds = length * factor if timing.seconds is None else timing.seconds
+        if seconds < SHORTEST_PHASE:
+            raise BadTiming(timing.name, seconds)
+        if timing.phase in wanted:
+            raise TimedTwice(timing.name, timing.phase)
+        wanted[timing.phase] = seconds
+    edges = sorted({0.0, schedule.duration, *(p.end for p in phases.values())})
+    stops: dict[float, list[Hold]] = {}
+    for hold in holds:
+        at = (hold.frame - first_frame) / rate
+        at = next((edge for edge in edges if abs(edge - at) < 1e-6), at)
+        if not 0.0 < at <= schedule.duration or hold.seconds < SHORTEST_PHASE:
+            raise BadTiming(hold.name, hold.seconds)
+        stops.setdefault(at, []).append(hold)
+    corners = sorted({*edges, *stops})
+    old, new, named = [0.0], [0.0], []
+    for start, end in pairwise(corners):
+        middle = 0.5 * (start + end)
+        inside = next(p for p in phases.values() if p.start <= middle <= p.end)
+        length = inside.end - inside.start
+        old.append(end)
+        longer = wanted.get(inside.name, length) / length
+        new.append(round(new[-1] + (end - start) * longer, DIGITS))
+        for hold in stops.get(end, []):
+            old.append(end)
+            new.append(round(new[-1] + hold.seconds, DIGITS))
+            named.append(Span(hold.name, new[-2], new[-1]))
+        if any(hold.ends for hold in stops.get(end, [])):
+            break
+    return Timeline(np.array(old), np.array(new), tuple(named), first_frame, rate)
+
+
+def _known(name: str, phase: str, phases: dict[str, Phase]) -> Phase:
+    if phase not in phases:
+        raise UnknownPhaseIn(name, phase, tuple(phases))
+    return phases[phase]
+
+
+def interval(
+    name: str, when: When, line: Timeline, phases: Sequence[Phase], apex: FloatArray
+) -> tuple[float, float]:
+    """Start and end, s, of when something holds; equal for a single instant.
+
+    apex: (T, 2) instants and heights of the centre of mass. Raises UnknownPhaseIn, BadTiming.
+    """
+    start, end = 0.0, line.duration
+    if when.phase is not None:
+        known = [*(Span(p.name, p.start, p.end) for p in phases), *line.holds]
+        found = [each for each in known if each.name == when.phase]
+        if not found:
+            raise UnknownPhaseIn(name, when.phase, tuple(each.name for each in known))
+        start, end = found[-1].start, found[-1].end
+    if when.frames is not None:
+        first, last = (line.instant(frame) for frame in when.frames)
+        shown = line.first_frame + line.rate * line.old[-1]
+        if when.frames[0] > shown + 0.5 or when.frames[1] < line.first_frame - 0.5:
+            raise BadTiming(name, 0.0)
+        start, end = max(start, first), min(end, last)
+    if end < start:
+        raise BadTiming(name, end - start)
+    match when.moment:
+        case Moment.START:
+            return start, start
+        case Moment.END:
+            return end, end
+        case Moment.MIDDLE:
+            return 0.5 * (start + end), 0.5 * (start + end)
+        case Moment.APEX:
+            inside = (apex[:, 0] >= start) & (apex[:, 0] <= end)
+            if not inside.any():
+                raise BadTiming(name, end - start)
+            best = apex[inside][np.argmax(apex[inside, 1]), 0]
+            return float(best), float(best)
+    return start, end

@@ -1,0 +1,56 @@
+"""What a motion looks like to those who draw it: figure, paths, forces, torques over time.
+
+Data alone, without CasADi: Blender keeps and draws it. results/trace_sampling.py makes it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ..arrays import FloatArray
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight's parabola: points (N, 3) m, world, from take-off to landing (scene frames)."""
+
+    name: str
+    start: float
+    end: float
+    parabola: FloatArray
+
+
+@dataclass(frozen=True)
+class Traces:
+    """A motion at T instants; world, SI units.
+
+    frames: (T,) scene frames. bones: of the figure; heads, tails: (T, B, 3) m. com: (T, 3) m;
+    velocity: (T, 3) m/s of it; momentum: (T, 3) N·m·s about it. contacts: names of the points that
+    touch; points: (T, C, 3) m; forces: (T, C, 3) N on the body, zero while they do not touch;
+    weight: N, the body's. joints: bones whose torques are known; torques: (T, J) N·m, the largest
+    component of each joint. Of a recording the contacts are all points that might touch; forces,
+    torques and flights it has none (T, 0, 3).
+    """
+
+    frames: FloatArray
+    bones: tuple[str, ...]
+    heads: FloatArray
+    tails: FloatArray
+    com: FloatArray
+    velocity: FloatArray
+    momentum: FloatArray
+    contacts: tuple[str, ...]
+    points: FloatArray
+    forces: FloatArray
+    weight: float
+    joints: tuple[str, ...]
+    torques: FloatArray
+    flights: tuple[Flight, ...]
+
+
+def scaled_traces(traces: Traces, factor: float) -> Traces:
+    """Of a figure `factor` times as large: lengths times it, forces and torques as they were."""
+    lengths = ("heads", "tails", "com", "velocity", "points")
+    flights = tuple(replace(f, parabola=factor * f.parabola) for f in traces.flights)
+    scaled = {name: factor * getattr(traces, name) for name in lengths}
+    return replace(traces, **scaled, flights=flights)

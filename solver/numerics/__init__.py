@@ -1,0 +1,1 @@
+"""General numerics: splines, rotations, block-banded factorisation, interpolation."""

@@ -1,0 +1,108 @@
+"""Cholesky factorisation of block-banded symmetric matrices, with numpy alone.
+
+Splines make every matrix of the method banded in time: coefficients four apart do not meet. So
+the unknowns are ordered by time in K blocks of n, and a block row holds at most `band` blocks
+left of its diagonal: three, or four where neighbouring spans are compared with each other.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+
+BAND = 3
+
+
+class BlockBanded:
+    """A symmetric block-banded matrix; lower[j][k] is the block in row k + j, column k."""
+
+    def __init__(self, blocks: int, size: int, band: int = BAND) -> None:
+        self.lower = np.zeros((band + 1, blocks, size, size))
+
+    @property
+    def band(self) -> int:
+        return len(self.lower) - 1
+
+    def copy(self, band: int | None = None) -> "BlockBanded":
+        """A matrix of its own with the same entries, with room for a wider band."""
+        _, blocks, size, _ = self.lower.shape
+        twin = BlockBanded(blocks, size, self.band if band is None else band)
+        twin.lower[: self.band + 1] = self.lower
+        return twin
+
+    def add_windows(self, first: IntArray, windows: FloatArray, part: slice = slice(None)) -> None:
+        """Adds dense (S, w, n, w, n) windows, w at most band + 1, whose first block row is
+        first (S,), all different; or those of a part of each block."""
+        for row in range(windows.shape[1]):
+            for column in range(row + 1):
+                block = self.lower[row - column][:, part, part]
+                block[first + column] += windows[:, row, :, column, :]
+
+    def changed(self, change: FloatArray) -> "BlockBanded":
+        """T' A T of each block with T (n, k), another basis of every block's unknowns."""
+        twin = BlockBanded(0, 0)
+        twin.lower = change.T @ self.lower @ change
+        return twin
+
+    def add_diagonal(self, values: FloatArray) -> None:
+        """Adds (K, n) values to the diagonal."""
+        index = np.arange(values.shape[1])
+        self.lower[0][:, index, index] += values
+
+    def times(self, x: FloatArray) -> FloatArray:
+        """The product with (K, n)."""
+        lower = self.lower
+        y = np.einsum("kij,kj->ki", lower[0], x)
+        for j in range(1, self.band + 1):
+            y[j:] += np.einsum("kij,kj->ki", lower[j][:-j], x[:-j])
+            y[:-j] += np.einsum("kij,ki->kj", lower[j][:-j], x[j:])
+        return np.asarray(y)
+
+    def factor(self) -> "Factor":
+        """Cholesky factor. Raises numpy.linalg.LinAlgError if the matrix is not positive."""
+        lower = self.lower.copy()
+        _, count, n, _ = lower.shape
+        inverse = np.empty((count, n, n))
+        for k in range(count):
+            inverse[k] = np.linalg.inv(np.linalg.cholesky(lower[0][k]))
+            reach = min(self.band, count - 1 - k)
+            panel = lower[1 : reach + 1, k].reshape(reach * n, n) @ inverse[k].T
+            lower[1 : reach + 1, k] = panel.reshape(reach, n, n)
+            update = (panel @ panel.T).reshape(reach, n, reach, n)
+            for row in range(reach):
+                for column in range(row + 1):
+                    lower[row - column][k + 1 + column] -= update[row, :, column, :]
+        return Factor(inverse, lower[1:])
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A Cholesky factor: inverses of its diagonal blocks and the blocks below them."""
+
+    inverse: FloatArray  # (K, n, n)
+    below: FloatArray  # (band, K, n, n)
+
+    def solve(self, b: FloatArray) -> FloatArray:
+        """x (K, n) with matrix times x = b (K, n)."""
+        return self.backward(self.forward(b))
+
+    def forward(self, b: FloatArray) -> FloatArray:
+        """L^-1 b, for b (K, n) or many at once (K, n, m)."""
+        x = np.array(b)
+        band, count = len(self.below), len(x)
+        for k in range(count):
+            x[k] = self.inverse[k] @ x[k]
+            for j in range(1, min(band, count - 1 - k) + 1):
+                x[k + j] -= self.below[j - 1, k] @ x[k]
+        return x
+
+    def backward(self, b: FloatArray) -> FloatArray:
+        """L^-T b, for b (K, n) or many at once (K, n, m)."""
+        x = np.array(b)
+        band, count = len(self.below), len(x)
+        for k in reversed(range(count)):
+            for j in range(1, min(band, count - 1 - k) + 1):
+                x[k] -= self.below[j - 1, k].T @ x[k + j]
+            x[k] = self.inverse[k].T @ x[k]
+        return x

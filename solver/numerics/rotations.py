@@ -1,0 +1,82 @@
+"""Rotation matrices, vectorised over leading axes. Angles in rad."""
+
+import numpy as np
+
+from ..arrays import FloatArray
+
+
+def axis_rotation(axis: int, angle: FloatArray | float) -> FloatArray:
+    """(..., 3, 3) rotations by `angle` (...) about coordinate axis 0, 1 or 2."""
+    angle = np.asarray(angle, dtype=float)
+    c, s = np.cos(angle), np.sin(angle)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    R = np.zeros((*angle.shape, 3, 3))
+    R[..., axis, axis] = 1.0
+    R[..., i, i] = c
+    R[..., j, j] = c
+    R[..., i, j] = -s
+    R[..., j, i] = s
+    return R
+
+
+def rotation_vector(R: FloatArray) -> FloatArray:
+    """(..., 3) rotation vectors of (..., 3, 3) rotations, angle in [0, pi]."""
+    # The quaternion of largest component is safe at every angle, pi included (Shepperd 1978).
+    trace = np.trace(R, axis1=-2, axis2=-1)
+    diagonal = np.diagonal(R, axis1=-2, axis2=-1)
+    q = np.empty((*R.shape[:-2], 4, 4))
+    q[..., 0, 0] = 1 + trace
+    skew = np.stack(
+        [R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]],
+        axis=-1,
+    )
+    q[..., 0, 1:] = skew
+    q[..., 1:, 0] = skew
+    q[..., 1:, 1:] = R + np.swapaxes(R, -1, -2)
+    for i in range(3):
+        q[..., i + 1, i + 1] = 1 - trace + 2 * diagonal[..., i]
+    best = np.argmax(np.diagonal(q, axis1=-2, axis2=-1), axis=-1)
+    quat = np.take_along_axis(q, best[..., None, None], axis=-2)[..., 0, :]
+    quat = quat / np.linalg.norm(quat, axis=-1, keepdims=True)
+    quat = np.where(quat[..., :1] < 0, -quat, quat)
+    sine = np.linalg.norm(quat[..., 1:], axis=-1, keepdims=True)
+    angle = 2 * np.arctan2(sine, quat[..., :1])
+    scale = np.where(sine > 1e-9, angle / np.maximum(sine, 1e-12), 2.0)
+    return np.asarray(scale * quat[..., 1:])
+
+
+def rotation_matrix(vector: FloatArray) -> FloatArray:
+    """(..., 3, 3) rotations of (..., 3) rotation vectors (Rodrigues)."""
+    vector = np.asarray(vector, dtype=float)
+    angle = np.linalg.norm(vector, axis=-1)[..., None, None]
+    K = cross_matrix(vector)
+    a = np.sinc(angle / np.pi)
+    b = 0.5 * np.sinc(angle / (2 * np.pi)) ** 2
+    return np.asarray(np.eye(3) + a * K + b * (K @ K))
+
+
+def cross_matrix(v: FloatArray) -> FloatArray:
+    """(..., 3, 3) matrices with cross_matrix(v) @ w = v x w."""
+    v = np.asarray(v, dtype=float)
+    K = np.zeros((*v.shape[:-1], 3, 3))
+    K[..., 0, 1], K[..., 0, 2] = -v[..., 2], v[..., 1]
+    K[..., 1, 0], K[..., 1, 2] = v[..., 2], -v[..., 0]
+    K[..., 2, 0], K[..., 2, 1] = -v[..., 1], v[..., 0]
+    return K
+
+
+def mean_rotation(R: FloatArray) -> FloatArray:
+    """(3, 3) chordal mean of (T, 3, 3) rotations: the rotation nearest to their average."""
+    u, _, vt = np.linalg.svd(R.mean(axis=0))
+    return np.asarray(u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt)
+
+
+def unit(v: FloatArray) -> FloatArray:
+    """(..., 3) vectors scaled to length 1."""
+    return np.asarray(v / np.linalg.norm(v, axis=-1, keepdims=True))
+
+
+def perpendicular(v: FloatArray) -> FloatArray:
+    """(3,) some unit vector at right angles to the unit vector v."""
+    other = np.eye(3)[int(np.argmin(np.abs(v)))]
+    return unit(np.cross(v, other))

@@ -1,0 +1,197 @@
+"""Cubic B-splines whose knots fall on the phase boundaries (findings: physics between the nodes).
+
+A boundary is a double knot: position and velocity are continuous there, acceleration may jump.
+Contact forces live in the matching space of second derivatives: linear in each span, continuous
+at single knots, free to jump at double ones. So `m c'' = m g + sum of forces` can hold at every
+instant, not only at nodes.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+
+DEGREE = 3
+ORDER = DEGREE + 1
+
+
+@dataclass(frozen=True)
+class Basis:
+    """A cubic B-spline basis over [breaks[0], breaks[-1]] s.
+
+    breaks: (n_spans + 1,) increasing instants. double: (n_spans + 1,) bool, which interior
+    breaks are double knots.
+    """
+
+    breaks: FloatArray
+    double: BoolArray
+
+    @property
+    def n_spans(self) -> int:
+        return len(self.breaks) - 1
+
+    @cached_property
+    def knots(self) -> FloatArray:
+        inner = np.repeat(self.breaks[1:-1], 1 + self.double[1:-1])
+        ends = self.breaks[[0, -1]]
+        return np.concatenate([np.repeat(ends[0], ORDER), inner, np.repeat(ends[1], ORDER)])
+
+    @property
+    def n_coefficients(self) -> int:
+        return len(self.knots) - ORDER
+
+    @cached_property
+    def first_coefficient(self) -> IntArray:
+        """(n_spans,) index of the first of the four coefficients that act in each span."""
+        jumps = np.concatenate([[0], np.cumsum(1 + self.double[1:-1].astype(int))])
+        return np.asarray(jumps, dtype=int)
+
+    @property
+    def n_force_nodes(self) -> int:
+        """Values of a piecewise linear force: one at a single knot, two at a double knot."""
+        return self.n_coefficients - 2
+
+    def spans(self, times: FloatArray) -> IntArray:
+        """(T,) index of the span of each instant; a break belongs to the span after it."""
+        inside = np.searchsorted(self.breaks, times, side="right") - 1
+        return np.clip(inside, 0, self.n_spans - 1)
+
+    def evaluate(
+        self, times: FloatArray, derivative: int = 0, spans: IntArray | None = None
+    ) -> FloatArray:
+        """(T, 4) values (or derivatives) of the four basis functions of each instant's span.
+
+        spans: which span each instant is taken to be in, for the two sides of a break.
+        """
+        spans = self.spans(times) if spans is None else spans
+        last = self.first_coefficient[spans] + DEGREE  # knots[last] <= t < knots[last + 1]
+        return _basis_functions(self.knots, last, np.asarray(times, dtype=float), derivative)
+
+    def force_nodes(self, spans: IntArray) -> IntArray:
+        """(S, 2) indices of the force values at the start and end of each span."""
+        first = self.first_coefficient[spans]
+        return np.stack([first, first + 1], axis=-1)
+
+    def force_weights(self, times: FloatArray, spans: IntArray | None = None) -> FloatArray:
+        """(T, 2) weights of the two force values of each instant's span."""
+        spans = self.spans(times) if spans is None else spans
+        start, end = self.breaks[spans], self.breaks[spans + 1]
+        w = (times - start) / (end - start)
+        return np.stack([1.0 - w, w], axis=-1)
+
+    def matrix(self, times: FloatArray, derivative: int = 0) -> FloatArray:
+        """(T, n_coefficients) collocation matrix."""
+        spans = self.spans(times)
+        values = self.evaluate(times, derivative, spans)
+        full = np.zeros((len(times), self.n_coefficients))
+        columns = self.first_coefficient[spans][:, None] + np.arange(ORDER)
+        np.put_along_axis(full, columns, values, axis=1)
+        return full
+
+    def combine(
+        self, coefficients: FloatArray, times: FloatArray, derivative: int = 0
+    ) -> FloatArray:
+        """(T, n) spline values of (n_coefficients, n) coefficients."""
+        spans = self.spans(times)
+        values = self.evaluate(times, derivative, spans)
+        columns = self.first_coefficient[spans][:, None] + np.arange(ORDER)
+        return np.asarray(np.einsum("tk,tkn->tn", values, coefficients[columns]))
+
+    def project(self, times: FloatArray, samples: FloatArray, smooth: float = 1e-12) -> FloatArray:
+        """(n_coefficients, n) least-squares spline of (T, n) samples.
+
+        smooth: weight of the squared third derivative, just enough to settle spans that hold
+        too few samples.
+        """
+        B = self.matrix(times)
+        middles = 0.5 * (self.breaks[:-1] + self.breaks[1:])
+        third = self.matrix(middles, 3) * np.diff(self.breaks)[:, None] ** 3
+        normal = B.T @ B + smooth * len(times) * third.T @ third
+        return np.asarray(np.linalg.solve(normal, B.T @ samples))
+
+    def coarse_to(self, finer: "Basis", coefficients: FloatArray) -> FloatArray:
+        """Coefficients of the same curve on a finer basis (whose knots contain this one's).
+
+        A coefficient is its piece's polar form at three consecutive knots (Ramshaw 1989).
+        """
+        spans = np.searchsorted(finer.first_coefficient, np.arange(finer.n_coefficients), "right")
+        own = np.maximum(spans - 1, 0)  # a finer span in which each coefficient acts
+        start = finer.breaks[own]
+        old = self.spans(0.5 * (start + finer.breaks[own + 1]))
+        blocks = coefficients[self.first_coefficient[old][:, None] + np.arange(ORDER)]
+        p0, p1, p2, p3 = (
+            np.einsum("ck,ckn->cn", self.evaluate(start, k, old), blocks) for k in range(ORDER)
+        )
+        u, v, w = (
+            (finer.knots[k : k + finer.n_coefficients] - start)[:, None] for k in range(1, ORDER)
+        )
+        return np.asarray(
+            p0
+            + p1 * (u + v + w) / 3.0
+            + p2 / 2.0 * (u * v + v * w + u * w) / 3.0
+            + p3 / 6.0 * u * v * w
+        )
+
+
+def _basis_functions(
+    knots: FloatArray, last: IntArray, t: FloatArray, derivative: int
+) -> FloatArray:
+    """Cox-de Boor recursion for many instants at once (de Boor, A Practical Guide, ch. X)."""
+    degree = DEGREE - derivative
+    values = np.ones((len(t), 1))
+    for p in range(1, degree + 1):
+        values = _raise_degree(knots, last, t, values, p)
+    for p in range(degree + 1, DEGREE + 1):  # B'_p = p (B_{p-1,i} / . - B_{p-1,i+1} / .)
+        previous = np.zeros((len(t), p + 1))
+        for i in range(p):
+            left, right = knots[last - p + 1 + i], knots[last + 1 + i]
+            share = p * values[:, i] / (right - left)
+            previous[:, i] -= share
+            previous[:, i + 1] += share
+        values = previous
+    return values
+
+
+def _raise_degree(
+    knots: FloatArray, last: IntArray, t: FloatArray, values: FloatArray, p: int
+) -> FloatArray:
+    raised = np.zeros((len(t), p + 1))
+    for i in range(p):
+        left, right = knots[last - p + 1 + i], knots[last + 1 + i]
+        share = values[:, i] / (right - left)
+        raised[:, i] += (right - t) * share
+        raised[:, i + 1] += (t - left) * share
+    return raised
+
+
+def gauss_instants(breaks: FloatArray, per_span: int) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Gauss-Legendre instants in every span: (times, weights in s, span indices), each flat."""
+    nodes, weights = np.polynomial.legendre.leggauss(per_span)  # type: ignore[no-untyped-call]
+    half = 0.5 * np.diff(breaks)
+    middle = 0.5 * (breaks[:-1] + breaks[1:])
+    times = middle[:, None] + half[:, None] * nodes
+    spans = np.repeat(np.arange(len(half)), per_span)
+    return times.ravel(), (half[:, None] * weights).ravel(), spans
+
+
+def phase_breaks(
+    boundaries: Sequence[float], extra: Sequence[float], longest: float
+) -> tuple[FloatArray, BoolArray]:
+    """Breaks and double flags: every boundary (double inside) and extra instant, spans <= longest.
+
+    boundaries: sorted instants including both ends. extra: instants that are single knots.
+    """
+    fixed = sorted({*boundaries, *extra})
+    breaks: list[float] = []
+    for start, end in itertools.pairwise(fixed):
+        count = max(1, int(np.ceil((end - start) / longest - 1e-9)))
+        breaks.extend(np.linspace(start, end, count + 1)[:-1])
+    breaks.append(fixed[-1])
+    at = np.array(breaks)
+    double = np.isin(at, np.array(boundaries))
+    double[[0, -1]] = False
+    return at, double

@@ -1,0 +1,1 @@
+"""Sequential quadratic programming on block-banded problems; no notion of a body."""

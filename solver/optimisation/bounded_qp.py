@@ -1,0 +1,109 @@
+"""Bounds in a step: a small dense quadratic program on the rows that matter (thesis 4.4).
+
+The step without bounds is known from one banded factor of A = W + rho J'J. Bounds lo <= z + G d
+<= hi change it by -A^-1 G'u, where the multipliers u belong to
+
+    min 1/2 |w|^2   subject to   lo <= z + C w <= hi,   C C' = G A^-1 G',   w = -C'u
+
+so only the rows that are, or become, violated enter (row generation), and the program is as small
+as their number. Of the solvers that CasADi ships, DAQP (Arnström 2022) was the fastest on it
+(benchmarks/qp_solvers.py).
+"""
+
+from collections.abc import Callable
+
+import casadi as ca
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..numerics.block_banded import Factor
+from ..transcription.rows import violation
+
+SOFT = 1e-7  # share of a row's own stiffness by which it gives, so that rows may depend on others
+MOST_ROUNDS = 6
+SMALL = 0.1  # of a row's tolerance: what is let stand in a step
+
+
+class BoundedStep:
+    """Keeps bounded rows (R,) within their bounds while the quadratic stays the same.
+
+    columns(rows) gives G' as (K, n, len(rows)); working: rows to begin with.
+    """
+
+    def __init__(
+        self,
+        factor: Factor,
+        columns: Callable[[IntArray], FloatArray],
+        bounds: tuple[FloatArray, FloatArray],
+        tolerance: FloatArray,
+        working: BoolArray,
+    ) -> None:
+        self._factor, self._columns = factor, columns
+        self.lower, self.upper = bounds
+        self._enough = SMALL * tolerance
+        self.multipliers = np.zeros(len(tolerance))
+        self._rows = np.zeros(0, dtype=int)
+        self._half = np.zeros((0, 0, 0))  # L^-1 G' (K, n, m)
+        self._first = working
+
+    @property
+    def working(self) -> BoolArray:
+        """(R,) the rows that are at a bound."""
+        return np.asarray(self.multipliers != 0.0)
+
+    def correct(self, z: FloatArray, times: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """The change of the step (K, n) that brings rows with values z (R,) into their bounds.
+
+        times: G d for (K, n).
+        """
+        change = np.zeros(self._factor.inverse.shape[:2])
+        reached = z
+        for _ in range(MOST_ROUNDS):
+            off = np.abs(violation(reached, self.lower, self.upper)) > self._enough
+            if not len(self._rows):
+                off |= self._first
+            off[self._rows] = False
+            if off.any():
+                self._add(np.flatnonzero(off))
+            elif len(self._rows) == 0 or reached is not z:
+                break
+            u = self._solve(z)
+            change = -self._factor.backward(self._half @ u)
+            reached = z + times(change)
+        return change
+
+    def _add(self, rows: IntArray) -> None:
+        half = self._factor.forward(self._columns(rows))
+        self._half = np.concatenate([self._half, half], axis=2) if len(self._rows) else half
+        self._rows = np.concatenate([self._rows, rows])
+        flat = self._half.reshape(-1, len(self._rows))
+        stiffness = flat.T @ flat
+        self._soft = SOFT * np.diagonal(stiffness) + 1e-14
+        self._root = np.linalg.cholesky(stiffness + np.diag(self._soft))
+
+    def _solve(self, z: FloatArray) -> FloatArray:
+        rows = self._rows
+        # The rows give a little (SOFT); their last multipliers make up for it.
+        base = z[rows] + self._soft * self.multipliers[rows]
+        u = small_program(self._root, self.lower[rows] - base, self.upper[rows] - base)
+        self.multipliers[rows] = u
+        return u
+
+
+def small_program(root: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper; root (m, m)."""
+    m = len(root)
+    # DAQP's tolerances are absolute: rows of length 1, and a violation of 1 to begin with.
+    row = 1.0 / np.linalg.norm(root, axis=1)
+    lower, upper = row * lower, row * upper
+    size = max(float(lower.max()), float(-upper.min()))
+    if size <= 0.0:
+        return np.zeros(m)
+    solver = ca.conic(
+        "step",
+        "daqp",
+        {"h": ca.Sparsity.diag(m), "a": ca.Sparsity.dense(m, m)},
+        {"error_on_fail": False},
+    )
+    found = solver(h=ca.DM.eye(m), a=row[:, None] * root, lba=lower / size, uba=upper / size)
+    return np.asarray(np.asarray(found["lam_a"]).ravel() * row * size)

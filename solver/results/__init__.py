@@ -1,0 +1,1 @@
+"""What is told of a motion: report, violations, traces, torques, exports for checking."""

@@ -1,0 +1,109 @@
+"""What of an adaptation does not hold, by the names that the artist knows."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..body.character import Character
+from ..body.dynamics import GRAVITY
+from ..data.contacts import Phase
+from ..data.problem import MotionProblem
+from ..stages.fit import Fit
+from ..stages.implicit import Adaptation
+from ..transcription.constraint import Missed, missed
+from ..transcription.rows import RowKind
+
+MOST_LISTED = 3  # constraints that a failure names
+
+
+def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
+    """The artist's name of the pin that moves each contact, by the contact's name.
+
+    Raises UnknownPhase, UnknownContact.
+    """
+    names: dict[str, str] = {}
+    for pin in problem.pins:
+        for i in chosen_contacts(pin, phase_of(pin, fit.schedule), fit.schedule):
+            names[fit.schedule.contacts[i].name] = pin.name
+    return names
+
+
+def missed_conditions(adaptation: Adaptation) -> list[Missed]:
+    """By how much each of the artist's conditions is missed at worst, between the nodes too."""
+    x, t = adaptation.motion.x, adaptation.motion.transcription
+    return [missed(c, t.character, t.basis, t.layout, x) for c in t.conditions]
+
+
+def worst_constraints(
+    adaptation: Adaptation, problem: MotionProblem, *, least: float = 1.0
+) -> list[tuple[str, float, str]]:
+    """(name, violation, unit) of every contact, condition and phase's equations, worst first.
+
+    Of a solve that failed: those that conflict where it got stuck, then what the best motion found
+    misses. least: how often its tolerance a violation must reach to be listed.
+    """
+    stuck, motion = adaptation.stuck, adaptation.motion
+    if stuck is not None and stuck is not adaptation.outcome:
+        failed = replace(adaptation, outcomes=(stuck,), stuck=None)
+        here = replace(adaptation, stuck=None)
+        conflicts = worst_constraints(failed, problem, least=least)
+        short = worst_constraints(here, problem, least=least)
+        return conflicts + [each for each in short if each[0] not in {c[0] for c in conflicts}]
+    t = motion.transcription
+    rows = t.rows(motion.x, adaptation.outcome.places)
+    pins = pins_of_contacts(adaptation.fit, problem)
+    phases = adaptation.plan.schedule.phases
+    owners = [f"{pins[name]}: {name}" if name in pins else name for name in t.owners]
+    found: dict[tuple[str, RowKind], float] = {}
+    for kind, time, owner, left in zip(
+        rows.kind, rows.time, rows.owner, np.abs(rows.violation()), strict=True
+    ):
+        name = owners[owner] if owner >= 0 else _phase_at(phases, time).name
+        found[name, kind] = max(found.get((name, kind), 0.0), float(left))
+    for each in missed_conditions(adaptation):
+        found[each.name, each.kind] = max(found.get((each.name, each.kind), 0.0), each.amount)
+    ranked = sorted(
+        ((v / kind.tolerance, name, kind) for (name, kind), v in found.items()),
+        key=lambda each: each[0],
+        reverse=True,
+    )
+    listed = []
+    for share, name, kind in ranked:
+        if share >= least:
+            amount, unit = shown(share * kind.tolerance, kind, t.character)
+            listed.append((name, amount, unit))
+    return listed
+
+
+def most_telling(
+    adaptation: Adaptation, problem: MotionProblem
+) -> tuple[tuple[str, float, str], ...]:
+    """The few worst constraints of a failed solve, the worst that the artist asked for among them.
+
+    What gives way first may be a foot that nobody moved; what it gave way to has to be named too.
+    """
+    ranked = worst_constraints(adaptation, problem)
+    asked = {pin.name for pin in problem.pins} | set(problem.requests.names)
+    own = [each for each in ranked if each[0] in asked or each[0].partition(": ")[0] in asked]
+    first = ranked[:MOST_LISTED]
+    if own and not any(each in first for each in own):
+        first = [*first[: MOST_LISTED - 1], own[0]]
+    return tuple(first)
+
+
+def shown(amount: float, kind: RowKind, character: Character) -> tuple[float, str]:
+    """A violation in the unit that people read."""
+    if kind in (RowKind.PIN, RowKind.POINT):
+        return 1000.0 * amount, "mm"
+    if kind is RowKind.TORQUE:
+        return amount * character.mass * GRAVITY, "N·m beyond the limit"
+    if kind.unit == "rad":
+        return math.degrees(amount), "degrees"
+    return amount, kind.unit
+
+
+def _phase_at(phases: Sequence[Phase], time: float) -> Phase:
+    return next((phase for phase in phases if time <= phase.end), phases[-1])

@@ -1,0 +1,70 @@
+"""Arms that reach for what they shall grip: the first guess of a hang (thesis 6.2, 6.3).
+
+The held frame repeats a pose whose hands are elsewhere. Carrying the whole body there would lift
+it off its ballistic path; the arms alone are turned towards the grip, and eased in before it.
+"""
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..body.anatomy import Part
+from ..body.kinematics import BodyPoint, pose
+from ..transcription.contact_pins import PointContact
+from ..transcription.motion import Motion
+from .fit import SWING, dense_instants
+
+ARM = (Part.UPPER_ARM, Part.FOREARM, Part.HAND)
+EASE = 0.25  # s, before the grip
+STEPS, LONGEST, DAMPING = 60, 0.1, 1e-3  # of damped least squares; rad a step, m²
+
+
+def reaching(motion: Motion, places: FloatArray) -> Motion:
+    """The motion with the arms of its gripping contacts turned to the places (n_contacts, 3) m."""
+    t = motion.transcription
+    grips = [
+        (contact, place)
+        for contact, place in zip(t.contacts, places, strict=True)
+        if t.character.bodies[t.points[contact.point].body].part in ARM and contact.friction is None
+    ]
+    if not grips:
+        return motion
+    times = dense_instants(t.basis)
+    angles = motion.angles(times)
+    for contact, place in grips:
+        _turn_arm(motion, contact, place, times, angles)
+    x = motion.x.copy()
+    x[:, t.layout.angles] = t.basis.project(times, angles, SWING)
+    return Motion(t, x, places)
+
+
+def _turn_arm(
+    motion: Motion, contact: PointContact, place: FloatArray, times: FloatArray, angles: FloatArray
+) -> None:
+    """Writes one arm's angles into (T, n) angles; the pelvis stays where it was."""
+    t = motion.transcription
+    character, point = t.character, t.points[contact.point]
+    start = contact.contact.start - EASE
+    during = np.flatnonzero((times >= start) & (times <= contact.contact.end))
+    moved = angles[during]
+    pelvis = pose(character, moved).centres[:, 0] + motion.com(times[during])
+    chain = _chain(motion, point.body)
+    for _ in range(STEPS):
+        posed = pose(character, moved)
+        at = posed.points([point])[:, 0] - posed.centres[:, 0] + pelvis
+        pelvis_by = posed.point_jacobian([BodyPoint(0, np.zeros(3))])
+        by = (posed.point_jacobian([point]) - pelvis_by)[:, 0]
+        by = by[:, :, chain]
+        square = by @ np.swapaxes(by, 1, 2) + DAMPING * np.eye(3)
+        turn = np.swapaxes(by, 1, 2) @ np.linalg.solve(square, (place - at)[..., None])
+        moved[:, chain] += np.clip(turn[..., 0], -LONGEST, LONGEST)
+    share = np.clip((times[during] - start) / EASE, 0.0, 1.0)[:, None]
+    share = share**2 * (3.0 - 2.0 * share)
+    angles[during] += share * (moved - angles[during])
+
+
+def _chain(motion: Motion, body: int) -> IntArray:
+    """The angles of the joints from the shoulder to a body."""
+    character = motion.transcription.character
+    bodies = {body, *character.lineage(body)}
+    joints = [character.joints[b] for b in sorted(bodies) if character.bodies[b].part in ARM]
+    return np.concatenate([np.arange(j.first, j.dofs.stop) for j in joints])

@@ -1,0 +1,47 @@
+"""The fit's motion as a first guess for a changed body or other gravity (thesis 6.2)."""
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..body.body_changes import changed_points
+from ..body.character import Character
+from ..body.kinematics import pose
+from ..numerics.splines import gauss_instants
+from ..transcription.motion import Motion
+
+SWING = 1e-9  # weight against third derivatives where a first guess jumps between contacts
+
+
+def reseated(motion: Motion, character: Character) -> FloatArray:
+    """Unknowns (K, n_block) of a motion of the old figure as a first guess for the new one.
+
+    character: of the same joints, see `changed_character`. The angles stay; the root moves so that
+    the contact points stay where they were, on average over those pinned at each instant and
+    linearly in between. Forces in body weights stay, as the accelerations do: in newtons they grow
+    with the mass. Vertical forces follow gravity in proportion (their mean over a clip does, and
+    none begins to pull); horizontal ones do not, for the body travels as far in the same time.
+    """
+    t, x = motion.transcription, motion.x.copy()
+    times = gauss_instants(t.basis.breaks, 4)[0]
+    x[:, t.layout.com] += t.basis.project(times, _reseat(motion, character, times), SWING)
+    if character.gravity != t.character.gravity:
+        vertical = slice(t.layout.forces.start + 2, t.layout.forces.stop, 3)
+        x[:, vertical] *= character.gravity / t.character.gravity
+    return x
+
+
+def _reseat(motion: Motion, character: Character, times: FloatArray) -> FloatArray:
+    """(T, 3) how far the centre of mass moves, m."""
+    t = motion.transcription
+    old, new = motion.pose(times), pose(character, motion.angles(times))
+    off = old.centres[:, 0] - new.centres[:, 0]  # with the root where it was
+    pinned = np.array([(c.pin_start <= times) & (times <= c.pin_end) for c in t.contacts])
+    if not pinned.any():
+        return off
+    points = changed_points(t.points, t.character, character)
+    apart = old.points(t.points) - new.points(points) - off[:, None]
+    apart = apart[:, [c.point for c in t.contacts]]
+    held = pinned.any(axis=0)
+    mean = np.einsum("ct,tci->ti", pinned, apart)[held] / pinned.sum(axis=0)[held, None]
+    between = [np.interp(times, times[held], mean[:, k]) for k in range(3)]
+    return np.asarray(off + np.stack(between, axis=1))

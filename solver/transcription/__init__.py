@@ -1,0 +1,1 @@
+"""A motion as finitely many unknowns: constraints, objectives and costs with Jacobians."""

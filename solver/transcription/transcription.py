@@ -1,0 +1,221 @@
+"""The motion as finitely many unknowns and equations (thesis 4; findings: rank, Gauss points).
+
+Unknowns: coefficients of the centre of mass (m) and of the joint angles (rad) as cubic splines,
+and the contact forces (body weights) as piecewise linear functions. Equations:
+
+balance   c'' / g + z - sum f = 0 at every force node: with the matching bases it then holds at
+          *every* instant, exactly (both sides are piecewise linear)
+moment    L'(theta) - sum (p_i - c) x f_i = 0 at three Gauss points a span
+pin       c + p_i(theta) - place = 0 at every break while a point is pinned, and zero velocity at
+          the ends: as many rows as a cubic has freedom, so that they stay independent
+push      forces push and stay in their friction cones, at every force node and so at every
+          instant: both sets are convex (force_cones.py)
+others    what the artist bounds (condition.py)
+
+A contact carries force for a short while before its point has come to rest and after it starts
+to lift (`SETTLE`): shoes and feet give, and a spline cannot stop a foot in no time.
+"""
+
+from copy import copy
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..body.character import Character
+from ..body.dynamics import GRAVITY, MomentFunction
+from ..body.kinematics import BodyPoint, Pose, pose
+from ..data.contacts import Contact
+from ..numerics.rotations import cross_matrix
+from ..numerics.splines import ORDER, Basis, gauss_instants
+from .constraint import Bounded, Condition
+from .contact_pins import Pins, PointContact
+from .friction_cones import ForceCones
+from .rows import Layout, RowKind, Rows
+from .sampling import Instants, Slope
+
+GAUSS = 3  # dynamics nodes a span
+SETTLE = 0.03  # s
+
+
+@dataclass
+class Transcription:
+    """The equations of one motion problem on one basis.
+
+    points: the bodies' points that touch; contacts: when and where they do. conditions: bounds.
+    """
+
+    character: Character
+    basis: Basis
+    points: tuple[BodyPoint, ...]
+    contacts: tuple[PointContact, ...]
+    moment: MomentFunction
+    conditions: tuple[Condition, ...] = ()
+    layout: Layout = field(init=False)
+    active: BoolArray = field(init=False)  # (K, n_block) bool, which unknowns exist
+
+    def __post_init__(self) -> None:
+        self.layout = Layout(self.character.n_angles, len(self.points))
+        self.active = self._active()
+        times, self.node_weights, self.node_spans = gauss_instants(self.basis.breaks, GAUSS)
+        self.node_times = times
+        self._node_basis = [self.basis.evaluate(times, k, self.node_spans) for k in range(3)]
+        self._node_force = self.basis.force_weights(times, self.node_spans)
+        self._balance = self._balance_rows()
+        self.pins = Pins(self.basis, self.layout, self.contacts)
+        self.cones = ForceCones(self.basis, self.layout, self.contacts)
+        first = len(self.contacts)
+        self.bounded = [
+            Bounded(condition, self.character, self.basis, self.layout, first + i)
+            for i, condition in enumerate(self.conditions)
+        ]
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """What the rows' owners are called: contacts, then conditions."""
+        contacts = tuple(c.contact.name for c in self.contacts)
+        return contacts + tuple(c.name for c in self.conditions)
+
+    def eased(self, x: FloatArray, share: float) -> "Transcription":
+        """The same with every bound that x misses moved `share` of the way from x to its own."""
+        twin = copy(self)
+        twin.bounded = [bounded.eased(x, share) for bounded in self.bounded]
+        return twin
+
+    @property
+    def n_unknowns(self) -> int:
+        return int(self.active.sum())
+
+    def _active(self) -> BoolArray:
+        """Forces act between a contact's start and end, zero at both (where the clip goes on)."""
+        basis, layout = self.basis, self.layout
+        active = np.zeros((basis.n_coefficients, layout.n_block), dtype=bool)
+        active[:, layout.motion] = True
+        for contact in self.contacts:
+            inside = touching_spans(basis, contact.contact)
+            nodes = basis.force_nodes(inside)
+            active[nodes.ravel() + 1, layout.force(contact.point)] = True
+        for contact in self.contacts:
+            nodes = basis.force_nodes(touching_spans(basis, contact.contact))
+            if contact.contact.start > basis.breaks[0]:
+                active[nodes[0, 0] + 1, layout.force(contact.point)] = False
+            if contact.contact.end < basis.breaks[-1]:
+                active[nodes[-1, 1] + 1, layout.force(contact.point)] = False
+        return active
+
+    def window(self, x: FloatArray, spans: IntArray) -> FloatArray:
+        """(R, 4, n_block) the four blocks that act in each span."""
+        blocks = self.basis.first_coefficient[spans][:, None] + np.arange(ORDER)
+        return np.asarray(x[blocks])
+
+    def rows(self, x: FloatArray, places: FloatArray) -> Rows:
+        """Every equation at unknowns x (K, n_block), pins at places (n_contacts, 3) m."""
+        at_nodes, at_pins = self._poses(x)
+        parts = [self._balance_at(x), self._moment_rows(x, at_nodes)]
+        if self.contacts:
+            window = self.window(x, self.pins.spans)
+            parts += self.pins.rows(window, at_pins, self.points, places)
+            parts += self.cones.rows(x)
+        parts += [bounded.rows(x) for bounded in self.bounded]
+        return self._only_active(Rows.join(parts))
+
+    def values(self, x: FloatArray, places: FloatArray) -> FloatArray:
+        """The values of `rows` alone, cheaper."""
+        at_nodes, at_pins = self._poses(x)
+        parts = [self._balance_residual(x), self._moment_residual(x, at_nodes).ravel()]
+        if self.contacts:
+            window = self.window(x, self.pins.spans)
+            parts.append(self.pins.values(window, at_pins, self.points, places))
+            parts.append(self.cones.values(x))
+        parts += [bounded.value(x) for bounded in self.bounded]
+        return np.concatenate(parts)
+
+    def spread(self, instants: Instants, slopes: list[Slope]) -> FloatArray:
+        """(U, m, 4, n_block) derivatives by the unknowns that exist in each instant's blocks."""
+        jacobian = instants.spread(slopes, self.layout)
+        jacobian *= self.active[instants.blocks][:, None]
+        return jacobian
+
+    def _only_active(self, rows: Rows) -> Rows:
+        blocks = self.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)
+        rows.jacobian[~self.active[blocks]] = 0.0
+        return rows
+
+    def _poses(self, x: FloatArray) -> tuple[Pose, Pose]:
+        """The figure at the dynamics nodes and at the pins' breaks, worked out together."""
+        q = self.angles_at_nodes(x, 0)
+        pinned = self.pins.angles(self.window(x, self.pins.spans))
+        posed = pose(self.character, np.concatenate([q, pinned]))
+        return posed.at(slice(0, len(q))), posed.at(slice(len(q), None))
+
+    # -- balance ---------------------------------------------------------------------------
+
+    def _balance_rows(self) -> Rows:
+        basis, layout = self.basis, self.layout
+        spans = np.arange(basis.n_spans)
+        nodes = basis.force_nodes(spans)
+        _, first = np.unique(nodes.ravel(), return_index=True)
+        span, side = spans[first // 2], first % 2
+        times = basis.breaks[span + side]
+        second = basis.evaluate(times, 2, span) / GRAVITY
+        jacobian = np.zeros((len(span), 3, ORDER, layout.n_block))
+        each = np.arange(len(span))
+        for axis in range(3):
+            jacobian[:, axis, :, axis] = second
+            for point in range(layout.n_points):
+                jacobian[each, axis, 1 + side, layout.force(point).start + axis] = -1.0
+        weight = np.tile([0.0, 0.0, self.character.gravity / GRAVITY], (len(span), 1))
+        return self._only_active(Rows.of(span, weight, jacobian, RowKind.BALANCE, times))
+
+    def _balance_residual(self, x: FloatArray) -> FloatArray:
+        rows = self._balance
+        local = self.window(x, rows.span)
+        return np.asarray(rows.value + np.einsum("rkn,rkn->r", rows.jacobian, local))
+
+    def _balance_at(self, x: FloatArray) -> Rows:
+        return replace(self._balance, value=self._balance_residual(x))
+
+    # -- moment ----------------------------------------------------------------------------
+
+    def angles_at_nodes(self, x: FloatArray, derivative: int) -> FloatArray:
+        """(N, n_angles) joint angles, or their derivative, at the dynamics nodes."""
+        local = self.window(x, self.node_spans)[:, :, self.layout.angles]
+        return np.asarray(np.einsum("nk,nkj->nj", self._node_basis[derivative], local))
+
+    def forces_at_nodes(self, x: FloatArray) -> FloatArray:
+        """(N, P, 3) contact forces in body weights at the dynamics nodes."""
+        local = self.window(x, self.node_spans)[:, 1:3, self.layout.forces]
+        forces = np.einsum("nk,nkj->nj", self._node_force, local)
+        return np.asarray(forces.reshape(len(forces), self.layout.n_points, 3))
+
+    def _moment_residual(self, x: FloatArray, posed: Pose) -> FloatArray:
+        rate = self.moment.value(*(self.angles_at_nodes(x, k) for k in range(3)))
+        if not self.points:
+            return rate
+        arms = posed.points(self.points)
+        return np.asarray(rate - np.cross(arms, self.forces_at_nodes(x)).sum(axis=1))
+
+    def _moment_rows(self, x: FloatArray, posed: Pose) -> Rows:
+        layout = self.layout
+        rate, by_order = self.moment.jacobian(*(self.angles_at_nodes(x, k) for k in range(3)))
+        count = len(rate)
+        jacobian = np.zeros((count, 3, ORDER, layout.n_block))
+        if self.points:
+            arms, turn = posed.points(self.points), posed.point_jacobian(self.points)
+            forces = self.forces_at_nodes(x)
+            rate = rate - np.cross(arms, forces).sum(axis=1)
+            by_order[:, :, 0] += np.einsum("npij,npjk->nik", cross_matrix(forces), turn)
+            lever = -cross_matrix(arms)  # (N, P, 3, 3): d moment / d force
+            lever = lever.transpose(0, 2, 1, 3).reshape(count, 3, 3 * layout.n_points)
+            for side in range(2):
+                weight = self._node_force[:, side]
+                jacobian[:, :, 1 + side, layout.forces] = weight[:, None, None] * lever
+        stacked = np.stack(self._node_basis, axis=-1)  # (N, 4, 3)
+        jacobian[..., layout.angles] = np.einsum("nko,niom->nikm", stacked, by_order)
+        return Rows.of(self.node_spans, rate, jacobian, RowKind.MOMENT, self.node_times)
+
+
+def touching_spans(basis: Basis, contact: Contact) -> IntArray:
+    """Indices of the spans during which a contact carries force."""
+    middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
+    return np.flatnonzero((middles > contact.start) & (middles < contact.end))

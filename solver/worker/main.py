@@ -1,0 +1,113 @@
+"""The worker process: solves what its parent asks until the parent closes the pipe.
+
+Run as a program (`python -I main.py`); bridge/worker_client.py starts it and holds the other end.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import sys
+from pathlib import Path
+from queue import SimpleQueue
+from threading import Thread
+from typing import TYPE_CHECKING, BinaryIO
+
+if TYPE_CHECKING:
+    from .protocol import Ending, Request
+
+NAME = "hangtime"
+FOREIGN, PROTOCOL_FAULT = 3, 4  # exit codes
+
+
+def main() -> int:
+    """Exit code: 0 when the parent has gone."""
+    requests, answers = sys.stdin.buffer, _private_stdout()
+    try:
+        return _serve(requests, answers)
+    except BrokenPipeError:
+        return 0
+
+
+def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
+    from .protocol import PROTOCOL, Hello, Progress, Ready, receive, send
+
+    hello = receive(requests)
+    if hello is None:
+        return 0
+    send(answers, Ready(PROTOCOL))
+    if not isinstance(hello, Hello) or hello.protocol != PROTOCOL:
+        return FOREIGN
+    sys.path[:] = hello.path
+    from .service import Service
+
+    def tell(progress: Progress) -> None:
+        send(answers, progress)
+
+    inbox = Inbox(requests)
+    service = Service(inbox.ending)
+    Thread(target=inbox.listen, daemon=True).start()
+    while True:
+        send(answers, service.answer(inbox.next(), tell))
+
+
+class Inbox:
+    """Requests in the order they came, and which of them shall end: heard on a thread of its own,
+    for a request is halted while the one that solves is busy."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+        self._requests: SimpleQueue[Request] = SimpleQueue()
+        self._endings: dict[int, Ending] = {}
+
+    def next(self) -> Request:
+        """The next request; waits for it."""
+        return self._requests.get()
+
+    def ending(self, request: int) -> Ending | None:
+        """How the request with this id shall end; None if it may go on."""
+        return self._endings.get(request)
+
+    def listen(self) -> None:
+        """Hears the parent out. Ends the process where the parent goes or talks nonsense."""
+        from .protocol import Halt, ProtocolError, Request, receive
+
+        while True:
+            try:
+                message = receive(self._stream)
+            except ProtocolError:
+                os._exit(PROTOCOL_FAULT)
+            if message is None:
+                os._exit(0)  # nobody waits for what is being solved
+            if isinstance(message, Halt):
+                self._endings[message.id] = message.how
+            elif isinstance(message, Request):
+                self._requests.put(message)
+            else:
+                os._exit(PROTOCOL_FAULT)
+
+
+def _private_stdout() -> BinaryIO:
+    """The pipe to the parent; whatever a library prints goes to the error stream instead."""
+    private = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    return private
+
+
+def _load_package() -> None:
+    """Makes the folder above importable as a package, whatever it is called."""
+    root = Path(__file__).resolve().parents[2]
+    spec = importlib.util.spec_from_file_location(
+        NAME, root / "__init__.py", submodule_search_locations=[str(root)]
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    package = importlib.util.module_from_spec(spec)
+    sys.modules[NAME] = package
+    spec.loader.exec_module(package)
+
+
+if __name__ == "__main__":
+    _load_package()
+    sys.exit(importlib.import_module(f"{NAME}.solver.worker.main").main())

@@ -1,0 +1,249 @@
+"""What the artist's program and the worker process say to each other, and how it is framed.
+
+The parent starts the worker and says Hello; the worker answers Ready. Then the parent makes one
+Request at a time, and the worker tells any number of Progress and one answer.
+
+Meanwhile the parent may tell it to Halt: to drop the request, which is answered by Cancelled, or to
+end with the motion as it stands.
+
+Each message is a length (8 bytes, little-endian), a checksum (4 bytes) and a pickle. Both ends run
+the same files of one version, under the package names that their importers gave them; what arrives
+whole may name nothing but this package's data classes and enums and numpy's arrays.
+
+Standard library only: the worker learns where numpy is from the first message.
+"""
+
+from __future__ import annotations
+
+import pickle
+import struct
+from dataclasses import dataclass, is_dataclass
+from enum import Enum
+from importlib import import_module
+from io import BytesIO
+from typing import TYPE_CHECKING, Any, BinaryIO
+from zlib import crc32
+
+from ..data.status import Course
+
+if TYPE_CHECKING:
+    from ..arrays import FloatArray
+    from ..data.contacts import ContactSchedule
+    from ..data.faults import Fault, NoSolution
+    from ..data.problem import MotionProblem
+    from ..data.recording import PoseTrack, Recording
+    from ..data.traces import Traces
+
+PROTOCOL = 2
+LARGEST = 1 << 30  # bytes; a longer message is not one
+_HEAD = struct.Struct("<QI")  # length and CRC-32 of the pickle
+_NUMPY = {
+    ("numpy", "ndarray"),
+    ("numpy", "dtype"),
+    *(
+        (f"numpy.{core}.multiarray", name)
+        for core in ("core", "_core")
+        for name in ("_reconstruct", "scalar")
+    ),
+    *((f"numpy.{core}.numeric", "_frombuffer") for core in ("core", "_core")),
+}
+# What unpickling raises on nonsense.
+_UNREADABLE = (
+    pickle.UnpicklingError,
+    AttributeError,
+    EOFError,
+    ImportError,
+    LookupError,
+    MemoryError,
+    OverflowError,
+    TypeError,
+    ValueError,
+)
+
+
+class Kind(Enum):
+    """What a request asks for."""
+
+    ANALYSE = "analyse"
+    FIT = "fit"
+    ADAPT = "adapt"
+    FOLLOW = "follow"  # a pin that is being dragged: the next few steps, not a whole solve
+
+
+@dataclass(frozen=True)
+class Hello:
+    """The parent's first word: its protocol and where its Python finds modules."""
+
+    protocol: int
+    path: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The worker's answer to Hello."""
+
+    protocol: int
+
+
+@dataclass(frozen=True)
+class Request:
+    """Something to solve; id comes back with everything that is said about it.
+
+    recording: None is the last request's.
+    """
+
+    id: int
+    kind: Kind
+    recording: Recording | None
+    problem: MotionProblem
+
+
+class Ending(Enum):
+    """How a request is halted."""
+
+    CANCEL = "cancel"
+    AS_IT_STANDS = "as it stands"
+
+
+@dataclass(frozen=True)
+class Halt:
+    """The request with this id shall end before it is met."""
+
+    id: int
+    how: Ending
+
+
+@dataclass(frozen=True)
+class Progress:
+    """The stage's step-th step is done; violation: the worst over its tolerance, before it, and
+    worst: whose it was (a contact, a condition or an equation). share: of the request, 0 to 1."""
+
+    id: int
+    stage: str
+    step: int
+    violation: float
+    worst: str
+    share: float
+
+
+@dataclass(frozen=True)
+class Analysed:
+    """The contacts found.
+
+    height: m, as measured. axes: (3, 3) by ground phase's name, columns forward, left and up.
+    bones: by the part of the body that they move ("left foot").
+    """
+
+    id: int
+    schedule: ContactSchedule
+    height: float
+    axes: dict[str, FloatArray]
+    bones: dict[str, str]
+    traces: Traces
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """The nearest valid motion is found. closeness: see report.closeness."""
+
+    id: int
+    closeness: dict[str, float]
+    seconds: float
+    traces: Traces
+
+
+@dataclass(frozen=True)
+class Adapted:
+    """The adapted motion at the recording's frames, its report and its contacts.
+
+    fault: why it is not what was asked for but the best that was found; None where it is.
+    """
+
+    id: int
+    track: PoseTrack
+    report: dict[str, Any]
+    schedule: ContactSchedule
+    traces: Traces
+    fault: NoSolution | None
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Where the motion has come that follows a dragged pin. change: numbers by what they are, see
+    follow.change."""
+
+    id: int
+    traces: Traces
+    course: Course
+    change: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Cancelled:
+    """The request was dropped."""
+
+    id: int
+
+
+@dataclass(frozen=True)
+class Failed:
+    """The request cannot be met, and why."""
+
+    id: int
+    fault: Fault
+
+
+Answer = Analysed | Fitted | Adapted | Followed | Cancelled | Failed
+Message = Hello | Ready | Request | Halt | Progress | Answer
+
+
+class ProtocolError(Exception):
+    """What arrived is not a message of this version."""
+
+
+def send(stream: BinaryIO, message: Message) -> None:
+    """Writes one message. Raises OSError (BrokenPipeError where nobody listens any more)."""
+    body = pickle.dumps(message, protocol=5)
+    rest = memoryview(_HEAD.pack(len(body), crc32(body)) + body)
+    while rest:
+        rest = rest[stream.write(rest) :]  # a bare pipe takes what it has room for
+    stream.flush()
+
+
+def receive(stream: BinaryIO) -> Message | None:
+    """The next message; None where the stream ends before one. Raises ProtocolError."""
+    head = stream.read(_HEAD.size)
+    if not head:
+        return None
+    if len(head) < _HEAD.size:
+        raise ProtocolError("a message breaks off")
+    length, checksum = _HEAD.unpack(head)
+    if length > LARGEST:
+        raise ProtocolError(f"a message of {length} bytes is announced")
+    body = stream.read(length)
+    if len(body) < length:
+        raise ProtocolError("a message breaks off")
+    if crc32(body) != checksum:
+        raise ProtocolError("a message arrived damaged")
+    try:
+        message = _Reader(BytesIO(body)).load()
+    except _UNREADABLE as problem:
+        raise ProtocolError(f"a message cannot be read: {problem}") from problem
+    if not isinstance(message, Message):
+        raise ProtocolError(f"{type(message).__name__} is not a message")
+    return message
+
+
+class _Reader(pickle.Unpickler):
+    """Finds this package's classes whatever the sender calls the package, and little else."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        if (module, name) in _NUMPY:
+            return super().find_class(module, name)
+        package = __name__.rpartition(".solver.")[0]
+        below = module.rpartition(".solver.")[2]
+        if module.endswith(f".solver.{below}") and below.replace(".", "_").isidentifier():
+            found = getattr(import_module(f"{package}.solver.{below}"), name)
+            if isinstance(found, type) and (is_dataclass(found) or issubclass(found, Enum)):
+                return found
+        raise pickle.UnpicklingError(f"{module}.{name} is not expected")

@@ -1,0 +1,197 @@
+"""The picture of a result: what it shows, where, and that it leaves no trace in the scene."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+
+from hangtime.bridge.picture import layout, render
+from hangtime.bridge.picture.render import draw_sheet
+from hangtime.bridge.picture.sheet import Limb, SheetRow, View
+from hangtime.solver.data.faults import OutputNotWritable
+
+TIMES = np.linspace(0.0, 1.0, 61)
+
+
+def hopper(title: str, *, further: float = 0.0, higher: float = 0.0, heading: float = 0.0):
+    """A trunk on one leg that crouches, hops 1 m along x (turned by `heading` rad) and stands."""
+    air = np.clip((TIMES - 0.4) / 0.3, 0.0, 1.0)
+    crouch = -0.2 * np.exp(-(((TIMES - 0.25) / 0.1) ** 2))
+    x = (1.0 + further) * air
+    z = 0.9 + crouch + higher * air + 1.2 * air * (1 - air)
+    turn = np.array(
+        [
+            [np.cos(heading), -np.sin(heading), 0.0],
+            [np.sin(heading), np.cos(heading), 0.0],
+            [0.0, 0.0, 1.0],
+        ]
+    )
+    com = np.stack([x, 0 * x, z], axis=1) @ turn.T
+    rotation = np.repeat((turn @ np.diag([1.0, 1.0, 1.0]))[None], len(TIMES), axis=0)
+    down = np.array([0.0, 0.0, 0.55])
+    limbs = (
+        Limb("trunk", np.array([0.4, 0.25, 0.6]), com + down / 3, rotation),
+        Limb("leg", np.array([0.12, 0.12, 0.7]), com - down, rotation),
+    )
+    pins = np.array([[0.0, 0.0, 0.0], [1.0 + further, 0.0, higher]]) @ turn.T
+    return SheetRow(title, TIMES, limbs, com, pins, (0.4, 0.55, 0.7), ((0.0, 0.4), (0.7, 1.0)))
+
+
+@pytest.fixture
+def rows():
+    return hopper("Recording"), hopper("Adapted", further=0.3, higher=0.2)
+
+
+@pytest.fixture(scope="module")
+def picture(tmp_path_factory) -> np.ndarray:
+    """(H, W, 3) sRGB values of a small picture, top row first."""
+    path = tmp_path_factory.mktemp("sheet") / "sheet.png"
+    draw_sheet((hopper("Recording"), hopper("Adapted", further=0.3, higher=0.2)), path, width=360)
+    return read(path)
+
+
+def read(path: Path) -> np.ndarray:
+    image = bpy.data.images.load(str(path))
+    try:
+        wide, high = image.size
+        return np.array(image.pixels[:]).reshape(high, wide, image.channels)[::-1, :, :3]
+    finally:
+        bpy.data.images.remove(image)
+
+
+def halves(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    middle = len(picture) // 2
+    return picture[:middle], picture[middle:]
+
+
+def is_red(picture: np.ndarray) -> np.ndarray:
+    return (picture[..., 0] > 0.5) & (picture[..., 1:].max(axis=-1) < 0.35)
+
+
+def test_the_picture_has_the_width_asked_for_and_a_light_background(picture):
+    assert picture.shape[1] == 360
+    assert picture[:3].min() > 0.9
+
+
+def test_both_rows_show_red_pins(picture):
+    for half in halves(picture):
+        assert is_red(half).sum() > 10
+
+
+def test_the_rows_are_told_apart_by_colour(picture):
+    def blueness(half: np.ndarray) -> float:
+        return float((half[..., 2] - half[..., 0]).max())
+
+    above, below = halves(picture)
+    assert blueness(below) > blueness(above) + 0.15
+
+
+def test_the_scene_is_left_as_it_was(rows, tmp_path):
+    kinds = [p.identifier for p in bpy.data.bl_rna.properties if p.type == "COLLECTION"]
+
+    def state():
+        blocks = {kind: sorted(b.name for b in getattr(bpy.data, kind)) for kind in kinds}
+        chosen = [o.name for o in bpy.context.selected_objects]
+        engine = bpy.context.scene.render.engine
+        addons = sorted(bpy.context.preferences.addons.keys())
+        return blocks, chosen, bpy.context.scene.name, engine, addons
+
+    before = state()
+    draw_sheet(rows, tmp_path / "sheet.png", width=40)
+    assert state() == before
+
+
+def test_nothing_is_left_behind_when_drawing_fails(rows, tmp_path, monkeypatch):
+
+    def fail(*_, **__):
+        raise RuntimeError
+
+    monkeypatch.setattr(render, "_render", fail)
+    before = len(bpy.data.scenes), len(bpy.data.objects), len(bpy.data.meshes)
+    with pytest.raises(RuntimeError):
+        draw_sheet(rows, tmp_path / "sheet.png", width=40)
+    assert (len(bpy.data.scenes), len(bpy.data.objects), len(bpy.data.meshes)) == before
+
+
+def test_a_file_that_cannot_be_written_is_named(rows, tmp_path):
+    missing = tmp_path / "nowhere" / "sheet.png"
+    with pytest.raises(OutputNotWritable) as fault:
+        draw_sheet(rows, missing, width=40)
+    assert fault.value.path == str(missing)
+
+
+def test_key_instants_are_shown_and_figures_keep_apart(rows):
+    for tier, row in zip(layout.lay_out(rows).tiers, rows, strict=True):
+        times = np.array([figure.time for figure in tier.figures])
+        for key in row.key_times:
+            assert np.abs(times - key).min() < 0.01
+        x = np.array([figure.com[0] for figure in tier.figures])
+        assert 7 <= len(x) <= View().figures
+        assert np.diff(x).min() > 0.3
+
+
+def test_a_farther_landing_is_as_much_farther_in_the_picture(rows):
+    recording, adapted = layout.lay_out(rows).tiers
+    apart = adapted.figures[-1].com - recording.figures[-1].com
+    np.testing.assert_allclose(apart, [0.3, 0.0, 0.2], atol=1e-9)
+
+
+def test_a_raised_landing_stands_on_a_step_and_the_ground_does_not(rows):
+    recording, adapted = layout.lay_out(rows).tiers
+    assert recording.steps == ()
+    (step,) = adapted.steps
+    assert step.top == pytest.approx(0.2)
+    landed = [figure.com[0] for figure in adapted.figures if figure.time >= 0.7]
+    assert step.left < min(landed) < max(landed) < step.right
+
+
+def test_travel_runs_to_the_right_whatever_the_heading():
+    for heading in (0.0, 2.0, -1.2):
+        tier = layout.lay_out([hopper("Recording", heading=heading)]).tiers[0]
+        np.testing.assert_allclose(tier.path[:, 1], 0.0, atol=1e-9)
+        assert np.diff(tier.path[:, 0]).min() > -1e-9
+
+
+def test_the_heading_asked_for_runs_to_the_right():
+    row = hopper("Diagonal", heading=0.5)
+    tier = layout.lay_out([row], View(heading=(1.0, 0.0))).tiers[0]
+    aside = tier.path[-1, 1] - tier.path[0, 1]
+    assert aside == pytest.approx(np.sin(0.5))
+
+
+def test_the_floor_is_where_the_row_says(rows):
+    low = replace(rows[1], pins=rows[1].pins[1:], pin_times=rows[1].pin_times[1:])
+    assert layout.lay_out([low]).tiers[0].steps == ()
+    assert len(layout.lay_out([replace(low, ground=0.0)]).tiers[0].steps) == 1
+
+
+def test_key_times_that_would_hide_each_other_are_not_both_shown(rows):
+    row = replace(rows[0], key_times=(0.55, 0.57))
+    times = [figure.time for figure in layout.lay_out([row]).tiers[0].figures]
+    assert 0.55 in np.round(times, 2)
+    assert 0.57 not in np.round(times, 2)
+
+
+def test_a_jump_in_place_faces_right_and_is_spread():
+    row = hopper("In place", further=-1.0, heading=0.7)
+    axes = layout.canvas_axes([row])
+    facing = axes @ row.limbs[0].rotation[0][:, 1]
+    np.testing.assert_allclose(facing, [1.0, 0.0, 0.0], atol=1e-9)
+    x = [figure.com[0] for figure in layout.lay_out([row]).tiers[0].figures]
+    assert np.diff(x).min() > 0.3
+
+
+def test_without_their_times_pins_show_where_the_body_touches_them():
+    row = hopper("Recording")
+    tier = layout.lay_out([SheetRow("", TIMES, row.limbs, row.com, row.pins)]).tiers[0]
+    touching = [f.com[0] for f in tier.figures if f.centre[1, 2] - 0.35 < 0.04]
+    np.testing.assert_allclose(sorted(tier.pins[:, 0]), sorted(touching), atol=0.04)
+
+
+def test_limbs_taper_away_from_the_heavier_neighbour(rows):
+    tier = layout.lay_out(rows).tiers[0]
+    leg = tier.names.index("leg")
+    assert tier.proximal[leg] == 1.0  # its upper end is at the trunk

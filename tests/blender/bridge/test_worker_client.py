@@ -1,0 +1,324 @@
+"""The worker as a process: answers, what it remembers, how it ends."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hangtime.bridge.worker_client import Chase, Job, Kind, Worker
+from hangtime.solver.data.faults import (
+    ClipTooShort,
+    NoFlight,
+    UnknownContactName,
+    UnknownPhase,
+    WorkerDied,
+)
+from hangtime.solver.data.problem import ContactEdit, MotionProblem, Pin
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.status import Course
+from hangtime.solver.worker.protocol import Adapted, Analysed, Failed, Fitted, Followed, Progress
+from hangtime.tests.helpers.clips import load_recording
+
+JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+SPAN = (73.0, 325.0)
+UP = MotionProblem(frames=SPAN, pins=(Pin("up", "ground 2", offset=(0.0, 0.0, 0.05)),))
+AHEAD = MotionProblem(frames=SPAN, pins=(Pin("ahead", "ground 2", offset=(0.05, 0.0, 0.0)),))
+LOADER = str(Path(__file__).parents[3] / "devtools" / "package.py")
+
+# Starts a worker, prints its number and dies without ending it.
+ORPHAN = """
+import os, runpy, sys
+runpy.run_path(sys.argv[1])["load"]()
+from hangtime.bridge.worker_client import Kind, Worker
+from hangtime.tests.helpers.clips import load_recording
+from hangtime.solver.data.problem import MotionProblem
+worker = Worker()
+worker.ask(Kind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
+print(worker.pid, flush=True)
+os._exit(0)
+"""
+
+# As in Blender's own program, where writing to a pipe that nobody reads ends the process.
+PIPES_KILL = """
+import runpy, signal, sys
+from pathlib import Path
+signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+runpy.run_path(sys.argv[1])["load"]()
+from hangtime.bridge import worker_client
+from hangtime.tests.helpers.clips import load_recording
+from hangtime.solver.data.problem import MotionProblem
+worker_client._PROGRAM = Path(sys.argv[3])
+one = worker_client.Worker()
+answer = one.ask(worker_client.Kind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
+one.close()
+print(answer.fault)
+"""
+
+# Greets and goes without reading what it is asked.
+DEAF = """
+import runpy, sys
+runpy.run_path({loader!r})["load"]()
+from hangtime.solver.worker.protocol import PROTOCOL, Ready, receive, send
+receive(sys.stdin.buffer)
+send(sys.stdout.buffer, Ready(PROTOCOL))
+raise SystemExit("cannot hear you")
+"""
+
+
+@pytest.fixture(scope="module")
+def jump() -> Recording:
+    return load_recording(JUMP)
+
+
+@pytest.fixture
+def worker() -> Iterator[Worker]:
+    worker = Worker()
+    yield worker
+    worker.close()
+
+
+def gone(pid: int) -> bool:
+    """Whether a process ends within 5 s (a zombie has ended)."""
+    status = Path(f"/proc/{pid}/stat")
+    for _ in range(100):
+        if not status.exists() or status.read_text().rpartition(")")[2].split()[0] == "Z":
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_the_second_adaptation_starts_from_the_stored_fit(worker: Worker, jump: Recording) -> None:
+    stages: list[set[str]] = []
+    for problem in (UP, AHEAD):
+        told: list[Progress] = []
+        answer = worker.ask(Kind.ADAPT, jump, problem).wait(told.append)
+        assert isinstance(answer, Adapted)
+        assert answer.report["pins"][0]["name"] == problem.pins[0].name
+        np.testing.assert_array_equal(answer.track.frames, np.arange(SPAN[0], SPAN[1] + 1))
+        stages.append({progress.stage for progress in told})
+    assert "fit" in stages[0]
+    assert "fit" not in stages[1]
+    assert "adapt" in stages[1]
+
+
+def test_a_fault_is_an_answer_and_the_worker_lives_on(worker: Worker, jump: Recording) -> None:
+    asked: list[tuple[MotionProblem, type[Exception]]] = [
+        (MotionProblem(frames=(1.0, 5.0)), ClipTooShort),
+        (MotionProblem(frames=(73.0, 150.0)), NoFlight),
+        (MotionProblem(frames=SPAN, contacts=(ContactEdit("Nose 1"),)), UnknownContactName),
+    ]
+    numbers = set()
+    for problem, fault in asked:
+        answer = worker.ask(Kind.ANALYSE, jump, problem).wait()
+        assert isinstance(answer, Failed)
+        assert type(answer.fault) is fault
+        numbers.add(worker.pid)
+    assert len(numbers) == 1
+    assert None not in numbers
+
+
+def test_the_stated_height_leaves_places_in_the_recordings_lengths(
+    worker: Worker, jump: Recording
+) -> None:
+    measured, stated = (
+        worker.ask(Kind.ANALYSE, jump, MotionProblem(frames=SPAN, height=height)).wait()
+        for height in (None, 1.75)
+    )
+    assert isinstance(measured, Analysed)
+    assert isinstance(stated, Analysed)
+    assert measured.height == pytest.approx(stated.height) != pytest.approx(1.75, abs=0.01)
+    places = {contact.name: contact.place for contact in measured.schedule.contacts}
+    assert places.keys() == {contact.name for contact in stated.schedule.contacts}
+    for contact in stated.schedule.contacts:
+        np.testing.assert_allclose(contact.place, places[contact.name], atol=0.01)
+
+
+def started(worker: Worker, recording: Recording, problem: MotionProblem) -> Job:
+    """An adaptation of which a first step has been told."""
+    job = worker.ask(Kind.ADAPT, recording, problem)
+    while not list(job.news()):
+        time.sleep(0.01)
+    return job
+
+
+def test_a_request_that_is_dropped_costs_neither_worker_nor_fit(
+    worker: Worker, jump: Recording
+) -> None:
+    worker.ask(Kind.FIT, jump, UP).wait()
+    pid = worker.pid
+    started(worker, jump, UP)
+    worker.drop()
+    assert not worker.busy
+    told: list[Progress] = []
+    answer = worker.ask(Kind.ADAPT, jump, AHEAD).wait(told.append)
+    assert isinstance(answer, Adapted)
+    assert worker.pid == pid
+    assert "fit" not in {progress.stage for progress in told}
+
+
+def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
+    worker: Worker, jump: Recording
+) -> None:
+    job = started(worker, jump, AHEAD)
+    worker.as_it_stands()
+    answer = job.wait()
+    assert isinstance(answer, Adapted)
+    assert answer.fault is not None
+    assert answer.fault.reason == "stopped"
+    assert len(answer.track.frames) == len(answer.traces.frames)
+
+
+def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(worker: Worker, jump: Recording) -> None:
+    told: list[Progress] = []
+    answer = worker.ask(Kind.FIT, jump, UP).wait(told.append)
+    assert isinstance(answer, Fitted)
+    assert 0.0 < answer.closeness["joint_centres_rms_cm"] < 2.5
+    shares = [progress.share for progress in told]
+    assert shares == sorted(shares)
+    assert 0.0 < shares[-1] < 1.0
+    assert told[0].worst
+
+
+def raised(up: float, name: str = "up") -> MotionProblem:
+    pin = Pin(name, "ground 2", offset=(0.0, 0.0, up))
+    return MotionProblem(frames=SPAN, pins=(pin,))
+
+
+def chased(chase: Chase) -> Iterator[Followed]:
+    """The motions that come, for at most a minute."""
+    until = time.monotonic() + 60.0
+    while time.monotonic() < until:
+        for message in chase.news():
+            if not isinstance(message, Progress):
+                assert isinstance(message, Followed), message
+                yield message
+        time.sleep(0.005)
+
+
+def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
+    chase = worker.chase(jump)
+    assert worker.busy
+    apexes = []
+    for up in (0.01, 0.05):
+        chase.want(raised(up))
+        reached = (seen for seen in chased(chase) if seen.course is Course.ARRIVED)
+        seen = next(s for s in reached if abs(s.change["moved_cm"] - 100.0 * up) < 0.1)
+        apexes.append(seen.traces.heads[:, 0, 2].max())
+    assert apexes[1] > apexes[0] + 0.01
+    worker.drop()
+    assert not worker.busy
+    assert isinstance(worker.ask(Kind.ADAPT, None, raised(0.05)).wait(), Adapted)
+
+
+def test_what_cannot_be_followed_is_said_and_the_chase_goes_on(
+    worker: Worker, jump: Recording
+) -> None:
+    chase = worker.chase(jump)
+    nowhere = MotionProblem(frames=SPAN, pins=(Pin("Nowhere", "ground 9"),))
+    chase.want(nowhere)
+    failed = None
+    while failed is None:
+        failed = next((m for m in chase.news() if isinstance(m, Failed)), None)
+        time.sleep(0.005)
+    assert isinstance(failed.fault, UnknownPhase)
+    chase.want(raised(0.01))
+    assert next(chased(chase)).change["moved_cm"] == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_worker_that_is_killed_answers_so_and_another_takes_over(
+    worker: Worker, jump: Recording
+) -> None:
+    job = worker.ask(Kind.ADAPT, jump, UP)
+    assert worker.busy
+    job.wait(lambda progress: kill(worker) if progress.step == 1 else None)
+    assert isinstance(job.answer, Failed)
+    assert isinstance(job.answer.fault, WorkerDied)
+    assert job.answer.fault.detail == "exit code -9"
+    assert not worker.busy
+    assert isinstance(worker.ask(Kind.ANALYSE, jump, UP).wait(), Analysed)
+
+
+def kill(worker: Worker) -> None:
+    assert worker.pid is not None
+    os.kill(worker.pid, 9)
+
+
+def test_what_a_worker_said_last_is_told(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    program = tmp_path / "broken.py"
+    program.write_text("raise SystemExit('the disk is upside down')")
+    monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
+    answer = worker.ask(Kind.ANALYSE, jump, UP).wait()
+    assert isinstance(answer, Failed)
+    assert answer.fault == WorkerDied("the disk is upside down (exit code 1)")
+
+
+def test_a_worker_that_talks_nonsense_is_not_believed(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    program = tmp_path / "babbling.py"
+    program.write_text("print('Hello, this is more than a length', flush=True); input()")
+    monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
+    answer = worker.ask(Kind.ANALYSE, jump, UP).wait()
+    assert isinstance(answer, Failed)
+    assert isinstance(answer.fault, WorkerDied)
+    assert "bytes is announced" in answer.fault.detail
+
+
+def test_without_a_python_there_is_a_fault(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "no python"))
+    with pytest.raises(WorkerDied) as caught:
+        worker.ask(Kind.ANALYSE, jump, UP)
+    assert "no python" in caught.value.detail
+
+
+def test_one_request_at_a_time(worker: Worker, jump: Recording) -> None:
+    worker.ask(Kind.ADAPT, jump, UP)
+    with pytest.raises(RuntimeError, match="one request"):
+        worker.ask(Kind.ANALYSE, jump, UP)
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
+def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recording) -> None:
+    job = worker.ask(Kind.ADAPT, jump, UP)
+    pid = worker.pid
+    assert pid is not None
+    while not list(job.news()):
+        time.sleep(0.01)
+    worker.close()
+    assert worker.pid is None
+    assert not worker.busy
+    assert gone(pid)
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
+def test_the_worker_ends_with_its_parent(jump: Recording) -> None:
+    assert len(jump.frames) > 0  # skips where there are no recordings
+    assert gone(int(output_of(ORPHAN, JUMP)))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
+def test_a_worker_that_does_not_listen_does_not_take_blender_along(
+    jump: Recording, tmp_path: Path
+) -> None:
+    assert len(jump.frames) > 0
+    program = tmp_path / "deaf.py"
+    program.write_text(DEAF.format(loader=LOADER))
+    assert output_of(PIPES_KILL, JUMP, str(program)) == "cannot hear you (exit code 1)"
+
+
+def output_of(script: str, *arguments: str) -> str:
+    """What a script says in a Python of its own; its first argument loads the package."""
+    command = [sys.executable, "-c", script, LOADER, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, (done.returncode, done.stderr)
+    return done.stdout.strip()

@@ -1,0 +1,279 @@
+"""The main job without a window, through the command line, in the bpy module."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.files.export import reimport_fbx
+from hangtime.bridge.files.import_clip import import_clip
+from hangtime.bridge.picture.render import draw_sheet
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.operators.headless import picture
+from hangtime.operators.headless.cli import main
+from hangtime.operators.headless.outbox import Outbox
+from hangtime.solver.data.faults import OutputNotWritable
+from hangtime.tests.helpers.clips import mocap_path
+
+CLIP = "cmu_bvh/forward_jump_116cm.bvh"
+WINDOW = (100.0, 290.0)
+FILES = {
+    *("adapted.blend", "adapted.fbx", "sheet.png"),
+    *("report.json", "report.txt", "trajectory.npz"),
+}
+EDIT = """
+frames = [100, 290]
+[[pin]]
+name = "Landing"
+phase = "ground 2"
+forward = 0.3
+up = 0.2
+"""
+
+
+@pytest.fixture(scope="module")
+def clip() -> Path:
+    return mocap_path(CLIP)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _small_pictures():
+    """A picture as large as the artist's takes half a minute on a slow machine."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(picture, "draw_sheet", lambda *a: draw_sheet(*a, width=160))
+        yield
+
+
+@pytest.fixture(scope="module")
+def done(clip: Path, tmp_path_factory) -> Path:
+    """The folder of a job that went well."""
+    folder = tmp_path_factory.mktemp("job")
+    recipe = folder / "edit.toml"
+    recipe.write_text(EDIT)
+    out = folder / "deep" / "out"
+    assert main(["adapt", str(clip), "--recipe", str(recipe), "--out", str(out)]) == 0
+    return out
+
+
+def run(tmp_path: Path, clip: Path, recipe: str, *options: str) -> int:
+    """The exit code of a job whose results would go to tmp_path / "out"."""
+    path = tmp_path / "edit.toml"
+    path.write_text(recipe)
+    out = ["--out", str(tmp_path / "out")]
+    return main(["adapt", str(clip), "--recipe", str(path), *out, *options])
+
+
+# ---------------------------------------------------------------- a job that goes well
+
+
+def test_all_files_are_there_and_no_others(done: Path) -> None:
+    assert {path.name for path in done.iterdir()} == FILES
+    assert all(path.stat().st_size > 500 for path in done.iterdir())
+
+
+def test_the_report_says_solved(done: Path) -> None:
+    report = json.loads((done / "report.json").read_text(encoding="utf-8"))
+    assert report["status"] == "solved"
+    assert report["recording"]["clip"] == "forward_jump_116cm.bvh"
+    assert [stage["seconds"] > 0.0 for stage in report["stages"]].count(False) == 0
+    landing = [c for c in report["contacts"] if c["pin"] == "Landing"]
+    assert len(landing) == 4
+    assert max(c["worst_violation_mm"] for c in report["contacts"]) < 1.0
+
+
+def test_the_blend_holds_both_side_by_side(done: Path) -> None:
+    bpy.ops.wm.open_mainfile(filepath=str(done / "adapted.blend"))
+    armatures = {o.name: o for o in bpy.data.objects if o.type == "ARMATURE"}
+    assert len(armatures) == 2
+    (copy,) = (o for name, o in armatures.items() if name.endswith("recording"))
+    (figure,) = (o for o in armatures.values() if o is not copy)
+    assert figure.animation_data.action.name == "forward_jump_116cm adapted"
+    recorded = copy.animation_data.action
+    assert recorded.name == "forward_jump_116cm"
+    assert recorded.use_fake_user
+    assert tuple(recorded.frame_range) == (1.0, 336.0)  # whole, not cut to the recipe's frames
+    assert (bpy.context.scene.frame_start, bpy.context.scene.frame_end) == WINDOW
+
+
+def test_pinned_points_stay_where_they_were_sent(done: Path) -> None:
+    """By the written keys, as Blender evaluates them, in .blend and FBX alike."""
+    report = json.loads((done / "report.json").read_text(encoding="utf-8"))
+    bpy.ops.wm.open_mainfile(filepath=str(done / "adapted.blend"))
+    written = read_recording(bpy.data.objects["forward_jump_116cm"])
+    exported = reimport_fbx(done / "adapted.fbx", written.frames)
+    with np.load(done / "trajectory.npz") as trajectory:
+        names = list(trajectory["contact_names"])
+        for contact in report["contacts"]:
+            track = trajectory["contact_point"][:, names.index(contact["point"])]
+            for recording in (written, exported):
+                bone = recording.index(contact["bone"])
+                held = (recording.times > contact["pinned_from_s"]) & (
+                    recording.times < contact["pinned_to_s"]
+                )
+                start = np.argmax(held)
+                at = track[np.searchsorted(trajectory["time"], recording.times[start])]
+                local = recording.rotations[start, bone].T @ (at - recording.heads[start, bone])
+                points = recording.heads[held, bone] + recording.rotations[held, bone] @ local
+                off = np.linalg.norm(points - np.array(contact["place_m"]), axis=1)
+                assert off.max() < 2e-3, contact["name"]
+
+
+def test_the_recording_is_untouched(done: Path, clip: Path) -> None:
+    bpy.ops.wm.open_mainfile(filepath=str(done / "adapted.blend"))
+    kept = fcurves.holder(bpy.data.objects["forward_jump_116cm recording"]).fcurves
+    keys = {(c.data_path, c.array_index): fcurves.keys(c) for c in kept}
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    fresh = fcurves.holder(import_clip(clip).armature).fcurves
+    assert len(keys) == len(fresh)
+    for curve in fresh:
+        assert np.array_equal(keys[curve.data_path, curve.array_index], fcurves.keys(curve))
+
+
+def test_the_command_line_wins_over_the_recipe(clip: Path, tmp_path: Path) -> None:
+    options = ("--mass", "35", "--height", "1.2", "--last", "280")
+    assert run(tmp_path, clip, "mass = 90\n" + EDIT, *options) == 0
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    assert report["figure"]["mass_kg"] == pytest.approx(35.0)
+    assert report["figure"]["height_m"] == pytest.approx(1.2)
+    assert report["recording"]["first_frame"] == 100.0
+    assert report["recording"]["last_frame"] == 280.0
+
+
+def test_a_blend_is_a_clip_too(clip: Path, tmp_path: Path, capsys) -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    import_clip(clip)
+    path = tmp_path / "recorded.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    capsys.readouterr()
+    assert main(["analyze", str(path), "--first", "120"]) == 0
+    printed = capsys.readouterr().out
+    assert "ground 2" in printed
+    assert "Left toe 2" in printed
+
+
+def test_the_starter_recipe_is_valid_and_names_the_landing(
+    clip: Path, tmp_path: Path, capsys
+) -> None:
+    shutil.copy(clip, tmp_path / "jump.bvh")
+    target = tmp_path / "recipes" / "jump.toml"
+    target.parent.mkdir()
+    command = ["analyze", str(tmp_path / "jump.bvh"), "--first", "100", "--last", "290"]
+    command += ["--bone", "left foot=LeftFoot", "--write-recipe", str(target)]
+    assert main(command) == 0
+    recipe = parse_recipe(target.read_text(encoding="utf-8"))
+    assert recipe.clip == "../jump.bvh"
+    assert recipe.problem.frames == WINDOW
+    assert recipe.problem.bones == {"left foot": "LeftFoot"}
+    assert [pin.phase for pin in recipe.problem.pins] == ["ground 2"]
+    assert main(command) == 2  # what an artist may have changed is not overwritten
+    assert "jump.toml" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- jobs that do not
+
+
+def one_line(capsys) -> str:
+    """What was said on the standard error: one line, no traceback."""
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "Traceback" not in said
+    return said
+
+
+@pytest.mark.parametrize(
+    ("recipe", "line"),
+    [
+        (EDIT.replace("ground 2", "ground 7"), "line 5"),
+        (EDIT + 'points = ["Left nose"]\n', "line 8"),
+        (EDIT + "offset = [1, 2, 3]\n", "line 8"),
+        (EDIT.replace("forward", "foward"), "line 6"),
+        (EDIT + '[bones]\n"left foot" = "Fuss.L"\n', "line 9"),
+        (EDIT + '[[contact]]\nname = "Left nose 1"\nremove = true\n', "line 9"),
+        (EDIT + '[[pin]]\nphase = "ground 2"\npoints = ["Left toe"]\nup = -0.4\n', "line 8"),
+    ],
+)
+def test_what_is_wrong_in_a_recipe_is_said_with_its_line(
+    recipe: str, line: str, clip: Path, tmp_path: Path, capsys
+) -> None:
+    assert run(tmp_path, clip, recipe) == 2
+    assert f"edit.toml, {line}:" in one_line(capsys)
+    assert not (tmp_path / "out").exists()
+
+
+def test_frames_beyond_the_recording_are_too_short(clip: Path, tmp_path: Path, capsys) -> None:
+    assert run(tmp_path, clip, "frames = [400, 700]\n") == 2
+    assert "0.00 s" in one_line(capsys)
+
+
+def test_a_truncated_clip_is_said_with_its_line(clip: Path, tmp_path: Path, capsys) -> None:
+    short = tmp_path / "short.bvh"
+    short.write_bytes(clip.read_bytes()[:20_000])
+    assert run(tmp_path, short, EDIT) == 2
+    assert "short.bvh, line " in one_line(capsys)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_clip_that_is_no_clip(tmp_path: Path, capsys) -> None:
+    for name in ("none.fbx", "none.blend", "none.txt"):
+        assert run(tmp_path, tmp_path / name, EDIT) == 2
+        assert name in one_line(capsys)
+    (tmp_path / "bad.blend").write_bytes(b"not a blend")
+    assert run(tmp_path, tmp_path / "bad.blend", EDIT) == 2
+    assert "bad.blend" in one_line(capsys)
+
+
+def test_no_solution_leaves_a_report(clip: Path, tmp_path: Path, capsys) -> None:
+    apart = EDIT + 'points = ["Left heel", "Left toe"]\nleft = 3.0\n'
+    assert run(tmp_path, clip, apart) == 3
+    assert "Landing: Left" in one_line(capsys)
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written - {"best_found.blend"} == {"report.json", "report.txt"}
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    assert report["status"] in ("stalled", "too many steps")
+
+
+def test_a_wrong_option_is_wrong_input(capsys) -> None:
+    assert main(["adapt", "x.bvh", "--recipe", "x.toml", "--mass", "-3"]) == 2
+    assert main(["adapt", "x.bvh"]) == 2
+    assert main(["fly"]) == 2
+    assert "Traceback" not in capsys.readouterr().err
+    assert main(["--help"]) == 0
+
+
+def test_a_job_without_a_clip(tmp_path: Path, capsys) -> None:
+    (tmp_path / "edit.toml").write_text(EDIT)
+    assert main(["adapt", "--recipe", str(tmp_path / "edit.toml")]) == 2
+    assert "no recording" in one_line(capsys)
+
+
+# ---------------------------------------------------------------- the outbox
+
+
+def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputNotWritable), Outbox(tmp_path / "file" / "out"):
+        pass
+
+
+def test_a_failing_run_leaves_the_folder_as_it_was(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("old")
+    with Outbox(tmp_path) as outbox:
+        outbox.write_text("a.txt", "new")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+    assert (tmp_path / "a.txt").read_text() == "old"
+
+
+def test_delivered_files_replace_the_old_ones(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("old")
+    with Outbox(tmp_path) as outbox:
+        outbox.write_text("a.txt", "new")
+        assert (tmp_path / "a.txt").read_text() == "old"
+        assert outbox.deliver() == [tmp_path / "a.txt"]
+    assert (tmp_path / "a.txt").read_text() == "new"
+    assert len(list(tmp_path.iterdir())) == 1

@@ -1,0 +1,255 @@
+"""What becomes of an adapted motion: fit, compare, accept, discard, report, export, best so far."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import current_action, read_take, write_take_in_parts
+from hangtime.bridge.armature.traces_store import kept
+from hangtime.bridge.files.import_clip import import_clip
+from hangtime.operators.solve.session import session
+from hangtime.solver.data.recording import PoseTrack
+from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.helpers.clips import mocap_path
+
+JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def adapted(analysed: bpy.types.Object) -> bpy.types.Object:
+    analysed.hangtime.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    return analysed
+
+
+def test_the_parts_of_the_body_are_listed_with_what_is_missing() -> None:
+    rigs.reset()
+    armature = import_clip(mocap_path(JUMP)).armature
+    armature.data.bones["LeftFoot"].name = "Gubbins"
+    with pytest.raises(RuntimeError, match="left foot"):
+        bpy.ops.hangtime.analyze()
+    parts = armature.hangtime.parts
+    assert [p.name for p in parts if p.needed and not p.bone] == ["left foot"]
+    assert parts["right foot"].bone == "RightFoot"
+    parts["left foot"].bone = "Gubbins"
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert {c.bone for c in armature.hangtime.contacts} >= {"Gubbins", "RightFoot"}
+
+
+def test_the_fit_says_in_words_how_near_it_is(analysed: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.fit() == {"FINISHED"}
+    first, second = analysed.hangtime.fit_quality.splitlines()
+    assert first == "Very close to the recording"
+    assert " cm apart" in second
+    assert current_action(analysed).hangtime.recording is None
+
+
+def test_traces_are_kept_and_survive_saving(adapted: bpy.types.Object, tmp_path: Path) -> None:
+    name = adapted.name
+    was = kept(adapted.hangtime.adapted).traces
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
+    again = bpy.data.objects[name]
+    now, recorded = kept(again.hangtime.adapted), kept(again)
+    assert now is not None
+    assert recorded is not None
+    np.testing.assert_allclose(now.traces.heads, was.heads)
+    assert now.traces.flights[0].name == "flight 1"
+    assert recorded.traces.forces.size == 0
+    assert again.hangtime.stances["ground 2"].up == pytest.approx(0.05)
+
+
+def test_what_is_drawn_follows_the_armature(adapted: bpy.types.Object) -> None:
+    stored = kept(adapted.hangtime.adapted)
+    adapted.location.x += 2.0
+    bpy.context.view_layer.update()
+    moved = stored.moved(adapted)
+    np.testing.assert_allclose(np.array(moved)[:3, 3], (2.0, 0.0, 0.0), atol=1e-6)
+
+
+def test_compare_goes_to_and_fro(adapted: bpy.types.Object) -> None:
+    result = current_action(adapted)
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert current_action(adapted) == result.hangtime.recording
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert current_action(adapted) == result
+
+
+def test_export_waits_for_a_result_that_is_accepted(
+    adapted: bpy.types.Object, tmp_path: Path
+) -> None:
+    assert not bpy.ops.hangtime.export_fbx.poll()
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    assert not bpy.ops.hangtime.accept.poll()
+    fbx, glb = tmp_path / "out.fbx", tmp_path / "out.glb"
+    assert bpy.ops.hangtime.export_fbx(filepath=str(fbx)) == {"FINISHED"}
+    assert bpy.ops.hangtime.export_gltf(filepath=str(glb)) == {"FINISHED"}
+    assert fbx.stat().st_size > 10_000
+    assert glb.read_bytes()[:4] == b"glTF"
+    before = set(bpy.data.objects)
+    bpy.ops.import_scene.gltf(filepath=str(glb))
+    made = next(o for o in set(bpy.data.objects) - before if o.type == "ARMATURE")
+    frames = made.animation_data.action.frame_range
+    assert frames[1] - frames[0] == pytest.approx(325 - 73, abs=1.0)
+    assert current_action(adapted) == adapted.hangtime.adapted
+
+
+def test_a_result_is_discarded_and_the_edit_stays(adapted: bpy.types.Object) -> None:
+    recorded = current_action(adapted).hangtime.recording
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(adapted) == recorded
+    assert [a.name for a in bpy.data.actions] == [recorded.name]
+    assert adapted.hangtime.adapted is None
+    assert adapted.hangtime.stances["ground 2"].up == pytest.approx(0.05)
+    assert not bpy.ops.hangtime.discard.poll()
+
+
+def test_the_report_becomes_a_text(adapted: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.show_report() == {"FINISHED"}
+    text = bpy.data.texts[f"{adapted.hangtime.adapted.name} report"].as_string()
+    assert "Solved" in text
+    assert "the pelvis rises to" in text
+
+
+def test_the_best_of_a_solve_that_failed_can_be_used(analysed: bpy.types.Object) -> None:
+    stance = analysed.hangtime.stances["ground 2"]
+    stance.forward = 8.0
+    with pytest.raises(RuntimeError, match="No motion was found"):
+        bpy.ops.hangtime.adapt()
+    assert len(bpy.data.actions) == 1
+    assert session().best is not None
+    assert bpy.ops.hangtime.use_best() == {"FINISHED"}
+    assert current_action(analysed).hangtime.recording is not None
+    assert "not all is met" in analysed.hangtime.status
+    assert not bpy.ops.hangtime.use_best.poll()
+
+
+@pytest.mark.slow
+def test_refining_lessens_what_is_chosen(adapted: bpy.types.Object) -> None:
+    adapted.hangtime.objective = "TORQUE_OUTPUT"
+    assert bpy.ops.hangtime.refine() == {"FINISHED"}
+    assert "objective" in adapted.hangtime.adapted.hangtime.report.lower()
+
+
+def test_a_contact_that_was_not_seen_is_added(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    gone = settings.contacts["Left heel 2"]
+    gone.used = False
+    found, end = np.array(gone.found_at), gone.end_frame  # adding moves the rows in memory
+    bpy.context.scene.frame_set(round(gone.start_frame) + 4)
+    assert bpy.ops.hangtime.add_contact(point="Left heel") == {"FINISHED"}
+    row = settings.contacts[settings.active_contact]
+    assert row.added
+    row.end_frame = end
+    place, count = np.array(row.at), len(settings.contacts)
+    assert np.linalg.norm(place - found) < 0.03
+    settings.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}  # what was added outlives an analysis
+    assert len(settings.contacts) == count
+    settings.active_contact = settings.contacts.find("Left heel added")
+    assert bpy.ops.hangtime.remove_contact() == {"FINISHED"}
+    assert "Left heel added" not in settings.contacts
+
+
+def test_an_override_of_an_analysed_armature_is_analysed_again(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    name, count = analysed.name, len(analysed.hangtime.contacts)
+    library = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=library)
+    rate = bpy.context.scene.render.fps, bpy.context.scene.render.fps_base
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.context.scene.render.fps, bpy.context.scene.render.fps_base = rate
+    with bpy.data.libraries.load(library, link=True) as (_, wanted):
+        wanted.objects = [name]
+    override = wanted.objects[0].override_create(remap_local_usages=True)
+    if override.name not in bpy.context.scene.objects:
+        bpy.context.collection.objects.link(override)
+    bpy.context.scene.hangtime.armature = override
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert len(override.hangtime.contacts) == count
+    assert override.hangtime.contacts["Left heel 2"].used
+
+
+def test_longer_legs_perform_and_are_exported_on_their_own_armature(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    first = analysed.hangtime.adapted
+    assert bpy.ops.hangtime.add_body_change(kind="LIMB") == {"FINISHED"}
+    row = analysed.hangtime.body_changes[-1]
+    row.bones.clear()
+    for bone in ("LeftLeg", "RightLeg"):
+        row.bones.add().name = bone
+    row.length = 1.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    result = analysed.hangtime.adapted
+    assert result != first
+    other = result.hangtime.performer
+    assert other != analysed
+    assert current_action(other) == result
+    assert not bpy.ops.hangtime.compare.poll()
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    fbx = tmp_path / "long.fbx"
+    assert bpy.ops.hangtime.export_fbx(filepath=str(fbx)) == {"FINISHED"}
+    assert other.name.encode() in fbx.read_bytes()
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert "changed" not in "".join(o.name for o in bpy.data.objects)
+    assert analysed.hangtime.adapted == first
+
+
+def test_a_stated_height_mends_a_wrong_scale() -> None:
+    rigs.reset()
+    armature = import_clip(mocap_path(JUMP)).armature
+    settings = armature.hangtime
+    settings.use_range = True
+    settings.first_frame, settings.last_frame = 73, 325
+    armature.scale = (20.0, 20.0, 20.0)
+    bpy.context.view_layer.update()
+    settings.use_height, settings.height = True, 1.7
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert settings.measured_height == pytest.approx(20.0 * 1.69, rel=0.02)
+    assert "Left heel 2" in settings.contacts
+
+
+def test_a_result_that_is_not_accepted_goes_with_the_file(
+    adapted: bpy.types.Object, tmp_path: Path
+) -> None:
+    first = adapted.hangtime.adapted.name
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert bpy.ops.hangtime.accept() == {"FINISHED"}
+    second = adapted.hangtime.adapted.name
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
+    assert second in bpy.data.actions
+    assert first not in bpy.data.actions
+
+
+def test_writing_that_is_cancelled_leaves_nothing_behind(analysed: bpy.types.Object) -> None:
+    recorded = current_action(analysed)
+    recorded.use_fake_user = False
+    recording = read_take(analysed, 73.0, 325.0)
+    bones = [recording.index(name) for name in ("Hips", "LeftUpLeg", "LeftLeg")]
+    track = PoseTrack(
+        recording.frames,
+        tuple(recording.bones[b].name for b in bones),
+        recording.rotations[:, bones],
+        recording.heads[:, bones[0]],
+    )
+    writing = write_take_in_parts(analysed, track)
+    while len(bpy.data.actions) == 1:
+        next(writing)
+    writing.close()
+    assert list(bpy.data.actions) == [recorded]
+    assert not recorded.use_fake_user
+    assert current_action(analysed) == recorded

@@ -1,0 +1,146 @@
+"""What newcomers do: clips as Blender's importers bring them, and changes while a solve goes on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import read_take
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.bridge.files.import_clip import import_clip
+from hangtime.operators.solve.adapt import write_answer
+from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
+from hangtime.operators.solve.common import said
+from hangtime.operators.solve.session import (
+    Asked,
+    session,
+)
+from hangtime.operators.solve.solving import Solving, State
+from hangtime.operators.solve.task import Task, TaskOperator
+from hangtime.solver.data.digest import digest
+from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.helpers.clips import mocap_path
+
+RUN = "cmu_bvh/run_1.bvh"
+TOO_LARGE = 14.0
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def run() -> bpy.types.Object:
+    """A run, many times too large, as Blender's own importer brings it by default."""
+    rigs.reset()
+    armature = import_clip(mocap_path(RUN)).armature
+    armature.scale *= TOO_LARGE
+    return armature
+
+
+@pytest.mark.parametrize("shrunk", [1.0, 0.002])
+def test_a_figure_of_a_wrong_scale_is_told_as_such(run: bpy.types.Object, shrunk: float) -> None:
+    """Not that feet never touch the ground, which is what gravity's size makes of it."""
+    run.scale *= shrunk
+    with pytest.raises(RuntimeError, match=r"run_1.* is .* m tall.*import it again at .* scale"):
+        bpy.ops.hangtime.analyze()
+    assert not run.hangtime.contacts
+
+
+def test_the_scale_that_is_told_mends_it(run: bpy.types.Object) -> None:
+    with pytest.raises(RuntimeError) as told:
+        bpy.ops.hangtime.analyze()
+    factor = float(str(told.value).split("again at ")[1].split()[0])
+    run.scale *= factor
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert run.hangtime.measured_height == pytest.approx(1.75, rel=0.05)
+
+
+def test_frames_beside_the_recording_are_told_as_such(run: bpy.types.Object) -> None:
+    run.hangtime.use_range = True
+    run.hangtime.first_frame, run.hangtime.last_frame = 5000, 5200
+    with pytest.raises(RuntimeError, match=r"no keys; they lie from frame 1 to 167"):
+        bpy.ops.hangtime.analyze()
+
+
+def test_a_contact_that_ends_before_it_begins_is_named(run: bpy.types.Object) -> None:
+    """It would be left out without a word."""
+    settings = run.hangtime
+    run.scale /= TOO_LARGE
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    row = settings.contacts[2]
+    row.start_frame, row.end_frame = 90.0, 60.0
+    told = rf"{row.name}.*ends at frame 60, before it begins at frame 90; swap them"
+    with pytest.raises(RuntimeError, match=told):
+        bpy.ops.hangtime.adapt()
+    row.used = False
+    assert problem_of(settings, read_take(run, None, None)).contacts
+
+
+@pytest.mark.parametrize("change", ["no keys", "uneven scale"])
+def test_a_change_meanwhile_is_said_to_have_cost_the_result(
+    run: bpy.types.Object, change: str
+) -> None:
+    """Also where what is there now cannot be read at all."""
+    recording = read_take(run, 1.0, 20.0)
+    asked = Asked(run.name, digest(recording), recording, MotionProblem())
+    if change == "no keys":
+        run.animation_data.action = bpy.data.actions.new("Other")
+    else:
+        run.scale = (1.0, 1.0, 2.0)
+    session().solving = replace(Solving(), state=State.SOLVING)
+    try:
+        with pytest.raises(ChangedMeanwhile) as fault:
+            complete(write_answer(asked, None))
+    finally:
+        session().solving = None
+    assert "thrown away" in said(fault.value)
+
+
+@pytest.mark.parametrize("name", ["analyze", "fit"])
+def test_an_armature_deleted_before_the_work_begins_is_missed(
+    run: bpy.types.Object, name: str
+) -> None:
+    bpy.data.objects.remove(run)
+    session().solving = Solving()
+    operator = {"analyze": AnalyzeOperator, "fit": FitOperator}[name]
+    try:
+        with pytest.raises(NoArmature):
+            next(operator.task(None, bpy.context))
+    finally:
+        session().solving = None
+
+
+class _Mistaken(TaskOperator):
+    """As Blender runs it, without a window."""
+
+    def __init__(self) -> None:
+        self.left = False
+        self._task = self.task()
+
+    def task(self) -> Task:
+        yield from ()
+        raise AttributeError("a mistake of ours")
+
+    def leave(self) -> None:
+        self.left = True
+
+
+def test_a_mistake_of_ours_does_not_leave_every_button_grey() -> None:
+    operator = _Mistaken()
+    with pytest.raises(AttributeError):
+        operator._work()
+    assert operator.left
+
+
+def test_plots_of_a_recording_that_was_only_analyzed(run: bpy.types.Object, tmp_path: Path) -> None:
+    """It has contacts, but no forces."""
+    run.scale /= TOO_LARGE
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert bpy.ops.hangtime.save_plots(filepath=str(tmp_path / "plots.csv")) == {"FINISHED"}
+    assert any(tmp_path.iterdir())

@@ -1,0 +1,289 @@
+"""When the viewport's overlays are shown, and when they are made again; without a window."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from math import radians
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.traces_store import keep
+from hangtime.bridge.properties.kinds import ConstraintKind, Span
+from hangtime.operators.solve.live import live
+from hangtime.tests.blender.helpers import motions, rigs
+from hangtime.tests.blender.helpers.overlays import (
+    FRAME,
+    adapted,
+    bone_in_world,
+    constrain,
+    in_world,
+    seen,
+    shown,
+    traced,
+)
+from hangtime.ui.overlay import handlers
+from hangtime.ui.overlay.context import spans
+from hangtime.ui.overlay.context.figure_cache import Figures
+from hangtime.ui.overlay.context.layer import Layer, Part
+from hangtime.ui.overlay.context.view_context import look_at
+from hangtime.ui.overlay.geometry.shapes import (
+    Label,
+    Shape,
+    Standing,
+)
+from hangtime.ui.overlay.layer_selection import layers
+from hangtime.ui.overlay.layers import limits, pins
+from hangtime.ui.overlay.picture_cache import Pictures
+from mathutils import Matrix
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def armature() -> bpy.types.Object:
+    return adapted(Matrix.Identity(4))
+
+
+# ---------------------------------------------------------------- when things are shown
+
+
+@pytest.mark.parametrize(
+    ("switch", "parts"),
+    [
+        ("pins", {Part.CONTACTS, Part.POINTS}),
+        ("limits", {Part.LIMITS}),
+        ("poses", {Part.POSES}),
+        ("forces", {Part.FORCES}),
+        ("path", {Part.RECORDED_PATH, Part.ADAPTED_PATH, Part.CENTRE}),
+        ("ghosts", {Part.RECORDED_GHOSTS, Part.ADAPTED_GHOSTS, Part.GHOST_NOW}),
+        ("recording_too", {Part.RECORDED_GHOSTS}),
+    ],
+)
+def test_every_switch_takes_its_own_away(
+    armature: bpy.types.Object, switch: str, parts: set[Part]
+) -> None:
+    constrain(armature, ConstraintKind.POSE)
+    every = set(shown(armature))
+    setattr(bpy.context.scene.hangtime.view, switch, False)
+    assert every - set(shown(armature)) == parts
+
+
+def test_what_counts_now_stands_out(armature: bpy.types.Object) -> None:
+    armature.hangtime.contacts.add().used = False
+    layer = pins.contacts(seen(armature))
+    assert [pin.standing for pin in layer.content[0]] == [
+        Standing.NOW,
+        Standing.LATER,
+        Standing.OFF,
+    ]
+
+
+def test_phases_and_instants_tell_when_a_constraint_holds(armature: bpy.types.Object) -> None:
+    row = constrain(armature, ConstraintKind.CONE, "shin", span=Span.PHASE.name)
+    armature.hangtime.use_range = True
+    armature.hangtime.first_frame, armature.hangtime.last_frame = 1, 24
+    for phase, instant, expected in (
+        ("ground 1", "THROUGHOUT", (1.0, 12.0)),
+        ("flight 1", "MIDDLE", (15.0, 15.0)),
+        ("ground 2", "END", (24.0, 24.0)),
+        ("flight 9", "START", spans.NEVER),
+    ):
+        row.phase, row.instant = phase, instant
+        assert seen(armature).span(row) == pytest.approx(expected)
+
+
+def test_overlays_follow_the_viewport(armature: bpy.types.Object) -> None:
+    context = viewport()
+    assert look_at(context) is not None
+    context.space_data.overlay.show_overlays = False
+    assert look_at(context) is None
+    context.space_data.overlay.show_overlays = True
+    armature.hide_set(True)
+    assert look_at(context) is None
+    armature.hide_set(False)
+    bpy.context.scene.hangtime.view.show = False
+    assert look_at(context) is None
+    bpy.context.scene.hangtime.view.show = True
+    bpy.data.objects.remove(armature)
+    assert look_at(context) is None
+
+
+def viewport() -> SimpleNamespace:
+    """A context of a 3D viewport."""
+    areas = (area for screen in bpy.data.screens for area in screen.areas)
+    space = next(s for area in areas for s in area.spaces if s.type == "VIEW_3D")
+    space.overlay.show_overlays = True
+    scene, view_layer = bpy.context.scene, bpy.context.view_layer
+    return SimpleNamespace(scene=scene, view_layer=view_layer, space_data=space)
+
+
+def test_the_live_ghost_takes_the_place_of_the_adapted_motion(armature: bpy.types.Object) -> None:
+    stored = shown(armature)
+    ghost = traced(armature)
+    live().armature, live().seen = armature.name, SimpleNamespace(traces=ghost)
+    try:
+        now, again = shown(armature), shown(armature)
+    finally:
+        live().seen = None
+    assert now[Part.ADAPTED_GHOSTS].content != stored[Part.ADAPTED_GHOSTS].content
+    assert now[Part.ADAPTED_GHOSTS].content == again[Part.ADAPTED_GHOSTS].content
+    head, _ = bone_in_world(armature, "head")
+    points = in_world(now[Part.GHOST_NOW])
+    assert np.linalg.norm(points - head, axis=1).min() < 0.01 * armature.scale[0]
+
+
+# ---------------------------------------------------------------- what is made again
+
+
+class Counted:
+    """Draws without a graphics card, and counts."""
+
+    def __init__(self) -> None:
+        self.built: list[Part] = []
+        self.uploads = 0
+        self.pictures = Pictures(self._upload)
+        self.figures = Figures()
+
+    def _upload(self, shapes: Sequence[Shape]) -> tuple[Shape, ...]:
+        self.uploads += 1
+        return tuple(shapes)
+
+    def draw(self, armature: bpy.types.Object, frame: float = FRAME) -> set[Part]:
+        """The layers that had to be made."""
+        self.built.clear()
+        self.pictures.of([self._counted(x) for x in layers(seen(armature, frame), self.figures)])
+        return set(self.built)
+
+    def _counted(self, layer: Layer) -> Layer:
+        def build() -> Iterator[Shape | Label]:
+            self.built.append(layer.part)
+            yield from layer.build()
+
+        return replace(layer, build=build)
+
+
+@pytest.fixture
+def constrained(armature: bpy.types.Object) -> bpy.types.Object:
+    constrain(armature, ConstraintKind.CONE, "thigh")
+    constrain(armature, ConstraintKind.ANGLE, "shin")
+    constrain(armature, ConstraintKind.TWIST, "head")
+    constrain(armature, ConstraintKind.POINT, "foot", use_place=True)
+    constrain(armature, ConstraintKind.POSE, span=Span.FRAME.name, first_frame=5.0)
+    return armature
+
+
+def test_nothing_is_made_again_while_nothing_changes(constrained: bpy.types.Object) -> None:
+    counted = Counted()
+    assert counted.draw(constrained) == set(shown(constrained))
+    assert counted.draw(constrained) == set()
+    assert counted.uploads == 1
+
+
+def test_what_is_drawn_moves_along_with_the_armature(constrained: bpy.types.Object) -> None:
+    """Only the line from where the recording has a held point is another one."""
+    counted = Counted()
+    counted.draw(constrained)
+    constrained.location.x += 1.0
+    bpy.context.view_layer.update()
+    assert counted.draw(constrained) == {Part.POINTS}
+    assert counted.uploads == 2
+
+
+def test_another_frame_makes_again_what_depends_on_it(constrained: bpy.types.Object) -> None:
+    counted = Counted()
+    counted.draw(constrained)
+    bpy.context.scene.frame_set(10)
+    again = {Part.POINTS, Part.LIMITS, Part.FORCES, Part.CENTRE, Part.GHOST_NOW}
+    assert counted.draw(constrained, 10.0) == again
+    bpy.context.scene.frame_set(int(FRAME))
+    assert counted.draw(constrained) == set()
+    assert counted.uploads == 2
+
+
+@pytest.mark.parametrize(
+    ("index", "change", "part"),
+    [
+        (0, "half_angle", Part.LIMITS),
+        (1, "upper", Part.LIMITS),
+        (2, "lower", Part.LIMITS),
+        (3, "place", Part.POINTS),
+        (4, "pose_frame", Part.POSES),
+    ],
+)
+def test_a_changed_constraint_is_made_again(
+    constrained: bpy.types.Object, index: int, change: str, part: Part
+) -> None:
+    counted = Counted()
+    row = constrained.hangtime.constraints[index]
+    row.use_pose_frame = True
+    counted.draw(constrained)
+    value = getattr(row, change)
+    setattr(row, change, (1.0, 2.0, 3.0) if change == "place" else value + 0.1)
+    assert counted.draw(constrained) == {part}
+
+
+def test_other_traces_are_drawn_again(constrained: bpy.types.Object) -> None:
+    counted = Counted()
+    counted.draw(constrained)
+    keep(constrained.hangtime.adapted, traced(constrained), constrained.matrix_world)
+    again = {Part.ADAPTED_PATH, Part.ADAPTED_GHOSTS, Part.FORCES, Part.CENTRE, Part.GHOST_NOW}
+    assert counted.draw(constrained) == again | {Part.POSES}
+
+
+def test_what_is_remembered_is_bounded(constrained: bpy.types.Object) -> None:
+    counted = Counted()
+    for frame in range(1, 20):
+        counted.draw(constrained, float(frame))
+    assert counted.draw(constrained, 19.0) == set()
+    assert counted.draw(constrained, 1.0) != set()
+
+
+# ---------------------------------------------------------------- what may be missing
+
+
+def test_a_renamed_or_missing_bone_is_no_trouble(constrained: bpy.types.Object) -> None:
+    constrained.data.bones["shin"].name = "calf"
+    constrained.hangtime.constraints[0].bones[0].name = "nobody"
+    constrained.hangtime.constraints[3].bones.clear()
+    assert Counted().draw(constrained) == set(shown(constrained))
+
+
+def test_a_figure_of_one_body_without_a_length_is_drawn() -> None:
+    armature = motions.adapted()
+    constrain(armature, ConstraintKind.CONE, "shin")
+    constrain(armature, ConstraintKind.POSE)
+    assert Counted().draw(armature, motions.FIRST) == set(shown(armature, motions.FIRST))
+
+
+def test_an_armature_without_anything_shows_nothing() -> None:
+    rigs.reset()
+    armature = rigs.make_armature()
+    for layer in layers(seen(armature), Figures()):
+        assert list(layer.build()) == []
+
+
+def test_handlers_come_and_go_without_a_graphics_card() -> None:
+    drawing = "hangtime.ui.overlay.gpu_batches"
+    sys.modules.pop(drawing, None)
+    with ExitStack() as undo:
+        overlay = handlers.add(undo)
+        overlay.draw_labels()
+    assert drawing not in sys.modules
+
+
+def test_a_chosen_limit_that_is_off_is_still_seen(armature: bpy.types.Object) -> None:
+    row = constrain(armature, ConstraintKind.CONE, "shin", half_angle=radians(30.0), used=False)
+    assert [x.standing for x in limits.layer(seen(armature), Figures()).content[0]] == [
+        Standing.OFF
+    ]
+    armature.hangtime.active_constraint = -1
+    assert not limits.layer(seen(armature), Figures()).content[0]
+    row.used = True
+    assert limits.layer(seen(armature), Figures()).content[0]

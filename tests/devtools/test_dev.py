@@ -1,0 +1,55 @@
+"""The set-up's own decisions; that it works as a whole is what every CI run shows."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from hangtime.devtools.checks import summary
+from hangtime.devtools.environment import libraries, pythons
+from hangtime.devtools.environment.problem import SetUpError
+
+
+def test_without_a_wish_the_running_python_decides() -> None:
+    blender, path = pythons.choose(None)
+    assert (blender.python, path) == (pythons.running(), sys.executable)
+
+
+@pytest.mark.parametrize("wanted", ["4.2", "4.2.x", "4.2.23"])
+def test_a_blender_is_named_by_the_beginning_of_its_version(wanted: str) -> None:
+    assert [b.version for b in pythons.named(wanted)] == ["4.2.23"]
+
+
+@pytest.mark.parametrize("wanted", ["4.5.1", "3.6", "", "new"])
+def test_an_unknown_blender_is_refused(wanted: str) -> None:
+    with pytest.raises(SetUpError, match=r"4\.5\.15"):
+        pythons.named(wanted)
+
+
+def test_a_missing_python_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pythons, "running", lambda: "3.14")
+    monkeypatch.setattr(pythons, "minor_of", lambda _: None)
+    with pytest.raises(SetUpError, match=r"needs Python 3\.11 or 3\.13.*this is 3\.14"):
+        pythons.choose(None)
+
+
+def test_a_shim_that_fails_is_no_python(tmp_path: Path) -> None:
+    shim = tmp_path / "python3.13"
+    shim.write_text("#!/bin/sh\nexit 127\n")
+    shim.chmod(0o755)
+    assert pythons.minor_of(str(shim)) is None
+
+
+def test_who_is_not_root_is_told_the_line_to_run(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(libraries.shutil, "which", lambda _: "/usr/bin/apt-get")
+    monkeypatch.setattr(libraries.os, "geteuid", lambda: 1000)
+    with pytest.raises(SetUpError, match=r"sudo apt-get install -y \S+ libxi6$"):
+        libraries.install("Blender needs libXi.so.6", ("libxi6",), tmp_path / "log")
+
+
+def test_errors_count_as_failures(tmp_path: Path) -> None:
+    counts = 'tests="9" failures="1" errors="2" skipped="3"'
+    for name in ("a.xml", "b.xml"):
+        (tmp_path / name).write_text(f"<testsuites><testsuite {counts}/></testsuites>")
+    assert str(summary.read_all(tmp_path)) == "6 passed, 6 failed, 6 skipped"

@@ -1,0 +1,31 @@
+"""A fitted jump that the tests of several files share."""
+
+from functools import cache
+
+from hangtime.solver.analysis.analyse import Analysis, analyse
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.stages.fit import Fit, fit
+from hangtime.tests.helpers.clips import load_recording
+
+HOPS = "cmu_bvh/forward_hops_01_01.bvh"
+HOP = (1.5, 2.8)  # s, the first of the hops; short, so that its fit is quick
+
+
+@cache
+def hop() -> Analysis:
+    """The first hop of the ten."""
+    return analyse(load_recording(HOPS), MotionProblem(frames=frames_of(HOPS, HOP)))
+
+
+@cache
+def fitted_hop() -> Fit:
+    analysis = hop()
+    return fit(analysis.performance, analysis.schedule)
+
+
+def frames_of(relative: str, seconds: tuple[float, float]) -> tuple[float, float]:
+    """Scene frames of a recording's instants."""
+    recording = load_recording(relative)
+    rate = (len(recording.times) - 1) / float(recording.times[-1])
+    first = float(recording.frames[0])
+    return tuple(round(first + t * rate) for t in seconds)  # type: ignore[return-value]

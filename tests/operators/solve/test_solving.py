@@ -1,0 +1,67 @@
+"""The states of a solve, without Blender."""
+
+import pytest
+from hangtime.operators.solve.solving import Solving, State
+from hangtime.solver.worker.protocol import Progress
+
+
+def told(share: float = 0.5) -> Progress:
+    return Progress(1, "adapt", 2, 40.0, "Left toe 2", share)
+
+
+def solving() -> Solving:
+    under_way = Solving()
+    under_way.advance(State.SOLVING)
+    return under_way
+
+
+def test_the_status_bar_says_stage_percent_and_the_worst_constraint() -> None:
+    under_way = solving()
+    under_way.heard(told())
+    assert "adapting" in under_way.text
+    assert "48 %" in under_way.text
+    assert "Left toe 2 (40 × allowed)" in under_way.text
+
+
+def test_the_share_never_falls_on_the_way() -> None:
+    under_way = Solving()
+    shares = [under_way.share]
+    under_way.advance(State.SOLVING)
+    for share in (0.1, 0.6, 1.0):
+        under_way.heard(told(share))
+        shares.append(under_way.share)
+    for state in (State.CHECKING, State.WRITING, State.ENDED):
+        under_way.advance(state)
+        shares.append(under_way.share)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+
+def test_only_a_solve_can_be_stopped_and_only_once() -> None:
+    under_way = Solving()
+    assert not under_way.can_stop
+    with pytest.raises(ValueError, match="reading"):
+        under_way.stop()
+    under_way.advance(State.SOLVING)
+    under_way.stop()
+    assert not under_way.can_stop
+    under_way.heard(told())  # a step that was on its way
+    assert "as it stands" in under_way.text
+
+
+def test_states_do_not_go_back() -> None:
+    under_way = solving()
+    under_way.advance(State.WRITING)
+    with pytest.raises(ValueError, match="CHECKING after WRITING"):
+        under_way.advance(State.CHECKING)
+    with pytest.raises(ValueError, match="writing"):
+        under_way.heard(told())
+
+
+def test_blender_stays_usable_but_for_the_moment_of_writing() -> None:
+    under_way = solving()
+    assert all(under_way.passes(event) for event in ("Z", "SPACE", "LEFTMOUSE", "MOUSEMOVE"))
+    under_way.advance(State.WRITING)
+    assert not under_way.passes("Z")
+    assert not under_way.passes("LEFTMOUSE")
+    assert under_way.passes("MOUSEMOVE")

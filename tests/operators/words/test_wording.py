@@ -1,0 +1,72 @@
+"""Every fault has words of its own, which name what the fault carries."""
+
+import dataclasses
+import importlib
+import pkgutil
+from typing import get_type_hints
+
+import hangtime.solver
+import pytest
+from hangtime.operators.words.wording import OUTCOMES, sentence
+from hangtime.solver.data.faults import BadRecipe, Fault, NoSolution
+from hangtime.solver.data.status import Status
+
+
+def all_faults() -> list[type[Fault]]:
+    for module in pkgutil.walk_packages(hangtime.solver.__path__, "hangtime.solver."):
+        importlib.import_module(module.name)
+    return sorted(descendants(Fault), key=lambda fault: fault.__name__)
+
+
+def descendants(base: type[Fault]) -> set[type[Fault]]:
+    return {f for c in base.__subclasses__() for f in {c} | descendants(c)}
+
+
+def made(kind: type[Fault]) -> Fault:
+    """A fault with a value of the right type in every field."""
+    hints = get_type_hints(kind)
+    return kind(**{field.name: filled(hints[field.name]) for field in dataclasses.fields(kind)})
+
+
+def filled(hint: object) -> object:
+    text = str(hint)
+    if text.startswith("tuple[tuple"):
+        return (("Landing: Left heel 2", 12.0, "mm"),)
+    if text.startswith("tuple[float"):
+        return (1.0, 2.0, 3.0)
+    if text.startswith("tuple[str"):
+        return ("one", "two")
+    return {float: 0.25, bool: True, str: "stalled"}.get(hint, 7 if "int" in text else "stalled")
+
+
+@pytest.mark.parametrize("kind", all_faults(), ids=lambda kind: kind.__name__)
+def test_every_fault_has_its_own_words(kind: type[Fault]) -> None:
+    assert kind in sentence.registry
+    words = sentence(made(kind))
+    assert words[0].isupper() or words[0] == "“"
+    assert words.endswith((".", "?"))
+    assert words.count(". ") <= 2
+    assert not {"{", "None", "ValueError"} & set(words.split())
+
+
+def test_a_fault_without_words_is_noticed() -> None:
+    class Wordless(Fault):
+        pass
+
+    with pytest.raises(TypeError, match="Wordless"):
+        sentence(Wordless())
+
+
+def test_every_status_has_words() -> None:
+    assert set(OUTCOMES) == set(Status)
+    assert len(set(OUTCOMES.values())) == len(Status)
+
+
+def test_a_failed_solve_names_what_is_off() -> None:
+    fault = NoSolution("stalled", (("Landing: Left heel 2", 12.3, "mm"), ("flight 1", 0.1, "BW")))
+    assert "“Landing: Left heel 2” stays 12.3 mm from its place" in sentence(fault)
+    assert "in flight 1" in sentence(fault)
+
+
+def test_a_recipe_fault_names_its_line() -> None:
+    assert sentence(BadRecipe("a.toml", 3, 'unknown key "x"')).startswith("Recipe a.toml, line 3:")

@@ -1,0 +1,90 @@
+"""Block-banded factorisation against dense numpy."""
+
+import numpy as np
+import pytest
+from hangtime.solver.numerics.block_banded import BAND, BlockBanded
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+WINDOW = BAND + 1
+
+
+def random_matrix(seed: int, blocks: int, size: int) -> tuple[BlockBanded, np.ndarray]:
+    """A positive definite matrix of windows, banded and dense."""
+    random = np.random.default_rng(seed)
+    n = WINDOW * size
+    half = random.normal(size=(blocks - BAND, n, n + 2))
+    windows = half @ np.swapaxes(half, 1, 2)
+    extra = random.uniform(0.1, 1.0, (blocks, size))
+    banded = BlockBanded(blocks, size)
+    shaped = windows.reshape(-1, WINDOW, size, WINDOW, size)
+    banded.add_windows(np.arange(blocks - BAND), shaped)
+    banded.add_diagonal(extra)
+    dense = np.diag(extra.ravel())
+    for k, window in enumerate(windows):
+        at = slice(k * size, k * size + n)
+        dense[at, at] += window
+    return banded, dense
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 2**31), st.integers(WINDOW, 12), st.integers(1, 6))
+def test_product_and_solution_are_those_of_the_dense_matrix(
+    seed: int, blocks: int, size: int
+) -> None:
+    banded, dense = random_matrix(seed, blocks, size)
+    b = np.random.default_rng(seed + 1).normal(size=(blocks, size))
+    assert banded.times(b).ravel() == pytest.approx(dense @ b.ravel(), rel=1e-10, abs=1e-10)
+    x = banded.factor().solve(b)
+    assert x.ravel() == pytest.approx(np.linalg.solve(dense, b.ravel()), rel=1e-6, abs=1e-8)
+
+
+def test_windows_may_skip_blocks() -> None:
+    """Double knots put the windows two blocks apart."""
+    random = np.random.default_rng(5)
+    first = np.array([0, 2, 3])
+    half = random.normal(size=(3, 8, 9))
+    windows = half @ np.swapaxes(half, 1, 2)
+    banded = BlockBanded(7, 2)
+    banded.add_windows(first, windows.reshape(3, 4, 2, 4, 2))
+    dense = np.zeros((14, 14))
+    for k, window in zip(first, windows, strict=True):
+        dense[2 * k : 2 * k + 8, 2 * k : 2 * k + 8] += window
+    x = random.normal(size=(7, 2))
+    assert banded.times(x).ravel() == pytest.approx(dense @ x.ravel(), abs=1e-10)
+
+
+def test_many_right_sides_are_solved_at_once() -> None:
+    banded, dense = random_matrix(4, 7, 3)
+    b = np.random.default_rng(6).normal(size=(7, 3, 5))
+    factor = banded.factor()
+    x = factor.backward(factor.forward(b))
+    assert x.reshape(21, 5) == pytest.approx(np.linalg.solve(dense, b.reshape(21, 5)))
+    half = factor.forward(b).reshape(21, 5)
+    assert half.T @ half == pytest.approx(b.reshape(21, 5).T @ x.reshape(21, 5))
+
+
+def test_another_basis_of_every_block() -> None:
+    """A reduced figure's matrix: T'AT."""
+    banded, dense = random_matrix(5, 6, 4)
+    T = np.random.default_rng(7).normal(size=(4, 2))
+    changed = banded.changed(T)
+    whole = np.kron(np.eye(6), T)
+    x = np.random.default_rng(8).normal(size=(6, 2))
+    assert changed.times(x).ravel() == pytest.approx(whole.T @ dense @ whole @ x.ravel())
+
+
+def test_solving_leaves_matrix_and_right_side_alone() -> None:
+    banded, dense = random_matrix(2, 6, 3)
+    b = np.ones((6, 3))
+    factor = banded.factor()
+    factor.solve(b)
+    assert (b == 1.0).all()
+    assert banded.times(b).ravel() == pytest.approx(dense.sum(axis=1))
+
+
+def test_an_indefinite_matrix_is_refused() -> None:
+    banded, _ = random_matrix(3, 6, 3)
+    banded.add_diagonal(np.full((6, 3), -50.0))
+    with pytest.raises(np.linalg.LinAlgError):
+        banded.factor()

@@ -1,0 +1,194 @@
+"""Bounds in a step: the small program and the correction against other solvers of the same."""
+
+from collections.abc import Callable
+
+import casadi as ca
+import numpy as np
+import pytest
+from hangtime.solver.arrays import FloatArray, IntArray
+from hangtime.solver.numerics.block_banded import BAND, BlockBanded
+from hangtime.solver.optimisation.bounded_qp import BoundedStep, small_program
+from hangtime.solver.transcription.rows import violation
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import lsq_linear
+
+SEED = st.integers(0, 2**31)
+SIZE = 3
+WINDOW = BAND + 1
+
+
+def random_root(random: np.random.Generator, m: int) -> np.ndarray:
+    half = random.normal(size=(m, m + 2))
+    return np.linalg.cholesky(half @ half.T)
+
+
+def random_bounds(random: np.random.Generator, m: int) -> tuple[np.ndarray, np.ndarray]:
+    """Some two-sided, some one-sided, some equal, most of them missed at zero."""
+    middle, half = random.normal(size=m), np.abs(random.normal(size=m))
+    lower, upper = middle - half, middle + half
+    kind = random.integers(0, 4, m)
+    lower[kind == 0], upper[kind == 1] = -np.inf, np.inf
+    return lower, np.where(kind == 2, lower, upper)
+
+
+@settings(max_examples=60, deadline=None)
+@given(SEED, st.integers(1, 12))
+def test_the_small_program_s_answer_is_scipy_s(seed: int, m: int) -> None:
+    """With y = root w it is a least-squares problem with bounds on y."""
+    random = np.random.default_rng(seed)
+    root = random_root(random, m)
+    lower, upper = random_bounds(random, m)
+    u = small_program(root, lower, upper)
+    apart = np.where(lower == upper, upper + 1e-10, upper)  # scipy wants them so
+    best = lsq_linear(np.linalg.inv(root), np.zeros(m), (lower, apart), tol=1e-14)
+    w = -root.T @ u
+    assert root @ w == pytest.approx(best.x, abs=1e-5 * (1.0 + np.abs(best.x).max()))
+
+
+@settings(max_examples=60, deadline=None)
+@given(SEED, st.integers(1, 30))
+def test_multipliers_push_from_the_bound_they_are_at(seed: int, m: int) -> None:
+    """The optimality conditions, which are enough where everything is convex."""
+    random = np.random.default_rng(seed)
+    root = random_root(random, m)
+    lower, upper = random_bounds(random, m)
+    u = small_program(root, lower, upper)
+    reached = -root @ root.T @ u
+    size = 1e-6 * (1.0 + np.abs(reached).max())
+    assert np.abs(violation(reached, lower, upper)).max() < size
+    active = np.abs(u) > 1e-7 * np.abs(u).max(initial=0.0)
+    at = np.where(u > 0.0, upper, lower)
+    assert reached[active] == pytest.approx(at[active], abs=size)
+
+
+def test_bounds_that_hold_need_no_push() -> None:
+    root = random_root(np.random.default_rng(0), 5)
+    u = small_program(root, np.full(5, -1.0), np.full(5, np.inf))
+    assert u == pytest.approx(np.zeros(5))
+
+
+# -- the correction of a step ---------------------------------------------------------------
+
+
+class Problem:
+    """min 1/2 d'A d subject to lower <= z + G d <= upper, banded and dense."""
+
+    def __init__(self, seed: int, blocks: int, rows: int) -> None:
+        random = np.random.default_rng(seed)
+        n = WINDOW * SIZE
+        half = random.normal(size=(blocks - BAND, n, n + 1))
+        windows = half @ np.swapaxes(half, 1, 2)
+        banded = BlockBanded(blocks, SIZE)
+        banded.add_windows(
+            np.arange(blocks - BAND), windows.reshape(-1, WINDOW, SIZE, WINDOW, SIZE)
+        )
+        banded.add_diagonal(np.full((blocks, SIZE), 0.5))
+        self.factor = banded.factor()
+        units = np.eye(blocks * SIZE).reshape(-1, blocks, SIZE)
+        self.A = np.stack([banded.times(unit).ravel() for unit in units])
+        self.G = np.zeros((rows, blocks, SIZE))
+        for row in self.G:
+            first = random.integers(0, blocks - BAND)
+            row[first : first + WINDOW] = random.normal(size=(WINDOW, SIZE))
+        self.z = random.normal(size=rows)
+        self.lower, self.upper = random_bounds(random, rows)
+
+    @property
+    def times(self) -> Callable[[FloatArray], FloatArray]:
+        return lambda d: np.einsum("rkn,kn->r", self.G, d)
+
+    def columns(self, rows: IntArray) -> FloatArray:
+        return np.moveaxis(self.G[rows], 0, 2)
+
+    def step(self, working: np.ndarray | None = None) -> BoundedStep:
+        none = np.zeros(len(self.z), dtype=bool)
+        return BoundedStep(
+            self.factor,
+            self.columns,
+            (self.lower, self.upper),
+            np.full(len(self.z), 1e-6),
+            none if working is None else working,
+        )
+
+    def reference(self) -> np.ndarray:
+        """d by CasADi's own dense active-set solver."""
+        G = self.G.reshape(len(self.z), -1)
+        form = {"h": ca.DM(self.A).sparsity(), "a": ca.DM(G).sparsity()}
+        options = {"print_iter": False, "print_header": False, "print_info": False}
+        solver = ca.conic("reference", "qrqp", form, options)
+        found = solver(h=self.A, a=G, lba=self.lower - self.z, uba=self.upper - self.z)
+        assert solver.stats()["success"]
+        return np.asarray(found["x"]).reshape(self.G.shape[1:])
+
+
+def settled(problem: Problem, bounded: BoundedStep) -> np.ndarray:
+    """As often corrected as the sweeps of a step would, for the rows' softness to vanish."""
+    for _ in range(4):
+        change = bounded.correct(problem.z, problem.times)
+    return change
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEED, st.integers(WINDOW, 9), st.integers(1, 10))
+def test_the_corrected_step_is_the_dense_program_s(seed: int, blocks: int, rows: int) -> None:
+    problem = Problem(seed, blocks, rows)
+    change = settled(problem, problem.step())
+    best = problem.reference()
+    assert change == pytest.approx(best, abs=1e-4 * (1.0 + np.abs(best).max()))
+
+
+@settings(max_examples=20, deadline=None)
+@given(SEED)
+def test_multipliers_balance_the_step(seed: int) -> None:
+    """A d + G'u = 0."""
+    problem = Problem(seed, 6, 8)
+    bounded = problem.step()
+    change = settled(problem, bounded)
+    push = np.einsum("rkn,r->kn", problem.G, bounded.multipliers)
+    assert problem.A @ change.ravel() == pytest.approx(-push.ravel(), abs=1e-7)
+
+
+@settings(max_examples=20, deadline=None)
+@given(SEED)
+def test_rows_to_begin_with_change_the_way_not_the_answer(seed: int) -> None:
+    problem = Problem(seed, 6, 8)
+    cold, warm = problem.step(), problem.step(np.ones(8, dtype=bool))
+    found = settled(problem, warm)
+    assert settled(problem, cold) == pytest.approx(found, abs=1e-5 * (1.0 + np.abs(found).max()))
+
+
+def test_a_step_within_its_bounds_is_left_alone() -> None:
+    problem = Problem(1, 6, 5)
+    problem.lower, problem.upper = problem.z - 1.0, problem.z + 1.0
+    bounded = problem.step()
+    assert not bounded.correct(problem.z, problem.times).any()
+    assert not bounded.working.any()
+
+
+def test_rows_that_say_the_same_are_one() -> None:
+    """Two feet planted: the same row twice, and thrice as large."""
+    once = Problem(2, 6, 1)
+    once.lower, once.upper = once.z + 1.0, np.array([np.inf])
+    thrice = Problem(2, 6, 1)
+    thrice.G = np.concatenate([once.G, once.G, 3.0 * once.G])
+    thrice.z = np.array([1.0, 1.0, 3.0]) * once.z
+    thrice.lower = thrice.z + np.array([1.0, 1.0, 3.0])
+    thrice.upper = np.full(3, np.inf)
+    best = settled(once, once.step())
+    assert once.times(best) == pytest.approx([1.0], abs=1e-5)
+    assert settled(thrice, thrice.step()) == pytest.approx(best, abs=1e-5)
+
+
+@settings(max_examples=20, deadline=None)
+@given(SEED)
+def test_rows_that_contradict_each_other_still_give_a_finite_step(seed: int) -> None:
+    problem = Problem(seed, 6, 4)
+    problem.G[1], problem.z[1] = problem.G[0], problem.z[0]
+    problem.lower[:2], problem.upper[:2] = [1.0, -np.inf], [np.inf, -1.0]
+    bounded = problem.step()
+    assert np.isfinite(settled(problem, bounded)).all()
+    assert np.isfinite(bounded.multipliers).all()
+    empty = np.zeros_like(problem.G)
+    problem.G = empty  # no step can change anything
+    assert np.isfinite(settled(problem, problem.step())).all()

@@ -1,0 +1,91 @@
+"""A motion that follows a dragged pin: quick, smooth, and near what the solve then finds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.requests import ForceRequest, Requests
+from hangtime.solver.data.status import Course
+from hangtime.solver.stages.implicit import adapt
+from hangtime.solver.stages.interactive import Follower
+from hangtime.solver.transcription.motion import unexplained
+
+from ...helpers.fitted_hop import fitted_hop
+
+
+def moved(forward: float, up: float = 0.0) -> MotionProblem:
+    return MotionProblem(pins=(Pin("Landing", "ground 2", offset=(forward, 0.0, up)),))
+
+
+def settled(follower: Follower, problem: MotionProblem, most: int = 20) -> int:
+    """Updates until the pin is reached."""
+    for update in range(1, most + 1):
+        if follower.follow(problem) is Course.ARRIVED:
+            return update
+    raise AssertionError(f"not there after {most} updates")
+
+
+def test_the_ghost_is_near_the_solve() -> None:
+    fit = fitted_hop()
+    follower = Follower(fit, moved(0.0))
+    for step in range(1, 11):
+        follower.follow(moved(0.02 * step, 0.01 * step))
+    settled(follower, moved(0.2, 0.1))
+    solved = adapt(fit, moved(0.2, 0.1))
+    times = np.linspace(0.0, fit.motion.duration, 100)
+    apart = follower.motion.joint_centres(times) - solved.motion.joint_centres(times)
+    assert np.linalg.norm(apart, axis=2).max() < 0.04
+    left = unexplained(follower.motion, np.linspace(0.01, fit.motion.duration - 0.01, 200))
+    assert np.sqrt((left.moment**2).sum(axis=1).mean()) < 0.003
+
+
+def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
+    follower = Follower(fitted_hop(), moved(0.0))
+    assert follower.follow(moved(0.9)) is Course.ON_ITS_WAY
+    assert 1 < settled(follower, moved(0.9)) < 20
+
+
+def test_where_nobody_can_jump_the_motion_stays_where_it_last_could_follow() -> None:
+    follower = Follower(fitted_hop(), moved(0.0))
+    settled(follower, moved(0.1))
+    for _ in range(60):
+        if follower.follow(moved(30.0)) is Course.LOST:
+            break
+    else:
+        raise AssertionError("thirty metres were reached")
+    times = np.linspace(0.0, follower.motion.duration, 300)
+    forces = np.linalg.norm(follower.motion.forces(times).sum(axis=1), axis=1)
+    assert forces.max() / (follower.motion.transcription.character.mass * 9.81) < 100.0
+    settled(follower, moved(0.1), most=60)
+
+
+def test_it_goes_back_to_where_it_began() -> None:
+    fit = fitted_hop()
+    follower = Follower(fit, moved(0.0))
+    settled(follower, moved(0.15))
+    settled(follower, moved(0.0))
+    times = np.linspace(0.0, fit.motion.duration, 100)
+    apart = follower.motion.joint_centres(times) - fit.motion.joint_centres(times)
+    assert np.linalg.norm(apart, axis=2).max() < 0.01
+
+
+def test_it_begins_at_an_adaptation_of_the_same_problem() -> None:
+    fit = fitted_hop()
+    last = adapt(fit, moved(0.2))
+    follower = Follower(fit, moved(0.2), last)
+    assert follower.follow(moved(0.2)) is Course.ARRIVED
+    np.testing.assert_allclose(follower.motion.x, last.motion.x, atol=1e-3)
+    settled(follower, moved(0.22))
+
+
+def test_other_requests_than_pins_are_taken_in() -> None:
+    follower = Follower(fitted_hop(), moved(0.1))
+    settled(follower, moved(0.1))
+    cap = ForceRequest("Softer", peak=3.2)
+    softer = replace(moved(0.1), requests=Requests(forces=(cap,)))
+    settled(follower, softer, most=30)
+    times = np.linspace(0.0, follower.motion.duration, 500)
+    forces = np.linalg.norm(follower.motion.forces(times).sum(axis=1), axis=1)
+    weight = follower.motion.transcription.character.mass * 9.81
+    assert forces.max() / weight == pytest.approx(3.2, abs=0.1)

@@ -1,0 +1,1 @@
+"""Flat drawings as data, and their painting in a region."""

@@ -1,0 +1,42 @@
+"""A part of the picture: named by its content, built only when that is new."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from mathutils import Matrix
+
+from ..geometry.shapes import Label, Shape
+
+IDENTITY = Matrix.Identity(4).freeze()
+
+
+class Part(Enum):
+    """The parts of the picture."""
+
+    CONTACTS = auto()
+    POINTS = auto()
+    LIMITS = auto()
+    POSES = auto()
+    FORCES = auto()
+    CENTRE = auto()
+    RECORDED_PATH = auto()
+    ADAPTED_PATH = auto()
+    RECORDED_GHOSTS = auto()
+    ADAPTED_GHOSTS = auto()
+    GHOST_NOW = auto()
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A part of the picture in a space of its own.
+
+    content: equal where the part is. build: makes it. matrix: from there to the world, frozen.
+    """
+
+    part: Part
+    content: Hashable
+    build: Callable[[], Iterable[Shape | Label]]
+    matrix: Matrix = IDENTITY

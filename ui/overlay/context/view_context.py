@@ -1,0 +1,142 @@
+"""All that an overlay looks at, read once for each redraw."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import bpy
+from mathutils import Matrix
+
+from ....bridge.armature.actions import current_action
+from ....bridge.armature.bone_keys import current_name
+from ....bridge.armature.poses import metres_per_unit
+from ....bridge.armature.traces_store import Kept, kept
+from ....bridge.properties.kinds import Span
+from ....operators.solve.common import chosen_armature
+from ....operators.solve.live import live
+from ....solver.data.traces import Traces
+from . import spans
+
+USUAL = 1.7  # m, the height at which sizes are meant
+
+
+@dataclass(frozen=True, eq=False)
+class Same:
+    """Traces as a key: equal to itself only, and alive as long as it is a key."""
+
+    traces: Traces
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and other.traces is self.traces
+
+    def __hash__(self) -> int:
+        return id(self.traces)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A motion. key: another for another motion; matrix: from its metres to the world now, frozen.
+
+    stood: the armature's world matrix when it was traced.
+    """
+
+    traces: Traces
+    key: object
+    matrix: Matrix
+    stood: Matrix
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a viewport is about."""
+
+    armature: bpy.types.Object
+    settings: bpy.types.PropertyGroup
+    view: bpy.types.PropertyGroup
+    frame: float
+    metres: float  # of a Blender unit
+
+    @cached_property
+    def size(self) -> float:
+        """Of the figure, of which 1 is a grown person."""
+        height = self.settings.measured_height
+        return height / USUAL if height > 0.0 else 1.0
+
+    @cached_property
+    def units(self) -> float:
+        """`size` in Blender units."""
+        return self.size / self.metres
+
+    @cached_property
+    def recorded(self) -> Shown | None:
+        return self._of(kept(self.armature))
+
+    @cached_property
+    def adapted(self) -> Shown | None:
+        """The adapted motion; while a pin is dragged, its forerunner."""
+        return self.live or self._of(kept(self.settings.adapted))
+
+    @cached_property
+    def live(self) -> Shown | None:
+        traces = live().ghost(self.armature)
+        if traces is None or not len(traces.frames):
+            return None
+        stood = self.armature.matrix_world.copy()
+        return Shown(traces, Same(traces), Matrix.Scale(1.0 / self.metres, 4).freeze(), stood)
+
+    @cached_property
+    def performs_adapted(self) -> bool:
+        """Whether the armature moves as the adapted motion does."""
+        action = current_action(self.armature)
+        return self.live is None and action is not None and action == self.settings.adapted
+
+    @cached_property
+    def phases(self) -> dict[str, spans.Frames]:
+        return spans.named(self.settings)
+
+    def span(self, row: bpy.types.PropertyGroup) -> spans.Frames:
+        """From which frame to which a constraint holds."""
+        known = self.phases if row.span == Span.PHASE.name else {}
+        return spans.span_of(row, known, self.recorded.traces if self.recorded else None)
+
+    def bone(self, row: bpy.types.PropertyGroup) -> bpy.types.PoseBone | None:
+        """The bone that a single-bone constraint is about, where the armature has it."""
+        if not len(row.bones) or self.armature.pose is None:
+            return None
+        named, bones = row.bones[0], self.armature.pose.bones
+        found = bones.get(named.name)
+        # it may have been renamed since the name was looked at
+        return found or bones.get(current_name(self.armature, named.key, named.name))
+
+    def rows(self, *kinds: str) -> Iterator[tuple[bpy.types.PropertyGroup, bool]]:
+        """The constraints of these kinds, and whether each is the one chosen in the list."""
+        chosen = self.settings.active_constraint
+        for index, row in enumerate(self.settings.constraints):
+            if row.kind in kinds:
+                yield row, index == chosen
+
+    def _of(self, found: Kept | None) -> Shown | None:
+        if found is None or not len(found.traces.frames):
+            return None
+        matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)
+        return Shown(found.traces, found.key, matrix.freeze(), found.stood)
+
+
+def look_at(context: bpy.types.Context) -> Seen | None:
+    """What the viewport that is being drawn shows; None where overlays are off or none is due."""
+    space, view = context.space_data, context.scene.hangtime.view
+    if space is None or space.type != "VIEW_3D" or not space.overlay.show_overlays:
+        return None
+    if not view.show:
+        return None
+    armature = chosen_armature(context)
+    if armature is None or armature.type != "ARMATURE":
+        return None
+    if not armature.visible_get(view_layer=context.view_layer, viewport=space):
+        return None
+    scene = context.scene
+    return Seen(
+        armature, armature.hangtime, view, scene.frame_current_final, metres_per_unit(scene)
+    )

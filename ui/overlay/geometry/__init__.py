@@ -1,0 +1,1 @@
+"""Shapes of the overlay as arrays, and their colours: numpy only."""

@@ -1,0 +1,19 @@
+"""The overlays' colours, as in the pictures (bridge/picture) but for dark viewports."""
+
+from __future__ import annotations
+
+from .shapes import Colour
+
+PIN: Colour = (0.90, 0.13, 0.16, 1.0)
+PIN_OFF: Colour = (0.62, 0.62, 0.62, 0.30)
+MOVE: Colour = (1.00, 0.45, 0.40, 0.9)  # from where a pin was found to where it shall be
+LIMIT: Colour = (0.95, 0.22, 0.26, 1.0)
+WITHIN: Colour = (1.0, 1.0, 1.0, 0.95)  # how a limb is bent now, within its limits
+BEYOND: Colour = (1.0, 0.78, 0.15, 1.0)
+POSE: Colour = (1.0, 1.0, 1.0, 0.55)
+ADAPTED: Colour = (0.40, 0.72, 1.0, 1.0)
+RECORDED: Colour = (0.80, 0.80, 0.80, 1.0)
+LIVE: Colour = (0.25, 0.95, 0.85, 1.0)
+PARABOLA: Colour = (1.0, 0.68, 0.20, 1.0)
+FORCE: Colour = (0.35, 0.85, 0.38, 1.0)
+MOMENTUM: Colour = (0.74, 0.52, 1.0, 1.0)

@@ -1,0 +1,1 @@
+"""The layers of the overlay: pins, limits, ghosts, motion, labels."""

@@ -1,0 +1,100 @@
+"""The lists of constraints and of body changes, and what their kinds look like."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...bridge.constraints.linked_rows import linked_count
+from ...bridge.properties.kinds import BodyKind, ConstraintKind, Met, Span
+from ...operators.names import ListId
+
+WIDE = 340  # px; a sidebar in which the range finds room beside the name
+ICONS = {
+    ConstraintKind.POINT.name: "PINNED",
+    ConstraintKind.LIFT.name: "TRIA_UP_BAR",
+    ConstraintKind.ANGLE.name: "DRIVER_ROTATIONAL_DIFFERENCE",
+    ConstraintKind.CONE.name: "CONE",
+    ConstraintKind.TWIST.name: "FORCE_VORTEX",
+    ConstraintKind.TORQUE.name: "FORCE_MAGNETIC",
+    ConstraintKind.POSE.name: "ARMATURE_DATA",
+    ConstraintKind.ORIENTATION.name: "ORIENTATION_GIMBAL",
+    ConstraintKind.FORCE.name: "FORCE_FORCE",
+    ConstraintKind.TIMING.name: "TIME",
+    ConstraintKind.HOLD.name: "PAUSE",
+    BodyKind.LOAD.name: "PACKAGE",
+    BodyKind.LIMB.name: "BONE_DATA",
+}
+MET_ICONS = {Met.UNKNOWN.name: "INFO", Met.MET.name: "CHECKMARK", Met.MISSED.name: "ERROR"}
+
+
+def range_text(row: bpy.types.PropertyGroup) -> str:
+    """When a constraint holds, in a few letters."""
+    if row.kind in (ConstraintKind.TIMING.name, ConstraintKind.LIFT.name):
+        return str(row.phase)
+    if row.kind == ConstraintKind.HOLD.name or row.span == Span.FRAME.name:
+        return f"{row.first_frame:.0f}"
+    if row.span == Span.FRAMES.name:
+        return f"{row.first_frame:.0f}–{row.last_frame:.0f}"
+    return str(row.phase) if row.span == Span.PHASE.name else ""
+
+
+class _RowList:
+    """Mixin: a line of either list."""
+
+    rows = ""  # the settings' property
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        settings: bpy.types.PropertyGroup,
+        row: bpy.types.PropertyGroup,
+        _icon: int,
+        _active_owner: bpy.types.PropertyGroup,
+        _active_name: str,
+        index: int,
+    ) -> None:
+        line = layout.row(align=True)
+        line.prop(row, "used", text="")
+        line = line.row(align=True)
+        line.active = row.used
+        wide = context.region.width > WIDE * context.preferences.system.ui_scale
+        text = self.told(row) if wide else ""
+        if text:
+            line = line.split(factor=0.65, align=True)
+        name = line.row(align=True)
+        if index < linked_count(settings.id_data, self.rows):
+            name.label(text=row.name, icon=ICONS[row.kind])
+        else:
+            name.prop(row, "name", text="", emboss=False, icon=ICONS[row.kind])
+        end = line.row(align=True)
+        end.alignment = "RIGHT"
+        if text:
+            end.label(text=text)
+        if row.status:
+            end.label(text="", icon=MET_ICONS[row.met])
+
+    def told(self, row: bpy.types.PropertyGroup) -> str:
+        """What stands beside the name."""
+        raise NotImplementedError
+
+
+class ConstraintList(_RowList, bpy.types.UIList):
+    bl_idname = ListId.CONSTRAINTS
+    rows = "constraints"
+
+    def told(self, row: bpy.types.PropertyGroup) -> str:
+        return range_text(row)
+
+
+class BodyChangeList(_RowList, bpy.types.UIList):
+    bl_idname = ListId.BODY_CHANGES
+    rows = "body_changes"
+
+    def told(self, row: bpy.types.PropertyGroup) -> str:
+        if row.kind == BodyKind.LIMB.name:
+            return f"× {row.length:.2g}" if row.length != 1.0 else ""
+        return f"{100.0 * row.share:.0f} %" if row.by_share else f"{row.mass:.3g} kg"
+
+
+CLASSES = (ConstraintList, BodyChangeList)

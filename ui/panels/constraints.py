@@ -1,0 +1,138 @@
+"""Constraints and Body Changes: what the artist asks for beside moved contacts."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...bridge.properties.kinds import BodyKind, ConstraintKind
+from ...operators.lists.row_lists import RowList
+from ...operators.names import ListId, MenuId, OperatorId, PanelId
+from ...operators.solve.common import chosen_armature
+from .constraint_fields import draw_bone, draw_bones, draw_constraint
+from .constraint_lists import ICONS, MET_ICONS
+from .sidebar import ArmaturePanel, split
+
+
+class ConstraintsPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.CONSTRAINTS
+    bl_label = "Constraints"
+    bl_order = 3
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        settings = chosen_armature(context).hangtime
+        row = layout.row()
+        row.template_list(
+            ListId.CONSTRAINTS, "", settings, "constraints", settings, "active_constraint", rows=5
+        )
+        side = row.column(align=True)
+        side.menu(MenuId.ADD_CONSTRAINT, text="", icon="ADD")
+        side.operator(OperatorId.REMOVE_CONSTRAINT, text="", icon="REMOVE")
+        side.separator()
+        side.menu(MenuId.CONSTRAINT_MORE, text="", icon="DOWNARROW_HLT")
+        side.separator()
+        side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_UP").direction = "UP"
+        side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_DOWN").direction = "DOWN"
+
+
+class ConstraintPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.CONSTRAINT
+    bl_parent_id = PanelId.CONSTRAINTS
+    bl_label = ""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and RowList.CONSTRAINTS.chosen(armature.hangtime) >= 0
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        row = _chosen(chosen_armature(context), RowList.CONSTRAINTS)
+        kind = ConstraintKind[row.kind].value
+        self.layout.label(text=kind, icon=ICONS[row.kind])
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        split(layout)
+        armature = chosen_armature(context)
+        row = _chosen(armature, RowList.CONSTRAINTS)
+        _draw_status(layout, row)
+        body = layout.column()
+        body.active = row.used
+        own = _is_own(armature, RowList.CONSTRAINTS)
+        draw_constraint(body, row, armature.data, own=own)
+
+
+class BodyChangesPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.BODY_CHANGES
+    bl_label = "Body Changes"
+    bl_order = 4
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        split(layout)
+        armature = chosen_armature(context)
+        settings = armature.hangtime
+        mass = layout.row(heading="New Mass (kg)")
+        mass.prop(settings, "use_new_mass", text="")
+        value = mass.row()
+        value.active = settings.use_new_mass
+        value.prop(settings, "new_mass", text="")
+        layout.prop(settings, "gravity")
+        hint = layout.row()
+        hint.active, hint.alignment = False, "RIGHT"
+        hint.label(text="Moon 1.62, Mars 3.73")
+        row = layout.row()
+        row.use_property_split = False
+        row.template_list(
+            ListId.BODY_CHANGES,
+            "",
+            settings,
+            "body_changes",
+            settings,
+            "active_body_change",
+            rows=3,
+        )
+        side = row.column(align=True)
+        side.menu(MenuId.ADD_BODY_CHANGE, text="", icon="ADD")
+        side.operator(OperatorId.REMOVE_BODY_CHANGE, text="", icon="REMOVE")
+        if RowList.BODY_CHANGES.chosen(settings) >= 0:
+            _draw_body_change(layout, armature)
+
+
+def _draw_body_change(layout: bpy.types.UILayout, armature: bpy.types.Object) -> None:
+    row = _chosen(armature, RowList.BODY_CHANGES)
+    _draw_status(layout, row)
+    body = layout.column()
+    body.active = row.used
+    own = _is_own(armature, RowList.BODY_CHANGES)
+    if row.kind == BodyKind.LIMB.name:
+        none = "Select bones and assign them"
+        draw_bones(body, row, armature.data, "BODY_CHANGES", none, own=own)
+        factors = body.column(align=True)
+        factors.prop(row, "length", text="Length ×")
+        factors.prop(row, "mass_factor", text="Mass ×")
+        return
+    draw_bone(body, row, armature.data, own=own)
+    body.prop(row, "by_share")
+    body.prop(row, "share" if row.by_share else "mass")
+    body.prop(row, "use_offset")
+    if row.use_offset:
+        body.column(align=True).prop(row, "offset")
+
+
+def _draw_status(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+    if row.status:
+        layout.label(text=row.status, icon=MET_ICONS[row.met])
+
+
+def _chosen(armature: bpy.types.Object, of: RowList) -> bpy.types.PropertyGroup:
+    return of.rows(armature.hangtime)[of.chosen(armature.hangtime)]
+
+
+def _is_own(armature: bpy.types.Object, of: RowList) -> bool:
+    """Whether the chosen row is the artist's, not a linked file's."""
+    return of.chosen(armature.hangtime) >= of.linked(armature)
+
+
+CLASSES = (ConstraintsPanel, ConstraintPanel, BodyChangesPanel)

@@ -1,0 +1,89 @@
+"""Contacts: what touches when and where, and where it shall touch instead."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...bridge.properties.stances import active_contact, active_stance
+from ...operators.names import ListId, OperatorId, PanelId
+from ...operators.solve.common import chosen_armature
+from .sidebar import ArmaturePanel, split
+
+
+class ContactsPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.CONTACTS
+    bl_label = "Contacts"
+    bl_order = 2
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        settings = chosen_armature(context).hangtime
+        if not settings.contacts:
+            layout.label(text="Press Analyze to find them", icon="INFO")
+            return
+        row = layout.row()
+        row.template_list(
+            ListId.CONTACTS, "", settings, "contacts", settings, "active_contact", rows=5
+        )
+        side = row.column(align=True)
+        side.operator(OperatorId.ADD_CONTACT, text="", icon="ADD")
+        side.operator(OperatorId.REMOVE_CONTACT, text="", icon="REMOVE")
+        layout.prop(settings, "whole_stance")
+
+
+class _ActivePanel(ArmaturePanel):
+    """Mixin: a subpanel about the chosen contact."""
+
+    bl_parent_id = PanelId.CONTACTS
+    bl_label = ""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and active_contact(armature.hangtime) is not None
+
+
+class StancePanel(_ActivePanel, bpy.types.Panel):
+    bl_idname = PanelId.STANCE
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and active_stance(armature.hangtime) is not None
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.label(text=f"Move {active_stance(chosen_armature(context).hangtime).name}")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        split(layout)
+        stance = active_stance(chosen_armature(context).hangtime)
+        column = layout.column(align=True)
+        for name in ("forward", "left", "up", "turn"):
+            column.prop(stance, name)
+        buttons = layout.row(align=True)
+        buttons.operator(OperatorId.DRAG_PIN, text="Drag", icon="VIEW_PAN")
+        buttons.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
+
+
+class ContactPanel(_ActivePanel, bpy.types.Panel):
+    bl_idname = PanelId.CONTACT
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        row = active_contact(chosen_armature(context).hangtime)
+        self.layout.label(text=f"{row.name} ({row.bone})")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        split(layout)
+        row = active_contact(chosen_armature(context).hangtime)
+        frames = layout.column(align=True)
+        frames.prop(row, "start_frame")
+        frames.prop(row, "end_frame")
+        layout.column(align=True).prop(row, "place")
+        layout.prop(row, "empty")
+        layout.operator(OperatorId.PLACE_BY_EMPTY, icon="EMPTY_AXIS")
+
+
+CLASSES = (ContactsPanel, StancePanel, ContactPanel)

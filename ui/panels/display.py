@@ -1,0 +1,72 @@
+"""The panel of what the viewport and the timeline show."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...operators.names import OperatorId, PanelId
+from ...operators.solve.common import chosen_armature
+from .sidebar import SidebarPanel
+
+_CONSTRAINTS = ("pins", "limits", "poses")
+_MOTION = ("path", "forces", "momentum")
+_CURVES = ("plot_forces", "plot_com", "plot_torque")
+
+
+class DisplayPanel(SidebarPanel, bpy.types.Panel):
+    bl_idname = PanelId.DISPLAY
+    bl_label = "Display"
+    bl_order = 8
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.prop(context.scene.hangtime.view, "show", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, view = self.layout, context.scene.hangtime.view
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        shown = layout.column()
+        shown.active = view.show
+        _draw_column(shown, view, "Constraints", _CONSTRAINTS)
+        _draw_column(shown, view, "Motion", _MOTION)
+        _draw_ghosts(shown, view)
+        shown.column(heading="Numbers").prop(view, "labels")
+        _draw_plots(shown, context)
+        layout.column(heading="Timeline").prop(view, "timeline", text="Contacts")
+
+
+def _draw_column(
+    layout: bpy.types.UILayout, view: bpy.types.PropertyGroup, heading: str, names: tuple[str, ...]
+) -> None:
+    column = layout.column(heading=heading)
+    for name in names:
+        column.prop(view, name)
+
+
+def _draw_ghosts(layout: bpy.types.UILayout, view: bpy.types.PropertyGroup) -> None:
+    column = layout.column(heading="Ghosts")
+    column.prop(view, "ghosts", text="Show")
+    column = column.column()
+    column.active = view.ghosts
+    column.prop(view, "recording_too", text="Recording Too")
+    column.prop(view, "ghost_step", text="Frame Step")
+
+
+def _draw_plots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    view = context.scene.hangtime.view
+    column = layout.column(heading="Plots")
+    column.prop(view, "plots", text="Show")
+    column = column.column()
+    column.active = view.plots
+    for name in _CURVES:
+        column.prop(view, name)
+    armature = chosen_armature(context)
+    if armature is None:
+        column.prop(view, "plot_bone")
+    else:
+        column.prop_search(view, "plot_bone", armature.data, "bones")
+    layout.operator(OperatorId.SAVE_PLOTS, icon="EXPORT")
+
+
+CLASSES = (DisplayPanel,)

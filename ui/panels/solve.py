@@ -1,0 +1,95 @@
+"""Solve, Result and Export."""
+
+from __future__ import annotations
+
+from textwrap import fill
+
+import bpy
+
+from ...operators.names import OperatorId, PanelId
+from ...operators.solve.common import chosen_armature
+from ...operators.solve.session import session
+from .sidebar import ArmaturePanel, lines, split
+
+CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
+
+
+class SolvePanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.SOLVE
+    bl_label = "Solve"
+    bl_order = 5
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        solving = session().solving
+        if solving is not None:
+            layout.progress(factor=solving.share, text=solving.doing.capitalize())
+            row = layout.row(align=True)
+            row.operator(OperatorId.USE_BEST, icon="CHECKMARK")
+            row.operator(OperatorId.CANCEL, icon="X")
+            return
+        row = layout.row(align=True)
+        row.scale_y = 1.5
+        row.operator(OperatorId.ADAPT, icon="PLAY")
+        row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
+        if session().failure:
+            width = context.region.width / (CHARACTER_PX * context.preferences.system.ui_scale)
+            lines(layout, fill(session().failure, max(20, int(width))), icon="ERROR")
+        if session().best is not None:
+            layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
+
+
+class AdvancedPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.ADVANCED
+    bl_parent_id = PanelId.SOLVE
+    bl_label = "Advanced"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        split(layout)
+        settings = chosen_armature(context).hangtime
+        layout.prop(settings, "method")
+        refine = layout.column(heading="Refine")
+        refine.prop(settings, "objective")
+        refine.prop(settings, "stay_close")
+        recipe = layout.column()
+        recipe.label(text="Recipe text, for what the lists do not hold:")
+        recipe.template_ID(settings, "requests", new="text.new", open="text.open")
+
+
+class ResultPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.RESULT
+    bl_label = "Result"
+    bl_order = 6
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        settings = chosen_armature(context).hangtime
+        if settings.adapted is None:
+            layout.label(text="Nothing has been adapted yet", icon="INFO")
+            return
+        icon = "CHECKMARK" if settings.adapted.hangtime.accepted else "ACTION"
+        layout.label(text=settings.adapted.name, icon=icon)
+        row = layout.row(align=True)
+        row.operator(OperatorId.ACCEPT, icon="CHECKMARK")
+        row.operator(OperatorId.DISCARD, icon="TRASH")
+        row = layout.row(align=True)
+        row.operator(OperatorId.COMPARE, icon="ARROW_LEFTRIGHT")
+        row.operator(OperatorId.SHOW_REPORT, icon="TEXT")
+        lines(layout, settings.status)
+
+
+class ExportPanel(ArmaturePanel, bpy.types.Panel):
+    bl_idname = PanelId.EXPORT
+    bl_label = "Export"
+    bl_order = 7
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        row = self.layout.row(align=True)
+        row.operator(OperatorId.EXPORT_FBX, text="FBX", icon="EXPORT")
+        row.operator(OperatorId.EXPORT_GLTF, text="glTF", icon="EXPORT")
+
+
+CLASSES = (SolvePanel, AdvancedPanel, ResultPanel, ExportPanel)
