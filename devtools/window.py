@@ -17,11 +17,11 @@ from .build import BuildError, build
 from .environment import ROOT
 from .figures_limits import table, write
 from .problem import SetUpError
+from .recordings import HELD
 from .summary import read
 from .window_results import LIMITS, Played, figure_verdicts, figures_of, junit, scene_verdicts
 
 SIZE = (1280, 800)
-RECORDINGS = ROOT.parent / "shared" / "mocap"
 LIMIT = 540.0  # s for the whole play
 # What is left of the extension after Blender is told in lines that begin with LEFT.
 SCRIPT = """
@@ -63,9 +63,6 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--suite", default=window_room.SUITE, help="Debian's; has its own Blender")
     parser.add_argument("--scenes", nargs="+", metavar="NAME", help="only these and their needs")
     options = parser.parse_args(argv)
-    if not RECORDINGS.is_dir():
-        print(f"No recordings in {RECORDINGS}; the play imports one of them.", file=sys.stderr)
-        return 2
     options.out.mkdir(parents=True, exist_ok=True)
     try:
         room = window_room.prepare(options.suite)
@@ -92,7 +89,7 @@ def play(room: window_room.Room, zipped: Path, out: Path, scenes: list[str]) -> 
     views = [
         window_room.View(zipped.parent, "/mnt/zip"),
         window_room.View(ROOT / "devtools", "/mnt/play/devtools"),
-        window_room.View(RECORDINGS, "/mnt/mocap"),
+        window_room.View(HELD, "/mnt/recordings"),
         window_room.View(out, "/mnt/out", writable=True),
     ]
     script = SCRIPT.format(width=SIZE[0], height=SIZE[1], zip=zipped.name)
