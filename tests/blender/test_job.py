@@ -21,7 +21,7 @@ from hangtime.operators.outbox import Outbox  # noqa: E402
 from hangtime.solver.faults import OutputNotWritable  # noqa: E402
 from hangtime.tests.clips import mocap_path  # noqa: E402
 
-CLIP = "cmu_bvh/forward_jump_116cm.bvh"
+CLIP = "forward_jump_116cm.bvh"
 WINDOW = (100.0, 290.0)
 FILES = {
     *("adapted.blend", "adapted.fbx", "sheet.png"),

@@ -25,7 +25,7 @@ from hangtime.tests.blender.rows import asked, names, select  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
 
 

@@ -15,6 +15,7 @@ from hangtime.bridge.channels import EULER_ORDERS, proper  # noqa: E402
 from hangtime.bridge.export import export_fbx, reimport_fbx  # noqa: E402
 from hangtime.bridge.read import read_recording  # noqa: E402
 from hangtime.bridge.write import side_by_side, write_action  # noqa: E402
+from hangtime.devtools.recordings import JUMP, find  # noqa: E402
 from hangtime.solver.faults import (  # noqa: E402
     BadScale,
     NoAction,
@@ -27,7 +28,6 @@ from hangtime.solver.recording import PoseTrack, Recording  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 
 MODES = ("QUATERNION", "AXIS_ANGLE", *EULER_ORDERS)
-JUMP = Path(__file__).parents[3] / "shared/mocap/cmu_bvh/forward_jump_116cm.bvh"
 SHIFT = np.array([0.3, -0.1, 0.2])
 
 
@@ -547,10 +547,12 @@ def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Blender's importer
-@pytest.mark.skipif(not JUMP.exists(), reason=f"no recordings beside the repository ({JUMP.name})")
 def test_a_real_jump_survives_writing_and_fbx(tmp_path: Path) -> None:
     bpy.ops.import_anim.bvh(
-        filepath=str(JUMP), global_scale=0.05644, update_scene_fps=True, update_scene_duration=True
+        filepath=str(find(JUMP)),
+        global_scale=0.05644,
+        update_scene_fps=True,
+        update_scene_duration=True,
     )
     armature = bpy.context.object
     recording = read_recording(armature)

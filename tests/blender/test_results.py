@@ -21,7 +21,7 @@ from hangtime.solver.recording import PoseTrack  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.clips import mocap_path  # noqa: E402
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 

@@ -25,7 +25,7 @@ from hangtime.solver.problem import MotionProblem  # noqa: E402
 from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.clips import mocap_path  # noqa: E402
 
-RUN = "cmu_bvh/run_1.bvh"
+RUN = "run_1.bvh"
 TOO_LARGE = 14.0
 
 pytestmark = pytest.mark.usefixtures("_enabled")

@@ -34,7 +34,7 @@ from hangtime.tests.blender import rigs  # noqa: E402
 from hangtime.tests.blender.test_read_write import curves_of, snapshot  # noqa: E402
 from hangtime.ui import properties  # noqa: E402
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
 SETTLING = 3.6  # frames, 30 ms
 OFFSET = np.array([0.3, 0.1, 0.2])  # forward, left, up

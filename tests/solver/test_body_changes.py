@@ -33,7 +33,7 @@ from hypothesis import given, settings
 from tests.clips import load_recording
 from tests.solver import toys
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 LEGS = ("LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg")
 SPINE = ("LowerBack", "Spine", "Spine1")
 CASE = AddedMass("Briefcase", "RightHand", share=0.2)

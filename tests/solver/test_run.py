@@ -19,7 +19,7 @@ from hangtime.solver.state import Instants, State
 from hangtime.tests.clips import load_recording
 from hangtime.tests.solver.measures import assert_valid, joint_error, measure
 
-RUN = "cmu_bvh/run_3.bvh"
+RUN = "run_3.bvh"
 RECIPES = sorted((Path(__file__).parents[2] / "examples" / "gallery").glob("run_*.toml"))
 NAMES = [recipe.stem for recipe in RECIPES]
 HARDEST = 4.5  # BW; a hurdler's landing
