@@ -7,6 +7,7 @@
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
   gallery [NAMES...] [--out DIR]          make the thesis's results, with pictures and a table
+  compare BEFORE AFTER [--within X]       whether two folders of results hold the same motions
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
   benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
   build [--out DIR]                       make and validate the extension's zips
@@ -34,6 +35,7 @@ COMMANDS = {
     "test": ("devtools.checks.testing", [], True),
     "figures": ("devtools.figures.main", [], True),
     "gallery": ("devtools.gallery.main", [], True),
+    "compare": ("devtools.gallery.compare", [], False),
     "window": ("devtools.window.main", [], False),
     PEERS: ("benchmarks.benchmark", [], False),
     "build": ("devtools.build", [], False),

@@ -9,15 +9,17 @@ import subprocess
 import sys
 from pathlib import Path
 
+from ..devtools.environment.problem import SetUpError
 from ..devtools.environment.virtual_environment import ROOT
+from ..devtools.recordings import HOPS, find
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 DOCUMENT = ROOT / "docs" / "benchmark.md"
 HEAD = """# The benchmark
 
 Written by `python3 dev.py benchmark --write-docs` from a measured run; `benchmark.json` has the
-seconds too. Only what means the same on any machine is told here. The recordings in
-`../shared/mocap` are needed; Drake (with SNOPT) and Pinocchio come from the package registry.
+seconds too. Only what means the same on any machine is told here. The hops, Drake
+(with SNOPT) and Pinocchio come from the package registry.
 
 A peer that does not finish is stopped at its limit and told with its violation at the end: 1 is
 solved, by our rows and tolerances and not by its own word. "Set-up" is what a solver prepares for
@@ -39,12 +41,12 @@ def main(argv: list[str]) -> int:
     if any(os.environ.get(name) != "1" for name in ONE_THREAD):
         return _in_one_thread(argv)
     from .measure import Benchmark, Extent
-    from .recordings import HOPS, JUMP, MOCAP
     from .tables import Table, write_json
 
-    absent = [file for file in (JUMP, HOPS) if not (MOCAP / file).is_file()]
-    if absent:
-        print(f"No recording {absent[0]} in ../shared/mocap.")
+    try:
+        find(HOPS)  # before anything is measured
+    except SetUpError as problem:
+        print(problem, file=sys.stderr)
         return 2
     extent = Extent(options.limit or 60.0)
     if options.quick:

@@ -153,8 +153,8 @@ class Benchmark:
             "solved",
         )
         caption = (
-            "Windows of forward_hops_01_01 from 1 s on, each fitted, then its first landing moved "
-            "0.3 m forward."
+            f"Windows of the ten hops, CMU 01_01, from {scaling.FIRST:g} s on, each fitted, then "
+            "its first landing moved 0.3 m forward."
         )
         return Table("Cost against length", caption, columns, rows)
 

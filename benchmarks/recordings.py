@@ -2,25 +2,26 @@
 
 from functools import cache
 
+from ..bridge.formats.acclaim import find_asf, read_acclaim
 from ..bridge.formats.bvh import read_bvh
 from ..bridge.formats.guess import guess_unit, guess_up
 from ..bridge.formats.skeleton import to_recording
-from ..devtools.environment.virtual_environment import ROOT
+from ..devtools.recordings import HOPS, JUMP, find
 from ..solver.analysis.analyse import Analysis, analyse
 from ..solver.data.problem import MotionProblem, Pin
 from ..solver.data.recording import Recording
 
-MOCAP = ROOT.parent / "shared" / "mocap"
+__all__ = ["HOPS", "JUMP", "analysed", "hops", "jump", "recording"]
+
 RATE = 120.0  # Hz, of every clip here
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
-HOPS = "cmu_bvh/forward_hops_01_01.bvh"
 FORWARD_AND_UP = (0.4, 0.0, 0.3)  # m
 
 
 @cache
 def recording(file: str) -> Recording:
-    """A BVH file below MOCAP, in metres, Z up. Raises OSError where it is absent."""
-    clip = read_bvh(MOCAP / file)
+    """A BVH or AMC file by its name, in metres, Z up. Raises SetUpError where there is none."""
+    path = find(file)
+    clip = read_bvh(path) if path.suffix == ".bvh" else read_acclaim(find_asf(path), path)
     up = guess_up(clip)
     return to_recording(clip, clip.unit or guess_unit(clip, up), up)
 

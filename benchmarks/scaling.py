@@ -20,7 +20,7 @@ from .recordings import HOPS, analysed, hops
 from .task import IntArray, Task
 from .timing import in_turns, timed
 
-FIRST = 1.0  # s, where the windows of the hops begin
+FIRST = 0.99  # s, where the windows of the hops begin
 LENGTHS = (2.0, 5.0, 10.0, 20.0)  # s
 # Toes stay: a rigid foot cannot roll over the heel and toe that the recording plants.
 WELDED: dict[str, tuple[Part, ...]] = {

@@ -4,15 +4,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...solver.data.problem import MotionProblem, Pin
-from ..environment.virtual_environment import ROOT
+from ..recordings import HOPS, JUMP, find
 
-MOCAP = ROOT.parent / "shared" / "mocap"
 RATE = 120.0  # Hz, of every clip here
 
 
 @dataclass(frozen=True)
 class Clip:
-    """A jump in a recording: file below MOCAP, and the first and last second that are used."""
+    """A jump in a recording: its file's name, and the first and last second that are used."""
 
     name: str
     file: str
@@ -21,7 +20,8 @@ class Clip:
 
     @property
     def path(self) -> Path:
-        return MOCAP / self.file
+        """Raises SetUpError where there is none."""
+        return find(self.file)
 
     @property
     def frames(self) -> tuple[float, float]:
@@ -34,15 +34,14 @@ class Clip:
         return MotionProblem(frames=self.frames, pins=(pin,))
 
 
-HOPS = "cmu_bvh/forward_hops_01_01.bvh"
 CLIPS = (
     # The whole jump from standing upright to standing upright; before 0.6 s the subject waits.
-    Clip("broad jump 116 cm", "cmu_bvh/forward_jump_116cm.bvh", 0.6, 2.7),
-    Clip("broad jump 114 cm", "cmu_bvh/forward_jump_114cm.bvh", 1.1, 3.2),
+    Clip("broad jump 116 cm", JUMP, 0.6, 2.7),
+    Clip("broad jump 114 cm", "forward_jump_114cm.bvh", 1.1, 3.2),
     # The first, the fourth and the ninth hop, between the landings of their neighbours.
-    Clip("hop 1", HOPS, 1.0, 3.2),
-    Clip("hop 4", HOPS, 5.7, 7.9),
-    Clip("hop 9", HOPS, 19.5, 21.4),
+    Clip("hop 1", HOPS, 0.99, 3.19),
+    Clip("hop 4", HOPS, 5.69, 7.89),
+    Clip("hop 9", HOPS, 19.49, 21.39),
 )
 EDITS = {
     "+0.3 m forward": (0.3, 0.0, 0.0),

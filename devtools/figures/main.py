@@ -15,6 +15,7 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, TypeVar
 
+from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
 from .limits import Figure, figure, table, write
 
@@ -43,9 +44,13 @@ def main(argv: list[str]) -> int:
     from .clips import CLIPS
 
     chosen = [clip for clip in CLIPS if options.clip is None or options.clip in clip.name]
-    absent = [clip.file for clip in chosen if not clip.path.is_file()]
-    if absent or not chosen:
-        print(f"No recording {absent[0] if absent else options.clip} in ../shared/mocap.")
+    if not chosen:
+        print(f"No clip has '{options.clip}' in its name.")
+        return 2
+    try:
+        _ = [clip.path for clip in chosen]  # what must be fetched is, before anything is measured
+    except SetUpError as problem:
+        print(problem, file=sys.stderr)
         return 2
     figures: list[Figure] = []
     for clip in chosen:

@@ -35,9 +35,9 @@ def main(argv: list[str]) -> int:
     except (BadRecipe, KeyError) as problem:
         print(problem)
         return 2
-    absent = [result.clip.name for result in chosen if not result.clip.is_file()]
+    absent = [result for result in chosen if not result.clip.is_file()]
     if absent:
-        print(f"No recording {absent[0]} in ../shared/mocap.")
+        print(f"{absent[0].name}: there is no recording {absent[0].clip}.")
         return 2
     rows: list[Json] = []
     for result in chosen:

@@ -20,7 +20,7 @@ HEAD = """# The gallery
 
 `python3 dev.py gallery` makes these results anew, each from its recipe in `examples/gallery`, and
 wrote this page. A result lies in its folder: `sheet.png`, `adapted.fbx`, `report.json`,
-`trajectory.npz`. Recordings: `../shared/mocap`.
+`trajectory.npz`. Recordings: `examples/recordings`.
 """
 NOTES = """
 Seconds and iterations are those from the stored fit, with one thread of linear algebra. *Flight*

@@ -12,7 +12,7 @@ from .stage import Acting, Stage, Until
 
 PACKAGE = "bl_ext.user_default.hangtime"
 CATEGORY = "Hangtime"
-CLIP = Path("/mnt/mocap/cmu_bvh/forward_jump_116cm.bvh")
+CLIP = Path("/mnt/recordings/forward_jump_116cm.bvh")
 SCALE = 0.05644  # metres per unit of the recording
 LANDING = "ground 2"
 VALUE = 0.7  # where a number's field is, in the sidebar's width

@@ -17,11 +17,11 @@ from ..checks.summary import read
 from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
 from ..figures.limits import table, write
+from ..recordings import HELD
 from .results import LIMITS, Played, figure_verdicts, figures_of, junit, scene_verdicts
 from .room import SUITE, Room, View, prepare
 
 SIZE = (1280, 800)
-RECORDINGS = ROOT.parent / "shared" / "mocap"
 LIMIT = 540.0  # s for the whole play
 # What is left of the extension after Blender is told in lines that begin with LEFT.
 SCRIPT = """
@@ -63,9 +63,6 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--suite", default=SUITE, help="Debian's; has its own Blender")
     parser.add_argument("--scenes", nargs="+", metavar="NAME", help="only these and their needs")
     options = parser.parse_args(argv)
-    if not RECORDINGS.is_dir():
-        print(f"No recordings in {RECORDINGS}; the play imports one of them.", file=sys.stderr)
-        return 2
     options.out.mkdir(parents=True, exist_ok=True)
     try:
         room = prepare(options.suite)
@@ -92,7 +89,7 @@ def play(room: Room, zipped: Path, out: Path, scenes: list[str]) -> Played:
     views = [
         View(zipped.parent, "/mnt/zip"),
         View(ROOT / "devtools", "/mnt/play/devtools"),
-        View(RECORDINGS, "/mnt/mocap"),
+        View(HELD, "/mnt/recordings"),
         View(out, "/mnt/out", writable=True),
     ]
     script = SCRIPT.format(width=SIZE[0], height=SIZE[1], zip=zipped.name)

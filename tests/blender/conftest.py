@@ -10,7 +10,7 @@ import pytest
 if TYPE_CHECKING:
     import bpy
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
 
 

@@ -14,7 +14,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.tests.blender import stored  # noqa: E402
+from hangtime.tests.blender.helpers import stored
 
 DATA = Path(__file__).parents[1] / "data"
 STEP = 3  # frames from one look at the pose to the next

@@ -24,7 +24,7 @@ from typing import Any
 
 import bpy
 import hangtime
-from hangtime.tests.blender import rigs, stored
+from hangtime.tests.blender.helpers import rigs, stored
 
 FOLDER = Path(__file__).parent
 BLEND, READING = FOLDER / "saved_settings.blend", FOLDER / "saved_settings.json"

@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from hangtime.devtools.build import build
+from hangtime.devtools.recordings import HOPS, find
 
 pytestmark = [
     pytest.mark.slow,
@@ -25,7 +26,6 @@ pytestmark = [
 ]
 
 ROOT = Path(__file__).resolve().parents[2]
-RECORDINGS = ROOT.parent / "shared" / "mocap"
 SHIPPED = {
     "LICENSE",
     "README.md",
@@ -129,9 +129,7 @@ def test_casadi_comes_from_the_extension(
 def test_the_installed_extension_does_the_main_job(
     zips: dict[str, Path], bare_python: Path, tmp_path: Path
 ) -> None:
-    clip = RECORDINGS / "cmu_acclaim" / "01_01.amc"
-    if not clip.is_file():
-        pytest.skip(f"needs the recording {clip.name} in {RECORDINGS}")
+    clip = find(HOPS)
     recipe = ROOT / "examples" / "demo_hop.toml"
     out = tmp_path / "out"
     given = (str(zips["linux-x64"]), str(clip), str(recipe), str(out))

@@ -15,6 +15,7 @@ from hangtime.bridge.armature.channels import EULER_ORDERS, proper
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.armature.write import side_by_side, write_action
 from hangtime.bridge.files.export import export_fbx, reimport_fbx
+from hangtime.devtools.recordings import JUMP, find
 from hangtime.solver.data.faults import (
     BadScale,
     NoAction,
@@ -27,7 +28,7 @@ from hangtime.solver.data.recording import PoseTrack, Recording
 from hangtime.tests.blender.helpers import rigs
 
 MODES = ("QUATERNION", "AXIS_ANGLE", *EULER_ORDERS)
-JUMP = Path(__file__).parents[4] / "shared/mocap/cmu_bvh/forward_jump_116cm.bvh"
+
 SHIFT = np.array([0.3, -0.1, 0.2])
 
 
@@ -547,10 +548,12 @@ def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Blender's importer
-@pytest.mark.skipif(not JUMP.exists(), reason=f"no recordings beside the repository ({JUMP.name})")
 def test_a_real_jump_survives_writing_and_fbx(tmp_path: Path) -> None:
     bpy.ops.import_anim.bvh(
-        filepath=str(JUMP), global_scale=0.05644, update_scene_fps=True, update_scene_duration=True
+        filepath=str(find(JUMP)),
+        global_scale=0.05644,
+        update_scene_fps=True,
+        update_scene_duration=True,
     )
     armature = bpy.context.object
     recording = read_recording(armature)

@@ -25,7 +25,7 @@ from hangtime.solver.data.status import Course
 from hangtime.solver.worker.protocol import Adapted, Analysed, Failed, Fitted, Followed, Progress
 from hangtime.tests.helpers.clips import load_recording
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 SPAN = (73.0, 325.0)
 UP = MotionProblem(frames=SPAN, pins=(Pin("up", "ground 2", offset=(0.0, 0.0, 0.05)),))
 AHEAD = MotionProblem(frames=SPAN, pins=(Pin("ahead", "ground 2", offset=(0.05, 0.0, 0.0)),))
@@ -302,7 +302,7 @@ def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recordi
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
 def test_the_worker_ends_with_its_parent(jump: Recording) -> None:
-    assert len(jump.frames) > 0  # skips where there are no recordings
+    assert len(jump.frames) > 0
     assert gone(int(output_of(ORPHAN, JUMP)))
 
 

@@ -14,7 +14,7 @@ LEGS = LimbChange("Short legs", ("LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg
 
 
 def short_legged() -> Recording:
-    recording = load_recording("cmu_bvh/forward_jump_116cm.bvh").window(150.0, 210.0)
+    recording = load_recording("forward_jump_116cm.bvh").window(150.0, 210.0)
     return changed_recording(recording, (LEGS,))
 
 

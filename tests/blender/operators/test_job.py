@@ -21,7 +21,7 @@ from hangtime.operators.headless.outbox import Outbox
 from hangtime.solver.data.faults import OutputNotWritable
 from hangtime.tests.helpers.clips import mocap_path
 
-CLIP = "cmu_bvh/forward_jump_116cm.bvh"
+CLIP = "forward_jump_116cm.bvh"
 WINDOW = (100.0, 290.0)
 FILES = {
     *("adapted.blend", "adapted.fbx", "sheet.png"),

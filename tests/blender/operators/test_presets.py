@@ -25,7 +25,7 @@ from hangtime.tests.blender.helpers.rows import asked, names, select
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
 
 

@@ -17,7 +17,7 @@ from hangtime.solver.data.recording import PoseTrack
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import mocap_path
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 

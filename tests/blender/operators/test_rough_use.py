@@ -28,7 +28,7 @@ from hangtime.solver.data.problem import MotionProblem
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import mocap_path
 
-RUN = "cmu_bvh/run_1.bvh"
+RUN = "run_1.bvh"
 TOO_LARGE = 14.0
 
 pytestmark = pytest.mark.usefixtures("_enabled")

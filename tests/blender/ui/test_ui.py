@@ -28,7 +28,7 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.tests.blender.bridge.test_read_write import curves_of, snapshot
 from hangtime.tests.blender.helpers import rigs
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
 SETTLING = 3.6  # frames, 30 ms
 OFFSET = np.array([0.3, 0.1, 0.2])  # forward, left, up

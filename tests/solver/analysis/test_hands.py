@@ -7,14 +7,14 @@ from hangtime.tests.helpers.clips import load_recording
 
 
 def test_no_hand_touches_in_a_jump() -> None:
-    recording = load_recording("cmu_bvh/forward_jump_116cm.bvh")
+    recording = load_recording("forward_jump_116cm.bvh")
     performance = perform(recording, build_character(recording))
     assert not [c for c in find_contacts(performance).contacts if "hand" in c.point]
 
 
 def test_a_hand_on_the_ground_is_a_contact_at_its_palm() -> None:
     """The jump with the left hand's track laid on the floor for half a second of its stance."""
-    recording = load_recording("cmu_bvh/forward_jump_116cm.bvh")
+    recording = load_recording("forward_jump_116cm.bvh")
     character = build_character(recording)
     performance = perform(recording, character)
     hand = next(i for i, b in enumerate(character.bodies) if b.name == "left hand")

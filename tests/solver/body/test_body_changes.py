@@ -30,7 +30,7 @@ from hangtime.tests.helpers import toy_problems as toys
 from hangtime.tests.helpers.clips import load_recording
 from hypothesis import given, settings
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 LEGS = ("LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg")
 SPINE = ("LowerBack", "Spine", "Spine1")
 CASE = AddedMass("Briefcase", "RightHand", share=0.2)

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Character, build_character
@@ -17,15 +18,14 @@ from hangtime.solver.data.recording import Recording
 from hangtime.tests.helpers.clips import load_recording
 
 ADULTS = (
-    "cmu_bvh/forward_jump_116cm.bvh",
-    "cmu_bvh/forward_hops_01_01.bvh",
-    "cmu_bvh/run_1.bvh",
-    "cmu_bvh/131_03_hop.bvh",
-    "cmu_acclaim/01_01.amc",
-    "other_rigs/cmu1_jumping_jacks.bvh",
-    "other_rigs/rokoko_jesse_dance.bvh",
+    "forward_jump_116cm.bvh",
+    "run_1.bvh",
+    "131_03_hop.bvh",
+    HOPS,
+    "cmu1_jumping_jacks.bvh",
+    "rokoko_jesse_dance.bvh",
 )
-CHILD = "other_rigs/fair1_jumping.bvh"
+CHILD = "fair1_jumping.bvh"
 JUMP = ADULTS[0]
 ONCE = (Part.PELVIS, Part.SPINE, Part.HEAD)
 
@@ -123,7 +123,7 @@ def test_a_child_is_smaller() -> None:
     assert 0.9 < character(CHILD).height < 1.5
 
 
-@pytest.mark.parametrize("relative", [JUMP, CHILD, "other_rigs/rokoko_jesse_dance.bvh"])
+@pytest.mark.parametrize("relative", [JUMP, CHILD, "rokoko_jesse_dance.bvh"])
 def test_left_and_right_are_alike(relative: str) -> None:
     bodies = {(b.part, b.side): b for b in character(relative).bodies}
     for (part, side), left in bodies.items():

@@ -207,7 +207,7 @@ def test_point_velocity_and_its_jacobian(seed: int) -> None:
 
 @cache
 def jump() -> Fit:
-    recording = load_recording("cmu_bvh/forward_jump_116cm.bvh").window(73.0, 325.0)
+    recording = load_recording("forward_jump_116cm.bvh").window(73.0, 325.0)
     analysis = analyse(recording, MotionProblem())
     return fit(analysis.performance, analysis.schedule)
 

@@ -13,7 +13,7 @@ from hangtime.tests.helpers.toy_problems import figure
 
 @cache
 def performance() -> Performance:
-    recording = load_recording("cmu_bvh/forward_jump_116cm.bvh")
+    recording = load_recording("forward_jump_116cm.bvh")
     first = float(recording.frames[0])
     recording = recording.window(first + 180, first + 230)
     return perform(recording, build_character(recording))

@@ -35,7 +35,7 @@ from hypothesis import strategies as st
 from sklearn.decomposition import PCA, FactorAnalysis, FastICA
 from statsmodels.multivariate.factor_rotation import rotate_factors
 
-JUMP = "cmu_bvh/forward_jump_116cm.bvh"
+JUMP = "forward_jump_116cm.bvh"
 STATISTICAL = tuple(
     kind for kind in ReductionKind if kind not in (ReductionKind.MIRROR_LEGS, ReductionKind.MATRIX)
 )

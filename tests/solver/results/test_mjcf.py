@@ -19,7 +19,7 @@ from hangtime.tests.helpers.clips import load_recording
 
 @cache
 def jump() -> Motion:
-    recording = load_recording("cmu_bvh/forward_jump_116cm.bvh").window(73.0, 325.0)
+    recording = load_recording("forward_jump_116cm.bvh").window(73.0, 325.0)
     analysis = analyse(recording, MotionProblem())
     return fit(analysis.performance, analysis.schedule).motion
 

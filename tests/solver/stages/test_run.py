@@ -19,7 +19,7 @@ from hangtime.solver.transcription.sampling import Instants, State
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.validity import assert_valid, joint_error, measure
 
-RUN = "cmu_bvh/run_3.bvh"
+RUN = "run_3.bvh"
 RECIPES = sorted((Path(__file__).parents[3] / "examples" / "gallery").glob("run_*.toml"))
 NAMES = [recipe.stem for recipe in RECIPES]
 HARDEST = 4.5  # BW; a hurdler's landing
