@@ -7,8 +7,7 @@ from pathlib import Path
 
 from ..environment.virtual_environment import CACHE, ROOT
 
-# Blender has no type stubs, so the parts made of calls into it gain little from strict types.
-TYPED = ("solver", "devtools")
+TYPED = ("solver", "bridge", "operators", "ui", "devtools")
 
 
 def main(argv: list[str]) -> int:
