@@ -15,8 +15,8 @@ from ..solver.numerics.block_banded import BlockBanded
 from ..solver.numerics.splines import ORDER
 from ..solver.optimisation.sqp import worst_violation
 from ..solver.stages.fit import Fit
-from ..solver.stages.setup import arrange
-from ..solver.stages.warm_start import carry, stance_moves
+from ..solver.stages.setup import set_up
+from ..solver.stages.warm_start import stance_moves, warm_start
 from ..solver.transcription.rows import Rows
 from ..solver.transcription.transcription import Transcription
 
@@ -40,9 +40,9 @@ class Task:
     @staticmethod
     def of(fit: Fit, problem: MotionProblem) -> "Task":
         """The adaptation of a fit to a problem, in one stage."""
-        plan = arrange(fit, problem)
+        plan = set_up(fit, problem)
         moves = stance_moves(plan.schedule, plan.start.places, plan.goal, plan.turns)
-        start = carry(plan.start, moves)
+        start = warm_start(plan.start, moves)
         return Task(plan.start.transcription, plan.goal, start, plan.metric)
 
     def rows(self, x: FloatArray) -> Rows:

@@ -24,7 +24,7 @@ from time import monotonic
 from ..solver.data.faults import WorkerDied
 from ..solver.data.problem import MotionProblem
 from ..solver.data.recording import Recording
-from ..solver.data.status import Course
+from ..solver.data.status import DragStatus
 from ..solver.worker.protocol import (
     PROTOCOL,
     Answer,
@@ -60,7 +60,7 @@ _LAST_WORDS_S = 2.0
 _PATIENCE_S = 2.0  # with a request that was dropped, before the worker is ended for it
 
 
-class Job:
+class PendingRequest:
     """One request on its way; `answer` is set once it has been seen in the news."""
 
     def __init__(self, request: Request) -> None:
@@ -98,7 +98,7 @@ class Job:
         return message
 
 
-class Chase:
+class DragStream:
     """Follows what is wanted as it changes: the next request leaves as soon as the last one is
     answered, without waiting until Blender looks, and is always about the latest problem."""
 
@@ -148,7 +148,7 @@ class Chase:
     def deliver(self, message: Progress | Answer) -> None:
         """Called by the thread that listens; a motion that is still on its way is asked again."""
         self._arrived.put(message)
-        if isinstance(message, Followed) and message.course is Course.ON_ITS_WAY:
+        if isinstance(message, Followed) and message.course is DragStatus.ON_ITS_WAY:
             with self._changed:
                 self._problem = self._problem or self._last
 
@@ -158,9 +158,9 @@ class Worker:
 
     def __init__(self) -> None:
         self._process: _Process | None = None
-        self._job: Job | None = None
-        self._chase: Chase | None = None
-        self._dropped: tuple[Job, float] | None = None  # and when
+        self._job: PendingRequest | None = None
+        self._chase: DragStream | None = None
+        self._dropped: tuple[PendingRequest, float] | None = None  # and when
         self._ids = count(1)
 
     @property
@@ -175,7 +175,9 @@ class Worker:
         alive = self._process is not None and self._process.alive
         return self._process.pid if alive else None
 
-    def ask(self, kind: Kind, recording: Recording | None, problem: MotionProblem) -> Job:
+    def ask(
+        self, kind: Kind, recording: Recording | None, problem: MotionProblem
+    ) -> PendingRequest:
         """Makes a request, in a new process if there is none alive.
 
         recording: None is the last request's. Raises WorkerDied where none can be started,
@@ -183,15 +185,15 @@ class Worker:
         """
         self._ready()
         assert self._process is not None
-        self._job = Job(Request(next(self._ids), kind, recording, problem))
+        self._job = PendingRequest(Request(next(self._ids), kind, recording, problem))
         self._process.ask(self._job)
         return self._job
 
-    def chase(self, recording: Recording) -> Chase:
+    def chase(self, recording: Recording) -> DragStream:
         """Begins to follow what is wanted of a recording. Raises as `ask` does."""
         self._ready()
         assert self._process is not None
-        self._chase = Chase(recording, self._ids)
+        self._chase = DragStream(recording, self._ids)
         self._process.ask(self._chase)
         return self._chase
 
@@ -266,7 +268,7 @@ class _Process:
         self._from_worker = BufferedReader(self._popen.stdout)
         self._greeted = False
         self._sending = Lock()
-        self._jobs: SimpleQueue[Job | Chase | None] = SimpleQueue()
+        self._jobs: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
         self._listener.start()
@@ -280,11 +282,11 @@ class _Process:
     def alive(self) -> bool:
         return self._popen.poll() is None
 
-    def ask(self, job: Job | Chase) -> None:
+    def ask(self, job: PendingRequest | DragStream) -> None:
         """Has the job's request made once those before it are answered; never waits."""
         self._jobs.put(job)
 
-    def halt(self, job: Job, how: Ending) -> None:
+    def halt(self, job: PendingRequest, how: Ending) -> None:
         """Tells the worker to end the job's request; never waits."""
         Thread(target=self._halt, args=(Halt(job.request.id, how),), daemon=True).start()
 

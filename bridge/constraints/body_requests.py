@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ...solver.data.requests import AddedMass, BodyChange, LimbChange
 from ..properties.kinds import BodyKind
-from .row_parts import RowScene, bone_of, offset_of, some_bones
+from .row_parts import RowContext, bone_of, offset_of, some_bones
 
 if TYPE_CHECKING:
     from ..properties.body_change import HangtimeBodyChange
@@ -17,7 +17,7 @@ GRAVITY_DIGITS = 4  # what single precision keeps of 9.81
 
 
 def body_change(
-    settings: HangtimeSettings, changes: Sequence[HangtimeBodyChange], scene: RowScene
+    settings: HangtimeSettings, changes: Sequence[HangtimeBodyChange], scene: RowContext
 ) -> BodyChange:
     """What of the body and of gravity shall be another. Raises NoBoneChosen, UnknownBone."""
     loads = [row for row in changes if row.kind == BodyKind.LOAD.name]
@@ -36,7 +36,7 @@ def changes_limb(row: HangtimeBodyChange) -> bool:
     return bool(row.length != 1.0 or row.mass_factor != 1.0)
 
 
-def _load(row: HangtimeBodyChange, scene: RowScene) -> AddedMass:
+def _load(row: HangtimeBodyChange, scene: RowContext) -> AddedMass:
     return AddedMass(
         row.name,
         bone_of(row, scene),
@@ -46,5 +46,5 @@ def _load(row: HangtimeBodyChange, scene: RowScene) -> AddedMass:
     )
 
 
-def _limb(row: HangtimeBodyChange, scene: RowScene) -> LimbChange:
+def _limb(row: HangtimeBodyChange, scene: RowContext) -> LimbChange:
     return LimbChange(row.name, some_bones(row, scene), row.length, row.mass_factor)

@@ -17,7 +17,6 @@ import bpy
 from ...solver.data.faults import AsksNothing, CrossedBounds, NamedTwice, NameMissing
 from ...solver.data.requests import (
     AngleLimit,
-    Axes,
     BodyChange,
     Bound,
     ConeLimit,
@@ -27,6 +26,7 @@ from ...solver.data.requests import (
     Lift,
     OrientationRequest,
     PhaseTiming,
+    PointAxes,
     PointRequest,
     PoseRequest,
     Reference,
@@ -39,13 +39,12 @@ from ..properties.kinds import (
     BodyKind,
     ConstraintKind,
     ForceShape,
-    PointAxes,
     PoseSource,
     TimingBy,
     TorqueBy,
 )
 from .body_requests import body_change
-from .row_parts import RowScene, bone_of, bones_of, direction_of, offset_of, scaled, some_bones
+from .row_parts import RowContext, bone_of, bones_of, direction_of, offset_of, scaled, some_bones
 from .target_paths import paths_of
 from .times import Clip, phase_of, when_of
 
@@ -54,11 +53,6 @@ if TYPE_CHECKING:
     from ..properties.constraint import HangtimeConstraint
     from ..properties.settings import HangtimeSettings
 
-AXES = {
-    PointAxes.WORLD: Axes.WORLD,
-    PointAxes.TRAVEL: Axes.TRAVEL,
-    PointAxes.SURFACE: Axes.SURFACE,
-}
 SHAPES = {ForceShape.EXACT: ConeShape.EXACT, ForceShape.PYRAMID: ConeShape.PYRAMID}
 SOURCES = {PoseSource.FIT: Reference.FIT, PoseSource.REST: Reference.REST}
 
@@ -80,7 +74,7 @@ def requests_of(
     clip = Clip.of(settings, span)
     metres = metres_per_unit(bpy.context.scene)
     own = metres * armature.matrix_world.median_scale
-    scene = RowScene(armature, clip, metres, own, paths_of(rows, clip, metres))
+    scene = RowContext(armature, clip, metres, own, paths_of(rows, clip, metres))
     made: dict[str, list[Any]] = {}
     for row in rows:
         field, record = RECORDS[ConstraintKind[row.kind]]
@@ -132,10 +126,10 @@ def _require_names(
 # ---------------------------------------------------------------- constraints
 
 
-def _point(row: HangtimeConstraint, scene: RowScene) -> PointRequest:
+def _point(row: HangtimeConstraint, scene: RowContext) -> PointRequest:
     path = scene.paths.get(row.name)
     own_place = row.use_place and path is None
-    axes = AXES[PointAxes[row.axes]]
+    axes = PointAxes[row.axes]
     return PointRequest(
         row.name,
         bone_of(row, scene),
@@ -151,7 +145,7 @@ def _point(row: HangtimeConstraint, scene: RowScene) -> PointRequest:
     )
 
 
-def _bounds(row: HangtimeConstraint, scene: RowScene) -> tuple[Bound, Bound, Bound]:
+def _bounds(row: HangtimeConstraint, scene: RowContext) -> tuple[Bound, Bound, Bound]:
     sides = zip(
         row.bound_axes, row.bound_below, row.bound_above, row.at_least, row.at_most, strict=True
     )
@@ -185,19 +179,19 @@ def _limits(row: HangtimeConstraint) -> Bound:
     return _bound(row, low, high, "°")
 
 
-def _lift(row: HangtimeConstraint, scene: RowScene) -> Lift:
+def _lift(row: HangtimeConstraint, scene: RowContext) -> Lift:
     return Lift(row.name, phase_of(row, scene.clip), bones_of(row, scene))
 
 
-def _angle(row: HangtimeConstraint, scene: RowScene) -> AngleLimit:
+def _angle(row: HangtimeConstraint, scene: RowContext) -> AngleLimit:
     return AngleLimit(row.name, bone_of(row, scene), *_limits(row), when_of(row, scene.clip))
 
 
-def _twist(row: HangtimeConstraint, scene: RowScene) -> TwistLimit:
+def _twist(row: HangtimeConstraint, scene: RowContext) -> TwistLimit:
     return TwistLimit(row.name, bone_of(row, scene), *_limits(row), when_of(row, scene.clip))
 
 
-def _cone(row: HangtimeConstraint, scene: RowScene) -> ConeLimit:
+def _cone(row: HangtimeConstraint, scene: RowContext) -> ConeLimit:
     return ConeLimit(
         row.name,
         bone_of(row, scene),
@@ -208,7 +202,7 @@ def _cone(row: HangtimeConstraint, scene: RowScene) -> ConeLimit:
     )
 
 
-def _torque(row: HangtimeConstraint, scene: RowScene) -> TorqueLimit:
+def _torque(row: HangtimeConstraint, scene: RowContext) -> TorqueLimit:
     by_share = TorqueBy[row.torque_by] is TorqueBy.SHARE
     return TorqueLimit(
         row.name,
@@ -221,7 +215,7 @@ def _torque(row: HangtimeConstraint, scene: RowScene) -> TorqueLimit:
     )
 
 
-def _pose(row: HangtimeConstraint, scene: RowScene) -> PoseRequest:
+def _pose(row: HangtimeConstraint, scene: RowContext) -> PoseRequest:
     source = SOURCES[PoseSource[row.source]]
     return PoseRequest(
         row.name,
@@ -234,12 +228,12 @@ def _pose(row: HangtimeConstraint, scene: RowScene) -> PoseRequest:
     )
 
 
-def _orientation(row: HangtimeConstraint, scene: RowScene) -> OrientationRequest:
+def _orientation(row: HangtimeConstraint, scene: RowContext) -> OrientationRequest:
     when = when_of(row, scene.clip)
     return OrientationRequest(row.name, bone_of(row, scene), when, row.turn, row.tilt, row.slack)
 
 
-def _force(row: HangtimeConstraint, scene: RowScene) -> ForceRequest:
+def _force(row: HangtimeConstraint, scene: RowContext) -> ForceRequest:
     shape = SHAPES[ForceShape[row.shape]]
     if not (row.use_peak or row.use_friction or row.use_match or shape is ConeShape.PYRAMID):
         raise AsksNothing(row.name)
@@ -254,18 +248,18 @@ def _force(row: HangtimeConstraint, scene: RowScene) -> ForceRequest:
     )
 
 
-def _timing(row: HangtimeConstraint, scene: RowScene) -> PhaseTiming:
+def _timing(row: HangtimeConstraint, scene: RowContext) -> PhaseTiming:
     phase = phase_of(row, scene.clip)
     if TimingBy[row.timing_by] is TimingBy.FACTOR:
         return PhaseTiming(row.name, phase, factor=row.factor)
     return PhaseTiming(row.name, phase, seconds=row.seconds)
 
 
-def _hold(row: HangtimeConstraint, _scene: RowScene) -> Hold:
+def _hold(row: HangtimeConstraint, _scene: RowContext) -> Hold:
     return Hold(row.name, row.first_frame, row.seconds, row.ends)
 
 
-RECORDS: dict[ConstraintKind, tuple[str, Callable[[HangtimeConstraint, RowScene], Any]]] = {
+RECORDS: dict[ConstraintKind, tuple[str, Callable[[HangtimeConstraint, RowContext], Any]]] = {
     ConstraintKind.POINT: ("points", _point),
     ConstraintKind.LIFT: ("lifts", _lift),
     ConstraintKind.ANGLE: ("angles", _angle),

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class RowScene:
+class RowContext:
     """What rows are understood in. metres: per Blender unit; own: m per unit of the armature's own
     space. paths: of the points that follow a target, by the row's name."""
 
@@ -30,7 +30,7 @@ class RowScene:
     paths: dict[str, Path]
 
 
-def bones_of(row: HangtimeConstraint | HangtimeBodyChange, scene: RowScene) -> tuple[str, ...]:
+def bones_of(row: HangtimeConstraint | HangtimeBodyChange, scene: RowContext) -> tuple[str, ...]:
     """Every bone that was chosen, once. Raises UnknownBone."""
     names = dict.fromkeys(bone.name for bone in row.bones if bone.name)
     for name in names:
@@ -39,18 +39,18 @@ def bones_of(row: HangtimeConstraint | HangtimeBodyChange, scene: RowScene) -> t
     return tuple(names)
 
 
-def some_bones(row: HangtimeConstraint | HangtimeBodyChange, scene: RowScene) -> tuple[str, ...]:
+def some_bones(row: HangtimeConstraint | HangtimeBodyChange, scene: RowContext) -> tuple[str, ...]:
     bones = bones_of(row, scene)
     if not bones:
         raise NoBoneChosen(row.name)
     return bones
 
 
-def bone_of(row: HangtimeConstraint | HangtimeBodyChange, scene: RowScene) -> str:
+def bone_of(row: HangtimeConstraint | HangtimeBodyChange, scene: RowContext) -> str:
     return some_bones(row, scene)[0]
 
 
-def offset_of(row: HangtimeConstraint | HangtimeBodyChange, scene: RowScene) -> Vector | None:
+def offset_of(row: HangtimeConstraint | HangtimeBodyChange, scene: RowContext) -> Vector | None:
     return scaled(row.offset, scene.own) if row.use_offset else None
 
 

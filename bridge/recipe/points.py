@@ -3,14 +3,14 @@
 import math
 from typing import Any
 
-from ...solver.data.requests import Axes, Bound, Path, PointRequest
+from ...solver.data.requests import Bound, Path, PointAxes, PointRequest
 from .items import TRAVEL_KEYS, Item, Values, direction
 from .table import Table, listed
 
 AXIS_NAMES = {
-    Axes.WORLD: ("x", "y", "z"),
-    Axes.TRAVEL: TRAVEL_KEYS,
-    Axes.SURFACE: ("along", "across", "out"),
+    PointAxes.WORLD: ("x", "y", "z"),
+    PointAxes.TRAVEL: TRAVEL_KEYS,
+    PointAxes.SURFACE: ("along", "across", "out"),
 }
 BOUND_KEYS = ("at_least", "at_most")
 
@@ -24,7 +24,7 @@ def _read_axes(table: Table) -> Values:
         values["normal"] = direction(table, "normal")
     if "relative" in table.values:
         values["relative"] = table.numbers("relative", "[x, y, z]")
-    elif axes is Axes.TRAVEL:
+    elif axes is PointAxes.TRAVEL:
         values["relative"] = tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)
     if set(BOUND_KEYS) & set(table.values):
         values["bounds"] = tuple(_bound(*bounds, name) for name in AXIS_NAMES[axes])
@@ -34,21 +34,21 @@ def _read_axes(table: Table) -> Values:
     return values
 
 
-def _axes(table: Table, bounds: list[Table]) -> Axes:
+def _axes(table: Table, bounds: list[Table]) -> PointAxes:
     """The axes that are written, or else those that the names of axes belong to."""
     named = [(table, key) for key in TRAVEL_KEYS if key in table.values]
     for bound in bounds:
         named += [(bound, name) for name in bound.values]
-    axes = table.choice("axes", Axes)
+    axes = table.choice("axes", PointAxes)
     if axes is None and named:
         axes = next(of for of, names in AXIS_NAMES.items() if named[0][1] in names)
     if axes is None:
-        axes = Axes.SURFACE if "normal" in table.values else Axes.WORLD
+        axes = PointAxes.SURFACE if "normal" in table.values else PointAxes.WORLD
     known = AXIS_NAMES[axes]
     for where, name in named:
         if name not in known:
             where.refuse(name, f'"{name}" is none of the {axes.value} axes: {listed(known)}')
-    if "normal" in table.values and axes is not Axes.SURFACE:
+    if "normal" in table.values and axes is not PointAxes.SURFACE:
         table.refuse("normal", f'"normal" is of a surface; the axes are "{axes.value}"')
     return axes
 
@@ -64,12 +64,12 @@ def _write_axes(record: Any) -> Values:
     point: PointRequest = record
     names = AXIS_NAMES[point.axes]
     moved = {k: v for k, v in zip(names, point.relative, strict=True) if v}
-    values: Values = {"axes": point.axes.value if point.axes is not Axes.WORLD else None}
-    if point.axes is Axes.TRAVEL:
+    values: Values = {"axes": point.axes.value if point.axes is not PointAxes.WORLD else None}
+    if point.axes is PointAxes.TRAVEL:
         values |= moved
     elif moved:
         values["relative"] = point.relative
-    if point.axes is Axes.SURFACE:
+    if point.axes is PointAxes.SURFACE:
         values["normal"] = point.normal
     if point.bounds is not None:
         for i, key in enumerate(BOUND_KEYS):

@@ -1,6 +1,13 @@
 """How to solve, in a recipe: method, objectives and reduction. Keys: see recipe_requests.py."""
 
-from ...solver.data.requests import Dynamics, Method, Objective, Reduction, ReductionKind, Solution
+from ...solver.data.requests import (
+    Dynamics,
+    Method,
+    Objective,
+    Reduction,
+    ReductionKind,
+    SolverOptions,
+)
 from .items import Kind, Values, choice, number, one, whole
 from .table import ABOVE_ZERO, NOT_NEGATIVE, Span, Table, listed
 
@@ -71,7 +78,7 @@ REDUCTION = Kind(
 )
 SOLUTION = Kind(
     "solution",
-    Solution,
+    SolverOptions,
     (
         choice("method", Method),
         choice("dynamics", Dynamics),

@@ -13,7 +13,7 @@ from ...solver.data.recording import Recording
 from ...solver.numerics.rotations import unit
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription import constraint_functions
-from ...solver.transcription.constraint import Condition
+from ...solver.transcription.constraint import Constraint
 
 SLACK = 1e-6  # s
 
@@ -157,7 +157,7 @@ def _contacts(adaptation: Adaptation) -> Iterator[PointCheck]:
         )
 
 
-def _condition(condition: Condition, adaptation: Adaptation) -> Iterator[Check]:
+def _condition(condition: Constraint, adaptation: Adaptation) -> Iterator[Check]:
     character = adaptation.motion.transcription.character
     span = (condition.name, condition.start, condition.end)
     lower, upper = condition.bounds.lower, condition.bounds.upper

@@ -10,7 +10,7 @@ from ...bridge.armature.incremental import Parts
 from ...bridge.constraints.motion_problem import problem_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
-from ...solver.data.status import Course
+from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
 from ..solve.adapt import NOT_ANALYSED, ask_for
 from ..solve.common import chosen_armature, hindrance, said
@@ -167,7 +167,7 @@ class FollowedDrag:
             self._fault = said(message.fault)
             live().clear()
         elif isinstance(message, Followed):
-            self._fault = LOST if message.course is Course.LOST else ""
+            self._fault = LOST if message.course is DragStatus.LOST else ""
             live().show(self._armature.name, message)
 
     def _look(self) -> None:

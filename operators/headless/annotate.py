@@ -11,7 +11,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.requests import AddedMass, TorqueLimit
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription import constraint_functions
-from ...solver.transcription.constraint import Condition
+from ...solver.transcription.constraint import Constraint
 from ...solver.transcription.torque_constraint import Torques
 from .picture import instants
 
@@ -55,7 +55,7 @@ class _Posed:
         return np.asarray(self.pose.rotations[:, self.character.joints[body].parent] @ vector)
 
 
-def _of_condition(condition: Condition, figure: _Posed) -> Iterator[Mark]:
+def _of_condition(condition: Constraint, figure: _Posed) -> Iterator[Mark]:
     span = (condition.start, condition.end)
     match condition.measure:
         case constraint_functions.Place() as place:
@@ -80,7 +80,7 @@ def _of_condition(condition: Condition, figure: _Posed) -> Iterator[Mark]:
 
 
 def _limit(
-    bend: constraint_functions.Bend, condition: Condition, figure: _Posed, span: Span
+    bend: constraint_functions.Bend, condition: Constraint, figure: _Posed, span: Span
 ) -> Iterator[Mark]:
     body = figure.body_of(bend.joint.first)
     lower, upper = float(condition.bounds.lower[0]), float(condition.bounds.upper[0])

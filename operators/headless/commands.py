@@ -13,7 +13,7 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.wording import recipe_place, sentence
-from .job import Clip, Job, load
+from .job import AdaptationJob, Clip, load
 from .job import run as run_job
 from .outbox import not_writable
 from .stages import WIDTH, Stages
@@ -126,7 +126,7 @@ def _bone(text: str) -> tuple[str, str]:
 def adapt(options: argparse.Namespace) -> None:
     """The main job. Raises Fault."""
     recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
-    job = Job(_clip(options, recipe), overridden(recipe.problem, options), options.out)
+    job = AdaptationJob(_clip(options, recipe), overridden(recipe.problem, options), options.out)
     stages = Stages(sys.stdout)
     files = run_job(job, stages)
     print(f"{'Total':<{WIDTH}}{stages.total:6.1f} s", "Written:", sep="\n")

@@ -45,7 +45,7 @@ class Clip:
 
 
 @dataclass(frozen=True)
-class Job:
+class AdaptationJob:
     """What to adapt, how, and the folder for the results."""
 
     clip: Clip
@@ -70,7 +70,7 @@ class Performed:
     action: "bpy.types.Action"
 
 
-def run(job: Job, stages: Stages) -> list[Path]:
+def run(job: AdaptationJob, stages: Stages) -> list[Path]:
     """Does the whole job and returns the files written.
 
     Raises NoSolution, having written the report, and any other Fault having written nothing.
@@ -112,7 +112,7 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> Loaded:
 def _reported(
     kind: type[NoSolution],
     adaptation: Adaptation,
-    job: Job,
+    job: AdaptationJob,
     loaded: Loaded,
     outbox: Outbox,
     stages: Stages,
@@ -208,7 +208,7 @@ def _scale(armature: "bpy.types.Object", factor: float) -> None:
 
 
 def _write_results(
-    job: Job, loaded: Loaded, adaptation: Adaptation, outbox: Outbox, stages: Stages
+    job: AdaptationJob, loaded: Loaded, adaptation: Adaptation, outbox: Outbox, stages: Stages
 ) -> None:
     with stages.stage("Writing keyframes"):
         adapted = _write_actions(loaded, adaptation)
@@ -236,7 +236,7 @@ def _write_results(
     _write_report(content, outbox)
 
 
-def _measured(job: Job, loaded: Loaded, adaptation: Adaptation, stages: Stages) -> Json:
+def _measured(job: AdaptationJob, loaded: Loaded, adaptation: Adaptation, stages: Stages) -> Json:
     """The report, with the stages that have ended."""
     content = report(adaptation, job.problem, loaded.origin)
     return content | {"stages": stages.as_json()}

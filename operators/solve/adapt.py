@@ -19,7 +19,7 @@ from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import alike, digest
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import Recording
-from ...solver.data.requests import Method, Objective, Solution
+from ...solver.data.requests import Method, Objective, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, Failed, Kind
 from ..names import OperatorId
@@ -44,7 +44,7 @@ class _Adapting(TaskOperator):
             cls.poll_message_set(why)
         return why is None
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
         """How to solve; asked: what a recipe says of it."""
         raise NotImplementedError
 
@@ -83,7 +83,7 @@ class AdaptOperator(_Adapting, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
         if asked.method is not Method.IMPLICIT:  # a recipe's own choice
             return asked
         return replace(asked, method=Method[settings.method])
@@ -98,7 +98,7 @@ class RefineOperator(_Adapting, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: Solution) -> Solution:
+    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
         weights = ((Objective[settings.objective], 1.0), (Objective.CLOSENESS, settings.stay_close))
         if asked.method is Method.EXPLICIT:
             return asked

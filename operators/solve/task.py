@@ -7,7 +7,7 @@ from time import perf_counter
 
 import bpy
 
-from ...bridge.worker_client import Job, shared
+from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import Fault
 from ...solver.worker.protocol import Answer, Progress
 from .common import FaultyOperator, said
@@ -20,11 +20,11 @@ STATUS = "Hangtime: {} (Esc cancels)"
 CANCELLED = "Cancelled; nothing was changed"
 TAKEN_AWAY = "Stopped, because the scene changed meanwhile; nothing was written. Try again"
 
-Task = Generator[Job | None, None, str]
+Task = Generator[PendingRequest | None, None, str]
 """Work in parts; where it yields a job it waits for that. Returns what to tell the artist."""
 
 
-def answered(job: Job) -> Generator[Job, None, Answer]:
+def answered(job: PendingRequest) -> Generator[PendingRequest, None, Answer]:
     """Waits for a job in a task."""
     while job.answer is None:
         yield job
@@ -109,7 +109,7 @@ class TaskOperator(FaultyOperator):
         self._show()
         return {"RUNNING_MODAL"}
 
-    def _heard(self, job: Job) -> bool:
+    def _heard(self, job: PendingRequest) -> bool:
         """Takes in a job's news; whether its answer is among them."""
         for message in job.news():
             if isinstance(message, Progress):

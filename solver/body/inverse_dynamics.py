@@ -16,7 +16,7 @@ from .kinematics import BodyPoint
 
 
 @dataclass(frozen=True)
-class Efforts:
+class GeneralisedForces:
     """Generalised forces at N instants.
 
     root_force (N, 3) N and root_moment (N, 3) N·m about the centre of mass, world axes: what
@@ -50,7 +50,7 @@ class InverseDynamics:
         q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
         fall = ca.SX.sym("fall", 3)
         forces = ca.SX.sym("forces", 3, len(points))
-        every = efforts(character, points, q, v, a, fall, forces)
+        every = inverse_dynamics(character, points, q, v, a, fall, forces)
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))
         self._function = ca.Function("efforts", [x], [ca.densify(ca.cse(every))])
 
@@ -61,15 +61,15 @@ class InverseDynamics:
         a: FloatArray,
         com_acceleration: FloatArray,
         forces: FloatArray,
-    ) -> Efforts:
+    ) -> GeneralisedForces:
         """At angles, velocities, accelerations (N, n_angles), centre of mass's acceleration
         (N, 3) m/s² and forces on the body (N, P, 3) N, world axes."""
         x = np.concatenate([q, v, a, com_acceleration, forces.reshape(len(q), -1)], axis=1)
         (out,) = evaluate(self._function, x, [(self.n_angles + 3,)])
-        return Efforts(out[:, :3], out[:, 3:6], out[:, 6:])
+        return GeneralisedForces(out[:, :3], out[:, 3:6], out[:, 6:])
 
 
-def efforts(
+def inverse_dynamics(
     character: Character,
     points: Sequence[BodyPoint],
     q: ca.SX,

@@ -16,7 +16,7 @@ class PhaseKind(Enum):
 
 
 @dataclass(frozen=True)
-class Habit:
+class ContactThresholds:
     """How one kind of point behaves when it touches.
 
     low: m above the floor, slow: m/s; what a point must be to touch at all. landed, lifted: m
@@ -38,9 +38,15 @@ class Habit:
 class PointKind(Enum):
     """What touches; the numbers were set on recordings with measured ground forces."""
 
-    HEEL = Habit(low=0.03, slow=0.5, landed=0.005, lifted=0.005, lead=0.02, skid=2.5, shortest=0.04)
-    TOE = Habit(low=0.05, slow=0.5, landed=0.004, lifted=0.015, lead=0.0, skid=2.5, shortest=0.04)
-    HAND = Habit(low=0.06, slow=0.15, landed=0.005, lifted=0.005, lead=0.0, skid=0.3, shortest=0.15)
+    HEEL = ContactThresholds(
+        low=0.03, slow=0.5, landed=0.005, lifted=0.005, lead=0.02, skid=2.5, shortest=0.04
+    )
+    TOE = ContactThresholds(
+        low=0.05, slow=0.5, landed=0.004, lifted=0.015, lead=0.0, skid=2.5, shortest=0.04
+    )
+    HAND = ContactThresholds(
+        low=0.06, slow=0.15, landed=0.005, lifted=0.005, lead=0.0, skid=0.3, shortest=0.15
+    )
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ class When:
 ALWAYS = When()
 
 
-class Axes(Enum):
+class PointAxes(Enum):
     """What directions a point's bounds and places are given in."""
 
     WORLD = "world"
@@ -60,7 +60,7 @@ class PointRequest:
     place: world; None takes the place of the fit (per instant, or its mean where `environment`).
     relative: displaces the place, in `axes`. path: the place moves with an object instead.
     bounds: per axis of `axes`, about the place; None holds the point there exactly.
-    normal: of the surface, for Axes.SURFACE. environment: the world pushes back with a force
+    normal: of the surface, for PointAxes.SURFACE. environment: the world pushes back with a force
     there; such a point may pull as well as push where it is a grip.
     """
 
@@ -71,7 +71,7 @@ class PointRequest:
     place: Vector | None = None
     relative: Vector = (0.0, 0.0, 0.0)
     path: Path | None = None
-    axes: Axes = Axes.WORLD
+    axes: PointAxes = PointAxes.WORLD
     normal: Vector = (0.0, 0.0, 1.0)
     bounds: tuple[Bound, Bound, Bound] | None = None
     environment: bool = False
@@ -335,7 +335,7 @@ class Reduction:
 
 
 @dataclass(frozen=True)
-class Solution:
+class SolverOptions:
     """How to solve. objectives: weights by kind, for the explicit solution; their shares of it.
 
     longest_span: s, between knots; torque_span: s, between knots of the torques' own splines;
@@ -369,7 +369,7 @@ class Requests:
     body: BodyChange = field(default_factory=BodyChange)
     timings: tuple[PhaseTiming, ...] = ()
     holds: tuple[Hold, ...] = ()
-    solution: Solution = field(default_factory=Solution)
+    solution: SolverOptions = field(default_factory=SolverOptions)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ class Status(Enum):
     STOPPED = "stopped"  # by the artist, who takes the motion as it stands
 
 
-class Course(Enum):
+class DragStatus(Enum):
     """How a motion gets on that follows a dragged pin."""
 
     ON_ITS_WAY = "on its way"

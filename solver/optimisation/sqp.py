@@ -73,7 +73,7 @@ class Stopped(Exception):
         self.motion = motion
 
 
-class Goal(Protocol):
+class Objective(Protocol):
     """What steps lessen."""
 
     def value(self, x: FloatArray) -> float:
@@ -147,7 +147,7 @@ def _stagnant(steps: list[Step]) -> bool:
 
 def project(
     transcription: Transcription,
-    goal: Goal,
+    goal: Objective,
     x: FloatArray,
     places: FloatArray,
     *,
@@ -231,7 +231,7 @@ def _shorten(
 
 def _search(
     transcription: Transcription,
-    goal: Goal,
+    goal: Objective,
     x: FloatArray,
     d: FloatArray,
     places: FloatArray,

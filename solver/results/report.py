@@ -21,7 +21,7 @@ from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import Missed
 from ..transcription.contact_pins import PointContact
-from ..transcription.motion import Motion, pinned_instants, unexplained
+from ..transcription.motion import Motion, dynamics_residual, pinned_instants
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
@@ -204,7 +204,7 @@ def _settling(contact: PointContact) -> FloatArray:
 
 def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> Json:
     """Root force (bw) and moment (bw·m) that nothing explains, between the nodes too."""
-    left = unexplained(motion, (instants(motion.duration, RATE) + 0.5 / RATE)[:-1])
+    left = dynamics_residual(motion, (instants(motion.duration, RATE) + 0.5 / RATE)[:-1])
     force, moment = (np.linalg.norm(part, axis=1) for part in (left.force, left.moment))
     content: Json = {"rate_hz": RATE}
     for kind in PhaseKind:

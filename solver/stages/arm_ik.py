@@ -11,7 +11,7 @@ from ..body.anatomy import Part
 from ..body.kinematics import BodyPoint, pose
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
-from .fit import SWING, dense_instants
+from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants
 
 ARM = (Part.UPPER_ARM, Part.FOREARM, Part.HAND)
 EASE = 0.25  # s, before the grip
@@ -33,7 +33,7 @@ def reaching(motion: Motion, places: FloatArray) -> Motion:
     for contact, place in grips:
         _turn_arm(motion, contact, place, times, angles)
     x = motion.x.copy()
-    x[:, t.layout.angles] = t.basis.project(times, angles, SWING)
+    x[:, t.layout.angles] = t.basis.project(times, angles, THIRD_DERIVATIVE_WEIGHT)
     return Motion(t, x, places)
 
 

@@ -16,11 +16,11 @@ from ..data.faults import BadTiming, NothingTouches, RootHasNoJoint, StillBone, 
 from ..data.recording import Recording
 from ..data.requests import (
     AngleLimit,
-    Axes,
     ConeLimit,
     ForceRequest,
     OrientationRequest,
     Path,
+    PointAxes,
     PointRequest,
     PoseRequest,
     Reference,
@@ -31,7 +31,7 @@ from ..data.requests import (
 )
 from ..data.timeline import Timeline, interval
 from ..numerics.rotations import axis_rotation, perpendicular, unit
-from ..transcription.constraint import Bounds, Condition
+from ..transcription.constraint import Bounds, Constraint
 from ..transcription.constraint_functions import (
     Angles,
     Bend,
@@ -54,7 +54,7 @@ LEAST_BEND = 0.05  # of a bone's length; a joint that bends less does not tell i
 
 
 @dataclass(frozen=True)
-class Scene:
+class EvaluationContext:
     """What requests are understood in: the fit, and the timeline that the result will have.
 
     fitted: the fit, which gives peaks; reference: the same with the body as it is asked for,
@@ -113,11 +113,11 @@ class Scene:
 
 
 def conditions(
-    requests: Requests, scene: Scene, transcription: Transcription
-) -> tuple[Condition, ...]:
+    requests: Requests, scene: EvaluationContext, transcription: Transcription
+) -> tuple[Constraint, ...]:
     """Every condition, in the order of the records' kinds, on a motion that touches as the
     transcription has it. Raises the faults of Scene."""
-    made: list[Condition] = []
+    made: list[Constraint] = []
     made += [_point(r, scene) for r in requests.points if not r.environment or _loose(r)]
     made += [_bend(r, scene) for r in requests.angles]
     made += [_cone(r, scene) for r in requests.cones]
@@ -139,14 +139,14 @@ def _limits(lower: float | None, upper: float | None) -> Bounds:
 # ---------------------------------------------------------------- joints
 
 
-def _bend(request: AngleLimit, scene: Scene) -> Condition:
+def _bend(request: AngleLimit, scene: EvaluationContext) -> Constraint:
     body = scene.jointed(request.name, request.bone)
     measure = bend_measure(scene, body)
     span = scene.interval(request.name, request.when)
-    return Condition(request.name, measure, _limits(request.lower, request.upper), *span)
+    return Constraint(request.name, measure, _limits(request.lower, request.upper), *span)
 
 
-def bend_measure(scene: Scene, body: int) -> Bend:
+def bend_measure(scene: EvaluationContext, body: int) -> Bend:
     """How far a body's joint is bent, positive the way it bends in the fit."""
     character = scene.character
     joint, parent = character.joints[body], character.bodies[character.joints[body].parent]
@@ -169,14 +169,16 @@ def _expected_flexion(body: Body, straight: FloatArray) -> FloatArray:
     return across if np.linalg.norm(across) > LEAST_BEND else perpendicular(straight)
 
 
-def _cone(request: ConeLimit, scene: Scene) -> Condition:
+def _cone(request: ConeLimit, scene: EvaluationContext) -> Constraint:
     body = scene.jointed(request.name, request.bone)
     span = scene.interval(request.name, request.when)
     measure = cone_measure(request, scene, body, span)
-    return Condition(request.name, measure, _limits(None, request.half_angle), *span)
+    return Constraint(request.name, measure, _limits(None, request.half_angle), *span)
 
 
-def cone_measure(request: ConeLimit, scene: Scene, body: int, span: tuple[float, float]) -> Cone:
+def cone_measure(
+    request: ConeLimit, scene: EvaluationContext, body: int, span: tuple[float, float]
+) -> Cone:
     """The cone of a request about its axis, or about the bone's mean direction in the fit."""
     character = scene.character
     joint, along = character.joints[body], unit(character.bodies[body].tip)
@@ -193,17 +195,19 @@ def cone_measure(request: ConeLimit, scene: Scene, body: int, span: tuple[float,
     return Cone(joint, along, frame, np.array(request.stretch, dtype=float))
 
 
-def _twist(request: TwistLimit, scene: Scene) -> Condition:
+def _twist(request: TwistLimit, scene: EvaluationContext) -> Constraint:
     body = scene.jointed(request.name, request.bone)
     measure = Twist(scene.character.joints[body], unit(scene.character.bodies[body].tip))
     span = scene.interval(request.name, request.when)
-    return Condition(request.name, measure, _limits(request.lower, request.upper), *span)
+    return Constraint(request.name, measure, _limits(request.lower, request.upper), *span)
 
 
 # ---------------------------------------------------------------- torques
 
 
-def _torque(request: TorqueLimit, scene: Scene, transcription: Transcription) -> Condition:
+def _torque(
+    request: TorqueLimit, scene: EvaluationContext, transcription: Transcription
+) -> Constraint:
     bodies = [scene.jointed(request.name, bone) for bone in request.bones]
     span = scene.interval(request.name, request.when)
     angles, bounds = [], []
@@ -222,10 +226,12 @@ def _torque(request: TorqueLimit, scene: Scene, transcription: Transcription) ->
     measure = Torques(TorqueFunction(scene.character, transcription.points, angles))
     unit_nm = scene.character.mass * GRAVITY
     middle, half = request.value / unit_nm, np.array(bounds) / unit_nm
-    return Condition(request.name, measure, Bounds(middle - half, middle + half), *span)
+    return Constraint(request.name, measure, Bounds(middle - half, middle + half), *span)
 
 
-def _peak_torque(scene: Scene, angles: Sequence[int], span: tuple[float, float]) -> float:
+def _peak_torque(
+    scene: EvaluationContext, angles: Sequence[int], span: tuple[float, float]
+) -> float:
     """The largest torque of the fit at joint angles during a span of the new time, N·m."""
     motion = scene.fitted
     t = motion.transcription
@@ -238,14 +244,14 @@ def _peak_torque(scene: Scene, angles: Sequence[int], span: tuple[float, float])
 # ---------------------------------------------------------------- poses
 
 
-def _pose(request: PoseRequest, scene: Scene) -> Condition:
+def _pose(request: PoseRequest, scene: EvaluationContext) -> Constraint:
     span = scene.interval(request.name, request.when)
     measure = pose_measure(request, scene)
     slack = np.full(len(measure.which), request.slack)
-    return Condition(request.name, measure, Bounds(-slack, slack), *span, per_span=1)
+    return Constraint(request.name, measure, Bounds(-slack, slack), *span, per_span=1)
 
 
-def pose_measure(request: PoseRequest, scene: Scene) -> Angles:
+def pose_measure(request: PoseRequest, scene: EvaluationContext) -> Angles:
     """Joint angles against those of a frame of the fit (None: the same instant), or of rest.
 
     The root's own orientation is no part of a pose; see Orientation.
@@ -267,7 +273,7 @@ def pose_measure(request: PoseRequest, scene: Scene) -> Angles:
     )
 
 
-def _fixed_angles(which: IntArray, posed: FloatArray, scene: Scene) -> Angles:
+def _fixed_angles(which: IntArray, posed: FloatArray, scene: EvaluationContext) -> Angles:
     """Wanted angles, the turn of each nearest to the fit's."""
 
     def wanted(times: FloatArray) -> FloatArray:
@@ -277,7 +283,9 @@ def _fixed_angles(which: IntArray, posed: FloatArray, scene: Scene) -> Angles:
     return Angles(which, wanted)
 
 
-def preferred_poses(requests: Requests, scene: Scene, t: Transcription) -> list[Squares]:
+def preferred_poses(
+    requests: Requests, scene: EvaluationContext, t: Transcription
+) -> list[Squares]:
     """What misses the poses that are only preferred, as terms of a goal."""
     terms = []
     for request in requests.preferred:
@@ -292,7 +300,7 @@ def preferred_poses(requests: Requests, scene: Scene, t: Transcription) -> list[
     return terms
 
 
-def _orientation(request: OrientationRequest, scene: Scene) -> Condition:
+def _orientation(request: OrientationRequest, scene: EvaluationContext) -> Constraint:
     body = scene.body(request.name, request.bone)
     span = scene.interval(request.name, request.when)
     turn = axis_rotation(2, request.turn)
@@ -305,7 +313,7 @@ def _orientation(request: OrientationRequest, scene: Scene) -> Condition:
         return np.asarray(tilted @ posed.rotations[:, body])
 
     slack = np.full(3, request.slack)
-    return Condition(
+    return Constraint(
         request.name, Orientation(body, wanted), Bounds(-slack, slack), *span, per_span=1
     )
 
@@ -313,7 +321,7 @@ def _orientation(request: OrientationRequest, scene: Scene) -> Condition:
 # ---------------------------------------------------------------- points and forces
 
 
-def _point(request: PointRequest, scene: Scene) -> Condition:
+def _point(request: PointRequest, scene: EvaluationContext) -> Constraint:
     body = scene.body(request.name, request.bone)
     span = scene.interval(request.name, request.when)
     point = scene.point(body, request.offset)
@@ -325,7 +333,7 @@ def _point(request: PointRequest, scene: Scene) -> Condition:
     measure = Place(point, point_place(request, scene, point, span), axes[:, kept])
     exact = bool((lower == upper)[kept].all())
     limits = Bounds(lower[kept], upper[kept])
-    return Condition(request.name, measure, limits, *span, per_span=1 if exact else 2)
+    return Constraint(request.name, measure, limits, *span, per_span=1 if exact else 2)
 
 
 def _loose(request: PointRequest) -> bool:
@@ -334,14 +342,16 @@ def _loose(request: PointRequest) -> bool:
     return any(bound not in ((0.0, 0.0), (None, None)) for bound in request.bounds or ())
 
 
-def point_axes(request: PointRequest, scene: Scene, span: tuple[float, float]) -> FloatArray:
+def point_axes(
+    request: PointRequest, scene: EvaluationContext, span: tuple[float, float]
+) -> FloatArray:
     """(3, 3) columns: the directions of a point's bounds and displacement."""
     match request.axes:
-        case Axes.WORLD:
+        case PointAxes.WORLD:
             return np.eye(3)
-        case Axes.TRAVEL:
+        case PointAxes.TRAVEL:
             return scene.travel(0.5 * sum(span))
-        case Axes.SURFACE:
+        case PointAxes.SURFACE:
             out = unit(np.array(request.normal, dtype=float))
             ahead = scene.travel(0.5 * sum(span))[:, 0]
             along = ahead - out * (ahead @ out)
@@ -350,7 +360,7 @@ def point_axes(request: PointRequest, scene: Scene, span: tuple[float, float]) -
 
 
 def point_place(
-    request: PointRequest, scene: Scene, point: BodyPoint, span: tuple[float, float]
+    request: PointRequest, scene: EvaluationContext, point: BodyPoint, span: tuple[float, float]
 ) -> Callable[[FloatArray], FloatArray]:
     """Where a point belongs, as a function of instants (U,): places (U, 3) m."""
     shift = point_axes(request, scene, span) @ np.array(request.relative, dtype=float)
@@ -371,7 +381,7 @@ def point_place(
     return lambda times: _reference_place(scene, point, times) + shift
 
 
-def _reference_place(scene: Scene, point: BodyPoint, times: FloatArray) -> FloatArray:
+def _reference_place(scene: EvaluationContext, point: BodyPoint, times: FloatArray) -> FloatArray:
     old = scene.reference_times(times)
     motion = scene.reference
     return np.asarray(motion.pose(old).points([point])[:, 0] + motion.com(old))
@@ -384,7 +394,9 @@ def path_places(path: Path, timeline: Timeline) -> Callable[[FloatArray], FloatA
     return lambda times: between(at, places, times)
 
 
-def _peak(request: ForceRequest, scene: Scene, transcription: Transcription) -> Condition:
+def _peak(
+    request: ForceRequest, scene: EvaluationContext, transcription: Transcription
+) -> Constraint:
     span = scene.interval(request.name, request.when)
     points = sorted(
         {c.point for c in transcription.contacts if touches(request.touching, c.contact)}
@@ -392,7 +404,7 @@ def _peak(request: ForceRequest, scene: Scene, transcription: Transcription) -> 
     if not points:
         raise NothingTouches(request.name, request.touching)
     measure = PeakForce(np.array(points, dtype=int))
-    return Condition(request.name, measure, _limits(None, request.peak), *span)
+    return Constraint(request.name, measure, _limits(None, request.peak), *span)
 
 
 def touches(names: Sequence[str], contact: Contact) -> bool:

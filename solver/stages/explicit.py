@@ -24,11 +24,11 @@ from ..transcription.objectives import (
     WeightedSum,
     nodes_of,
 )
-from ..transcription.tracking_cost import Closeness
+from ..transcription.tracking_cost import TrackingCost
 from ..transcription.transcription import Transcription
 from .constraint_builder import preferred_poses
 from .fit import ADAPT_PRICES, motion_target
-from .setup import Arrangement
+from .setup import Setup
 
 MOST_STEPS = 12
 DAMPING = 0.02  # of what DRIFT costs; keeps the steps sane without being part of the goal
@@ -41,9 +41,9 @@ SETTLED = 20.0  # times the tolerances: near enough to compare goals
 
 
 class Near:
-    """Closeness to the start as a term. value, expand: see objectives.Term."""
+    """TrackingCost to the start as a term. value, expand: see objectives.Term."""
 
-    def __init__(self, closeness: Closeness, scale: float) -> None:
+    def __init__(self, closeness: TrackingCost, scale: float) -> None:
         self._closeness, self.scale = closeness, scale
 
     def value(self, x: FloatArray) -> float:
@@ -57,7 +57,7 @@ class Near:
 
 def explicit(
     outcome: Outcome,
-    plan: Arrangement,
+    plan: Setup,
     objectives: Mapping[Objective, float],
     progress: Progress | None,
 ) -> tuple[list[Outcome], float]:
@@ -87,7 +87,7 @@ def descend(
     t: Transcription,
     goal: WeightedSum,
     x: FloatArray,
-    plan: Arrangement,
+    plan: Setup,
     progress: Progress | None,
 ) -> Outcome:
     """Gauss-Newton steps along the valid motions, until one gains little.
@@ -147,12 +147,12 @@ def _settled_step(
 
 
 def weighed(
-    t: Transcription, x: FloatArray, plan: Arrangement, objectives: Mapping[Objective, float]
+    t: Transcription, x: FloatArray, plan: Setup, objectives: Mapping[Objective, float]
 ) -> WeightedSum:
     """The goal of weighted objectives, each in shares of its value at x (K, n_block), and of poses
     that are only preferred. Without objectives it is closeness to x that these have to outweigh."""
     start = Motion(t, x, plan.goal)
-    closeness = Closeness(t, motion_target(start), ADAPT_PRICES)
+    closeness = TrackingCost(t, motion_target(start), ADAPT_PRICES)
     typical = 0.5 * DRIFT**2 * start.duration
     terms: list[Term] = [*preferred_poses(plan.requests, plan.scene, t)]
     if not objectives:
@@ -172,7 +172,7 @@ def weighed(
     return WeightedSum(terms, lambda _: still)
 
 
-def _terms(objective: Objective, t: Transcription, plan: Arrangement) -> list[Term]:
+def _terms(objective: Objective, t: Transcription, plan: Setup) -> list[Term]:
     def from_start(quantity: Quantity) -> Term:
         return Squares(t, quantity, nodes_of(plan.start, t, quantity))
 

@@ -23,27 +23,29 @@ from ..numerics.interpolation import interpolate
 from ..numerics.splines import Basis, gauss_instants, phase_breaks
 from ..optimisation.sqp import Outcome, Progress, project, restore
 from ..transcription.contact_pins import PointContact
-from ..transcription.motion import Motion, Promise, pinned_instants, split, weak_spans
+from ..transcription.motion import DenseTolerance, Motion, pinned_instants, split, weak_spans
 from ..transcription.objectives import torque_metric
 from ..transcription.torque_constraint import TorqueFunction, every_torque
-from ..transcription.tracking_cost import Closeness, Prices, Target, marker_points
+from ..transcription.tracking_cost import CostWeights, Target, TrackingCost, marker_points
 from ..transcription.transcription import SETTLE, Transcription, touching_spans
 
 SPANS = (0.08, 0.06, 0.045, 0.035, 0.025)  # s, from which the clip chooses
-FAITHFUL = 0.004  # m; how far a joint may be, rms, from the recording for want of knots
+SPLINE_FIT_TOLERANCE = 0.004  # m; how far a joint may be, rms, from the recording for want of knots
 SHORTEST_SPAN = 0.015  # s
-FIT_PRICES = Prices(place=1.0, smooth_s=0.05, force=1e-4)
+FIT_PRICES = CostWeights(place=1.0, smooth_s=0.05, force=1e-4)
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
 # priced too: what a person does to jump further is push longer, not only harder.
-ADAPT_PRICES = Prices(shape=1.0, com=0.02, smooth_s=0.1, force=3e-3)
+ADAPT_PRICES = CostWeights(shape=1.0, com=0.02, smooth_s=0.1, force=3e-3)
 MOST_REFINEMENTS = 3
 MOST_RESETTLINGS = 4
-SWING = 1e-9  # weight against third derivatives when the recording is made a spline
+THIRD_DERIVATIVE_WEIGHT = (
+    1e-9  # weight against third derivatives when the recording is made a spline
+)
 
 
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
-FIT_PROMISE = Promise(flight=4e-4, ground=1.5e-3, drift=1e-4)
-ADAPT_PROMISE = Promise(flight=1e-3, ground=4e-3, drift=4e-4)
+FIT_PROMISE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
+ADAPT_PROMISE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,9 @@ def fit(
     transcription = transcribe(performance, schedule)
     x = first_guess(transcription, performance)
     places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
-    closeness = Closeness(transcription, recorded_target(transcription, performance, x), FIT_PRICES)
+    closeness = TrackingCost(
+        transcription, recorded_target(transcription, performance, x), FIT_PRICES
+    )
     near = project(
         transcription, closeness, x, places, stage="fit", most_steps=8, progress=progress
     )
@@ -141,7 +145,7 @@ def refine(
     outcome: Outcome,
     places: FloatArray,
     metric_of: Callable[[Motion], BlockBanded],
-    promise: Promise,
+    promise: DenseTolerance,
     *,
     basis: FloatArray | None = None,
     progress: Progress | None = None,
@@ -197,9 +201,9 @@ def fitting_metric(motion: Motion) -> BlockBanded:
     return motion_metric(motion, FIT_PRICES)
 
 
-def motion_metric(motion: Motion, prices: Prices) -> BlockBanded:
+def motion_metric(motion: Motion, prices: CostWeights) -> BlockBanded:
     """The metric W at a motion."""
-    return Closeness(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
+    return TrackingCost(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
 
 
 def motion_target(motion: Motion) -> Target:
@@ -250,7 +254,7 @@ def _coarsest_faithful(
         angles = recorded_spline(basis, performance, performance.angles)
         posed = pose(performance.character, basis.combine(angles, performance.times))
         off = posed.centres - pose(performance.character, performance.angles).centres
-        if np.sqrt((off**2).sum(axis=2).mean(axis=0)).max() < FAITHFUL:
+        if np.sqrt((off**2).sum(axis=2).mean(axis=0)).max() < SPLINE_FIT_TOLERANCE:
             break
     return basis
 
@@ -318,7 +322,9 @@ def recorded_spline(basis: Basis, performance: Performance, samples: FloatArray)
     there would swing.
     """
     times = np.union1d(dense_instants(basis), performance.times)
-    return basis.project(times, interpolate(performance.times, samples, times), SWING)
+    return basis.project(
+        times, interpolate(performance.times, samples, times), THIRD_DERIVATIVE_WEIGHT
+    )
 
 
 def recorded_target(

@@ -12,8 +12,8 @@ from ..transcription.motion import Motion
 from .arm_ik import reaching
 from .explicit import explicit
 from .fit import ADAPT_PROMISE, Fit, Solved, refine
-from .setup import Arrangement, arrange
-from .warm_start import carry, stage_count, staged, stance_moves
+from .setup import Setup, set_up
+from .warm_start import stage_count, staged, stance_moves, warm_start
 
 MOST_RETRIES = 3  # with twice as many stages each
 MOST_STEPS = 60  # after which there is no further try
@@ -31,7 +31,7 @@ class Adaptation(Solved):
     """
 
     fit: Fit
-    plan: Arrangement
+    plan: Setup
     stuck: Outcome | None = None
     reached: float = 1.0
     gain: float | None = None
@@ -44,7 +44,7 @@ class Adaptation(Solved):
 
 def unadapted(fit: Fit) -> Adaptation:
     """A fit as it ended, for reports on one that failed."""
-    plan = arrange(fit, MotionProblem())
+    plan = set_up(fit, MotionProblem())
     return Adaptation(fit.outcomes[-1:], fit.places, fit, plan, fit.outcome, 0.0)
 
 
@@ -55,14 +55,14 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     that fails is returned with the best motion found and a status that says so; one that
     `progress` ends by raising Stopped, with the motion as it stood.
     """
-    plan = arrange(fit, problem)
+    plan = set_up(fit, problem)
     try:
         return _adapted(fit, problem, plan, progress)
     except Stopped as stop:
         return _as_it_stands(stop.motion, fit, plan)
 
 
-def _as_it_stands(motion: Motion, fit: Fit, plan: Arrangement) -> Adaptation:
+def _as_it_stands(motion: Motion, fit: Fit, plan: Setup) -> Adaptation:
     t = motion.transcription
     left = worst_violation(t.rows(motion.x, plan.goal))
     outcome = Outcome(motion.x, t, Status.STOPPED, (), left, plan.goal)
@@ -70,7 +70,7 @@ def _as_it_stands(motion: Motion, fit: Fit, plan: Arrangement) -> Adaptation:
 
 
 def _adapted(
-    fit: Fit, problem: MotionProblem, plan: Arrangement, progress: Progress | None
+    fit: Fit, problem: MotionProblem, plan: Setup, progress: Progress | None
 ) -> Adaptation:
     outcomes: list[Outcome] = []
     ways: list[_Way] = []
@@ -119,7 +119,7 @@ class _Way:
         return len(self.outcomes) == self.stages and self.outcomes[-1].solved
 
 
-def _failed(way: _Way, outcomes: list[Outcome], fit: Fit, plan: Arrangement) -> Adaptation:
+def _failed(way: _Way, outcomes: list[Outcome], fit: Fit, plan: Setup) -> Adaptation:
     """The last motion on the way that obeys physics, marked as short of the goal."""
     stuck, solved = way.outcomes[-1], [o for o in way.outcomes if o.solved]
     best = solved[-1] if solved else stuck
@@ -129,7 +129,7 @@ def _failed(way: _Way, outcomes: list[Outcome], fit: Fit, plan: Arrangement) -> 
     return Adaptation(tuple(outcomes), plan.goal, fit, plan, stuck, way.reached)
 
 
-def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way:
+def _in_stages(plan: Setup, times: int, progress: Progress | None) -> _Way:
     """Solves in as many stages as the pins' moves ask for, times `times`; bounds ease in."""
     motion, schedule = plan.start, plan.schedule
     before = motion.places
@@ -141,7 +141,7 @@ def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way
         transcription = plan.start.transcription
         if stage < stages:
             places = staged(schedule, before, plan.goal, whole, stage / stages)
-        start = carry(motion, stance_moves(schedule, motion.places, places))
+        start = warm_start(motion, stance_moves(schedule, motion.places, places))
         if stage == 1:  # where nothing is gripped this changes nothing
             start = reaching(Motion(transcription, start, places), plan.goal).x
         if stage < stages:
@@ -162,7 +162,7 @@ def _in_stages(plan: Arrangement, times: int, progress: Progress | None) -> _Way
     return _Way(tuple(outcomes), stages)
 
 
-def finish(outcome: Outcome, plan: Arrangement, progress: Progress | None) -> list[Outcome]:
+def finish(outcome: Outcome, plan: Setup, progress: Progress | None) -> list[Outcome]:
     """Refines knots and instants until equations and bounds hold between them as promised."""
     outcomes: list[Outcome] = []
     for _ in range(MOST_EXCHANGES):

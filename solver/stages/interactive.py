@@ -13,14 +13,14 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.problem import MotionProblem
-from ..data.status import Course
+from ..data.status import DragStatus
 from ..data.traces import Traces
 from ..optimisation.kkt_step import Linearised
 from ..transcription.motion import Motion
 from .fit import Fit
 from .implicit import Adaptation
-from .setup import Arrangement, arrange, goal_places
-from .warm_start import carry, stage_count, staged, stance_moves
+from .setup import Setup, goal_places, set_up
+from .warm_start import stage_count, staged, stance_moves, warm_start
 
 CHORDS = 2  # steps an update on the same factor
 GAIN = 0.3  # of the violation: what a chord step must leave at most, or the factor is stale
@@ -33,7 +33,7 @@ class Follower:
 
     def __init__(self, fit: Fit, problem: MotionProblem, last: Adaptation | None = None) -> None:
         self._fit, self._problem = fit, problem
-        self._plan = arrange(fit, problem)
+        self._plan = set_up(fit, problem)
         self.motion = self._plan.start
         if last is not None:
             self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
@@ -44,10 +44,10 @@ class Follower:
         self.violation = np.inf
 
     @property
-    def plan(self) -> Arrangement:
+    def plan(self) -> Setup:
         return self._plan
 
-    def follow(self, problem: MotionProblem) -> Course:
+    def follow(self, problem: MotionProblem) -> DragStatus:
         """Steps towards what a problem asks for now; a motion that is lost goes back to where it
         last held.
 
@@ -62,18 +62,18 @@ class Follower:
         stages = stage_count(whole)
         if stages > 1:
             goal = staged(self._plan.schedule, was, goal, whole, 1.0 / stages)
-        x = carry(self.motion, stance_moves(self._plan.schedule, was, goal))
+        x = warm_start(self.motion, stance_moves(self._plan.schedule, was, goal))
         if not self._settle(x, goal):
             self.motion, self._line = self._held, None
-            return Course.LOST
+            return DragStatus.LOST
         if self.violation < NEAR:
             self._held = self.motion
         there = stages == 1 and self.violation <= 1.0
-        return Course.ARRIVED if there else Course.ON_ITS_WAY
+        return DragStatus.ARRIVED if there else DragStatus.ON_ITS_WAY
 
     def _rearrange(self, problem: MotionProblem) -> None:
         """Other bounds or places of points: the same unknowns where the structure allows."""
-        plan = arrange(self._fit, problem)
+        plan = set_up(self._fit, problem)
         old, new = self.motion.transcription, plan.start.transcription
         start = plan.start
         if new.basis is old.basis and new.layout == old.layout:
@@ -108,7 +108,7 @@ class Follower:
         return Linearised(t, t.rows(x, places), self._metric, basis=self._plan.basis)
 
 
-def change(fit: Fit, plan: Arrangement, motion: Motion, seen: Traces) -> dict[str, float]:
+def change(fit: Fit, plan: Setup, motion: Motion, seen: Traces) -> dict[str, float]:
     """What an artist wants to know while dragging, against the fit, and of the motion as seen.
 
     moved_cm: of the contact that is furthest from where it was recorded; deeper_cm: the lowest

@@ -9,7 +9,9 @@ from ..body.kinematics import pose
 from ..numerics.splines import gauss_instants
 from ..transcription.motion import Motion
 
-SWING = 1e-9  # weight against third derivatives where a first guess jumps between contacts
+THIRD_DERIVATIVE_WEIGHT = (
+    1e-9  # weight against third derivatives where a first guess jumps between contacts
+)
 
 
 def reseated(motion: Motion, character: Character) -> FloatArray:
@@ -23,7 +25,9 @@ def reseated(motion: Motion, character: Character) -> FloatArray:
     """
     t, x = motion.transcription, motion.x.copy()
     times = gauss_instants(t.basis.breaks, 4)[0]
-    x[:, t.layout.com] += t.basis.project(times, _reseat(motion, character, times), SWING)
+    x[:, t.layout.com] += t.basis.project(
+        times, _reseat(motion, character, times), THIRD_DERIVATIVE_WEIGHT
+    )
     if character.gravity != t.character.gravity:
         vertical = slice(t.layout.forces.start + 2, t.layout.forces.stop, 3)
         x[:, vertical] *= character.gravity / t.character.gravity

@@ -36,14 +36,21 @@ from ..transcription.contact_pins import PointContact, Track
 from ..transcription.motion import Motion
 from ..transcription.objectives import torque_metric
 from ..transcription.torque_constraint import TorqueFunction, every_torque
-from ..transcription.tracking_cost import Prices
+from ..transcription.tracking_cost import CostWeights
 from ..transcription.transcription import Transcription
-from .constraint_builder import Scene, conditions, path_places, point_axes, point_place, touches
+from .constraint_builder import (
+    EvaluationContext,
+    conditions,
+    path_places,
+    point_axes,
+    point_place,
+    touches,
+)
 from .fit import (
     ADAPT_PRICES,
     SHORTEST_SPAN,
     SPANS,
-    SWING,
+    THIRD_DERIVATIVE_WEIGHT,
     Fit,
     body_points,
     dense_instants,
@@ -64,7 +71,7 @@ OF_TORQUES = (
 
 
 @dataclass(frozen=True)
-class Arrangement:
+class Setup:
     """A problem ready to be solved.
 
     start: the first guess, whose equations have the problem's conditions; its places are where
@@ -75,7 +82,7 @@ class Arrangement:
     """
 
     fit: Fit
-    scene: Scene
+    scene: EvaluationContext
     start: Motion
     goal: FloatArray
     metric: BlockBanded
@@ -104,7 +111,7 @@ class Arrangement:
         return self.fit.torques if same else every_torque(t)
 
 
-def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
+def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     """Sets a problem up from a fit.
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults.
@@ -126,7 +133,7 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
         old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
         return travel_axes(fit.performance, fit.schedule, old)
 
-    scene = Scene(changed, fit.motion, reference, phases, schedule, line, travel)
+    scene = EvaluationContext(changed, fit.motion, reference, phases, schedule, line, travel)
     added = {r.name: r for r in requests.points if r.environment}
     contacts = [_added(request, scene) for request in added.values()]
     scene = replace(scene, schedule=_with_added(schedule, contacts))
@@ -145,7 +152,7 @@ def arrange(fit: Fit, problem: MotionProblem) -> Arrangement:
     if reduction is not None:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)
     basis = _allowed(space, start)
-    return Arrangement(fit, scene, start, goal, metric, turns, basis, changed, requests, space)
+    return Setup(fit, scene, start, goal, metric, turns, basis, changed, requests, space)
 
 
 def goal_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
@@ -190,7 +197,7 @@ def _turns(
     return turns
 
 
-def _prices(requests: Requests) -> Prices:
+def _prices(requests: Requests) -> CostWeights:
     """The usual prices; forces are dearer where they shall stay like the fit's."""
     wishes = [r.match for r in requests.forces if r.match is not None]
     return replace(ADAPT_PRICES, force=max(wishes) * ADAPT_PRICES.force) if wishes else ADAPT_PRICES
@@ -239,7 +246,7 @@ def _without_lifted(schedule: ContactSchedule, problem: MotionProblem) -> Contac
     return replace(schedule, contacts=kept)
 
 
-def _added(request: PointRequest, scene: Scene) -> Contact:
+def _added(request: PointRequest, scene: EvaluationContext) -> Contact:
     """The contact that an environment point makes, from when it holds."""
     body = scene.body(request.name, request.bone)
     span = scene.interval(request.name, request.when)
@@ -262,7 +269,10 @@ def _with_added(schedule: ContactSchedule, added: Sequence[Contact]) -> ContactS
 
 
 def _detailed(
-    contact: PointContact, problem: MotionProblem, scene: Scene, request: PointRequest | None
+    contact: PointContact,
+    problem: MotionProblem,
+    scene: EvaluationContext,
+    request: PointRequest | None,
 ) -> PointContact:
     """A contact with its friction, and with what an environment point says of it."""
     friction, pyramid = contact.friction, False
@@ -299,7 +309,7 @@ def _detailed(
 
 
 def _start(
-    fit: Fit, problem: MotionProblem, scene: Scene, added: dict[str, PointRequest]
+    fit: Fit, problem: MotionProblem, scene: EvaluationContext, added: dict[str, PointRequest]
 ) -> Motion:
     """The reference on the problem's own contacts, timeline and knots, without conditions."""
     reference, schedule = scene.reference, scene.schedule
@@ -322,7 +332,7 @@ def _start(
     return replace(motion, places=_current_places(motion, fit))
 
 
-def _mapped_basis(old: Basis, scene: Scene, extra: Sequence[float]) -> Basis:
+def _mapped_basis(old: Basis, scene: EvaluationContext, extra: Sequence[float]) -> Basis:
     """The old knots at their new instants, and those that new boundaries and holds need."""
     line, boundaries = scene.timeline, scene.schedule.boundaries
     fixed = sorted({*boundaries, *extra})
@@ -345,8 +355,10 @@ def _resampled(
     basis, layout, old = new.basis, new.layout, motion.transcription
     times = dense_instants(basis)
     x = np.zeros((basis.n_coefficients, layout.n_block))
-    x[:, layout.com] = basis.project(times, motion.com(to_old(times)), SWING)
-    x[:, layout.angles] = basis.project(times, motion.angles(to_old(times)), SWING)
+    x[:, layout.com] = basis.project(times, motion.com(to_old(times)), THIRD_DERIVATIVE_WEIGHT)
+    x[:, layout.angles] = basis.project(
+        times, motion.angles(to_old(times)), THIRD_DERIVATIVE_WEIGHT
+    )
     names = {c.point: c.contact.point for c in old.contacts}
     came_from = {name: point for point, name in names.items()}
     nodes = basis.force_nodes(np.arange(basis.n_spans))
@@ -375,7 +387,7 @@ def _current_places(motion: Motion, fit: Fit) -> FloatArray:
     return np.array(places).reshape(-1, 3)
 
 
-def _with_conditions(start: Motion, problem: MotionProblem, scene: Scene) -> Motion:
+def _with_conditions(start: Motion, problem: MotionProblem, scene: EvaluationContext) -> Motion:
     made = conditions(problem.requests, scene, start.transcription)
     if not made:
         return start

@@ -75,7 +75,7 @@ def stance_moves(
     return tuple(moves)
 
 
-def carry(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
+def warm_start(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
     """Unknowns of a motion whose stances make these moves, blended linearly in between."""
     t, x = motion.transcription, motion.x.copy()
     if not moves:

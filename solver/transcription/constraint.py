@@ -20,7 +20,7 @@ DENSE = 0.004  # s, between the instants that tell whether a bound holds
 FEWEST_DENSE = 6  # of them a span
 
 
-class Measure(Protocol):
+class ConstraintFunction(Protocol):
     """A quantity of the motion that can be bounded."""
 
     @property
@@ -47,14 +47,14 @@ class Bounds:
 
 
 @dataclass(frozen=True)
-class Condition:
+class Constraint:
     """Bounds on a measure between start and end, s. name: the artist's.
 
     per_span: rows per span. extra: instants that `exchange` added.
     """
 
     name: str
-    measure: Measure
+    measure: ConstraintFunction
     bounds: Bounds
     start: float
     end: float
@@ -123,7 +123,7 @@ class Bounded:
 
     def __init__(
         self,
-        condition: Condition,
+        condition: Constraint,
         character: Character,
         basis: Basis,
         layout: Layout,
@@ -174,7 +174,7 @@ class Missed:
 
 
 def missed(
-    condition: Condition, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    condition: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
 ) -> Missed:
     """How badly a motion misses a condition at worst, between its rows too."""
     instants, off = _dense_violation(condition, character, basis, layout, x)
@@ -183,8 +183,8 @@ def missed(
 
 
 def exchange(
-    condition: Condition, character: Character, basis: Basis, layout: Layout, x: FloatArray
-) -> Condition:
+    condition: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
+) -> Constraint:
     """The condition with the instants added at which it is missed most, one for each stretch."""
     instants, off = _dense_violation(condition, character, basis, layout, x)
     bad = off > condition.kind.tolerance
@@ -196,7 +196,7 @@ def exchange(
 
 
 def _dense_violation(
-    condition: Condition, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    condition: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
 ) -> tuple[Instants, FloatArray]:
     instants = condition.dense(basis)
     value = condition.measure.value(State(character, layout, instants, x))

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.dynamics import GRAVITY
-from ..body.inverse_dynamics import Efforts, InverseDynamics
+from ..body.inverse_dynamics import GeneralisedForces, InverseDynamics
 from ..body.kinematics import Pose, pose
 from ..data.recording import PoseTrack, Recording
 from ..numerics.rotations import cross_matrix
@@ -84,7 +84,9 @@ class Motion:
         return np.asarray(np.linalg.norm(each.off(at, self.places[contact], times), axis=1))
 
 
-def motion_efforts(dynamics: InverseDynamics, motion: Motion, times: FloatArray) -> Efforts:
+def motion_efforts(
+    dynamics: InverseDynamics, motion: Motion, times: FloatArray
+) -> GeneralisedForces:
     """Inverse dynamics of a motion at (T,) s; `dynamics` is of its character and its points."""
     q, v, a = (motion.angles(times, k) for k in range(3))
     return dynamics(q, v, a, motion.com(times, 2), motion.forces(times))
@@ -94,7 +96,7 @@ SHORTEST_SPLIT = 0.016  # s; shorter spans are not split further
 
 
 @dataclass(frozen=True)
-class Unexplained:
+class DynamicsResidual:
     """Root force (T, 3) in body weights and moment (T, 3) in body weights x m that nothing
     explains, at instants (T,) s."""
 
@@ -103,7 +105,7 @@ class Unexplained:
     moment: FloatArray
 
 
-def unexplained(motion: Motion, times: FloatArray) -> Unexplained:
+def dynamics_residual(motion: Motion, times: FloatArray) -> DynamicsResidual:
     """The equations of motion evaluated between the nodes (by the solver's own functions).
 
     Quick, for choosing knots; the figures are measured by another engine.
@@ -118,7 +120,7 @@ def unexplained(motion: Motion, times: FloatArray) -> Unexplained:
     if t.points:
         arms = motion.pose(times).points(t.points)
         rate = rate - np.einsum("tpij,tpj->ti", cross_matrix(arms), forces)
-    return Unexplained(times, force, rate)
+    return DynamicsResidual(times, force, rate)
 
 
 def pinned_instants(contact: PointContact, rate: float) -> FloatArray:
@@ -128,7 +130,7 @@ def pinned_instants(contact: PointContact, rate: float) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Promise:
+class DenseTolerance:
     """What must hold between the nodes, else knots are added.
 
     flight, ground: rms moment that a span may leave unexplained, BW·m. drift: how far a pinned
@@ -140,7 +142,7 @@ class Promise:
     drift: float
 
 
-def weak_spans(motion: Motion, promise: Promise) -> IntArray:
+def weak_spans(motion: Motion, promise: DenseTolerance) -> IntArray:
     """Indices of the spans in which the motion breaks a promise between the nodes."""
     transcription = motion.transcription
     basis = transcription.basis
@@ -148,7 +150,7 @@ def weak_spans(motion: Motion, promise: Promise) -> IntArray:
     inside = (np.arange(per) + 0.5) / per
     length = np.diff(basis.breaks)
     times = (basis.breaks[:-1, None] + length[:, None] * inside).ravel()
-    left = (unexplained(motion, times).moment ** 2).sum(axis=1).reshape(-1, per)
+    left = (dynamics_residual(motion, times).moment ** 2).sum(axis=1).reshape(-1, per)
     carried = np.zeros(basis.n_spans, dtype=bool)
     for contact in transcription.contacts:
         carried[touching_spans(basis, contact.contact)] = True

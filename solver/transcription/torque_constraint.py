@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
 from ..body.dynamics import GRAVITY, evaluate
-from ..body.inverse_dynamics import efforts
+from ..body.inverse_dynamics import inverse_dynamics
 from ..body.kinematics import BodyPoint
 from .rows import RowKind
 from .sampling import Channel, Slope, State
@@ -38,7 +38,7 @@ class TorqueFunction:
         fall = ca.SX.sym("fall", 3)
         forces = ca.SX.sym("forces", 3, len(points))
         weight = character.mass * GRAVITY
-        every = efforts(character, points, q, v, a, fall, weight * forces)
+        every = inverse_dynamics(character, points, q, v, a, fall, weight * forces)
         torques = every[(self.angles + 3).tolist()] / weight
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))
         jacobian = ca.densify(ca.jacobian(torques, x))

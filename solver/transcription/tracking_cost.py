@@ -21,7 +21,7 @@ AT_ONCE = 16  # spans
 
 
 @dataclass(frozen=True)
-class Prices:
+class CostWeights:
     """What the distance weighs; each term is a mean square in m² integrated over time.
 
     place: points in the world; shape: points relative to the centre of mass; com: the centre of
@@ -77,10 +77,10 @@ class _Nodes:
     bend: FloatArray
 
 
-class Closeness:
+class TrackingCost:
     """The squared distance to a target as a function of the unknowns, with Gauss-Newton metric."""
 
-    def __init__(self, transcription: Transcription, target: Target, prices: Prices) -> None:
+    def __init__(self, transcription: Transcription, target: Target, prices: CostWeights) -> None:
         self.transcription = transcription
         self.target = target
         self.prices = prices

@@ -28,7 +28,7 @@ from ..body.kinematics import BodyPoint, Pose, pose
 from ..data.contacts import Contact
 from ..numerics.rotations import cross_matrix
 from ..numerics.splines import ORDER, Basis, gauss_instants
-from .constraint import Bounded, Condition
+from .constraint import Bounded, Constraint
 from .contact_pins import Pins, PointContact
 from .friction_cones import ForceCones
 from .rows import Layout, RowKind, Rows
@@ -50,7 +50,7 @@ class Transcription:
     points: tuple[BodyPoint, ...]
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
-    conditions: tuple[Condition, ...] = ()
+    conditions: tuple[Constraint, ...] = ()
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block) bool, which unknowns exist
 

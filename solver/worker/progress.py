@@ -11,7 +11,7 @@ STAGES_PER_SPAN = 3.0  # a stage of steps begun again counts as another third of
 
 
 @dataclass
-class Advance:
+class ProgressFraction:
     """The share done. A stage's violation falls to 1 roughly evenly in its logarithm."""
 
     share: float = 0.0

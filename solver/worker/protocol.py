@@ -24,7 +24,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, BinaryIO
 from zlib import crc32
 
-from ..data.status import Course
+from ..data.status import DragStatus
 
 if TYPE_CHECKING:
     from ..arrays import FloatArray
@@ -174,7 +174,7 @@ class Followed:
 
     id: int
     traces: Traces
-    course: Course
+    course: DragStatus
     change: dict[str, float]
 
 

@@ -24,7 +24,7 @@ from ..stages.fit import Fit, fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.interactive import Follower, change
 from ..transcription.motion import Motion
-from .progress import Advance
+from .progress import ProgressFraction
 from .protocol import (
     Adapted,
     Analysed,
@@ -192,7 +192,7 @@ class _Watch:
     def __init__(self, request: int, tell: Tell, ending: Callable[[int], Ending | None]) -> None:
         self._request, self._tell, self._ending = request, tell, ending
         self._counts: Counter[str] = Counter()
-        self._advance = Advance()
+        self._advance = ProgressFraction()
         self.stoppable = False
 
     def __call__(self, step: Step, motion: Motion) -> None:

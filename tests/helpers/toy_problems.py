@@ -18,15 +18,15 @@ from hangtime.solver.numerics.block_banded import BlockBanded
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.numerics.splines import ORDER, Basis, phase_breaks
 from hangtime.solver.optimisation.sqp import Outcome, restore
-from hangtime.solver.stages.constraint_builder import Scene, conditions
+from hangtime.solver.stages.constraint_builder import EvaluationContext, conditions
 from hangtime.solver.stages.fit import motion_target
-from hangtime.solver.transcription.constraint import Condition, Measure, exchange
+from hangtime.solver.transcription.constraint import Constraint, ConstraintFunction, exchange
 from hangtime.solver.transcription.constraint_functions import Twist
 from hangtime.solver.transcription.contact_pins import PointContact
 from hangtime.solver.transcription.motion import Motion
 from hangtime.solver.transcription.rows import Layout
 from hangtime.solver.transcription.sampling import Instants, State
-from hangtime.solver.transcription.tracking_cost import Closeness, Prices
+from hangtime.solver.transcription.tracking_cost import CostWeights, TrackingCost
 from hangtime.solver.transcription.transcription import Transcription
 
 DURATION = 0.3  # s
@@ -113,8 +113,8 @@ def random_state(seed: int, size: float = 0.2) -> np.ndarray:
 
 
 def metric(motion: Motion) -> BlockBanded:
-    prices = Prices(shape=1.0, com=0.1, force=1e-3)
-    return Closeness(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
+    prices = CostWeights(shape=1.0, com=0.1, force=1e-3)
+    return TrackingCost(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
 
 
 @cache
@@ -145,13 +145,15 @@ def held_between(t: Transcription, start: Motion) -> tuple[Transcription, Outcom
 
 
 @cache
-def scene() -> Scene:
+def scene() -> EvaluationContext:
     """The standing motion as a fit of which something is asked."""
     motion = stood()
     touching = tuple(c.contact for c in motion.transcription.contacts)
     line = Timeline(np.array([0.0, DURATION]), np.array([0.0, DURATION]), (), 1.0, RATE)
     schedule = ContactSchedule(touching, DURATION, 0.0)
-    return Scene(recording(), motion, motion, schedule.phases, schedule, line, lambda _: np.eye(3))
+    return EvaluationContext(
+        recording(), motion, motion, schedule.phases, schedule, line, lambda _: np.eye(3)
+    )
 
 
 def recording() -> Recording:
@@ -200,13 +202,13 @@ def still(character: Character, angles: np.ndarray, com: np.ndarray | None = Non
 
 def seen(t: Transcription, x: np.ndarray) -> State:
     """Unknowns at the instants at which a condition of the whole clip would have its rows."""
-    whole = Condition(
+    whole = Constraint(
         "toy", Twist(t.character.joints[0], np.eye(3)[0]), None, *t.basis.breaks[[0, -1]]
     )
     return State(t.character, t.layout, whole.instants(t.basis), x)
 
 
-def slope_error(state: State, measure: Measure, seed: int) -> float:
+def slope_error(state: State, measure: ConstraintFunction, seed: int) -> float:
     """How far a measure's slopes are from central differences along a random direction of the
     unknowns, over the largest of these."""
     direction = np.random.default_rng(seed).normal(size=state.x.shape)

@@ -6,7 +6,7 @@ import numpy as np
 from hangtime.solver.body.dynamics import GRAVITY
 from hangtime.solver.data.contacts import ContactSchedule
 from hangtime.solver.stages.fit import Fit
-from hangtime.solver.transcription.motion import Motion, pinned_instants, unexplained
+from hangtime.solver.transcription.motion import Motion, dynamics_residual, pinned_instants
 
 RATE = 480.0  # Hz, finer than the nodes
 
@@ -26,7 +26,7 @@ class Measures:
 
 def measure(motion: Motion, schedule: ContactSchedule) -> Measures:
     times = np.arange(0.0, motion.duration, 1.0 / RATE)
-    left = unexplained(motion, times)
+    left = dynamics_residual(motion, times)
     flying = np.any([(times > f.start) & (times < f.end) for f in schedule.flights], axis=0)
     contacts = motion.transcription.contacts
     drifts = [motion.drift(i, pinned_instants(c, RATE)).max() for i, c in enumerate(contacts)]

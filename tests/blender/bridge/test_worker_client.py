@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hangtime.bridge.worker_client import Chase, Job, Kind, Worker
+from hangtime.bridge.worker_client import DragStream, Kind, PendingRequest, Worker
 from hangtime.solver.data.faults import (
     ClipTooShort,
     NoFlight,
@@ -21,7 +21,7 @@ from hangtime.solver.data.faults import (
 )
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
-from hangtime.solver.data.status import Course
+from hangtime.solver.data.status import DragStatus
 from hangtime.solver.worker.protocol import Adapted, Analysed, Failed, Fitted, Followed, Progress
 from hangtime.tests.helpers.clips import load_recording
 
@@ -139,7 +139,7 @@ def test_the_stated_height_leaves_places_in_the_recordings_lengths(
         np.testing.assert_allclose(contact.place, places[contact.name], atol=0.01)
 
 
-def started(worker: Worker, recording: Recording, problem: MotionProblem) -> Job:
+def started(worker: Worker, recording: Recording, problem: MotionProblem) -> PendingRequest:
     """An adaptation of which a first step has been told."""
     job = worker.ask(Kind.ADAPT, recording, problem)
     while not list(job.news()):
@@ -190,7 +190,7 @@ def raised(up: float, name: str = "up") -> MotionProblem:
     return MotionProblem(frames=SPAN, pins=(pin,))
 
 
-def chased(chase: Chase) -> Iterator[Followed]:
+def chased(chase: DragStream) -> Iterator[Followed]:
     """The motions that come, for at most a minute."""
     until = time.monotonic() + 60.0
     while time.monotonic() < until:
@@ -207,7 +207,7 @@ def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
     apexes = []
     for up in (0.01, 0.05):
         chase.want(raised(up))
-        reached = (seen for seen in chased(chase) if seen.course is Course.ARRIVED)
+        reached = (seen for seen in chased(chase) if seen.course is DragStatus.ARRIVED)
         seen = next(s for s in reached if abs(s.change["moved_cm"] - 100.0 * up) < 0.1)
         apexes.append(seen.traces.heads[:, 0, 2].max())
     assert apexes[1] > apexes[0] + 0.01

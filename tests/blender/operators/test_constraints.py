@@ -207,7 +207,7 @@ def test_bounds_of_a_point_may_be_open(rig: bpy.types.Object) -> None:
     )
     (point,) = asked(rig).points
     assert point.bounds == ((None, None), (-0.5, 0.5), (0.25, None))
-    assert (point.axes, point.normal) == (requests.Axes.SURFACE, (1.0, 0.0, 0.0))
+    assert (point.axes, point.normal) == (requests.PointAxes.SURFACE, (1.0, 0.0, 0.0))
     assert (point.place, point.offset, point.environment, point.grip) == (None, None, True, True)
 
 
@@ -407,7 +407,7 @@ def test_lists_and_text_are_joined_and_may_not_share_a_name(rig: bpy.types.Objec
     added(rig, ConstraintKind.CONE, "thigh", name="Mine")
     rig.hangtime.gravity = 1.62
     hold = requests.Hold("Hang", 8.0, 1.0)
-    solution = requests.Solution(method=requests.Method.EXPLICIT)
+    solution = requests.SolverOptions(method=requests.Method.EXPLICIT)
     both = joined(asked(rig), requests.Requests(holds=(hold,), solution=solution))
     assert both.names == ("Mine", "Hang")
     assert (both.solution, both.body.gravity) == (solution, 1.62)

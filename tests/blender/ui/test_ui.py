@@ -498,13 +498,13 @@ def test_a_worker_killed_in_the_middle_is_told(analysed: bpy.types.Object) -> No
 def test_a_result_for_keys_that_changed_meanwhile_is_thrown_away(
     analysed: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def edited_while_waiting(job: worker_client.Job) -> object:
+    def edited_while_waiting(job: worker_client.PendingRequest) -> object:
         answer = wait(job)
         snapshot_curve(analysed).keyframe_points[120].co.y += 0.1
         return answer
 
-    wait = worker_client.Job.wait
-    monkeypatch.setattr(worker_client.Job, "wait", edited_while_waiting)
+    wait = worker_client.PendingRequest.wait
+    monkeypatch.setattr(worker_client.PendingRequest, "wait", edited_while_waiting)
     before = SceneState.of(analysed)
     with pytest.raises(RuntimeError, match="The result was thrown away"):
         bpy.ops.hangtime.adapt()

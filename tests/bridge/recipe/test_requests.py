@@ -20,7 +20,6 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
     AngleLimit,
-    Axes,
     BodyChange,
     ConeLimit,
     ConeShape,
@@ -35,13 +34,14 @@ from hangtime.solver.data.requests import (
     OrientationRequest,
     Path,
     PhaseTiming,
+    PointAxes,
     PointRequest,
     PoseRequest,
     Reduction,
     ReductionKind,
     Reference,
     Requests,
-    Solution,
+    SolverOptions,
     TorqueLimit,
     TwistLimit,
     When,
@@ -189,7 +189,7 @@ REQUESTS = Requests(
             "Toe.L",
             When(frames=(100.0, 120.0)),
             relative=(0.5, 0.0, 0.0),
-            axes=Axes.TRAVEL,
+            axes=PointAxes.TRAVEL,
             bounds=((None, None), (None, 0.2), (0.3, 0.9)),
         ),
         PointRequest(
@@ -197,7 +197,7 @@ REQUESTS = Requests(
             "Hand.R",
             When(),
             path=Path((100.0, 110.0), ((0.0, 0.0, 1.0), (0.0, 0.0, 2.0))),
-            axes=Axes.SURFACE,
+            axes=PointAxes.SURFACE,
             normal=(0.0, -1.0, 0.0),
             bounds=((None, None), (None, None), (None, 0.01)),
         ),
@@ -234,7 +234,7 @@ REQUESTS = Requests(
     ),
     timings=(PhaseTiming("Timing 1", "flight 1", factor=1.5),),
     holds=(Hold("Hanging", 145.0, 1.0, ends=True),),
-    solution=Solution(
+    solution=SolverOptions(
         Method.EXPLICIT,
         Dynamics.STANDARD,
         ((Objective.TORQUE_SMOOTHNESS, 2.0), (Objective.CLOSENESS, 0.5)),
@@ -318,12 +318,12 @@ FREE = st.just((None, None))
 POINT_BOUNDS = st.tuples(*[FREE | bounds_of(NUMBERS)] * 3).filter(lambda b: any(map(any, b)))
 PLACES = st.just({}) | st.builds(dict, place=VECTORS) | st.builds(dict, path=PATHS)
 GRIPS = st.sampled_from([{}, {"environment": True}, {"environment": True, "grip": True}])
-SURFACES = st.builds(dict, axes=st.just(Axes.SURFACE), normal=DIRECTIONS)
+SURFACES = st.builds(dict, axes=st.just(PointAxes.SURFACE), normal=DIRECTIONS)
 POINTS = st.builds(
     lambda place, grip, axes, **rest: PointRequest(**rest, **place, **grip, **axes),
     place=PLACES,
     grip=GRIPS,
-    axes=SURFACES | st.builds(dict, axes=st.sampled_from(Axes)),
+    axes=SURFACES | st.builds(dict, axes=st.sampled_from(PointAxes)),
     name=NAMES,
     bone=NAMES,
     when=WHENS,
@@ -388,7 +388,7 @@ REDUCTIONS = (
     | st.builds(Reduction, st.just(ReductionKind.MATRIX), matrix=ROWS)
 )
 SOLUTIONS = st.builds(
-    Solution,
+    SolverOptions,
     method=st.sampled_from(Method),
     dynamics=st.sampled_from(Dynamics),
     objectives=st.dictionaries(st.sampled_from(Objective), NOT_NEGATIVE, min_size=1).map(
@@ -484,16 +484,16 @@ def test_what_was_not_asked_is_not_written() -> None:
 @pytest.mark.parametrize(
     ("keys", "axes", "relative"),
     [
-        ("", Axes.WORLD, (0.0, 0.0, 0.0)),
-        ("left = 2", Axes.TRAVEL, (0.0, 2.0, 0.0)),
-        ("relative = [1, 2, 3]\nat_least = { forward = 0 }", Axes.TRAVEL, (1.0, 2.0, 3.0)),
-        ('axes = "travel"\nrelative = [1, 2, 3]', Axes.TRAVEL, (1.0, 2.0, 3.0)),
-        ("at_most = { z = 1 }", Axes.WORLD, (0.0, 0.0, 0.0)),
-        ("at_most = { along = 1 }", Axes.SURFACE, (0.0, 0.0, 0.0)),
-        ("normal = [1, 0, 0]", Axes.SURFACE, (0.0, 0.0, 0.0)),
+        ("", PointAxes.WORLD, (0.0, 0.0, 0.0)),
+        ("left = 2", PointAxes.TRAVEL, (0.0, 2.0, 0.0)),
+        ("relative = [1, 2, 3]\nat_least = { forward = 0 }", PointAxes.TRAVEL, (1.0, 2.0, 3.0)),
+        ('axes = "travel"\nrelative = [1, 2, 3]', PointAxes.TRAVEL, (1.0, 2.0, 3.0)),
+        ("at_most = { z = 1 }", PointAxes.WORLD, (0.0, 0.0, 0.0)),
+        ("at_most = { along = 1 }", PointAxes.SURFACE, (0.0, 0.0, 0.0)),
+        ("normal = [1, 0, 0]", PointAxes.SURFACE, (0.0, 0.0, 0.0)),
     ],
 )
-def test_axes_follow_from_the_names_of_axes(keys: str, axes: Axes, relative: tuple) -> None:
+def test_axes_follow_from_the_names_of_axes(keys: str, axes: PointAxes, relative: tuple) -> None:
     (point,) = parse_recipe(f'[[point]]\nbone = "Hand"\n{keys}').problem.requests.points
     assert (point.axes, point.relative) == (axes, relative)
 

@@ -25,7 +25,7 @@ from hangtime.solver.data.requests import AddedMass, BodyChange, LimbChange
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.results.npz_export import sample
 from hangtime.solver.stages.reseat import reseated
-from hangtime.solver.transcription.motion import Motion, unexplained
+from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.tests.helpers import toy_problems as toys
 from hangtime.tests.helpers.clips import load_recording
 from hypothesis import given, settings
@@ -363,7 +363,7 @@ def test_on_the_moon_vertical_forces_shrink_with_gravity() -> None:
     np.testing.assert_allclose(after[..., 2], MOON / GRAVITY * before[..., 2], atol=1e-9)
     np.testing.assert_allclose(after[..., :2], before[..., :2], atol=1e-9)
     # What a resting centre of mass leaves unexplained is then the accelerations' share alone.
-    left = unexplained(made, times).force * GRAVITY * made.transcription.character.mass
+    left = dynamics_residual(made, times).force * GRAVITY * made.transcription.character.mass
     fall = made.com(times, 2) + np.array([0.0, 0.0, MOON])
     expected = made.transcription.character.mass * fall - after.sum(axis=1)
     np.testing.assert_allclose(left, expected, atol=1e-8)

@@ -14,7 +14,7 @@ from hangtime.solver.data.requests import (
     Reduction,
     ReductionKind,
     Requests,
-    Solution,
+    SolverOptions,
     When,
 )
 from hangtime.solver.optimisation.kkt_step import Linearised
@@ -22,7 +22,7 @@ from hangtime.solver.results.report import change
 from hangtime.solver.results.violations import missed_conditions
 from hangtime.solver.stages.explicit import weighed
 from hangtime.solver.stages.implicit import Adaptation, adapt
-from hangtime.solver.stages.setup import arrange
+from hangtime.solver.stages.setup import set_up
 from hangtime.solver.transcription.objectives import (
     AngleRates,
     ContactForces,
@@ -98,7 +98,7 @@ def test_hessians_are_the_squares_of_the_residuals_slopes(name: str) -> None:
 def test_every_objective_is_lessened_and_every_request_still_met(objective: Objective) -> None:
     start = implicit()
     weights = ((objective, 1.0), (Objective.CLOSENESS, 0.3))
-    solution = Solution(Method.EXPLICIT, objectives=weights)
+    solution = SolverOptions(Method.EXPLICIT, objectives=weights)
     found = adapt(fitted_hop(), asked(Requests(solution=solution)))
     assert found.solved
     t = start.motion.transcription
@@ -128,11 +128,11 @@ def c_times(found: Adaptation, i: int) -> np.ndarray:
 def test_torques_weighed_in_the_step_change_less() -> None:
     """In the first step, before nonlinearity mixes what the norms want."""
     fit = fitted_hop()
-    solution = Solution(Method.IMPLICIT_TORQUES)
+    solution = SolverOptions(Method.IMPLICIT_TORQUES)
     assert adapt(fit, asked(Requests(solution=solution))).solved
     moved = []
     for requests in (Requests(), Requests(solution=solution)):
-        plan = arrange(fit, asked(requests))
+        plan = set_up(fit, asked(requests))
         t = plan.start.transcription
         line = Linearised(t, t.rows(plan.start.x, plan.goal), plan.metric)
         step, _ = line.step(line.rows.value)
@@ -149,7 +149,7 @@ def test_a_preferred_pose_is_approached_but_not_held() -> None:
     for poses in ((), (soft,)):
         found = adapt(fitted_hop(), MotionProblem(requests=Requests(poses=poses)))
         assert found.solved
-        plan = arrange(fitted_hop(), MotionProblem(requests=Requests(poses=(held,))))
+        plan = set_up(fitted_hop(), MotionProblem(requests=Requests(poses=(held,))))
         (condition,) = plan.start.transcription.conditions
         motion = found.motion
         at = np.array([condition.start])
@@ -162,7 +162,7 @@ def test_a_reduction_of_full_rank_gives_the_full_problems_result() -> None:
     n = fitted_hop().motion.transcription.character.n_angles
     for kind in (ReductionKind.PCA, ReductionKind.VARIMAX):
         reduction = Reduction(kind, dimensions=n - 3)
-        found = adapt(fitted_hop(), asked(Requests(solution=Solution(reduction=reduction))))
+        found = adapt(fitted_hop(), asked(Requests(solution=SolverOptions(reduction=reduction))))
         assert found.solved
         times = np.linspace(0.0, found.motion.duration, 100)
         apart = found.motion.joint_centres(times) - implicit().motion.joint_centres(times)
@@ -172,9 +172,13 @@ def test_a_reduction_of_full_rank_gives_the_full_problems_result() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [k for k in ReductionKind if k is not ReductionKind.MATRIX])
 def test_every_reduction_solves_and_moves_only_along_itself(kind: ReductionKind) -> None:
-    found = adapt(fitted_hop(), asked(Requests(solution=Solution(reduction=Reduction(kind, 24)))))
+    found = adapt(
+        fitted_hop(), asked(Requests(solution=SolverOptions(reduction=Reduction(kind, 24))))
+    )
     if kind is ReductionKind.MIRROR_LEGS:
-        found = adapt(fitted_hop(), asked(Requests(solution=Solution(reduction=Reduction(kind)))))
+        found = adapt(
+            fitted_hop(), asked(Requests(solution=SolverOptions(reduction=Reduction(kind))))
+        )
     assert found.solved
     assert not missed_conditions(found)
     layout, basis = found.motion.transcription.layout, found.plan.basis

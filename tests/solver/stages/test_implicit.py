@@ -9,7 +9,7 @@ from hangtime.solver.data.status import Status
 from hangtime.solver.optimisation.sqp import Step
 from hangtime.solver.stages.fit import fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
-from hangtime.solver.transcription.motion import unexplained
+from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.validity import assert_valid
@@ -155,7 +155,7 @@ def test_ten_metres_further_ends_in_bounded_steps(height: float) -> None:
     assert 0.0 < adaptation.reached < 1.0
     motion = adaptation.motion
     times = np.linspace(0.0, motion.duration, 300)
-    assert np.abs(unexplained(motion, times).force).max() < 1e-3
+    assert np.abs(dynamics_residual(motion, times).force).max() < 1e-3
     assert np.linalg.norm(contact_places(adaptation) - motion.places, axis=1).max() > 1.0
 
 

@@ -11,13 +11,13 @@ from hangtime.solver.data.requests import (
     Method,
     Objective,
     Requests,
-    Solution,
+    SolverOptions,
     TorqueLimit,
     When,
 )
 from hangtime.solver.results.violations import missed_conditions, most_telling, worst_constraints
 from hangtime.solver.stages.implicit import Adaptation, adapt
-from hangtime.solver.transcription.motion import unexplained
+from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 MOST_STEPS = 200
@@ -56,7 +56,7 @@ def check(found: Adaptation, problem: MotionProblem, names: tuple[str, ...]) -> 
     assert any(part in name for name, _, _ in worst for part in names), worst
     assert np.isfinite(found.motion.x).all()
     if found.reached > 0.0:  # the best motion found obeys physics, it only falls short
-        left = unexplained(found.motion, np.linspace(0.01, found.motion.duration - 0.01, 300))
+        left = dynamics_residual(found.motion, np.linspace(0.01, found.motion.duration - 0.01, 300))
         assert np.sqrt((left.force**2).sum(axis=1).mean()) < 0.02
 
 
@@ -88,7 +88,7 @@ def test_limp_legs_at_take_off() -> None:
 
 def test_reduced_dynamics_have_no_torques_to_limit() -> None:
     limit = TorqueLimit("Weak knee", legs()[:1], bound=50.0)
-    solution = Solution(dynamics=Dynamics.REDUCED)
+    solution = SolverOptions(dynamics=Dynamics.REDUCED)
     with pytest.raises(NeedsTorques) as caught:
         adapt(fitted_hop(), MotionProblem(requests=Requests(torques=(limit,), solution=solution)))
     assert caught.value.request == "Weak knee"
@@ -96,14 +96,14 @@ def test_reduced_dynamics_have_no_torques_to_limit() -> None:
 
 @pytest.mark.parametrize("method", [Method.IMPLICIT_TORQUES, Method.EXPLICIT])
 def test_reduced_dynamics_have_no_torques_to_weigh(method: Method) -> None:
-    solution = Solution(method, Dynamics.REDUCED)
+    solution = SolverOptions(method, Dynamics.REDUCED)
     with pytest.raises(NeedsTorques):
         adapt(fitted_hop(), MotionProblem(requests=Requests(solution=solution)))
 
 
 def test_what_needs_no_torques_is_lessened_with_reduced_dynamics() -> None:
     weights = ((Objective.ANGLE_SMOOTHNESS, 1.0), (Objective.CLOSENESS, 1.0))
-    solution = Solution(Method.EXPLICIT, Dynamics.REDUCED, weights)
+    solution = SolverOptions(Method.EXPLICIT, Dynamics.REDUCED, weights)
     found = adapt(fitted_hop(), MotionProblem(requests=Requests(solution=solution)))
     assert found.solved
     assert found.gain is not None

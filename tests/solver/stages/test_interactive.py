@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import ForceRequest, Requests
-from hangtime.solver.data.status import Course
+from hangtime.solver.data.status import DragStatus
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.stages.interactive import Follower
-from hangtime.solver.transcription.motion import unexplained
+from hangtime.solver.transcription.motion import dynamics_residual
 
 from ...helpers.fitted_hop import fitted_hop
 
@@ -21,7 +21,7 @@ def moved(forward: float, up: float = 0.0) -> MotionProblem:
 def settled(follower: Follower, problem: MotionProblem, most: int = 20) -> int:
     """Updates until the pin is reached."""
     for update in range(1, most + 1):
-        if follower.follow(problem) is Course.ARRIVED:
+        if follower.follow(problem) is DragStatus.ARRIVED:
             return update
     raise AssertionError(f"not there after {most} updates")
 
@@ -36,13 +36,13 @@ def test_the_ghost_is_near_the_solve() -> None:
     times = np.linspace(0.0, fit.motion.duration, 100)
     apart = follower.motion.joint_centres(times) - solved.motion.joint_centres(times)
     assert np.linalg.norm(apart, axis=2).max() < 0.04
-    left = unexplained(follower.motion, np.linspace(0.01, fit.motion.duration - 0.01, 200))
+    left = dynamics_residual(follower.motion, np.linspace(0.01, fit.motion.duration - 0.01, 200))
     assert np.sqrt((left.moment**2).sum(axis=1).mean()) < 0.003
 
 
 def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
     follower = Follower(fitted_hop(), moved(0.0))
-    assert follower.follow(moved(0.9)) is Course.ON_ITS_WAY
+    assert follower.follow(moved(0.9)) is DragStatus.ON_ITS_WAY
     assert 1 < settled(follower, moved(0.9)) < 20
 
 
@@ -50,7 +50,7 @@ def test_where_nobody_can_jump_the_motion_stays_where_it_last_could_follow() -> 
     follower = Follower(fitted_hop(), moved(0.0))
     settled(follower, moved(0.1))
     for _ in range(60):
-        if follower.follow(moved(30.0)) is Course.LOST:
+        if follower.follow(moved(30.0)) is DragStatus.LOST:
             break
     else:
         raise AssertionError("thirty metres were reached")
@@ -74,7 +74,7 @@ def test_it_begins_at_an_adaptation_of_the_same_problem() -> None:
     fit = fitted_hop()
     last = adapt(fit, moved(0.2))
     follower = Follower(fit, moved(0.2), last)
-    assert follower.follow(moved(0.2)) is Course.ARRIVED
+    assert follower.follow(moved(0.2)) is DragStatus.ARRIVED
     np.testing.assert_allclose(follower.motion.x, last.motion.x, atol=1e-3)
     settled(follower, moved(0.22))
 

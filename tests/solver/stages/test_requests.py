@@ -12,7 +12,6 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
     AngleLimit,
-    Axes,
     BodyChange,
     ConeLimit,
     ConeShape,
@@ -24,6 +23,7 @@ from hangtime.solver.data.requests import (
     OrientationRequest,
     Path,
     PhaseTiming,
+    PointAxes,
     PointRequest,
     PoseRequest,
     Reference,
@@ -37,7 +37,7 @@ from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.constraint import missed
 from hangtime.solver.transcription.constraint_functions import Bend
 from hangtime.solver.transcription.friction_cones import ForceCones
-from hangtime.solver.transcription.motion import unexplained
+from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.solver.transcription.rows import RowKind
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
@@ -81,7 +81,9 @@ class Case:
 CASES = {
     "point": Case(
         lambda: Requests(
-            points=(PointRequest("hand", "lhand", APEX, relative=(0.1, 0, 0.1), axes=Axes.TRAVEL),)
+            points=(
+                PointRequest("hand", "lhand", APEX, relative=(0.1, 0, 0.1), axes=PointAxes.TRAVEL),
+            )
         )
     ),
     "point in bounds": Case(
@@ -171,7 +173,7 @@ def test_it_is_solved_and_met_everywhere(name: str) -> None:
 def test_physics_holds_between_the_nodes(name: str) -> None:
     motion = adapted(name).motion
     times = np.arange(0.0, motion.duration, 1.0 / 480.0)
-    left = unexplained(motion, times)
+    left = dynamics_residual(motion, times)
     assert np.sqrt((left.force**2).sum(axis=1).mean()) < 1e-4
     assert np.sqrt((left.moment**2).sum(axis=1).mean()) < 0.005
 

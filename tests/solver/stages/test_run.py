@@ -13,7 +13,7 @@ from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.stages.constraint_builder import bend_measure
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
-from hangtime.solver.stages.setup import Arrangement
+from hangtime.solver.stages.setup import Setup
 from hangtime.solver.transcription.constraint import missed
 from hangtime.solver.transcription.sampling import Instants, State
 from hangtime.tests.helpers.clips import load_recording
@@ -45,7 +45,7 @@ def adapted(name: str) -> Adaptation:
     return adapt(fitted(), problem_of(name))
 
 
-def flights(plan: Arrangement) -> list[float]:
+def flights(plan: Setup) -> list[float]:
     """Durations, s."""
     return [p.end - p.start for p in plan.schedule.phases if p.kind is PhaseKind.FLIGHT]
 

@@ -9,12 +9,12 @@ from hangtime.solver.data.faults import BadTiming, RootHasNoJoint, StillBone, Un
 from hangtime.solver.data.requests import (
     ALWAYS,
     AngleLimit,
-    Axes,
     ConeLimit,
     ForceRequest,
     Moment,
     OrientationRequest,
     Path,
+    PointAxes,
     PointRequest,
     PoseRequest,
     Reference,
@@ -77,7 +77,7 @@ ASKED = {
                 "right shank",
                 LATE,
                 place=(0.0, 0.0, 0.35),
-                axes=Axes.SURFACE,
+                axes=PointAxes.SURFACE,
                 normal=(0.0, 0.5, 1.0),
                 bounds=(FREE, FREE, (0.05, None)),
             ),
@@ -214,7 +214,7 @@ def test_a_bound_on_one_axis_has_one_row_an_instant() -> None:
 
 def test_a_surface_s_axes_are_along_across_and_out() -> None:
     normal = (0.3, 0.2, 1.0)
-    request = PointRequest("p", "trunk", ALWAYS, axes=Axes.SURFACE, normal=normal)
+    request = PointRequest("p", "trunk", ALWAYS, axes=PointAxes.SURFACE, normal=normal)
     axes = point_axes(request, scene(), (0.0, DURATION))
     assert axes.T @ axes == pytest.approx(np.eye(3), abs=1e-12)
     assert np.linalg.det(axes) == pytest.approx(1.0)

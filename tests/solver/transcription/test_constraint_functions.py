@@ -10,7 +10,7 @@ from hangtime.solver.body.character import Character
 from hangtime.solver.body.kinematics import BodyPoint
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_matrix, rotation_vector, unit
 from hangtime.solver.stages.constraint_builder import bend_measure
-from hangtime.solver.transcription.constraint import Measure
+from hangtime.solver.transcription.constraint import ConstraintFunction
 from hangtime.solver.transcription.constraint_functions import (
     Angles,
     Bend,
@@ -163,7 +163,7 @@ def moving_place(times: FloatArray) -> FloatArray:
     return np.stack([times, 0.5 * times, 1.0 - times], axis=1)
 
 
-def measures(t: Transcription, body: int) -> dict[str, Measure]:
+def measures(t: Transcription, body: int) -> dict[str, ConstraintFunction]:
     """Every measure, on one jointed body of a figure."""
     character: Character = t.character
     joint = character.joints[body]

@@ -7,7 +7,7 @@ import pytest
 from hangtime.solver.body.dynamics import GRAVITY
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
 from hangtime.solver.data.status import Status
-from hangtime.solver.transcription.constraint import Bounds, Condition, missed
+from hangtime.solver.transcription.constraint import Bounds, Constraint, missed
 from hangtime.solver.transcription.motion import Motion, motion_efforts
 from hangtime.solver.transcription.sampling import Instants, State
 from hangtime.solver.transcription.torque_constraint import TorqueFunction, Torques
@@ -76,7 +76,7 @@ def test_gravity_is_the_character_s() -> None:
 def test_a_bound_is_kept_between_its_rows_too() -> None:
     bound = 0.5 * float(np.abs(torques(standing(), stood().x, KNEE)).max())
     limits = Bounds(np.array([-bound]), np.array([bound]))
-    condition = Condition("knee", Torques(function(KNEE)), limits, 0.0, DURATION)
+    condition = Constraint("knee", Torques(function(KNEE)), limits, 0.0, DURATION)
     t = replace(standing(), conditions=(condition,))
     before = missed(condition, figure(), t.basis, t.layout, stood().x)
     assert before.name == "knee"

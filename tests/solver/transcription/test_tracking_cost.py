@@ -4,13 +4,18 @@ import numpy as np
 import pytest
 from hangtime.solver.stages.fit import motion_target
 from hangtime.solver.transcription.motion import Motion
-from hangtime.solver.transcription.tracking_cost import Closeness, Prices, Target, marker_points
+from hangtime.solver.transcription.tracking_cost import (
+    CostWeights,
+    Target,
+    TrackingCost,
+    marker_points,
+)
 from hangtime.tests.helpers.toy_problems import figure, places, random_state, standing
 
 PRICES = {
-    "fit": Prices(place=1.0, smooth_s=0.05, force=1e-4),
-    "adaptation": Prices(shape=1.0, com=0.02, smooth_s=0.05, force=3e-3),
-    "all": Prices(place=0.7, shape=0.4, com=0.2, smooth_s=0.1, force=0.02, force_slope_s=0.1),
+    "fit": CostWeights(place=1.0, smooth_s=0.05, force=1e-4),
+    "adaptation": CostWeights(shape=1.0, com=0.02, smooth_s=0.05, force=3e-3),
+    "all": CostWeights(place=0.7, shape=0.4, com=0.2, smooth_s=0.1, force=0.02, force_slope_s=0.1),
 }
 
 
@@ -30,7 +35,7 @@ def test_the_gradient_is_the_value_s_slope(name: str) -> None:
     t = standing()
     own = at_itself(x)
     target = Target(target.markers, target.com, own.accelerations, target.forces)
-    closeness = Closeness(t, target, PRICES[name])
+    closeness = TrackingCost(t, target, PRICES[name])
     gradient, _ = closeness.expand(x)
     for seed in range(3):
         d = direction(seed)
@@ -42,7 +47,7 @@ def test_the_gradient_is_the_value_s_slope(name: str) -> None:
 @pytest.mark.parametrize("name", PRICES)
 def test_the_metric_is_the_curvature_where_the_error_vanishes(name: str) -> None:
     x = random_state(2)
-    closeness = Closeness(standing(), at_itself(x), PRICES[name])
+    closeness = TrackingCost(standing(), at_itself(x), PRICES[name])
     gradient, metric = closeness.expand(x)
     assert closeness.value(x) == pytest.approx(0.0, abs=1e-20)
     assert np.abs(gradient).max() < 1e-10
@@ -60,7 +65,7 @@ def test_the_metric_is_the_curvature_where_the_error_vanishes(name: str) -> None
 @pytest.mark.parametrize("name", PRICES)
 def test_the_metric_is_positive_definite(name: str) -> None:
     x = random_state(4)
-    _, metric = Closeness(standing(), at_itself(x), PRICES[name]).expand(x)
+    _, metric = TrackingCost(standing(), at_itself(x), PRICES[name]).expand(x)
     count = x.size
     dense = np.stack([metric.times(row.reshape(x.shape)).ravel() for row in np.eye(count)])
     assert dense == pytest.approx(dense.T, abs=1e-12 * np.abs(dense).max())
@@ -71,11 +76,11 @@ def test_the_metric_is_positive_definite(name: str) -> None:
 def test_a_shift_costs_what_it_moves() -> None:
     """A decimetre of everything, over 0.3 s, is half of 0.1² m² times 0.3 s."""
     x = random_state(5)
-    closeness = Closeness(standing(), at_itself(x), Prices(place=1.0))
+    closeness = TrackingCost(standing(), at_itself(x), CostWeights(place=1.0))
     far = x.copy()
     far[:, standing().layout.com] += [0.1, 0.0, 0.0]
     assert closeness.value(far) == pytest.approx(0.5 * 0.01 * 0.3)
-    shape = Closeness(standing(), at_itself(x), Prices(shape=1.0))
+    shape = TrackingCost(standing(), at_itself(x), CostWeights(shape=1.0))
     assert shape.value(far) == pytest.approx(0.0, abs=1e-20)
 
 

@@ -22,7 +22,7 @@ from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
 from hangtime.solver.transcription.contact_pins import PointContact, Track
-from hangtime.solver.transcription.motion import Motion, unexplained
+from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.solver.transcription.rows import RowKind
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.toy_problems import (
@@ -153,7 +153,7 @@ def test_forces_exist_while_their_contact_lasts_and_end_at_zero() -> None:
 
 def test_once_the_rows_hold_balance_holds_at_every_instant() -> None:
     times = np.random.default_rng(0).uniform(0.0, DURATION, 500)
-    assert np.abs(unexplained(stood(), times).force).max() < 2e-5
+    assert np.abs(dynamics_residual(stood(), times).force).max() < 2e-5
 
 
 def test_once_the_rows_hold_the_feet_stay() -> None:
