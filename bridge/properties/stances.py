@@ -12,7 +12,7 @@ from math import atan2, tau
 import bpy
 from mathutils import Matrix, Vector
 
-from .protocols import ContactRow, Settings, StanceRow
+from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
 _DIGITS = 6  # of a turn
