@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ..accessors import attached
 from ..constraint_kinds import KINDS, stored_fields
 from ..rows import phases
 from ..rows.choices import Instant, Met, Span
@@ -20,7 +21,7 @@ KIND_ITEMS = [(kind.name, kind.label, "", kind.number) for kind in KINDS.values(
 
 
 def _phases(row: HangtimeConstraint, _context: bpy.types.Context, _typed: str) -> tuple[str, ...]:
-    return phases.names(row.id_data.hangtime)
+    return phases.names(attached(row.id_data))
 
 
 class HangtimeConstraint(bpy.types.PropertyGroup):

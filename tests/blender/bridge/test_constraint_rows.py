@@ -8,10 +8,10 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature import bone_keys
 from hangtime.bridge.constraint_kinds import KINDS
 from hangtime.bridge.constraints.rows import add_body_change
 from hangtime.bridge.constraints.status import write_status
+from hangtime.bridge.rows import bone_keys
 from hangtime.bridge.rows.choices import BodyKind
 from hangtime.solver.data import faults, requests
 from hangtime.solver.data.requests import When

@@ -9,10 +9,10 @@ from functools import cached_property
 import bpy
 from mathutils import Matrix
 
-from ....bridge.armature.actions import current_action
-from ....bridge.armature.bone_keys import current_name
+from ....bridge.accessors import current_action
 from ....bridge.armature.poses import metres_per_unit
 from ....bridge.armature.traces_store import Kept, kept
+from ....bridge.rows.bone_keys import current_name
 from ....bridge.rows.choices import Span
 from ....bridge.rows.times import Frames, Spans, interval_of, named_frames
 from ....operators.solve.common import chosen_armature
