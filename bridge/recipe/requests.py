@@ -137,11 +137,11 @@ from .items import (
 )
 from .points import ENVIRONMENT, PATH, POINT_AXES
 from .solution import SOLUTION
-from .table import ABOVE_ZERO, NOT_NEGATIVE, Span, Table
+from .table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table
 from .toml_text import sections
 
-HALF_ANGLE = Span("between 0 and 180 degrees", lambda value: 0.0 < value < 180.0)
-DOF = Span("0, 1 or 2", lambda value: value in (0.0, 1.0, 2.0))
+HALF_ANGLE = NumberRange("between 0 and 180 degrees", lambda value: 0.0 < value < 180.0)
+DOF = NumberRange("0, 1 or 2", lambda value: value in (0.0, 1.0, 2.0))
 
 
 def read_requests(top: Table) -> Requests:
@@ -164,8 +164,8 @@ def request_texts(requests: Requests) -> list[str]:
     return texts
 
 
-def _stretch(table: Table, key: str) -> tuple[float, ...] | None:
-    values = table.numbers(key, "[sideways, forwards]")
+def _stretch(table: Table, key: str) -> tuple[float, float] | None:
+    values = table.pair(key, "[sideways, forwards]")
     if values is not None and min(values) <= 0.0:
         table.refuse(key, f'"{key}" must be above zero in both directions')
     return values
