@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import bpy
 
     from ...solver.data.traces import Traces
-    from ..armature.traces_store import Kept
+    from ..armature.traces_store import StoredTraces
     from ..properties.constraint import HangtimeConstraint
     from ..properties.settings import HangtimeSettings
     from ..properties.view import HangtimeView
@@ -84,7 +84,7 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
     return Plotted(asked, takes)
 
 
-def kept_takes(armature: bpy.types.Object) -> dict[Take, Kept]:
+def kept_takes(armature: bpy.types.Object) -> dict[Take, StoredTraces]:
     """The motions of an armature of which traces are stored."""
     from ..armature.traces_store import kept  # loads half of the solver
 

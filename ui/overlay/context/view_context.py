@@ -11,7 +11,7 @@ from mathutils import Matrix
 
 from ....bridge.accessors import current_action
 from ....bridge.armature.poses import metres_per_unit
-from ....bridge.armature.traces_store import Kept, kept
+from ....bridge.armature.traces_store import StoredTraces, kept
 from ....bridge.properties.bone_keys import current_name
 from ....bridge.properties.kinds import Span
 from ....operators.solve.common import chosen_armature
@@ -117,7 +117,7 @@ class Seen:
             if row.kind in kinds:
                 yield row, index == chosen
 
-    def _of(self, found: Kept | None) -> Shown | None:
+    def _of(self, found: StoredTraces | None) -> Shown | None:
         if found is None or not len(found.traces.frames):
             return None
         matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)
