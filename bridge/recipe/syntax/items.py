@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from ...solver.data.requests import Moment, When
-from .table import ANY_NUMBER, NumberRange, Table
+from ....solver.data.requests import Moment, When
+from .table import ANY_NUMBER, NOT_NEGATIVE, NumberRange, Table
 from .toml_text import degrees, entries
 
 Values = dict[str, Any]
@@ -201,6 +201,8 @@ def _write_limits(record: Any) -> Values:
 
 
 WHEN = Item(("phase", "frames", "frame", "moment"), _read_when, _write_when)
+BONE = word("bone")
+SLACK = angle("slack", NOT_NEGATIVE)
 BONES = one("bones", Table.words)
 TOUCHING = Item(
     ("points", "bones"), _read_touching, lambda record: {"points": record.touching or None}
