@@ -71,7 +71,9 @@ class Tier:
         half = [np.abs(figure.rotation) @ self.sizes[:, :, None] / 2 for figure in self.figures]
         reach = np.concatenate(half)[..., 0]
         centre = np.concatenate([figure.centre for figure in self.figures])
-        points = np.concatenate([centre - reach, centre + reach, *(m.vertices for m in self.marks)])
+        points = np.concatenate(
+            [centre - reach, centre + reach, *(m.mesh.points for m in self.marks)]
+        )
         return np.array([points.min(axis=0), points.max(axis=0)])
 
 

@@ -8,8 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solver.arrays import FloatArray
-from . import materials, meshes
+from ..shapes.mesh import Mesh
+from ..shapes.solids import box
+from . import materials
 from .layout import Figure, Layout, Tier
+from .limb_meshes import ball, limb
 from .mark_materials import FINISHES, TONES
 from .mark_meshes import Solid
 from .materials import Colour, mix, srgb
@@ -94,7 +97,7 @@ class Painter:
 
     def stage(self, floor: Floor) -> None:
         down = np.array([0.0, 0.0, THICKNESS])
-        self.mesh(meshes.block(floor.low - down, floor.high), FLOOR)
+        self.mesh(box(floor.low - down, floor.high), FLOOR)
         (left, near, z), (right, far, _) = floor.low, floor.high
         for x in np.arange(np.ceil(left / GRID_STEP), right / GRID_STEP) * GRID_STEP:
             # clear of the front of a step
@@ -105,15 +108,15 @@ class Painter:
     def line(self, start: FloatArray, end: FloatArray, half_width: float) -> None:
         """A line on the floor; those across the view are drawn wider, as they are foreshortened."""
         reach = half_width * np.sign(end - start)[[1, 0, 2]] + [0.0, 0.0, 0.0015]
-        self.mesh(meshes.block(start - reach, end + reach), GRID)
+        self.mesh(box(start - reach, end + reach), GRID)
 
     def tier(self, tier: Tier, k: int, floor: Floor, label: float) -> None:
         for step in tier.steps:
             low = np.array([step.left, floor.low[1], floor.low[2]])
             high = np.array([step.right, floor.high[1], step.top])
-            self.mesh(meshes.block(low, high), FLOOR)
+            self.mesh(box(low, high), FLOOR)
         solids = [
-            self.shape(meshes.limb(size, end, head="head" in name.lower()), self.matt)
+            self.shape(limb(size, end, head="head" in name.lower()), self.matt)
             for size, end, name in zip(tier.sizes, tier.proximal, tier.names, strict=True)
         ]
         colour = BODIES[k % len(BODIES)]
@@ -126,8 +129,7 @@ class Painter:
 
     def mark(self, solid: Solid) -> None:
         finish = FINISHES[solid.look]
-        mesh = (solid.vertices, solid.faces)
-        shape = self.shape(mesh, finish.material(), smooth=solid.smooth)
+        shape = self.shape(solid.mesh, finish.material(), smooth=solid.smooth)
         made = self.object(shape, finish.colour, self.before if finish.front else np.zeros(3))
         if not finish.shadow:
             _casts_nothing(made)
@@ -157,7 +159,7 @@ class Painter:
         """A tube along the centre of mass with a bead at each figure."""
         import bpy
 
-        bead = self.shape(meshes.ball(BEAD), self.plain)
+        bead = self.shape(ball(BEAD), self.plain)
         for figure in tier.figures:
             _casts_nothing(self.object(bead, colour, figure.com + self.before))
         curve = bpy.data.curves.new("path", "CURVE")
@@ -183,16 +185,15 @@ class Painter:
         _casts_nothing(made)
         made.rotation_euler = (pi / 2 - self.elevation, 0.0, 0.0)
 
-    def mesh(self, solid: meshes.Mesh, colour: Colour) -> None:
+    def mesh(self, solid: Mesh, colour: Colour) -> None:
         self.object(self.shape(solid, self.matt, smooth=False), colour, np.zeros(3))
 
-    def shape(self, solid: meshes.Mesh, material: Any, *, smooth: bool = True) -> Any:
+    def shape(self, solid: Mesh, material: Any, *, smooth: bool = True) -> Any:
         import bpy
 
-        vertices, faces = solid
         mesh = bpy.data.meshes.new("solid")
-        mesh.from_pydata(vertices.tolist(), [], faces.tolist())
-        mesh.polygons.foreach_set("use_smooth", np.full(len(faces), smooth))
+        mesh.from_pydata(solid.points.tolist(), [], solid.faces.tolist())
+        mesh.polygons.foreach_set("use_smooth", np.full(len(solid.faces), smooth))
         mesh.materials.append(material)
         return mesh
 

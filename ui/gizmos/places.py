@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...bridge.shapes.limits import directions
 from ...operators.drag.rays import Circle, Vector, scaled, unit
-from ..overlay.geometry.arcs import spoke
+from ...solver.arrays import FloatArray
 from ..overlay.geometry.limit_shapes import ARC, CONE, RING, TWIST, Limit
-from ..overlay.geometry.shapes import FloatArray
 
 SIDEWAYS = 0.2  # sine of axis and view: below, one looks along the cone
 
@@ -93,5 +93,5 @@ def _rim(limit: Limit, circle: Circle, axes: FloatArray, sight: Vector) -> Knob:
 
 
 def _on(circle: Circle, angle: float) -> Vector:
-    along, across, _ = spoke(angle)
+    along, across, _ = directions(angle)
     return circle.centre + circle.radius * (along * circle.zero + across * circle.ahead)

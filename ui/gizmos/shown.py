@@ -7,9 +7,9 @@ from mathutils import Matrix, Vector
 
 from ...bridge.armature.actions import current_action
 from ...operators.solve.session import session
+from ..drawing.sketch import Colour
 from ..overlay.context.view_context import Seen, look_at
 from ..overlay.geometry import palette
-from ..overlay.geometry.shapes import Colour
 
 HIGHLIGHT: Colour = palette.WITHIN
 KNOB = 0.1  # radius of a handle, as a share of the size of gizmos in the preferences

@@ -11,12 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ....bridge.shapes.vectors import unit
+from ....solver.arrays import FloatArray
 
 FLAT = 0.15  # joints whose second extent is a smaller share of the first lie on a line
-SHORTEST = 1e-9
 LEAST_BEND = 0.05  # one that bends less does not tell its direction; as in constraint_builder.py
 
 
@@ -90,12 +89,6 @@ class Figure:
         turns = np.broadcast_to(np.eye(3), (1, len(self.bones), 3, 3))
         one = self.frames[:1], self.bones, self.parents, self.rest
         return Figure(*one, self.rest[None], (self.rest + tips)[None], turns)
-
-
-def unit(vectors: FloatArray) -> FloatArray:
-    """Vectors (..., 3) of length 1; those without a length stay."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, SHORTEST))
 
 
 def body_turns(parents: tuple[int, ...], rest: FloatArray, heads: FloatArray) -> FloatArray:

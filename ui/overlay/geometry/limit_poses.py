@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import spoke
-from .body_rotations import unit
-from .shapes import FloatArray
-from .solids import across, cross
+from ....bridge.shapes.limits import directions
+from ....bridge.shapes.vectors import across, cross, unit
+from ....solver.arrays import FloatArray
 
 SURE = 0.7  # cosine up to which the bend that is seen may differ from the one expected
 BENT = 0.15  # sine of the bend from which on its direction is seen
@@ -89,7 +88,7 @@ def bends(joints: Joints, straight: FloatArray, flexion: FloatArray) -> Seen:
     towards = np.where(np.isnan(expected), shown, towards)
     now = np.arctan2((ahead * towards).sum(axis=1), (ahead * zero).sum(axis=1))
     axes = _columns(zero, towards)
-    return Seen(axes, joints.heads, now, turned(axes, spoke(now)))
+    return Seen(axes, joints.heads, now, turned(axes, directions(now)))
 
 
 def twists(joints: Joints, at: FloatArray) -> Seen:
@@ -110,7 +109,7 @@ def twists(joints: Joints, at: FloatArray) -> Seen:
     zero, quarter = c * one - s * other, s * one + c * other
     ahead = joints.ahead
     axes = np.stack([turned(joints.owns, zero), turned(joints.owns, quarter), ahead], axis=2)
-    return Seen(axes, joints.heads + at[:, None] * ahead, now, turned(axes, spoke(now)))
+    return Seen(axes, joints.heads + at[:, None] * ahead, now, turned(axes, directions(now)))
 
 
 def _columns(one: FloatArray, two: FloatArray) -> FloatArray:

@@ -11,12 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ....bridge.properties.kinds import ConstraintKind
+from ....bridge.shapes.vectors import across, unit
+from ....solver.arrays import FloatArray
+from ...drawing.sketch import Colour
 from . import arcs, limit_poses, palette
-from .body_rotations import Figure, unit
+from .body_rotations import Figure
 from .limit_poses import Joints
 from .shapes import (
-    Colour,
-    FloatArray,
     Frames,
     Label,
     Look,
@@ -27,7 +28,6 @@ from .shapes import (
     merged,
     placed,
 )
-from .solids import across
 
 CONE, ANGLE, TWIST = (
     kind.name for kind in (ConstraintKind.CONE, ConstraintKind.ANGLE, ConstraintKind.TWIST)
@@ -96,7 +96,7 @@ def template(
 ) -> tuple[Shape, ...]:
     """A limit in axes of its own; see arcs.py."""
     if kind == CONE:
-        return merged(arcs.cone(arcs.cone_rim(upper or 0.0, stretch, length), colour))
+        return merged(arcs.cone(upper or 0.0, stretch, length, colour))
     if kind == ANGLE:
         return merged(arcs.arc(lower, upper, ARC * length, colour))
     return merged(arcs.arc(lower, upper, RING * length, colour, RING_HOLE))

@@ -6,22 +6,21 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....bridge.properties.kinds import ConstraintKind, PoseSource
+from ....solver.arrays import FloatArray, IntArray
+from ...drawing.sketch import Colour
 from ..context.figure_cache import Figures
 from ..context.layer import Layer, Part
 from ..context.spans import holds
 from ..context.view_context import Seen, Shown
 from ..geometry import palette, solids
 from ..geometry.body_rotations import Figure, posed
-from ..geometry.shapes import Colour, Frames, Shape, faded
+from ..geometry.shapes import Frames, Shape, faded
 from .motion import interpolated, within
 
 if TYPE_CHECKING:
     from ....bridge.properties.constraint import HangtimeConstraint
-
-FloatArray = NDArray[np.float64]
 
 ROW, RECORDED_ROW, LIVE_ROW = 0.34, 0.24, 0.18  # opacities
 NOW, LIVE_NOW = 0.5, 0.85
@@ -54,14 +53,14 @@ def _row_colour(seen: Seen, part: Part) -> Colour:
     return faded(palette.ADAPTED, ROW)
 
 
-def instants(frames: FloatArray, step: int) -> NDArray[np.int64]:
+def instants(frames: FloatArray, step: int) -> IntArray:
     """Indices of every `step`th frame, counted from the first; fewer where that is too many."""
     wide = max(float(step), (frames[-1] - frames[0]) / MOST)
     wished = np.arange(frames[0], frames[-1] + 1e-6, wide)
     return np.unique(np.searchsorted(frames, wished - 1e-6).clip(max=len(frames) - 1))
 
 
-def telling(heads: FloatArray, chosen: NDArray[np.int64], least: float) -> NDArray[np.int64]:
+def telling(heads: FloatArray, chosen: IntArray, least: float) -> IntArray:
     """Those of the chosen instants that differ from the one kept before; standing still is shown
     once. heads: (T, B, 3). least: how far one of them must have moved."""
     kept = [int(chosen[0])]

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....solver.arrays import FloatArray
 from ....solver.data.traces import Traces
+from ...drawing.sketch import Colour
 from ..context.layer import Layer, Part
 from ..context.view_context import Seen, Shown
 from ..geometry import palette, solids
-from ..geometry.shapes import Colour, Label, Look, Shape, dashed, faded, polyline, rings
-
-FloatArray = NDArray[np.float64]
+from ..geometry.shapes import Label, Look, Shape, dashed, faded, polyline, rings
 
 PER_WEIGHT = 0.32  # m an arrow is long for one body weight
 LEAST_FORCE = 0.03  # body weights; less is not drawn
