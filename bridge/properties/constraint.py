@@ -10,6 +10,7 @@ from math import pi, radians
 
 import bpy
 
+from ..accessors import attached
 from . import phases
 from .kinds import (
     ConstraintKind,
@@ -26,7 +27,7 @@ from .row import ASKED, HIDDEN, OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBone, ite
 
 
 def _phases(row: HangtimeConstraint, _context: bpy.types.Context, _typed: str) -> tuple[str, ...]:
-    return phases.names(row.id_data.hangtime)
+    return phases.names(attached(row.id_data))
 
 
 class HangtimeConstraint(bpy.types.PropertyGroup):

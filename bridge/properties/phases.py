@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import bpy
+
 from ...solver.data.contacts import PhaseKind, gaps
+from ..accessors import attached, current_action
 from .kinds import ConstraintKind
 from .protocols import Settings
 
@@ -66,12 +69,14 @@ def clip_ends(settings: Settings) -> tuple[float, float] | None:
 
 def recorded_span(settings: Settings) -> tuple[float, float] | None:
     """First and last frame of the recording's action, where there is one."""
-    data = settings.id_data.animation_data
-    action = data.action if data is not None else None
+    armature = settings.id_data
+    assert isinstance(armature, bpy.types.Object)
+    action = current_action(armature)
     if action is None:
         return None
-    first, last = (action.hangtime.recording or action).frame_range
-    return float(first), float(last)
+    recording: bpy.types.Action = attached(action).recording or action
+    first, last = recording.frame_range.to_tuple()
+    return first, last
 
 
 def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:

@@ -53,13 +53,14 @@ class ConstraintRow(Protocol):
 class Settings(Protocol):
     """The clip of an armature's settings, its contacts and its stances."""
 
-    id_data: bpy.types.Object
     use_range: bool
     first_frame: int
     last_frame: int
     whole_stance: bool
     active_contact: int
 
+    @property
+    def id_data(self) -> bpy.types.ID | None: ...
     @property
     def contacts(self) -> Rows[ContactRow]: ...
     @property

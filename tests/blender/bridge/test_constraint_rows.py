@@ -8,9 +8,9 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature import bone_keys
 from hangtime.bridge.constraints.rows import add_body_change
 from hangtime.bridge.constraints.status import write_status
+from hangtime.bridge.properties import bone_keys
 from hangtime.bridge.properties.kinds import BodyKind, ConstraintKind
 from hangtime.solver.data import faults, requests
 from hangtime.solver.data.requests import When

@@ -9,10 +9,10 @@ from functools import cached_property
 import bpy
 from mathutils import Matrix
 
-from ....bridge.armature.actions import current_action
-from ....bridge.armature.bone_keys import current_name
+from ....bridge.accessors import current_action
 from ....bridge.armature.poses import metres_per_unit
 from ....bridge.armature.traces_store import Kept, kept
+from ....bridge.properties.bone_keys import current_name
 from ....bridge.properties.kinds import Span
 from ....operators.solve.common import chosen_armature
 from ....operators.solve.live import live
