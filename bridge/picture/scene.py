@@ -1,13 +1,13 @@
-"""Puts a sheet's layout into a Blender scene: solids, letters, lines, lamp and camera."""
+"""A Blender scene of a sheet's layout: solids, letters, lines, lamp and camera."""
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin
-from typing import Any
 
+import bpy
 import numpy as np
-from numpy.typing import NDArray
+from mathutils import Matrix, Quaternion
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import BoolArray, FloatArray
 from ..shapes.mesh import Mesh
 from ..shapes.solids import box
 from . import materials
@@ -51,7 +51,7 @@ class Painter:
     elevation: rad, of the viewer above the horizon.
     """
 
-    scene: Any
+    scene: bpy.types.Scene
     elevation: float
 
     def __post_init__(self) -> None:
@@ -135,7 +135,7 @@ class Painter:
             _casts_nothing(made)
 
     def figure(
-        self, figure: Figure, solids: list[Any], far: NDArray[np.bool_], colour: Colour
+        self, figure: Figure, solids: list[bpy.types.Mesh], far: BoolArray, colour: Colour
     ) -> None:
         for i, solid in enumerate(solids):
             tone = figure.tones.get(i)
@@ -157,8 +157,6 @@ class Painter:
 
     def path(self, tier: Tier, colour: Colour) -> None:
         """A tube along the centre of mass with a bead at each figure."""
-        import bpy
-
         bead = self.shape(ball(BEAD), self.plain)
         for figure in tier.figures:
             _casts_nothing(self.object(bead, colour, figure.com + self.before))
@@ -174,9 +172,8 @@ class Painter:
         _casts_nothing(self.object(curve, colour, self.before))
 
     def text(self, body: str, place: FloatArray, height: float, *, centred: bool = False) -> None:
-        import bpy
-
         curve = bpy.data.curves.new("text", "FONT")
+        assert isinstance(curve, bpy.types.TextCurve)
         curve.body = body
         curve.size = height * 1.35  # the font's capitals fill three quarters of its size
         curve.align_x = "CENTER" if centred else "LEFT"
@@ -188,36 +185,31 @@ class Painter:
     def mesh(self, solid: Mesh, colour: Colour) -> None:
         self.object(self.shape(solid, self.matt, smooth=False), colour, np.zeros(3))
 
-    def shape(self, solid: Mesh, material: Any, *, smooth: bool = True) -> Any:
-        import bpy
-
+    def shape(
+        self, solid: Mesh, material: bpy.types.Material, *, smooth: bool = True
+    ) -> bpy.types.Mesh:
         mesh = bpy.data.meshes.new("solid")
         mesh.from_pydata(solid.points.tolist(), [], solid.faces.tolist())
         mesh.polygons.foreach_set("use_smooth", np.full(len(solid.faces), smooth))
         mesh.materials.append(material)
         return mesh
 
-    def object(self, data: Any, colour: Colour, place: FloatArray) -> Any:
-        import bpy
-
+    def object(self, data: bpy.types.ID, colour: Colour, place: FloatArray) -> bpy.types.Object:
         made = bpy.data.objects.new(data.name, data)
         made.color = (*colour, 1.0)
-        made.location = self.origin + place
+        made.location = (self.origin + place).tolist()
         self.scene.collection.objects.link(made)
         return made
 
     def light(self) -> None:
-        import bpy
-
         sun = bpy.data.lights.new("sun", "SUN")
+        assert isinstance(sun, bpy.types.SunLight)
         sun.energy, sun.angle = 2.0, radians(25.0)
         lamp = self.object(sun, PAPER, np.zeros(3))
         lamp.rotation_euler = (radians(32), radians(-22), 0.0)
         self.scene.world = materials.soft_light(PAPER)
 
     def camera(self, centre: FloatArray, wide: float, high: float, width: int) -> None:
-        import bpy
-
         camera = bpy.data.cameras.new("camera")
         camera.type, camera.sensor_fit, camera.ortho_scale = "ORTHO", "HORIZONTAL", wide
         camera.clip_end = 1000.0
@@ -228,12 +220,10 @@ class Painter:
         self.scene.render.resolution_y = max(round(width * high / wide), 4)
 
 
-def _quaternion(rotation: FloatArray) -> Any:
-    from mathutils import Matrix
-
+def _quaternion(rotation: FloatArray) -> Quaternion:
     return Matrix(rotation.tolist()).to_quaternion()
 
 
-def _casts_nothing(thing: Any) -> None:
+def _casts_nothing(thing: bpy.types.Object) -> None:
     """Neither a shadow nor its colour on others."""
     thing.visible_shadow = thing.visible_diffuse = thing.visible_glossy = False

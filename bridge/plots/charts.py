@@ -4,27 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
 
+import bpy
+
+from ...solver.data.traces import Traces
+from ..accessors import armature_data
+from ..armature.traces_store import Kept, kept
+from ..properties.constraint import HangtimeConstraint
 from ..properties.kinds import ConstraintKind, Instant, Span, TorqueBy
 from ..properties.phases import PhaseSpan, carried, clip_ends, phases
+from ..properties.settings import HangtimeSettings, settings_of
+from ..properties.view import HangtimeView
 from .curves import Cap, Chart, Take, force_chart, height_chart, speed_chart, torque_chart
 
-if TYPE_CHECKING:
-    import bpy
-
-    from ...solver.data.traces import Traces
-    from ..armature.traces_store import Kept
-    from ..properties.constraint import HangtimeConstraint
-    from ..properties.settings import HangtimeSettings
-    from ..properties.view import HangtimeView
-
-AROUND = 0.5  # frames to either side of an instant, so that its bound is seen
+INSTANT_MARGIN = 0.5  # frames to either side of an instant, so that its bound is seen
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is plotted; equal as long as the plots are. motions: as they are stored, by key."""
+class PlotContent:
+    """Key of the plots: equal as long as they are. motions: as they are stored, by key."""
 
     motions: tuple[tuple[Take, str], ...]
     bone: str
@@ -37,35 +35,36 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Plotted:
+class PlottedMotions:
     """The motions to be plotted, and what of them."""
 
-    asked: Asked
+    content: PlotContent
     takes: dict[Take, Traces]
 
     def charts(self) -> tuple[Chart, ...]:
         """The charts that are switched on, from left to right."""
-        takes, asked = self.takes, self.asked
+        takes, content = self.takes, self.content
         charts = []
-        if asked.forces:
-            charts.append(force_chart(takes, asked.force_caps))
-        if asked.torque:
-            charts.append(torque_chart(takes, asked.bone, asked.torque_caps))
-        if asked.com:
+        if content.forces:
+            charts.append(force_chart(takes, content.force_caps))
+        if content.torque:
+            charts.append(torque_chart(takes, content.bone, content.torque_caps))
+        if content.com:
             charts += [height_chart(takes), speed_chart(takes)]
         return tuple(charts)
 
 
-def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
-    """What is plotted of an armature; None where no motion of it is stored."""
+def plotted(armature: bpy.types.Object, view: HangtimeView) -> PlottedMotions | None:
+    """Motions and charts of an armature; None where no motion of it is stored."""
     motions = kept_takes(armature)
     if not motions:
         return None
     takes = {take: kept.traces for take, kept in motions.items()}
     bone = view.plot_bone or _active_bone(armature)
-    spans = _phases(armature.hangtime, takes)
-    rows = [row for row in armature.hangtime.constraints if row.used]
-    asked = Asked(
+    settings = settings_of(armature)
+    spans = _phases(settings, takes)
+    rows = [row for row in settings.constraints if row.used]
+    content = PlotContent(
         motions=tuple((take, kept.key) for take, kept in motions.items()),
         bone=bone,
         forces=view.plot_forces,
@@ -81,14 +80,12 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
             if _caps_torque(row, bone)
         ),
     )
-    return Plotted(asked, takes)
+    return PlottedMotions(content, takes)
 
 
 def kept_takes(armature: bpy.types.Object) -> dict[Take, Kept]:
     """The motions of an armature of which traces are stored."""
-    from ..armature.traces_store import kept  # loads half of the solver
-
-    owners = {Take.RECORDING: armature, Take.ADAPTED: armature.hangtime.adapted}
+    owners = {Take.RECORDING: armature, Take.ADAPTED: settings_of(armature).adapted}
     found = {take: kept(owner) for take, owner in owners.items()}
     return {take: traces for take, traces in found.items() if traces is not None}
 
@@ -105,12 +102,12 @@ def _phases(settings: HangtimeSettings, takes: dict[Take, Traces]) -> tuple[Phas
 
 
 def _active_bone(armature: bpy.types.Object) -> str:
-    bone = armature.data.bones.active
+    bone = armature_data(armature).bones.active
     return bone.name if bone is not None else ""
 
 
 def _caps_forces(row: HangtimeConstraint) -> bool:
-    return row.kind == ConstraintKind.FORCE.name and row.use_peak
+    return bool(row.kind == ConstraintKind.FORCE.name and row.use_peak)
 
 
 def _caps_torque(row: HangtimeConstraint, bone: str) -> bool:
@@ -125,7 +122,7 @@ def _span(row: HangtimeConstraint, spans: tuple[PhaseSpan, ...]) -> tuple[float,
     if when is Span.FRAMES:
         return row.first_frame, row.last_frame
     if when is Span.FRAME:
-        return row.first_frame - AROUND, row.first_frame + AROUND
+        return row.first_frame - INSTANT_MARGIN, row.first_frame + INSTANT_MARGIN
     phase = next((p for p in spans if p.name == row.phase), None)
     if when is Span.ALWAYS or phase is None:
         return -inf, inf
@@ -136,4 +133,4 @@ def _span(row: HangtimeConstraint, spans: tuple[PhaseSpan, ...]) -> tuple[float,
         Instant.END: phase.end,
     }
     at = instants.get(Instant[row.instant])
-    return (phase.start, phase.end) if at is None else (at - AROUND, at + AROUND)
+    return (phase.start, phase.end) if at is None else (at - INSTANT_MARGIN, at + INSTANT_MARGIN)

@@ -21,7 +21,7 @@ class Mesh:
     def edges(self) -> FloatArray:
         """(E, 2, 3) ends of the faces' edges, each edge once."""
         ends = np.stack([self.faces, np.roll(self.faces, -1, axis=1)], axis=-1).reshape(-1, 2)
-        return self.points[np.unique(np.sort(ends, axis=1), axis=0)]
+        return np.asarray(self.points[np.unique(np.sort(ends, axis=1), axis=0)])
 
     def placed(self, axes: FloatArray, origin: FloatArray) -> Mesh:
         """The mesh along the columns of axes (3, 3), about a point (3,)."""
@@ -42,7 +42,7 @@ def grid_faces(rows: int, columns: int, *, wraps: bool = False) -> IntArray:
     """
     i, j = np.arange(rows - 1)[:, None], np.arange(columns if wraps else columns - 1)
     a, b = i * columns + j, i * columns + (j + 1) % columns
-    return np.stack([a, b, b + columns, a + columns], axis=-1).reshape(-1, 4)
+    return np.asarray(np.stack([a, b, b + columns, a + columns], axis=-1).reshape(-1, 4))
 
 
 def band(one: FloatArray, other: FloatArray) -> Mesh:

@@ -10,7 +10,7 @@ from hangtime.bridge.shapes.limits import cone_rim
 from hangtime.bridge.shapes.solids import box
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.ui.overlay.geometry import arcs, shapes, solids
-from hangtime.ui.overlay.geometry.body_rotations import Figure, body_turns, posed, shortest
+from hangtime.ui.overlay.geometry.body_rotations import TracedFigure, body_turns, posed, shortest
 from hangtime.ui.overlay.geometry.limit_poses import Joints, bends, cones, twists
 from hangtime.ui.overlay.geometry.shapes import Look, Shape
 
@@ -192,7 +192,7 @@ def moved() -> tuple[np.ndarray, np.ndarray]:
     return heads, turns
 
 
-def figure() -> Figure:
+def figure() -> TracedFigure:
     heads, _ = moved()
     tails = heads.copy()
     tails[:, 1], tails[:, 3], tails[:, 0] = heads[:, 3], heads[:, 4], heads[:, 1]
@@ -200,7 +200,7 @@ def figure() -> Figure:
     tails[:, 4] += 0.1
     turns = body_turns(PARENTS, REST, heads)
     names = ("hips", "thigh", "other", "shin", "foot")
-    return Figure(np.array([1.0, 2.0, 3.0]), names, PARENTS, REST, heads, tails, turns)
+    return TracedFigure(np.array([1.0, 2.0, 3.0]), names, PARENTS, REST, heads, tails, turns)
 
 
 def test_turns_of_bodies_are_found_from_their_joints() -> None:

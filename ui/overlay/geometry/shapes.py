@@ -24,7 +24,7 @@ RING_AROUND = 16  # lines of a ring
 
 
 class Look(Enum):
-    """How a shape is drawn; one batch each."""
+    """Render style of a shape; one batch each."""
 
     SOLID = auto()  # triangles that hide what is behind them
     THIN = auto()  # lines
@@ -38,7 +38,7 @@ class Look(Enum):
 
 
 class Standing(float, Enum):
-    """How much something counts at the frame that is shown: its opacity."""
+    """Opacity by when something counts: at the frame that is shown, at others, or not at all."""
 
     NOW = 1.0
     LATER = 0.4  # at other frames
@@ -171,4 +171,4 @@ def _circles() -> FloatArray:
     """(3 * RING_AROUND * 2, 3) lines of three unit circles."""
     flat = directions(np.linspace(0.0, 2 * np.pi, RING_AROUND + 1))
     circles = np.stack([flat, flat[:, [2, 0, 1]], flat[:, [1, 2, 0]]])
-    return np.stack([circles[:, :-1], circles[:, 1:]], axis=2).reshape(-1, 3)
+    return np.asarray(np.stack([circles[:, :-1], circles[:, 1:]], axis=2).reshape(-1, 3))
