@@ -62,7 +62,8 @@ def _render(scene: bpy.types.Scene, path: Path) -> None:
     settings.image_settings.file_format = "PNG"
     settings.image_settings.color_mode = "RGB"
     settings.image_settings.compression = 50
-    present(scene.view_settings).view_transform = "Standard"
+    # the stubs know no configuration of colours
+    present(scene.view_settings).view_transform = "Standard"  # type: ignore[assignment]
     cycles = present(scene.cycles)
     cycles.device = "CPU"
     cycles.use_light_tree = False  # one lamp

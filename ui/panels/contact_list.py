@@ -19,13 +19,15 @@ class ContactList(bpy.types.UIList):
         self,
         context: bpy.types.Context,
         layout: bpy.types.UILayout,
-        _settings: HangtimeSettings,
-        row: HangtimeContact,
-        _icon: int,
-        _active_owner: HangtimeSettings,
-        _active_name: str,
-        *_: object,
+        _settings: HangtimeSettings | None,
+        contact: HangtimeContact | None,
+        _icon: int | None,
+        _active_owner: HangtimeSettings | None,
+        _active_name: str | None,
+        _index: int | None,
+        _filter: int | None,
     ) -> None:
+        row = present(contact)
         line = layout.row(align=True)
         line.prop(row, "used", text="")
         line = line.row(align=True)

@@ -12,7 +12,7 @@ from ...operators.solve.common import chosen_armature
 from .sidebar import ArmaturePanel, settings_in, split
 
 
-class ContactsPanel(ArmaturePanel, bpy.types.Panel):
+class ContactsPanel(ArmaturePanel):
     bl_idname = PanelId.CONTACTS
     bl_label = "Contacts"
     bl_order = 2
@@ -34,7 +34,7 @@ class ContactsPanel(ArmaturePanel, bpy.types.Panel):
 
 
 class _ActivePanel(ArmaturePanel):
-    """Mixin: a subpanel about the chosen contact."""
+    """Base: a subpanel about the chosen contact."""
 
     bl_parent_id = PanelId.CONTACTS
     bl_label = ""
@@ -45,7 +45,7 @@ class _ActivePanel(ArmaturePanel):
         return armature is not None and active_contact(settings_of(armature)) is not None
 
 
-class StancePanel(_ActivePanel, bpy.types.Panel):
+class StancePanel(_ActivePanel):
     bl_idname = PanelId.STANCE
 
     @classmethod
@@ -68,7 +68,7 @@ class StancePanel(_ActivePanel, bpy.types.Panel):
         buttons.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
 
 
-class ContactPanel(_ActivePanel, bpy.types.Panel):
+class ContactPanel(_ActivePanel):
     bl_idname = PanelId.CONTACT
     bl_options = {"DEFAULT_CLOSED"}
 

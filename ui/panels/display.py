@@ -16,7 +16,7 @@ _MOTION = ("path", "forces", "momentum")
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
 
-class DisplayPanel(SidebarPanel, bpy.types.Panel):
+class DisplayPanel(SidebarPanel):
     bl_idname = PanelId.DISPLAY
     bl_label = "Display"
     bl_order = 8

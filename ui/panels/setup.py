@@ -12,7 +12,7 @@ from ...operators.solve.common import chosen_armature
 from .sidebar import ArmaturePanel, SidebarPanel, lines, settings_in, split
 
 
-class CharacterPanel(SidebarPanel, bpy.types.Panel):
+class CharacterPanel(SidebarPanel):
     bl_idname = PanelId.CHARACTER
     bl_label = "Character"
     bl_order = 0
@@ -36,7 +36,7 @@ class CharacterPanel(SidebarPanel, bpy.types.Panel):
             layout.label(text=f"Measured height: {settings.measured_height:.2f} m")
 
 
-class BonesPanel(ArmaturePanel, bpy.types.Panel):
+class BonesPanel(ArmaturePanel):
     bl_idname = PanelId.BONES
     bl_parent_id = PanelId.CHARACTER
     bl_label = "Bones"
@@ -62,7 +62,7 @@ class BonesPanel(ArmaturePanel, bpy.types.Panel):
         layout.prop(settings, "mass_table")
 
 
-class RecordingPanel(ArmaturePanel, bpy.types.Panel):
+class RecordingPanel(ArmaturePanel):
     bl_idname = PanelId.RECORDING
     bl_label = "Recording"
     bl_order = 1

@@ -14,16 +14,16 @@ from ...operators.solve.common import chosen_armature
 Icon = Literal["NONE", "CHECKMARK", "ERROR"]
 
 
-class SidebarPanel:
-    """Mixin: a panel of the extension's tab. Drawing shows what is stored and computes nothing."""
+class SidebarPanel(bpy.types.Panel):
+    """Base: a panel of the extension's tab. Drawing shows what is stored and computes nothing."""
 
-    bl_space_type: Literal["VIEW_3D"] = "VIEW_3D"
-    bl_region_type: Literal["UI"] = "UI"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
     bl_category = CATEGORY
 
 
 class ArmaturePanel(SidebarPanel):
-    """Mixin: a panel about the chosen armature."""
+    """Base: a panel about the chosen armature."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -16,7 +16,7 @@ from .sidebar import ArmaturePanel, lines, settings_in, split
 CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
 
 
-class SolvePanel(ArmaturePanel, bpy.types.Panel):
+class SolvePanel(ArmaturePanel):
     bl_idname = PanelId.SOLVE
     bl_label = "Solve"
     bl_order = 5
@@ -41,7 +41,7 @@ class SolvePanel(ArmaturePanel, bpy.types.Panel):
             layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
 
 
-class AdvancedPanel(ArmaturePanel, bpy.types.Panel):
+class AdvancedPanel(ArmaturePanel):
     bl_idname = PanelId.ADVANCED
     bl_parent_id = PanelId.SOLVE
     bl_label = "Advanced"
@@ -60,7 +60,7 @@ class AdvancedPanel(ArmaturePanel, bpy.types.Panel):
         recipe.template_ID(settings, "requests", new="text.new", open="text.open")
 
 
-class ResultPanel(ArmaturePanel, bpy.types.Panel):
+class ResultPanel(ArmaturePanel):
     bl_idname = PanelId.RESULT
     bl_label = "Result"
     bl_order = 6
@@ -82,7 +82,7 @@ class ResultPanel(ArmaturePanel, bpy.types.Panel):
         lines(layout, settings.status)
 
 
-class ExportPanel(ArmaturePanel, bpy.types.Panel):
+class ExportPanel(ArmaturePanel):
     bl_idname = PanelId.EXPORT
     bl_label = "Export"
     bl_order = 7
