@@ -11,13 +11,13 @@ import bpy
 
 from ...solver.data.problem import MassTable
 from ..accessors import attached
+from ..rows.row import CLASSES as ROW_CLASSES
+from ..rows.row import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
 from . import stances
 from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
 from .constraint import CLASSES as CONSTRAINT_CLASSES
 from .constraint import HangtimeConstraint
-from .row import CLASSES as ROW_CLASSES
-from .row import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
 from .view import CLASSES as VIEW_CLASSES
 from .view import HangtimeView
 

@@ -13,7 +13,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 from ..accessors import attached
-from .protocols import ContactRow, Settings, StanceRow
+from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
 _DIGITS = 6  # of a turn

@@ -7,8 +7,8 @@ from mathutils import Matrix, Vector
 
 from ...bridge.accessors import current_action
 from ...operators.solve.session import session
+from ..drawing.editor import view_3d
 from ..drawing.sketch import Colour
-from ..editor import view_3d
 from ..overlay.context.view_context import ViewContext, read_view
 from ..overlay.geometry import palette
 

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 
 import bpy
 
-from ..editor import ui_scale
+from ..drawing.editor import ui_scale
 from .context.figure_cache import FigureCache
 from .context.view_context import read_view
 from .geometry.shapes import Label

@@ -7,7 +7,7 @@ import bpy
 from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeContact, HangtimeSettings
 from ...operators.names import ListId
-from ..editor import ui_scale
+from ..drawing.editor import ui_scale
 
 WIDE = 400  # px; a sidebar in which the places find room too
 

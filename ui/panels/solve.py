@@ -10,7 +10,7 @@ from ...bridge.accessors import present
 from ...bridge.properties.settings import action_settings
 from ...operators.names import OperatorId, PanelId
 from ...operators.solve.session import session
-from ..editor import ui_scale
+from ..drawing.editor import ui_scale
 from .sidebar import ArmaturePanel, lines, settings_in, split
 
 CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon

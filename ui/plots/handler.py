@@ -13,7 +13,7 @@ from ...bridge.properties.settings import scene_settings
 from ...operators.solve.common import chosen_armature
 from ..drawing import paint
 from ..drawing.cache import ContentCache
-from ..editor import ui_scale, view_3d
+from ..drawing.editor import ui_scale, view_3d
 from . import looks
 from .drawing import playhead, readings, still
 from .figure import PlotFigure, lay_out

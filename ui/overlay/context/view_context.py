@@ -12,19 +12,19 @@ from mathutils import Matrix
 from ....bridge.accessors import current_action, present
 from ....bridge.armature.poses import metres_per_unit
 from ....bridge.armature.traces_store import Kept, kept
-from ....bridge.properties.bone_keys import current_name
 from ....bridge.properties.constraint import HangtimeConstraint
-from ....bridge.properties.kinds import Span
 from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ....bridge.properties.view import HangtimeView
+from ....bridge.rows.bone_keys import current_name
+from ....bridge.rows.choices import Span
+from ....bridge.rows.times import Frames, Spans, interval_of, named_frames
 from ....operators.solve.common import chosen_armature
 from ....operators.solve.live import live
 from ....solver.data.traces import Traces
-from ...editor import view_3d
-from ..geometry.shapes import Frames
-from . import spans
+from ...drawing.editor import view_3d
 
 USUAL = 1.7  # m, the height at which sizes are meant
+NEAR = 0.5  # frames; what holds at one frame holds as long as that is shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,13 +100,13 @@ class ViewContext:
         return self.live is None and action is not None and action == self.settings.adapted
 
     @cached_property
-    def phases(self) -> dict[str, Frames]:
-        return spans.named(self.settings)
+    def phases(self) -> Spans:
+        return named_frames(self.settings)
 
     def span(self, row: HangtimeConstraint) -> Frames:
         """From which frame to which a constraint holds."""
         known = self.phases if row.span == Span.PHASE.name else {}
-        return spans.span_of(row, known, self.recorded.traces if self.recorded else None)
+        return interval_of(row, known, self.recorded.traces if self.recorded else None)
 
     def bone(self, row: HangtimeConstraint) -> bpy.types.PoseBone | None:
         """The bone that a single-bone constraint is about, where the armature has it."""
@@ -129,6 +129,11 @@ class ViewContext:
             return None
         matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)
         return ShownMotion(found.traces, found.key, matrix.freeze(), found.stood)
+
+
+def holds(span: Frames, frame: float) -> bool:
+    """Whether a constraint holds at the frame that is shown."""
+    return span[0] - NEAR <= frame <= span[1] + NEAR
 
 
 def read_view(context: bpy.types.Context) -> ViewContext | None:

@@ -16,7 +16,6 @@ from ...drawing.sketch import Colour
 
 Points = NDArray[np.float32]
 Faces = NDArray[np.int32]
-Frames = tuple[float, float]  # the first and the last
 
 LIGHT = np.array([0.32, -0.48, 0.82])  # towards the lamp, world
 AMBIENT, AIRY = 0.55, 0.75  # share of a colour that is there without the lamp; of ghosts

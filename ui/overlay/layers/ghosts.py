@@ -6,17 +6,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ....bridge.constraint_kinds import pose
 from ....bridge.properties.constraint import HangtimeConstraint
-from ....bridge.properties.kinds import ConstraintKind, PoseSource
+from ....bridge.rows.times import Frames
 from ....solver.arrays import FloatArray, IntArray
 from ...drawing.sketch import Colour
 from ..context.figure_cache import FigureCache
 from ..context.layer import Layer, Part
-from ..context.spans import holds
-from ..context.view_context import ShownMotion, ViewContext
+from ..context.view_context import ShownMotion, ViewContext, holds
 from ..geometry import palette, solids
 from ..geometry.body_rotations import TracedFigure, posed
-from ..geometry.shapes import Frames, Shape, faded
+from ..geometry.shapes import Shape, faded
 from .motion import interpolated, within
 
 ROW, RECORDED_ROW, LIVE_ROW = 0.34, 0.24, 0.18  # opacities
@@ -95,7 +95,7 @@ def other_now(view: ViewContext) -> Layer | None:
 def poses(view: ViewContext, figures: FigureCache) -> Layer | None:
     """The poses that are asked for, hung where the figure is then; in the armature's space."""
     recorded = view.recorded
-    wanted = tuple(w for r, _ in view.rows(ConstraintKind.POSE.name) for w in _wanted(view, r))
+    wanted = tuple(w for r, _ in view.rows(pose.KIND.name) for w in _wanted(view, r))
     if recorded is None or not wanted:
         return None
     target = view.adapted or recorded
@@ -105,8 +105,8 @@ def poses(view: ViewContext, figures: FigureCache) -> Layer | None:
     def build() -> Iterator[Shape]:
         source, hung = figures.of(view, recorded), figures.of(view, target)
         if source is not None and hung is not None:
-            for pose in wanted:
-                yield from pose_shapes(pose, source, hung, size)
+            for each in wanted:
+                yield from pose_shapes(each, source, hung, size)
 
     return Layer(Part.POSES, content, build, view.armature.matrix_world.copy().freeze())
 
@@ -123,7 +123,7 @@ def _wanted(view: ViewContext, row: HangtimeConstraint) -> Iterator[Wanted]:
     span = view.span(row)
     bones = tuple(bone.name for bone in row.bones)
     for frame, held in _frames(span, view.frame):
-        if row.source == PoseSource.REST.name:
+        if row.source == pose.PoseSource.REST.name:
             yield frame, None, bones, held
         else:
             yield frame, row.pose_frame if row.use_pose_frame else frame, bones, held
@@ -138,10 +138,10 @@ def _frames(span: Frames, frame: float) -> list[tuple[float, bool]]:
 
 
 def pose_shapes(
-    pose: Wanted, source: TracedFigure, target: TracedFigure, size: float
+    wanted: Wanted, source: TracedFigure, target: TracedFigure, size: float
 ) -> Iterator[Shape]:
     """In the armature's space; nothing where the bones are not the figure's."""
-    frame, pose_frame, bones, held = pose
+    frame, pose_frame, bones, held = wanted
     names = set(bones)
     chosen = tuple(i for i, b in enumerate(source.bones) if b in names or not names)
     if not chosen or source.bones != target.bones:

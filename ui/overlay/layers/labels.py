@@ -8,8 +8,8 @@ import blf
 import bpy
 from mathutils import Matrix, Vector
 
+from ...drawing.editor import ui_scale
 from ...drawing.paint import FONT_ID
-from ...editor import ui_scale
 from ..geometry.shapes import Label
 
 POINTS = 11.0  # size at the interface's usual scale

@@ -13,8 +13,7 @@ from ....bridge.accessors import pose_of
 from ....bridge.properties.constraint import HangtimeConstraint
 from ..context.figure_cache import FigureCache, parent_of
 from ..context.layer import Layer, Part, xyz
-from ..context.spans import holds
-from ..context.view_context import ViewContext
+from ..context.view_context import ViewContext, holds
 from ..geometry.limit_shapes import ANGLE, CONE, TWIST, Limit, Pose, limit_shapes
 from ..geometry.shapes import Label, Shape, Standing
 

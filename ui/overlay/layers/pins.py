@@ -8,16 +8,17 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ....bridge.constraint_kinds import point
 from ....bridge.constraints.motion_problem import moved
 from ....bridge.properties.constraint import HangtimeConstraint
-from ....bridge.properties.kinds import ConstraintKind, PointAxes
 from ....bridge.properties.settings import HangtimeContact
+from ....bridge.rows.times import Frames
+from ....solver.data.requests import PointAxes
 from ..context.layer import IDENTITY, Layer, Part, xyz
-from ..context.spans import holds
-from ..context.view_context import ShownMotion, ViewContext
+from ..context.view_context import ShownMotion, ViewContext, holds
 from ..geometry import palette
 from ..geometry.pin_shapes import Box, Pin, shapes
-from ..geometry.shapes import Frames, Label, Standing
+from ..geometry.shapes import Label, Standing
 
 REACH = 0.25  # m, how far a box is drawn along an axis that is not bounded
 ABOVE = 0.12  # m, of a stance's words
@@ -60,7 +61,7 @@ def _labels(view: ViewContext) -> Iterator[Label]:
 
 def points(view: ViewContext) -> Layer:
     """The points that constraints hold, in the world."""
-    rows = view.rows(ConstraintKind.POINT.name)
+    rows = view.rows(point.KIND.name)
     pins = tuple(pin for row, chosen in rows for pin in _point(view, row, chosen))
     return Layer(Part.POINTS, (pins, view.units), lambda: shapes(pins, view.units), IDENTITY)
 

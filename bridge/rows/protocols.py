@@ -1,11 +1,12 @@
-"""What phases and stances read of the stored settings, which themselves call on both of these."""
+"""What rows, phases and stances read of the stored settings, which are made of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
-import bpy
+if TYPE_CHECKING:
+    import bpy
 
 Row = TypeVar("Row", covariant=True)
 
@@ -53,14 +54,13 @@ class ConstraintRow(Protocol):
 class Settings(Protocol):
     """The clip of an armature's settings, its contacts and its stances."""
 
+    id_data: bpy.types.Object
     use_range: bool
     first_frame: int
     last_frame: int
     whole_stance: bool
     active_contact: int
 
-    @property
-    def id_data(self) -> bpy.types.ID | None: ...
     @property
     def contacts(self) -> Rows[ContactRow]: ...
     @property

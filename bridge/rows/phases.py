@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import bpy
-
 from ...solver.data.contacts import PhaseKind, gaps
-from ..accessors import attached, current_action
-from .kinds import ConstraintKind
+from .choices import HOLD
 from .protocols import Settings
 
 SAME = 1e-3  # frames; single precision keeps frames
@@ -69,14 +66,12 @@ def clip_ends(settings: Settings) -> tuple[float, float] | None:
 
 def recorded_span(settings: Settings) -> tuple[float, float] | None:
     """First and last frame of the recording's action, where there is one."""
-    armature = settings.id_data
-    assert isinstance(armature, bpy.types.Object)
-    action = current_action(armature)
+    data = settings.id_data.animation_data
+    action = data.action if data is not None else None
     if action is None:
         return None
-    recording: bpy.types.Action = attached(action).recording or action
-    first, last = recording.frame_range.to_tuple()
-    return first, last
+    first, last = (action.hangtime.recording or action).frame_range
+    return float(first), float(last)
 
 
 def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:
@@ -87,5 +82,5 @@ def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:
 
 def names(settings: Settings) -> tuple[str, ...]:
     """What a constraint may be about: the phases and the frames that are held, in time."""
-    holds = (row.name for row in settings.constraints if row.kind == ConstraintKind.HOLD.name)
+    holds = (row.name for row in settings.constraints if row.kind == HOLD)
     return (*(phase.name for phase in phases_of(settings)), *holds)

@@ -6,7 +6,7 @@ from typing import cast
 
 import bpy
 
-from ..bridge.accessors import present
+from ...bridge.accessors import present
 
 
 def view_3d(context: bpy.types.Context) -> bpy.types.SpaceView3D | None:

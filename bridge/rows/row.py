@@ -8,7 +8,7 @@ from enum import Enum
 import bpy
 
 from . import bone_keys
-from .kinds import Met
+from .choices import Met
 
 HIDDEN = {"HIDDEN"}
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
