@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ...solver.data.traces import Flight, Traces
+from ...solver.data.traces import FlightParabola, Traces
 
 _CONTENT, _KEY = "hangtime_traces", "hangtime_traces_key"
 _ARRAYS = tuple(f.name for f in fields(Traces) if f.type == "FloatArray")
@@ -78,7 +78,9 @@ def _unpacked(stored: _Stored) -> Kept:
         arrays = {n: packed[n].astype(float) for n in _ARRAYS}
         names = {n: tuple(packed[n].tolist()) for n in _NAMES}
         flights = tuple(
-            Flight(name, *packed[f"span {i}"].tolist(), packed[f"parabola {i}"].astype(float))
+            FlightParabola(
+                name, *packed[f"span {i}"].tolist(), packed[f"parabola {i}"].astype(float)
+            )
             for i, name in enumerate(packed[_FLIGHTS].tolist())
         )
         weight, stood = float(packed[_WEIGHT]), Matrix(packed[_STOOD].tolist())

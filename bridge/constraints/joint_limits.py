@@ -9,7 +9,13 @@ from math import degrees, radians
 import bpy
 import numpy as np
 
-from ...solver.body.human_limits import ConeRange, Range, beyond, human_ranges, missing_joints
+from ...solver.body.human_limits import (
+    ConeRange,
+    JointRange,
+    human_ranges,
+    limit_violation,
+    missing_joints,
+)
 from ..properties.kinds import ConstraintKind
 from .rest_figure import directions, parts_of, recorded_looks, rest_figure, rest_rotations
 from .rows import add_constraint, free_name, hold_throughout
@@ -42,7 +48,7 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
     made: dict[str, float] = {}
     for limit in human_ranges(figure):
         name = _add(armature, limit)
-        by = beyond(limit, seen[limit.bone], figure) if limit.bone in seen else 0.0
+        by = limit_violation(limit, seen[limit.bone], figure) if limit.bone in seen else 0.0
         made[name] = by
         if by > NOTICED:
             row = armature.hangtime.constraints[-1]
@@ -50,7 +56,7 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
     return JointLimits(tuple(made), missing_joints(figure), made, checked=looks is not None)
 
 
-def _add(armature: bpy.types.Object, limit: Range) -> str:
+def _add(armature: bpy.types.Object, limit: JointRange) -> str:
     cone = isinstance(limit, ConeRange)
     kind = ConstraintKind.CONE if cone else ConstraintKind.ANGLE
     row = add_constraint(armature, kind, [limit.bone], 0.0)

@@ -13,11 +13,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ....solver.body.human_limits import MIN_BEND_SINE
+
 FloatArray = NDArray[np.float64]
 
 FLAT = 0.15  # joints whose second extent is a smaller share of the first lie on a line
 SHORTEST = 1e-9
-LEAST_BEND = 0.05  # one that bends less does not tell its direction; as in constraint_builder.py
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ class Figure:
         straight = self.along[[max(parent, 0) for parent in self.parents]]
         ahead = unit(self.leans.mean(axis=0))
         bent = ahead - straight * (ahead * straight).sum(axis=1, keepdims=True)
-        tells = np.linalg.norm(bent, axis=1, keepdims=True) > LEAST_BEND
+        tells = np.linalg.norm(bent, axis=1, keepdims=True) > MIN_BEND_SINE
         return np.where(tells, unit(bent), np.nan)
 
     @cached_property
