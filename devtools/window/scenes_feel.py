@@ -85,8 +85,8 @@ def about(place: Place) -> list[Place]:
 def overlays(stage: Stage) -> Acting:
     """Measures what drawing costs with many constraints, in our code and as a whole."""
     settings, view = armature().hangtime, bpy.context.scene.hangtime.view
-    kinds = part("bridge.properties.kinds").ConstraintKind
-    drawn = (kinds.POINT, kinds.CONE, kinds.ANGLE, kinds.POSE, kinds.TWIST)
+    kinds = part("bridge.constraint_kinds").KINDS
+    drawn = [kinds[name] for name in ("POINT", "CONE", "ANGLE", "POSE", "TWIST")]
     add = part("bridge.constraints.rows").add_constraint
     for i in range(CONSTRAINTS):
         add(armature(), drawn[i % len(drawn)], [BONES[i // len(drawn)]], 200.0)
