@@ -11,7 +11,7 @@
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
   benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
   build [--out DIR]                       make and validate the extension's zips
-  lint                                    ruff and mypy
+  lint                                    ruff, mypy, import contracts, limits of the house
 
 Makes its own environment in .hangtime/ on first use; needs Python alone. Without --blender it takes
 the newest Blender with long-term support that this Python can run.

@@ -13,12 +13,20 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..devtools.peers.ipopt_peer import sparse
+from ..devtools.peers.task import (
+    Entries,
+    FloatArray,
+    IntArray,
+    PeerResult,
+    Task,
+    judged,
+    metric_entries,
+)
 from ..solver.body.dynamics import GRAVITY, Moving, body_frames, carried, momentum_rate
 from ..solver.numerics.splines import ORDER
 from ..solver.transcription.rows import RowKind, Rows
 from ..solver.transcription.transcription import Transcription
-from .ipopt_peer import sparse
-from .task import Entries, FloatArray, IntArray, PeerResult, Task, judged, metric_entries
 
 LEAST = 1e-6  # BW; rounds off the tip of the friction cone, where it has no derivative
 
