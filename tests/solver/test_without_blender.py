@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hangtime.devtools.environment.virtual_environment import ROOT
 
-# Imports every module of hangtime.solver; prints the packages that came, and those of them from files.
+# Imports every module of hangtime.solver; prints what packages came, and which of them from files.
 WALK = """
 import importlib, json, pkgutil, runpy, sys
 before = set(sys.modules)
