@@ -86,9 +86,7 @@ def prepare_peers(blender: Blender, python: str) -> VirtualEnvironment:
     return env
 
 
-def complete(
-    env: VirtualEnvironment, wanted: list[Requirements], python: str
-) -> VirtualEnvironment:
+def complete(env: VirtualEnvironment, wanted: list[Requirements], python: str) -> None:
     """Make the environment where it is missing, and install what it lacks."""
     installed = read_stamp(env)
     pending = [each for each in wanted if installed.get(each.file) != fingerprint(each)]
