@@ -10,6 +10,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bridge import worker_client
+from ..bridge.accessors import ATTRIBUTE
 from ..bridge.properties import settings, stances
 from ..operators import names
 from ..operators.drag import aim_cone, limit_operator, pin_operator, turn_stance
@@ -70,8 +71,8 @@ def register() -> Callable[[], None]:
             undo.callback(bpy.utils.unregister_class, cls)
         for carrier, group in settings.CARRIERS.items():
             group_of = bpy.props.PointerProperty(type=group, override={"LIBRARY_OVERRIDABLE"})
-            setattr(carrier, names.ATTRIBUTE, group_of)
-            undo.callback(delattr, carrier, names.ATTRIBUTE)
+            setattr(carrier, ATTRIBUTE, group_of)
+            undo.callback(delattr, carrier, ATTRIBUTE)
         bpy.app.handlers.depsgraph_update_post.append(_follow_empties)
         undo.callback(bpy.app.handlers.depsgraph_update_post.remove, _follow_empties)
         undo.callback(session.session().end)

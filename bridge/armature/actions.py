@@ -10,6 +10,8 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack, Recording
+from ..accessors import current_action, current_scene
+from ..properties.settings import action_settings, settings_of
 from . import fcurves
 from .incremental import Parts, complete, sample_in_parts
 from .poses import Poses, sample
@@ -17,18 +19,12 @@ from .read import recorded, whole_frames
 from .write import write_in_parts
 
 
-def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The action that animates the armature now."""
-    data = armature.animation_data
-    return data.action if data is not None else None
-
-
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     """The recording's: the armature's action, or the one that this was adapted from."""
     action = current_action(armature)
     if action is None:
         return None
-    return action.hangtime.recording or action
+    return action_settings(action).recording or action
 
 
 def read_take(
@@ -59,13 +55,11 @@ def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
         return sample(armature, frames)
 
 
-def write_take(armature: bpy.types.Object, track: PoseTrack) -> bpy.types.Action:
-    """Writes an adapted performance as a new action, which is assigned and knows its recording."""
-    return complete(write_take_in_parts(armature, track))
-
-
 def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[bpy.types.Action]:
-    """The same in parts; before the last one the armature is as it was."""
+    """Write an adapted performance as a new action, which is assigned and knows its recording.
+
+    Before the last part the armature is as it was.
+    """
     original = recorded_action(armature)
     assert original is not None
     slot = fcurves.slot_identifier(armature)
@@ -77,16 +71,16 @@ def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[b
         name=f"{original.name} adapted",
         showing=partial(_showing, armature, original),
     )
-    action.hangtime.recording = original
+    action_settings(action).recording = original
     show(armature, action, slot)
-    armature.hangtime.adapted = action
+    settings_of(armature).adapted = action
     return action
 
 
 def show(armature: bpy.types.Object, action: bpy.types.Action, slot: str | None = None) -> None:
     """Lets the armature perform an action; the pose follows."""
     fcurves.assign(armature, action, slot or fcurves.slot_identifier(armature))
-    scene = bpy.context.scene
+    scene = current_scene()
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 

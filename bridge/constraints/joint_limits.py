@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ...solver.body.human_limits import ConeRange, Range, beyond, human_ranges, missing_joints
-from ..properties.kinds import ConstraintKind
+from ..constraint_kinds import cone, joint_limit
 from .rest_figure import directions, parts_of, recorded_looks, rest_figure, rest_rotations
 from .rows import add_constraint, free_name, hold_throughout
 
@@ -51,12 +51,12 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
 
 
 def _add(armature: bpy.types.Object, limit: Range) -> str:
-    cone = isinstance(limit, ConeRange)
-    kind = ConstraintKind.CONE if cone else ConstraintKind.ANGLE
+    is_cone = isinstance(limit, ConeRange)
+    kind = (cone if is_cone else joint_limit).KIND
     row = add_constraint(armature, kind, [limit.bone], 0.0)
     row.name = free_name(armature.hangtime, limit.name)
     hold_throughout(row)
-    if cone:
+    if is_cone:
         row.half_angle = limit.half_angle
         row.use_axis, row.axis = True, limit.axis.tolist()
         row.stretch = limit.stretch

@@ -15,7 +15,7 @@ from ...solver.numerics.rotations import unit
 from ..armature.actions import recorded_action, recorded_poses
 from ..armature.channels import proper
 from ..armature.poses import Poses
-from ..properties.phases import clip_ends, recorded_span
+from ..rows.phases import clip_ends, recorded_span
 from .bone_mapping import chosen_parts, named_bones
 
 LOOKS = 48  # instants of a recording that are looked at, at most

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ..properties.kinds import BodyKind, Met
+from ..properties.body_change import HangtimeBodyChange
+from ..properties.constraint import HangtimeConstraint
+from ..properties.settings import HangtimeSettings
+from ..rows.choices import BodyKind, Met
 from .body_requests import changes_limb
-
-if TYPE_CHECKING:
-    from ..properties.body_change import HangtimeBodyChange
-    from ..properties.constraint import HangtimeConstraint
-    from ..properties.settings import HangtimeSettings
 
 PINNED = 1.0  # mm; a point that something holds from outside and that is nearer is held
 WORDS = {  # of the report's units

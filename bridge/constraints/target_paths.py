@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
@@ -12,11 +11,9 @@ from numpy.typing import NDArray
 
 from ...solver.data.requests import Path
 from ..armature import fcurves
-from ..properties.kinds import ConstraintKind
-from .times import Clip, frames_of
-
-if TYPE_CHECKING:
-    from ..properties.constraint import HangtimeConstraint
+from ..constraint_kinds import point
+from ..properties.constraint import HangtimeConstraint
+from ..rows.times import Clip, followed_frames
 
 FloatArray = NDArray[np.float64]
 
@@ -27,8 +24,8 @@ def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> d
     metres: per Blender unit. The scene's frame, and what is seen, are afterwards what they were.
     Raises as `when_of`.
     """
-    following = [r for r in rows if r.kind == ConstraintKind.POINT.name and r.target is not None]
-    frames = {row.name: _whole_frames(*frames_of(row, clip)) for row in following}
+    following = [r for r in rows if r.kind == point.KIND.name and r.target is not None]
+    frames = {row.name: _whole_frames(*followed_frames(row, clip)) for row in following}
     targets = {row.target for row in following}
     moving = [target for target in targets if not _moves_by_keys_alone(target)]
     needed = sorted({f for r in following if r.target in moving for f in frames[r.name].tolist()})

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf
 from typing import TYPE_CHECKING
 
-from ..properties.kinds import ConstraintKind, Instant, Span, TorqueBy
-from ..properties.phases import PhaseSpan, carried, clip_ends, phases
+from ..constraint_kinds import contact_force, torque_limit
+from ..rows.phases import PhaseSpan, carried, clip_ends, phases
+from ..rows.times import Spans, interval_of
 from .curves import Cap, Chart, Take, force_chart, height_chart, speed_chart, torque_chart
 
 if TYPE_CHECKING:
@@ -56,6 +57,14 @@ class Plotted:
         return tuple(charts)
 
 
+@dataclass(frozen=True)
+class _Times:
+    """The phases by name, and the motion whose apexes they have."""
+
+    phases: Spans
+    motion: Traces | None
+
+
 def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
     """What is plotted of an armature; None where no motion of it is stored."""
     motions = kept_takes(armature)
@@ -64,6 +73,10 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
     takes = {take: kept.traces for take, kept in motions.items()}
     bone = view.plot_bone or _active_bone(armature)
     spans = _phases(armature.hangtime, takes)
+    times = _Times(
+        {phase.name: (phase.start, phase.end) for phase in spans},
+        takes.get(Take.ADAPTED, takes.get(Take.RECORDING)),
+    )
     rows = [row for row in armature.hangtime.constraints if row.used]
     asked = Asked(
         motions=tuple((take, kept.key) for take, kept in motions.items()),
@@ -73,12 +86,13 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
         com=view.plot_com,
         phases=spans,
         force_caps=tuple(
-            Cap(row.name, *_span(row, spans), row.peak) for row in rows if _caps_forces(row)
+            cap for row in rows if _caps_forces(row) for cap in _caps(row, row.peak, times)
         ),
         torque_caps=tuple(
-            Cap(row.name, *_span(row, spans), row.torque + abs(row.torque_value))
+            cap
             for row in rows
             if _caps_torque(row, bone)
+            for cap in _caps(row, row.torque + abs(row.torque_value), times)
         ),
     )
     return Plotted(asked, takes)
@@ -110,30 +124,19 @@ def _active_bone(armature: bpy.types.Object) -> str:
 
 
 def _caps_forces(row: HangtimeConstraint) -> bool:
-    return row.kind == ConstraintKind.FORCE.name and row.use_peak
+    return row.kind == contact_force.KIND.name and row.use_peak
 
 
 def _caps_torque(row: HangtimeConstraint, bone: str) -> bool:
     """Whether it bounds the bone's torque by a number; shares are of a torque not stored."""
-    mine = row.kind == ConstraintKind.TORQUE.name and any(b.name == bone for b in row.bones)
-    return mine and row.torque_by == TorqueBy.NEWTON_METRES.name
+    mine = row.kind == torque_limit.KIND.name and any(b.name == bone for b in row.bones)
+    return mine and row.torque_by == torque_limit.TorqueBy.NEWTON_METRES.name
 
 
-def _span(row: HangtimeConstraint, spans: tuple[PhaseSpan, ...]) -> tuple[float, float]:
-    """From when to when, scene frames, a constraint holds; as drawn, without the solver's care."""
-    when = Span[row.span]
-    if when is Span.FRAMES:
-        return row.first_frame, row.last_frame
-    if when is Span.FRAME:
-        return row.first_frame - AROUND, row.first_frame + AROUND
-    phase = next((p for p in spans if p.name == row.phase), None)
-    if when is Span.ALWAYS or phase is None:
-        return -inf, inf
-    instants = {
-        Instant.START: phase.start,
-        Instant.MIDDLE: 0.5 * (phase.start + phase.end),
-        Instant.APEX: 0.5 * (phase.start + phase.end),  # of a flight, about
-        Instant.END: phase.end,
-    }
-    at = instants.get(Instant[row.instant])
-    return (phase.start, phase.end) if at is None else (at - AROUND, at + AROUND)
+def _caps(row: HangtimeConstraint, level: float, times: _Times) -> Iterator[Cap]:
+    """A row's bound as it is drawn: an instant's a frame wide, so that it is seen."""
+    first, last = interval_of(row, times.phases, times.motion)
+    if first == last:
+        first, last = first - AROUND, last + AROUND
+    if first <= last:  # its phase is there
+        yield Cap(row.name, first, last, level)

@@ -10,13 +10,14 @@ from collections.abc import Sequence
 import bpy
 
 from ...solver.data.problem import MassTable
+from ..accessors import attached
+from ..rows.row import CLASSES as ROW_CLASSES
+from ..rows.row import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
 from . import stances
 from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
 from .constraint import CLASSES as CONSTRAINT_CLASSES
 from .constraint import HangtimeConstraint
-from .row import CLASSES as ROW_CLASSES
-from .row import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
 from .view import CLASSES as VIEW_CLASSES
 from .view import HangtimeView
 
@@ -44,7 +45,7 @@ def _get_place(row: HangtimeContact) -> Sequence[float]:
 
 
 def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
-    stances.place(row.id_data.hangtime, row, to)
+    stances.place(attached(row.id_data), row, to)
 
 
 class HangtimeContact(bpy.types.PropertyGroup):
@@ -109,7 +110,7 @@ def _shift(axis: int) -> dict[str, object]:
     def put(stance: HangtimeStance, to: float) -> None:
         shifted = list(stance.shifted)
         shifted[axis] = to
-        stances.shift_stance(stance.id_data.hangtime, stance, shifted)
+        stances.shift_stance(attached(stance.id_data), stance, shifted)
 
     return {
         "get": get,
@@ -126,7 +127,7 @@ def _get_turn(stance: HangtimeStance) -> float:
 
 
 def _set_turn(stance: HangtimeStance, to: float) -> None:
-    stances.turn_stance(stance.id_data.hangtime, stance, to)
+    stances.turn_stance(attached(stance.id_data), stance, to)
 
 
 class HangtimeStance(bpy.types.PropertyGroup):
@@ -327,6 +328,24 @@ class HangtimeAction(bpy.types.PropertyGroup):
     performer: bpy.props.PointerProperty(type=bpy.types.Object, options=_HIDDEN)
     accepted: bpy.props.BoolProperty(options=_HIDDEN)
     report: bpy.props.StringProperty(options=_HIDDEN)  # the report's text
+
+
+def settings_of(armature: bpy.types.Object) -> HangtimeSettings:
+    """The edit that an armature carries, or what an empty marks."""
+    settings: HangtimeSettings = attached(armature)
+    return settings
+
+
+def scene_settings(scene: bpy.types.Scene | None) -> HangtimeScene:
+    """Of `context.scene`, which the stubs leave optional."""
+    settings: HangtimeScene = attached(scene)
+    return settings
+
+
+def action_settings(action: bpy.types.Action) -> HangtimeAction:
+    """Of an adapted action; empty for others."""
+    settings: HangtimeAction = attached(action)
+    return settings
 
 
 CLASSES = (

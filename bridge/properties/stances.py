@@ -12,7 +12,8 @@ from math import atan2, tau
 import bpy
 from mathutils import Matrix, Vector
 
-from .protocols import ContactRow, Settings, StanceRow
+from ..accessors import attached
+from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
 _DIGITS = 6  # of a turn
@@ -90,10 +91,10 @@ def active_stance(settings: Settings) -> StanceRow | None:
 
 def follow(empty: bpy.types.Object) -> None:
     """Takes over where an empty that marks a contact has been moved to."""
-    armature = getattr(empty.hangtime, "marks", None)
+    armature = getattr(attached(empty), "marks", None)
     if armature is None:
         return
-    settings = armature.hangtime
+    settings: Settings = attached(armature)
     for row in settings.contacts:
         to = empty.matrix_world.translation
         if row.empty == empty and (to - Vector(row.at)).length > _SAME:

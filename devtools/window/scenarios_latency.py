@@ -94,8 +94,8 @@ def about(place: Place) -> list[Place]:
 def overlays(driver: Driver) -> Actions:
     """Measures the cost of drawing with many constraints, in our code and as a whole."""
     own, view = settings(), scene_settings().view
-    kinds = extension_module("bridge.properties.kinds").ConstraintKind
-    drawn = (kinds.POINT, kinds.CONE, kinds.ANGLE, kinds.POSE, kinds.TWIST)
+    kinds = extension_module("bridge.constraint_kinds").KINDS
+    drawn = [kinds[name] for name in ("POINT", "CONE", "ANGLE", "POSE", "TWIST")]
     add = extension_module("bridge.constraints.rows").add_constraint
     for i in range(CONSTRAINTS):
         add(armature(), drawn[i % len(drawn)], [BONES[i // len(drawn)]], 200.0)

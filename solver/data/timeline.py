@@ -161,17 +161,28 @@ def interval(
         start, end = max(start, first), min(end, last)
     if end < start:
         raise BadTiming(name, end - start)
-    match when.moment:
+    if when.moment is None:
+        return start, end
+    at = moment_within(when.moment, start, end, apex)
+    if at is None:
+        raise BadTiming(name, end - start)
+    return at, at
+
+
+def moment_within(moment: Moment, start: float, end: float, heights: FloatArray) -> float | None:
+    """The instant that a moment of [start, end] is, in any unit of time.
+
+    heights: (T, 2) instants and heights of the centre of mass, of which the highest is the apex;
+    None where no instant of them lies within.
+    """
+    match moment:
         case Moment.START:
-            return start, start
+            return start
         case Moment.END:
-            return end, end
+            return end
         case Moment.MIDDLE:
-            return 0.5 * (start + end), 0.5 * (start + end)
-        case Moment.APEX:
-            inside = (apex[:, 0] >= start) & (apex[:, 0] <= end)
-            if not inside.any():
-                raise BadTiming(name, end - start)
-            best = apex[inside][np.argmax(apex[inside, 1]), 0]
-            return float(best), float(best)
-    return start, end
+            return 0.5 * (start + end)
+    inside = (heights[:, 0] >= start) & (heights[:, 0] <= end)
+    if not inside.any():
+        return None
+    return float(heights[inside][np.argmax(heights[inside, 1]), 0])

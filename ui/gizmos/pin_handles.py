@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import bpy
 from mathutils import Vector
 
-from ...bridge.properties.kinds import ConstraintKind
+from ...bridge.constraint_kinds import point
 from ...bridge.properties.stances import active_stance, stance_contacts, stance_middle
 from ...operators.names import GizmoGroupId, OperatorId
 from ..overlay.context.view_context import Seen
@@ -43,10 +43,7 @@ def handles(seen: Seen) -> list[Handle]:
     points = [
         Handle(-1, i, Vector(row.place), True)
         for i, row in enumerate(settings.constraints)
-        if row.kind == ConstraintKind.POINT.name
-        and row.used
-        and row.use_place
-        and row.target is None
+        if row.kind == point.KIND.name and row.used and row.use_place and row.target is None
     ]
     return contacts + points
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 from mathutils import Matrix, Vector
 
-from ...bridge.armature.actions import current_action
+from ...bridge.accessors import current_action
 from ...operators.solve.session import session
 from ..overlay.context.view_context import Seen, look_at
 from ..overlay.geometry import palette

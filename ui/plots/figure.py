@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ...bridge.plots.curves import Chart, Curve
 from ...bridge.plots.screen import Axis, Rect, round_range, round_step
-from ...bridge.properties.phases import PhaseSpan
+from ...bridge.rows.phases import PhaseSpan
 from ..drawing.sketch import Measure, Text
 from . import looks
 from .numbers import decimals, number

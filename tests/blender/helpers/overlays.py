@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.traces_store import keep
-from hangtime.bridge.properties.kinds import ConstraintKind
+from hangtime.bridge.rows.kind import ConstraintKind
 from hangtime.solver.data.traces import Flight, Traces
 from hangtime.tests.blender.helpers import rigs
 from hangtime.ui.overlay.context.figure_cache import Figures
@@ -83,7 +83,7 @@ def constrain(
     armature: bpy.types.Object, kind: ConstraintKind, *bones: str, **values: object
 ) -> bpy.types.PropertyGroup:
     row = armature.hangtime.constraints.add()
-    row.name, row.kind = f"{kind.value} {len(armature.hangtime.constraints)}", kind.name
+    row.name, row.kind = f"{kind.label} {len(armature.hangtime.constraints)}", kind.name
     for bone in bones:
         row.bones.add().name = bone
     for name, value in values.items():

@@ -9,7 +9,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature.actions import current_action, read_take, write_take_in_parts
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature.actions import read_take, write_take_in_parts
 from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.operators.solve.session import session

@@ -16,10 +16,7 @@ from hangtime.bridge.files.import_clip import import_clip
 from hangtime.operators.solve.adapt import write_answer
 from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
 from hangtime.operators.solve.common import said
-from hangtime.operators.solve.session import (
-    Asked,
-    session,
-)
+from hangtime.operators.solve.session import Asked, session
 from hangtime.operators.solve.solving import Solving, State
 from hangtime.operators.solve.task import Task, TaskOperator
 from hangtime.solver.data.digest import digest

@@ -18,11 +18,12 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import hangtime
 from hangtime.bridge import worker_client
+from hangtime.bridge.accessors import ATTRIBUTE
 from hangtime.bridge.armature.actions import read_take
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.properties import settings
-from hangtime.operators.names import ATTRIBUTE, ListId, MenuId, OperatorId, PanelId
+from hangtime.operators.names import ListId, MenuId, OperatorId, PanelId
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.tests.blender.bridge.test_read_write import curves_of, snapshot

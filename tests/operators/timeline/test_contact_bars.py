@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from hangtime.bridge.plots.screen import Axis, Rect
-from hangtime.bridge.properties.phases import phases
+from hangtime.bridge.rows.phases import phases
 from hangtime.operators.timeline.contact_bars import Bar, Bars, Row, lay_out
 from hangtime.operators.timeline.contact_edge_state import Edge
 from hangtime.ui.drawing.sketch import Picture

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hangtime.bridge.plots.curves import Cap, Chart, Curve, Take
 from hangtime.bridge.plots.screen import Axis, Rect, round_range
-from hangtime.bridge.properties.phases import phases
+from hangtime.bridge.rows.phases import phases
 from hangtime.ui.plots import looks
 from hangtime.ui.plots.drawing import playhead, readings, still
 from hangtime.ui.plots.figure import Figure, figure

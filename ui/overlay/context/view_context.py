@@ -9,17 +9,20 @@ from functools import cached_property
 import bpy
 from mathutils import Matrix
 
-from ....bridge.armature.actions import current_action
-from ....bridge.armature.bone_keys import current_name
+from ....bridge.accessors import current_action
 from ....bridge.armature.poses import metres_per_unit
 from ....bridge.armature.traces_store import Kept, kept
-from ....bridge.properties.kinds import Span
+from ....bridge.rows.bone_keys import current_name
+from ....bridge.rows.choices import Span
+from ....bridge.rows.times import Frames, Spans, interval_of, named_frames
 from ....operators.solve.common import chosen_armature
 from ....operators.solve.live import live
 from ....solver.data.traces import Traces
-from . import spans
 
 USUAL = 1.7  # m, the height at which sizes are meant
+
+
+NEAR = 0.5  # frames; what holds at one frame holds as long as that is shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,13 +96,13 @@ class Seen:
         return self.live is None and action is not None and action == self.settings.adapted
 
     @cached_property
-    def phases(self) -> dict[str, spans.Frames]:
-        return spans.named(self.settings)
+    def phases(self) -> Spans:
+        return named_frames(self.settings)
 
-    def span(self, row: bpy.types.PropertyGroup) -> spans.Frames:
+    def span(self, row: bpy.types.PropertyGroup) -> Frames:
         """From which frame to which a constraint holds."""
         known = self.phases if row.span == Span.PHASE.name else {}
-        return spans.span_of(row, known, self.recorded.traces if self.recorded else None)
+        return interval_of(row, known, self.recorded.traces if self.recorded else None)
 
     def bone(self, row: bpy.types.PropertyGroup) -> bpy.types.PoseBone | None:
         """The bone that a single-bone constraint is about, where the armature has it."""
@@ -122,6 +125,11 @@ class Seen:
             return None
         matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)
         return Shown(found.traces, found.key, matrix.freeze(), found.stood)
+
+
+def holds(span: Frames, frame: float) -> bool:
+    """Whether a constraint holds at the frame that is shown."""
+    return span[0] - NEAR <= frame <= span[1] + NEAR
 
 
 def look_at(context: bpy.types.Context) -> Seen | None:

@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....bridge.properties.kinds import ConstraintKind
+from ....bridge.constraint_kinds import cone, joint_limit, twist_limit
+from ....bridge.rows.times import Frames
 from . import arcs, limit_poses, palette
 from .body_rotations import Figure, unit
 from .limit_poses import Joints
 from .shapes import (
     Colour,
     FloatArray,
-    Frames,
     Label,
     Look,
     Shape,
@@ -29,9 +29,7 @@ from .shapes import (
 )
 from .solids import across
 
-CONE, ANGLE, TWIST = (
-    kind.name for kind in (ConstraintKind.CONE, ConstraintKind.ANGLE, ConstraintKind.TWIST)
-)
+CONE, ANGLE, TWIST = (kind.KIND.name for kind in (cone, joint_limit, twist_limit))
 ARC, RING = 0.55, 0.42  # radii, as shares of the bone's length
 RING_AT, RING_HOLE = 0.45, 0.62  # where along the bone a twist is drawn, and its hole
 HAND = 1.1  # how much farther the line of the present angle reaches

@@ -14,7 +14,6 @@ FloatArray = NDArray[np.float64]
 Points = NDArray[np.float32]
 Faces = NDArray[np.int32]
 Colour = tuple[float, float, float, float]
-Frames = tuple[float, float]  # the first and the last
 
 LIGHT = np.array([0.32, -0.48, 0.82])  # towards the lamp, world
 AMBIENT, AIRY = 0.55, 0.75  # share of a colour that is there without the lamp; of ghosts

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ....bridge.properties.kinds import ConstraintKind, PoseSource
+from ....bridge.constraint_kinds import pose
+from ....bridge.rows.times import Frames
 from ..context.figure_cache import Figures
 from ..context.layer import Layer, Part
-from ..context.spans import holds
-from ..context.view_context import Seen, Shown
+from ..context.view_context import Seen, Shown, holds
 from ..geometry import palette, solids
 from ..geometry.body_rotations import Figure, posed
-from ..geometry.shapes import Colour, Frames, Shape, faded
+from ..geometry.shapes import Colour, Shape, faded
 from .motion import interpolated, within
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def other_now(seen: Seen) -> Layer | None:
 def poses(seen: Seen, figures: Figures) -> Layer | None:
     """The poses that are asked for, hung where the figure is then; in the armature's space."""
     recorded = seen.recorded
-    wanted = tuple(w for r, _ in seen.rows(ConstraintKind.POSE.name) for w in _wanted(seen, r))
+    wanted = tuple(w for r, _ in seen.rows(pose.KIND.name) for w in _wanted(seen, r))
     if recorded is None or not wanted:
         return None
     target = seen.adapted or recorded
@@ -109,8 +109,8 @@ def poses(seen: Seen, figures: Figures) -> Layer | None:
     def build() -> Iterator[Shape]:
         source, hung = figures.of(seen, recorded), figures.of(seen, target)
         if source is not None and hung is not None:
-            for pose in wanted:
-                yield from pose_shapes(pose, source, hung, size)
+            for each in wanted:
+                yield from pose_shapes(each, source, hung, size)
 
     return Layer(Part.POSES, content, build, seen.armature.matrix_world.copy().freeze())
 
@@ -127,7 +127,7 @@ def _wanted(seen: Seen, row: HangtimeConstraint) -> Iterator[Wanted]:
     span = seen.span(row)
     bones = tuple(bone.name for bone in row.bones)
     for frame, held in _frames(span, seen.frame):
-        if row.source == PoseSource.REST.name:
+        if row.source == pose.PoseSource.REST.name:
             yield frame, None, bones, held
         else:
             yield frame, row.pose_frame if row.use_pose_frame else frame, bones, held
@@ -141,9 +141,9 @@ def _frames(span: Frames, frame: float) -> list[tuple[float, bool]]:
     return [(f, False) for f in sorted(set(span)) if np.isfinite(f)]
 
 
-def pose_shapes(pose: Wanted, source: Figure, target: Figure, size: float) -> Iterator[Shape]:
+def pose_shapes(wanted: Wanted, source: Figure, target: Figure, size: float) -> Iterator[Shape]:
     """In the armature's space; nothing where the bones are not the figure's."""
-    frame, pose_frame, bones, held = pose
+    frame, pose_frame, bones, held = wanted
     names = set(bones)
     chosen = tuple(i for i, b in enumerate(source.bones) if b in names or not names)
     if not chosen or source.bones != target.bones:

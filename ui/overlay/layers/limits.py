@@ -11,8 +11,7 @@ from mathutils import Vector
 
 from ..context.figure_cache import Figures, parent_of
 from ..context.layer import Layer, Part
-from ..context.spans import holds
-from ..context.view_context import Seen
+from ..context.view_context import Seen, holds
 from ..geometry.limit_shapes import ANGLE, CONE, TWIST, Limit, Pose, limit_shapes
 from ..geometry.shapes import Label, Shape, Standing
 

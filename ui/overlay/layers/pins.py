@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ....bridge.constraint_kinds import point
 from ....bridge.constraints.motion_problem import moved
-from ....bridge.properties.kinds import ConstraintKind, PointAxes
+from ....bridge.rows.times import Frames
+from ....solver.data.requests import PointAxes
 from ..context.layer import Layer, Part
-from ..context.spans import holds
-from ..context.view_context import Seen, Shown
+from ..context.view_context import Seen, Shown, holds
 from ..geometry import palette
 from ..geometry.pin_shapes import Box, Pin, shapes
-from ..geometry.shapes import Frames, Label, Standing
+from ..geometry.shapes import Label, Standing
 
 if TYPE_CHECKING:
     from ....bridge.properties.constraint import HangtimeConstraint
@@ -62,7 +63,7 @@ def _labels(seen: Seen) -> Iterator[Label]:
 
 def points(seen: Seen) -> Layer:
     """The points that constraints hold, in the world."""
-    rows = seen.rows(ConstraintKind.POINT.name)
+    rows = seen.rows(point.KIND.name)
     pins = tuple(pin for row, chosen in rows for pin in _point(seen, row, chosen))
     return Layer(Part.POINTS, (pins, seen.units), lambda: shapes(pins, seen.units))
 

@@ -7,23 +7,23 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NoReturn, TypeVar
 
-from ...solver.data.faults import BadRecipe
+from ....solver.data.faults import BadRecipe
 from .source_lines import Path
 
 Word = TypeVar("Word", bound=Enum)
 
 
 @dataclass(frozen=True)
-class Span:
+class NumberRange:
     """Which numbers are allowed, and how that is said: "must be ..."."""
 
     words: str
     holds: Callable[[float], bool]
 
 
-ANY_NUMBER = Span("a number", lambda _: True)
-ABOVE_ZERO = Span("above zero", lambda value: value > 0.0)
-NOT_NEGATIVE = Span("zero or more", lambda value: value >= 0.0)
+ANY_NUMBER = NumberRange("a number", lambda _: True)
+ABOVE_ZERO = NumberRange("above zero", lambda value: value > 0.0)
+NOT_NEGATIVE = NumberRange("zero or more", lambda value: value >= 0.0)
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Table:
             wanted = " or ".join(f'"{key}"' for key in keys)
             self.source.refuse(self.place, f"this {what} has no {wanted}; add it")
 
-    def number(self, key: str, span: Span = ANY_NUMBER) -> float | None:
+    def number(self, key: str, span: NumberRange = ANY_NUMBER) -> float | None:
         """A finite number that is allowed, None where absent."""
         if key not in self.values:
             return None

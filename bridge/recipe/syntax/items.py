@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from ...solver.data.requests import Moment, When
-from .table import ANY_NUMBER, Span, Table
+from ....solver.data.requests import Moment, When
+from .table import ANY_NUMBER, NOT_NEGATIVE, NumberRange, Table
 from .toml_text import degrees, entries
 
 Values = dict[str, Any]
@@ -118,17 +118,17 @@ def flag(key: str) -> Item:
     return one(key, Table.flag)
 
 
-def number(key: str, span: Span = ANY_NUMBER, attribute: str | None = None) -> Item:
+def number(key: str, span: NumberRange = ANY_NUMBER, attribute: str | None = None) -> Item:
     """A number."""
     return one(key, lambda table, key: table.number(key, span), attribute=attribute)
 
 
-def whole(key: str, span: Span) -> Item:
+def whole(key: str, span: NumberRange) -> Item:
     """A whole number; `span` must allow no other."""
     return one(key, lambda table, key: int(table.number(key, span) or 0))
 
 
-def angle(key: str, span: Span = ANY_NUMBER) -> Item:
+def angle(key: str, span: NumberRange = ANY_NUMBER) -> Item:
     """Degrees in the recipe, in which `span` is; rad in the record."""
     return one(key, lambda table, key: math.radians(table.number(key, span) or 0.0), degrees)
 
@@ -201,6 +201,8 @@ def _write_limits(record: Any) -> Values:
 
 
 WHEN = Item(("phase", "frames", "frame", "moment"), _read_when, _write_when)
+BONE = word("bone")
+SLACK = angle("slack", NOT_NEGATIVE)
 BONES = one("bones", Table.words)
 TOUCHING = Item(
     ("points", "bones"), _read_touching, lambda record: {"points": record.touching or None}

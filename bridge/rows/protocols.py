@@ -1,11 +1,12 @@
-"""What phases and stances read of the stored settings, which themselves call on both of these."""
+"""What rows, phases and stances read of the stored settings, which are made of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
-import bpy
+if TYPE_CHECKING:
+    import bpy
 
 Row = TypeVar("Row", covariant=True)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...solver.data.contacts import PhaseKind, gaps
-from .kinds import ConstraintKind
+from .choices import HOLD
 from .protocols import Settings
 
 SAME = 1e-3  # frames; single precision keeps frames
@@ -82,5 +82,5 @@ def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:
 
 def names(settings: Settings) -> tuple[str, ...]:
     """What a constraint may be about: the phases and the frames that are held, in time."""
-    holds = (row.name for row in settings.constraints if row.kind == ConstraintKind.HOLD.name)
+    holds = (row.name for row in settings.constraints if row.kind == HOLD)
     return (*(phase.name for phase in phases_of(settings)), *holds)

@@ -10,13 +10,17 @@ from uuid import uuid4
 
 import bpy
 
+from ..accessors import armature_data, attached
+
 
 def find(armature: bpy.types.Object, key: str, called: str) -> bpy.types.Bone | None:
     """The bone with a key, else the one of that name; None where neither is there.
 
     called: the name when last looked at, which decides among bones with the same key.
     """
-    bones = armature.data.bones if armature.type == "ARMATURE" else {}
+    if armature.type != "ARMATURE":
+        return None
+    bones = armature_data(armature).bones
     by_name = bones.get(called)
     if not key or (by_name is not None and key_of(by_name) == key):
         return by_name
@@ -34,14 +38,15 @@ def remember(armature: bpy.types.Object, name: str) -> str:
 
     Empty where there is no such bone, or its armature is linked and cannot carry one.
     """
-    bone = armature.data.bones.get(name) if armature.type == "ARMATURE" else None
+    bone = find(armature, "", name)
     if bone is None:
         return ""
-    if not key_of(bone) and armature.data.is_editable and not armature.data.override_library:
-        bone.hangtime.key = uuid4().hex
+    data = armature_data(armature)
+    if not key_of(bone) and data.is_editable and not data.override_library:
+        attached(bone).key = uuid4().hex
     return key_of(bone)
 
 
 def key_of(bone: bpy.types.Bone) -> str:
     """The key that a bone carries; empty where it has none."""
-    return str(bone.hangtime.key)
+    return str(attached(bone).key)

@@ -7,8 +7,8 @@ from enum import Enum
 
 import bpy
 
-from ..armature import bone_keys
-from .kinds import Met
+from . import bone_keys
+from .choices import Met
 
 HIDDEN = {"HIDDEN"}
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
@@ -40,13 +40,18 @@ class HangtimeBoneMark(bpy.types.PropertyGroup):
     key: bpy.props.StringProperty(options=HIDDEN)
 
 
+def _armature_of(row: HangtimeBone) -> bpy.types.Object:
+    assert isinstance(row.id_data, bpy.types.Object)
+    return row.id_data
+
+
 def _get_bone(row: HangtimeBone) -> str:
-    return bone_keys.current_name(row.id_data, row.key, row.called)
+    return bone_keys.current_name(_armature_of(row), row.key, row.called)
 
 
 def _set_bone(row: HangtimeBone, name: str) -> None:
     row.called = name
-    row.key = bone_keys.remember(row.id_data, name)
+    row.key = bone_keys.remember(_armature_of(row), name)
 
 
 class HangtimeBone(bpy.types.PropertyGroup):
