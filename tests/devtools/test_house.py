@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from hangtime.devtools import layers_picture
 from hangtime.devtools.checks import house
 
 
@@ -72,3 +73,10 @@ def test_a_class_that_two_files_define_is_told(tmp_path: Path) -> None:
     files[1].write_text("class Pin: ...\nclass _Own: ...\n")
     (told,) = house.ambiguous({file: house.public_classes(file) for file in files})
     assert told == f"class Pin is defined more than once: {files[0]}, {files[1]}"
+
+
+def test_the_picture_of_the_layers_is_the_contracts() -> None:
+    drawn = layers_picture.PICTURE.read_text(encoding="utf-8")
+    assert drawn == layers_picture.draw(layers_picture.ROOT), (
+        "run python3 devtools/layers_picture.py"
+    )
