@@ -40,8 +40,8 @@ def _draw(fields: FieldDrawing, row: Row) -> None:
     fields.when()
 
 
-def _stretch(table: Table, key: str) -> tuple[float, ...] | None:
-    values = table.numbers(key, "[sideways, forwards]")
+def _stretch(table: Table, key: str) -> tuple[float, float] | None:
+    values = table.pair(key, "[sideways, forwards]")
     if values is not None and min(values) <= 0.0:
         table.refuse(key, f'"{key}" must be above zero in both directions')
     return values

@@ -133,7 +133,7 @@ REQUEST_KEYS = (*(kind.header for kind in NAMED), BODY.header, SOLUTION.header)
 
 
 def read_requests(top: Table) -> Requests:
-    """What a recipe asks for. top: its outermost table. Raises BadRecipe."""
+    """Read the requests of a recipe. top: its outermost table. Raises BadRecipe."""
     body = BODY.read(top)
     records = {field: kind.read_all(top) for field, kind in RECORDS.items()}
     parts = {field: kind.read_all(top) for field, kind in BODY_RECORDS.items()}

@@ -1,4 +1,4 @@
-"""How to solve, in a recipe: method, objectives and reduction. Keys: see requests.py."""
+"""Solver options of a recipe: method, objectives and reduction. Keys: see requests.py."""
 
 from ...solver.data.requests import (
     Dynamics,

@@ -48,17 +48,18 @@ class Axes:
 
         What the joint cannot follow (with one or two DOFs) is left out.
         """
-        E = self.before.T @ R @ self.after.T
+        # (3, 3, T): each entry's samples side by side, see rotations.py
+        E = np.ascontiguousarray(np.moveaxis(self.before.T @ R @ self.after.T, 0, -1))
         if self.dofs == 3:
-            a = np.arctan2(-E[:, 1, 2], E[:, 2, 2])
-            b = np.arcsin(np.clip(E[:, 0, 2], -1.0, 1.0))
-            c = np.arctan2(-E[:, 0, 1], E[:, 0, 0])
+            a = np.arctan2(-E[1, 2], E[2, 2])
+            b = np.arcsin(np.clip(E[0, 2], -1.0, 1.0))
+            c = np.arctan2(-E[0, 1], E[0, 0])
             columns = [a, b, c]
         elif self.dofs == 2:
-            b = np.arctan2(E[:, 0, 2], E[:, 0, 0])
-            columns = [np.arctan2(E[:, 2, 1], E[:, 1, 1]), b]
+            b = np.arctan2(E[0, 2], E[0, 0])
+            columns = [np.arctan2(E[2, 1], E[1, 1]), b]
         else:
-            columns = [np.arctan2(E[:, 2, 1] - E[:, 1, 2], E[:, 1, 1] + E[:, 2, 2])]
+            columns = [np.arctan2(E[2, 1] - E[1, 2], E[1, 1] + E[2, 2])]
         return np.unwrap(np.stack(columns, axis=1), axis=0)
 
 

@@ -134,6 +134,7 @@ def pose(character: Character, angles: FloatArray) -> Pose:
     rotations = np.empty((n, len(character.bodies), 3, 3))
     centres = np.zeros((n, len(character.bodies), 3))
     axes = np.empty((n, character.n_angles, 3))
+    cosines, sines = np.cos(angles), np.sin(angles)  # of all at once: see rotations.py
     for i, joint in enumerate(character.joints):
         turn = np.broadcast_to(np.eye(3), (n, 3, 3))
         if joint.parent >= 0:
@@ -141,8 +142,9 @@ def pose(character: Character, angles: FloatArray) -> Pose:
             centres[:, i] = centres[:, joint.parent] + turn @ joint.offset
         turn = turn @ joint.axes.before
         for k in range(joint.axes.dofs):
-            axes[:, joint.first + k] = turn[:, :, k]
-            turn = _turn_columns(turn, k, angles[:, joint.first + k])
+            j = joint.first + k
+            axes[:, j] = turn[:, :, k]
+            turn = _turn_columns(turn, k, cosines[:, j, None], sines[:, j, None])
         rotations[:, i] = turn @ joint.axes.after
     masses = np.array([body.mass for body in character.bodies])
     local = np.stack([body.com for body in character.bodies])
@@ -151,9 +153,9 @@ def pose(character: Character, angles: FloatArray) -> Pose:
     return Pose(character, rotations, centres, axes)
 
 
-def _turn_columns(R: FloatArray, axis: int, angle: FloatArray) -> FloatArray:
-    """R times the rotation by `angle` about coordinate axis `axis`: mixes two columns."""
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+def _turn_columns(R: FloatArray, axis: int, c: FloatArray, s: FloatArray) -> FloatArray:
+    """R times the rotation about coordinate axis `axis` by the angle with cosine c (N, 1) and
+    sine s: mixes two columns."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     turned = np.array(R)
     turned[:, :, i] = R[:, :, i] * c + R[:, :, j] * s

@@ -1,4 +1,12 @@
-"""Rotation matrices, vectorised over leading axes. Angles in rad."""
+"""Rotation matrices, vectorised over leading axes. Angles in rad.
+
+Results must not depend on where in memory arrays happen to lie, or two processes end in different
+motions: iterations make a millimetre of a last bit. So sines, arctan2 and the like are taken of
+samples that lie side by side. For samples with gaps between them (a column, an entry of every
+matrix) numpy 1 has, on processors with AVX-512, two versions that round differently, and takes the
+slow one where input and output seem to overlap: also where the output merely begins within a gap's
+length of the input's end.
+"""
 
 import numpy as np
 
@@ -7,7 +15,7 @@ from ..arrays import FloatArray
 
 def axis_rotation(axis: int, angle: FloatArray | float) -> FloatArray:
     """(..., 3, 3) rotations by `angle` (...) about coordinate axis 0, 1 or 2."""
-    angle = np.asarray(angle, dtype=float)
+    angle = np.array(angle, dtype=float, order="C")  # side by side: see above
     c, s = np.cos(angle), np.sin(angle)
     i, j = (axis + 1) % 3, (axis + 2) % 3
     R = np.zeros((*angle.shape, 3, 3))

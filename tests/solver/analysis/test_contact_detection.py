@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hangtime.bridge.formats.bvh import read_bvh
-from hangtime.bridge.formats.skeleton import to_recording
+from hangtime.bridge.formats.motion_clip import to_recording
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.contact_detection import detect_contacts, require_flight
 from hangtime.solver.analysis.performance import Performance, contact_points, find_contacts, perform

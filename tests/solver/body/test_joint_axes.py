@@ -154,3 +154,15 @@ def test_angles_of_a_joint_s_own_rotations_come_back(seed: int, dofs: int) -> No
     angles = np.stack([smooth_angles(random, 1.2) for _ in range(dofs)], axis=1)
     axes = Axes(dofs, before, after)
     assert axes.angles(axes.rotation(angles)) == pytest.approx(angles, abs=1e-9)
+
+
+@pytest.mark.parametrize("dofs", [1, 2, 3])
+def test_angles_do_not_depend_on_where_arrays_lie_in_memory(dofs: int) -> None:
+    random = np.random.default_rng(0)
+    R = rotation_matrix(random.normal(0.0, 0.4, (271, 3)))
+    axes = Axes(dofs, *rotation_matrix(random.normal(size=(2, 3))))
+    first = axes.angles(R)
+    memory = [np.empty(0)] * 50  # other arrays, made and freed, so that the heap is ever another
+    for size in random.integers(1, 4000, 500):
+        memory[random.integers(len(memory))] = np.empty(size)
+        assert np.array_equal(axes.angles(R), first)

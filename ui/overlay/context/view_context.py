@@ -11,7 +11,7 @@ from mathutils import Matrix
 
 from ....bridge.accessors import current_action
 from ....bridge.armature.poses import metres_per_unit
-from ....bridge.armature.traces_store import Kept, kept
+from ....bridge.armature.traces_store import StoredTraces, kept
 from ....bridge.rows.bone_keys import current_name
 from ....bridge.rows.choices import Span
 from ....bridge.rows.times import Frames, Spans, interval_of, named_frames
@@ -120,7 +120,7 @@ class Seen:
             if row.kind in kinds:
                 yield row, index == chosen
 
-    def _of(self, found: Kept | None) -> Shown | None:
+    def _of(self, found: StoredTraces | None) -> Shown | None:
         if found is None or not len(found.traces.frames):
             return None
         matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)
