@@ -4,7 +4,17 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from ...bridge.picture.annotations import Box, Cone, Ghost, LimitArc, Mark, Span, Sphere, Tint, Tone
+from ...bridge.picture.annotations import (
+    Box,
+    Cone,
+    Ghost,
+    LimitArc,
+    Mark,
+    Sphere,
+    TimeSpan,
+    Tint,
+    Tone,
+)
 from ...solver.arrays import FloatArray
 from ...solver.body.kinematics import Pose, pose
 from ...solver.data.problem import MotionProblem
@@ -80,7 +90,7 @@ def _of_condition(condition: Constraint, figure: _Posed) -> Iterator[Mark]:
 
 
 def _limit(
-    bend: constraint_functions.Bend, condition: Constraint, figure: _Posed, span: Span
+    bend: constraint_functions.Bend, condition: Constraint, figure: _Posed, span: TimeSpan
 ) -> Iterator[Mark]:
     body = figure.body_of(bend.joint.first)
     lower, upper = float(condition.bounds.lower[0]), float(condition.bounds.upper[0])
@@ -97,7 +107,7 @@ def _limit(
     )
 
 
-def _ghost(wanted: constraint_functions.Angles, figure: _Posed, span: Span) -> Ghost:
+def _ghost(wanted: constraint_functions.Angles, figure: _Posed, span: TimeSpan) -> Ghost:
     """The boxes of the bodies whose angles are asked for, hung on the figure as it is."""
     angles = figure.angles.copy()
     angles[:, wanted.which] = wanted.wanted(figure.times)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...bridge.picture.annotations import Bar, Mark, Span, Sphere
+from ...bridge.picture.annotations import Bar, Mark, Sphere, TimeSpan
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
 from ...solver.arrays import FloatArray
@@ -99,7 +99,7 @@ class ContactHold:
 
     part: Part
     place: FloatArray
-    span: Span
+    span: TimeSpan
 
 
 def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
