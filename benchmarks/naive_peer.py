@@ -13,13 +13,21 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ..devtools.peers.ipopt_peer import sparse
+from ..devtools.peers.task import (
+    Entries,
+    FloatArray,
+    IntArray,
+    PeerResult,
+    Task,
+    judged,
+    metric_entries,
+)
 from ..solver.body.dynamics import BodyMotion, body_frames, momentum_rate, point_motion
 from ..solver.data.constants import STANDARD_GRAVITY
 from ..solver.numerics.splines import ORDER
 from ..solver.transcription.rows import RowKind, Rows
 from ..solver.transcription.transcription import Transcription
-from .ipopt_peer import sparse
-from .task import Entries, FloatArray, IntArray, PeerResult, Task, judged, metric_entries
 
 LEAST = 1e-6  # BW; rounds off the tip of the friction cone, where it has no derivative
 

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from ..devtools.peers.task import IntArray, Task
 from ..solver.analysis.performance import Performance
 from ..solver.body.anatomy import Part
 from ..solver.body.character import Character, Joint
@@ -17,7 +18,6 @@ from ..solver.stages.fit import ADAPT_PRICES, Fit, fit, motion_metric
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
 from .recordings import HOPS, analysed, hops
-from .task import IntArray, Task
 from .timing import in_turns, timed
 
 FIRST = 0.99  # s, where the windows of the hops begin

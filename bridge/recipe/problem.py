@@ -39,11 +39,11 @@ from ...solver.data.faults import (
     WrongWeights,
 )
 from ...solver.data.problem import ContactEdit, MassTable, MotionProblem, OffsetAxes, Pin
+from ..recipe_syntax.items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
+from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
+from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
+from ..recipe_syntax.toml_text import entries
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
-from .syntax.items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
-from .syntax.source_lines import KeyPath, json_lines, toml_lines
-from .syntax.table import ABOVE_ZERO, Source, Table
-from .syntax.toml_text import entries
 
 OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact")
 TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)

@@ -101,10 +101,10 @@ from typing import Any
 
 from ...solver.data.requests import AddedMass, BodyChange, LimbChange, Requests
 from ..constraint_kinds import KINDS
+from ..recipe_syntax.items import BONE, BONES, Kind, number, vector
+from ..recipe_syntax.table import ABOVE_ZERO, Table
+from ..recipe_syntax.toml_text import sections
 from .solution import SOLUTION
-from .syntax.items import BONE, BONES, Kind, number, vector
-from .syntax.table import ABOVE_ZERO, Table
-from .syntax.toml_text import sections
 
 BODY = Kind(
     "body",

@@ -8,8 +8,8 @@ from ...solver.data.requests import (
     ReductionKind,
     SolverOptions,
 )
-from .syntax.items import Kind, Values, choice, number, one, whole
-from .syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table, listed
+from ..recipe_syntax.items import Kind, Values, choice, number, one, whole
+from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table, listed
 
 Rows = tuple[tuple[tuple[str, tuple[float, ...]], ...], ...]
 

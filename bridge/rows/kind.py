@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol
 
-from ..recipe.syntax.items import Kind as RecipeKind
+from ..recipe_syntax.items import Kind as RecipeKind
 from .row_parts import RowContext
 from .stored import Fields
 

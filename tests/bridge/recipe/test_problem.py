@@ -11,7 +11,7 @@ from hangtime.bridge.recipe.problem import (
     read_recipe_text,
     write_recipe,
 )
-from hangtime.bridge.recipe.syntax.source_lines import json_lines, toml_lines
+from hangtime.bridge.recipe_syntax.source_lines import json_lines, toml_lines
 from hangtime.solver.data.faults import (
     BadRecipe,
     ContradictoryPins,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from ....solver.data.requests import Moment, When
+from ...solver.data.requests import Moment, When
 from .table import ANY_NUMBER, NOT_NEGATIVE, NumberRange, Table
 from .toml_text import degrees, entries
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NoReturn, TypeVar
 
-from ....solver.data.faults import BadRecipe
+from ...solver.data.faults import BadRecipe
 from .source_lines import KeyPath
 
 Word = TypeVar("Word", bound=Enum)

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from ....solver.data.requests import Bound, Path, PointAxes, PointRequest
+from ...solver.data.requests import Bound, Path, PointAxes, PointRequest
 from .items import TRAVEL_KEYS, Item, Values, direction
 from .table import Table, listed
 
