@@ -8,7 +8,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from ..rows.kind import ConstraintKind
-from ..rows.stored import Fields
+from ..rows.stored import Fields, Stored
 
 
 def _found() -> dict[str, ConstraintKind]:
@@ -26,7 +26,7 @@ def _found() -> dict[str, ConstraintKind]:
 
 def stored_fields() -> Fields:
     """The fields of all kinds. Raises ValueError where kinds that share one differ about it."""
-    fields = {}
+    fields: dict[str, Stored] = {}
     for kind in KINDS.values():
         for name, stored in kind.fields.items():
             if fields.setdefault(name, stored) != stored:

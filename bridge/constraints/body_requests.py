@@ -19,7 +19,7 @@ def body_change(
     """What of the body and of gravity shall be another. Raises NoBoneChosen, UnknownBone."""
     loads = [row for row in changes if row.kind == BodyKind.LOAD.name]
     # A limb that stays as it is would have the result written on an armature of its own.
-    limbs = [row for row in changes if row.kind == BodyKind.LIMB.name and changes_limb(row)]
+    limbs = [row for row in changes if row.kind == BodyKind.LIMB.name and not leaves_limb(row)]
     return BodyChange(
         mass=settings.new_mass if settings.use_new_mass else None,
         gravity=round(settings.gravity, GRAVITY_DIGITS),
@@ -28,9 +28,9 @@ def body_change(
     )
 
 
-def changes_limb(row: HangtimeBodyChange) -> bool:
-    """Whether a limb becomes any longer, shorter, heavier or lighter."""
-    return bool(row.length != 1.0 or row.mass_factor != 1.0)
+def leaves_limb(row: HangtimeBodyChange) -> bool:
+    """Whether a row is about a limb that becomes no longer, shorter, heavier or lighter."""
+    return bool(row.kind == BodyKind.LIMB.name and row.length == row.mass_factor == 1.0)
 
 
 def _load(row: HangtimeBodyChange, context: RowContext) -> AddedMass:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...solver.body.human_limits import ConeRange, Range, beyond, human_ranges, missing_joints
 from ..constraint_kinds import cone, joint_limit
+from ..properties.settings import settings_of
 from .rest_figure import directions, parts_of, recorded_looks, rest_figure, rest_rotations
 from .rows import add_constraint, free_name, hold_throughout
 
@@ -45,18 +46,17 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
         by = beyond(limit, seen[limit.bone], figure) if limit.bone in seen else 0.0
         made[name] = by
         if by > NOTICED:
-            row = armature.hangtime.constraints[-1]
+            row = settings_of(armature).constraints[-1]
             row.status = f"The recording goes {degrees(by):.0f}° beyond"
     return JointLimits(tuple(made), missing_joints(figure), made, checked=looks is not None)
 
 
 def _add(armature: bpy.types.Object, limit: Range) -> str:
-    is_cone = isinstance(limit, ConeRange)
-    kind = (cone if is_cone else joint_limit).KIND
+    kind = (cone if isinstance(limit, ConeRange) else joint_limit).KIND
     row = add_constraint(armature, kind, [limit.bone], 0.0)
-    row.name = free_name(armature.hangtime, limit.name)
+    row.name = free_name(settings_of(armature), limit.name)
     hold_throughout(row)
-    if is_cone:
+    if isinstance(limit, ConeRange):
         row.half_angle = limit.half_angle
         row.use_axis, row.axis = True, limit.axis.tolist()
         row.stretch = limit.stretch

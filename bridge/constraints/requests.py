@@ -15,6 +15,7 @@ import bpy
 
 from ...solver.data.faults import NamedTwice, NameMissing
 from ...solver.data.requests import BodyChange, Requests
+from ..accessors import current_scene
 from ..armature.poses import metres_per_unit
 from ..constraint_kinds import KINDS
 from ..properties.body_change import HangtimeBodyChange
@@ -42,17 +43,15 @@ def requests_of(
     changes = [row for row in settings.body_changes if row.used]
     _require_names([*rows, *changes], [row.name for row in settings.contacts])
     clip = Clip.of(settings, span)
-    metres = metres_per_unit(bpy.context.scene)
+    metres = metres_per_unit(current_scene())
     own = metres * armature.matrix_world.median_scale
     context = RowContext(armature, clip, metres, own, paths_of(rows, clip, metres))
     made: dict[str, list[Any]] = {}
     for row in rows:
         kind = KINDS[row.kind]
         made.setdefault(kind.requests, []).append(kind.record(row, context))
-    return Requests(
-        **{field: tuple(records) for field, records in made.items()},
-        body=body_change(settings, changes, context),
-    )
+    listed: dict[str, Any] = {field: tuple(records) for field, records in made.items()}
+    return Requests(**listed, body=body_change(settings, changes, context))
 
 
 def joined(first: Requests, second: Requests) -> Requests:

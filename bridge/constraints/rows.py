@@ -12,7 +12,7 @@ import bpy
 from ...solver.body.anatomy import Side, split_side
 from ..properties.body_change import HangtimeBodyChange
 from ..properties.constraint import HangtimeConstraint
-from ..properties.settings import HangtimeSettings
+from ..properties.settings import HangtimeSettings, settings_of
 from ..rows.choices import BodyKind, Span
 from ..rows.kind import BoneUse, ConstraintKind, NewRange
 from ..rows.phases import PhaseSpan, phases_of
@@ -27,8 +27,8 @@ def add_constraint(
 
     A point is to be where it is shown now. Bones that cannot count for the kind are left out.
     """
-    settings: HangtimeSettings = armature.hangtime
-    row = settings.constraints.add()
+    settings = settings_of(armature)
+    row: HangtimeConstraint = settings.constraints.add()
     row.kind = kind.name
     if kind.bones is BoneUse.TOUCHING:
         touching = {contact.bone for contact in settings.contacts}
@@ -47,7 +47,7 @@ def add_body_change(
     settings: HangtimeSettings, kind: BodyKind, bones: Sequence[str]
 ) -> HangtimeBodyChange:
     """A new row at the end of the list, chosen."""
-    row = settings.body_changes.add()
+    row: HangtimeBodyChange = settings.body_changes.add()
     row.kind = kind.name
     set_bones(row, bones)
     if not bones:

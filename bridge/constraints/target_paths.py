@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solver.data.requests import Path
+from ..accessors import current_scene
 from ..armature import fcurves
 from ..constraint_kinds import point
 from ..properties.constraint import HangtimeConstraint
@@ -44,7 +45,7 @@ def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> d
 def _whole_frames(first: float, last: float) -> FloatArray:
     """The whole frames within, and both ends."""
     inside = np.arange(np.ceil(first), np.floor(last) + 1.0)
-    return np.unique([first, *inside, max(first, last)])
+    return np.asarray(np.unique([first, *inside, max(first, last)]))
 
 
 def _moves_by_keys_alone(target: bpy.types.Object) -> bool:
@@ -73,7 +74,7 @@ def _sampled(
     places = {target: np.empty((len(frames), 3)) for target in targets}
     if not targets:
         return places
-    scene = bpy.context.scene
+    scene = current_scene()
     with _evaluated(targets):
         for t, frame in enumerate(frames):
             whole = int(np.floor(frame))
@@ -87,7 +88,7 @@ def _sampled(
 @contextmanager
 def _evaluated(targets: Iterable[bpy.types.Object]) -> Iterator[None]:
     """Have Blender evaluate objects: it skips what is hidden or excluded. Then as before."""
-    scene = bpy.context.scene
+    scene = current_scene()
     frame, subframe = scene.frame_current, scene.frame_subframe
     with ExitStack() as undo:
         undo.callback(lambda: scene.frame_set(frame, subframe=subframe))

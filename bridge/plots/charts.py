@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import bpy
+
+from ...solver.data.traces import Traces
+from ..accessors import armature_data
+from ..armature.traces_store import StoredTraces, kept
 from ..constraint_kinds import contact_force, torque_limit
+from ..properties.constraint import HangtimeConstraint
+from ..properties.settings import HangtimeSettings, settings_of
+from ..properties.view import HangtimeView
 from ..rows.phases import PhaseSpan, carried, clip_ends, phases
 from ..rows.times import Spans, interval_of
 from .curves import Cap, Chart, Take, force_chart, height_chart, speed_chart, torque_chart
-
-if TYPE_CHECKING:
-    import bpy
-
-    from ...solver.data.traces import Traces
-    from ..armature.traces_store import StoredTraces
-    from ..properties.constraint import HangtimeConstraint
-    from ..properties.settings import HangtimeSettings
-    from ..properties.view import HangtimeView
 
 AROUND = 0.5  # frames to either side of an instant, so that its bound is seen
 
@@ -72,12 +70,12 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
         return None
     takes = {take: kept.traces for take, kept in motions.items()}
     bone = view.plot_bone or _active_bone(armature)
-    spans = _phases(armature.hangtime, takes)
+    spans = _phases(settings_of(armature), takes)
     times = _Times(
         {phase.name: (phase.start, phase.end) for phase in spans},
         takes.get(Take.ADAPTED, takes.get(Take.RECORDING)),
     )
-    rows = [row for row in armature.hangtime.constraints if row.used]
+    rows = [row for row in settings_of(armature).constraints if row.used]
     asked = Asked(
         motions=tuple((take, kept.key) for take, kept in motions.items()),
         bone=bone,
@@ -100,9 +98,7 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
 
 def kept_takes(armature: bpy.types.Object) -> dict[Take, StoredTraces]:
     """The motions of an armature of which traces are stored."""
-    from ..armature.traces_store import kept  # loads half of the solver
-
-    owners = {Take.RECORDING: armature, Take.ADAPTED: armature.hangtime.adapted}
+    owners = {Take.RECORDING: armature, Take.ADAPTED: settings_of(armature).adapted}
     found = {take: kept(owner) for take, owner in owners.items()}
     return {take: traces for take, traces in found.items() if traces is not None}
 
@@ -119,12 +115,12 @@ def _phases(settings: HangtimeSettings, takes: dict[Take, Traces]) -> tuple[Phas
 
 
 def _active_bone(armature: bpy.types.Object) -> str:
-    bone = armature.data.bones.active
+    bone = armature_data(armature).bones.active
     return bone.name if bone is not None else ""
 
 
 def _caps_forces(row: HangtimeConstraint) -> bool:
-    return row.kind == contact_force.KIND.name and row.use_peak
+    return bool(row.kind == contact_force.KIND.name and row.use_peak)
 
 
 def _caps_torque(row: HangtimeConstraint, bone: str) -> bool:

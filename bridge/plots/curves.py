@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from ...solver.arrays import FloatArray
-    from ...solver.data.traces import Traces
+from ...solver.arrays import FloatArray
+from ...solver.data.traces import Traces
 
 
 class Take(Enum):

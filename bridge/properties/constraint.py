@@ -28,8 +28,9 @@ class HangtimeConstraint(bpy.types.PropertyGroup):
     """A row of the constraints' list; `name` is the artist's, by which it is reported."""
 
     if TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any: ...  # the fields of its kind, see below
+        # The fields of its kind, see below.
+        def __getattr__(self, name: str) -> Any: ...
+        def __setattr__(self, name: str, value: Any) -> None: ...
 
     name: bpy.props.StringProperty(
         name="Name", description="Your name for it, by which it is reported", override=OVERRIDABLE

@@ -41,7 +41,7 @@ def _is_empty(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> b
 
 
 def _get_place(row: HangtimeContact) -> Sequence[float]:
-    return row.at
+    return tuple(row.at)
 
 
 def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
@@ -60,7 +60,6 @@ class HangtimeContact(bpy.types.PropertyGroup):
     at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
 
     added: bpy.props.BoolProperty(options=_HIDDEN, override=OVERRIDABLE)  # by the artist
-    # m, 0 before an analysis
     used: bpy.props.BoolProperty(
         name="Touches",
         description="Whether this contact counts; off removes it",
@@ -190,7 +189,6 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         override=OVERRIDABLE,
     )
     measured_height: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
-    # lines, ready to be drawn
     use_height: bpy.props.BoolProperty(
         name="Own Height",
         description="State the performer's height instead of the measured one",
@@ -219,12 +217,10 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     parts: bpy.props.CollectionProperty(type=HangtimePart, override=OVERRIDABLE_LIST)
 
     fit_quality: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
-    # digest of the recording
-    analysed: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
+    analysed: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)  # digest
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
     active_contact: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
-    # lines, ready to be drawn
     whole_stance: bpy.props.BoolProperty(
         name="Move Whole Stance",
         description="Moving a contact moves every contact of its phase, so that heels and toes "

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Protocol, TypeVar
-
-if TYPE_CHECKING:
-    import bpy
+from collections.abc import Iterator
+from typing import Any, Protocol, TypeVar
 
 Row = TypeVar("Row", covariant=True)
 
@@ -29,17 +26,17 @@ class ContactRow(Protocol):
     found_end: float
     start_frame: float
     end_frame: float
-    found_at: Sequence[float]
-    at: Sequence[float]
-    empty: bpy.types.Object | None
+    found_at: Any
+    at: Any
+    empty: Any
 
 
 class StanceRow(Protocol):
     """A stance: its shift (3,) along forward, left and up, and its turn, rad."""
 
     name: str
-    forward_axis: Sequence[float]
-    shifted: Sequence[float]
+    forward_axis: Any
+    shifted: Any
     turned: float
 
 
@@ -54,13 +51,14 @@ class ConstraintRow(Protocol):
 class Settings(Protocol):
     """The clip of an armature's settings, its contacts and its stances."""
 
-    id_data: bpy.types.Object
     use_range: bool
     first_frame: int
     last_frame: int
     whole_stance: bool
     active_contact: int
 
+    @property
+    def id_data(self) -> Any: ...  # the armature
     @property
     def contacts(self) -> Rows[ContactRow]: ...
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import Enum
+from typing import Any
 
 import bpy
 
@@ -19,7 +20,7 @@ OVERRIDABLE_LIST = {"LIBRARY_OVERRIDABLE", "USE_INSERTION"}
 # them would not find any: callbacks are functions.
 
 
-def forget_status(row: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+def forget_status(row: Any, _context: bpy.types.Context) -> None:
     """What the last solve said of a row holds no longer."""
     if row.met != Met.UNKNOWN.name:
         row.met = Met.UNKNOWN.name

@@ -32,8 +32,9 @@ class RowContext:
 def bones_of(row: Any, context: RowContext) -> tuple[str, ...]:
     """Every bone that was chosen, once. Raises UnknownBone."""
     names = dict.fromkeys(bone.name for bone in row.bones if bone.name)
+    known: Any = context.armature.data
     for name in names:
-        if name not in context.armature.data.bones:
+        if name not in known.bones:
             raise UnknownBone(row.name, name)
     return tuple(names)
 
