@@ -15,7 +15,7 @@ import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from ...solver.data.traces import Flight, Traces
+from ...solver.data.traces import FlightParabola, Traces
 
 _CONTENT, _KEY = "hangtime_traces", "hangtime_traces_key"
 _ARRAYS = tuple(f.name for f in fields(Traces) if f.type == "FloatArray")
@@ -76,9 +76,9 @@ class _Stored:
     owner: bpy.types.ID = field(compare=False)
 
 
-def _flight(packed: Mapping[str, NDArray[Any]], i: int, name: str) -> Flight:
+def _flight(packed: Mapping[str, NDArray[Any]], i: int, name: str) -> FlightParabola:
     start, end = packed[f"span {i}"].tolist()
-    return Flight(name, start, end, packed[f"parabola {i}"].astype(float))
+    return FlightParabola(name, start, end, packed[f"parabola {i}"].astype(float))
 
 
 @lru_cache(maxsize=_REMEMBERED)

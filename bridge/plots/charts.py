@@ -18,12 +18,12 @@ from ..rows.phases import PhaseSpan, carried, clip_ends, phases
 from ..rows.times import Spans, interval_of
 from .curves import Cap, Chart, Take, force_chart, height_chart, speed_chart, torque_chart
 
-AROUND = 0.5  # frames to either side of an instant, so that its bound is seen
+INSTANT_MARGIN = 0.5  # frames to either side of an instant, so that its bound is seen
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is plotted; equal as long as the plots are. motions: as they are stored, by key."""
+class PlotContent:
+    """Key of the plots: equal as long as they are. motions: as they are stored, by key."""
 
     motions: tuple[tuple[Take, str], ...]
     bone: str
@@ -36,21 +36,21 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Plotted:
+class PlottedMotions:
     """The motions to be plotted, and what of them."""
 
-    asked: Asked
+    content: PlotContent
     takes: dict[Take, Traces]
 
     def charts(self) -> tuple[Chart, ...]:
         """The charts that are switched on, from left to right."""
-        takes, asked = self.takes, self.asked
+        takes, content = self.takes, self.content
         charts = []
-        if asked.forces:
-            charts.append(force_chart(takes, asked.force_caps))
-        if asked.torque:
-            charts.append(torque_chart(takes, asked.bone, asked.torque_caps))
-        if asked.com:
+        if content.forces:
+            charts.append(force_chart(takes, content.force_caps))
+        if content.torque:
+            charts.append(torque_chart(takes, content.bone, content.torque_caps))
+        if content.com:
             charts += [height_chart(takes), speed_chart(takes)]
         return tuple(charts)
 
@@ -63,20 +63,21 @@ class _Times:
     motion: Traces | None
 
 
-def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
-    """What is plotted of an armature; None where no motion of it is stored."""
+def plotted(armature: bpy.types.Object, view: HangtimeView) -> PlottedMotions | None:
+    """Motions and charts of an armature; None where no motion of it is stored."""
     motions = kept_takes(armature)
     if not motions:
         return None
     takes = {take: kept.traces for take, kept in motions.items()}
     bone = view.plot_bone or _active_bone(armature)
-    spans = _phases(settings_of(armature), takes)
+    settings = settings_of(armature)
+    spans = _phases(settings, takes)
     times = _Times(
         {phase.name: (phase.start, phase.end) for phase in spans},
         takes.get(Take.ADAPTED, takes.get(Take.RECORDING)),
     )
-    rows = [row for row in settings_of(armature).constraints if row.used]
-    asked = Asked(
+    rows = [row for row in settings.constraints if row.used]
+    content = PlotContent(
         motions=tuple((take, kept.key) for take, kept in motions.items()),
         bone=bone,
         forces=view.plot_forces,
@@ -93,7 +94,7 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
             for cap in _caps(row, row.torque + abs(row.torque_value), times)
         ),
     )
-    return Plotted(asked, takes)
+    return PlottedMotions(content, takes)
 
 
 def kept_takes(armature: bpy.types.Object) -> dict[Take, StoredTraces]:
@@ -133,6 +134,6 @@ def _caps(row: HangtimeConstraint, level: float, times: _Times) -> Iterator[Cap]
     """A row's bound as it is drawn: an instant's a frame wide, so that it is seen."""
     first, last = interval_of(row, times.phases, times.motion)
     if first == last:
-        first, last = first - AROUND, last + AROUND
+        first, last = first - INSTANT_MARGIN, last + INSTANT_MARGIN
     if first <= last:  # its phase is there
         yield Cap(row.name, first, last, level)

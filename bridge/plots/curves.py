@@ -13,7 +13,7 @@ from ...solver.data.traces import Traces
 
 
 class Take(Enum):
-    """Whose curve it is."""
+    """The motion that a curve is of."""
 
     RECORDING = "Recording"
     ADAPTED = "Adapted"
@@ -65,7 +65,7 @@ class Chart:
     missing: str = ""
 
 
-Takes = Mapping[Take, "Traces"]
+Takes = Mapping[Take, Traces]
 
 
 def force_chart(takes: Takes, caps: tuple[Cap, ...]) -> Chart:

@@ -27,7 +27,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from ...solver.body.anatomy import SIDED
+from ...solver.body.anatomy import SIDED_PARTS
 from ...solver.data.faults import (
     BadDimensions,
     BadRecipe,
@@ -38,7 +38,7 @@ from ...solver.data.faults import (
     UnknownReductionBone,
     WrongWeights,
 )
-from ...solver.data.problem import Axes3, ContactEdit, MassTable, MotionProblem, Pin
+from ...solver.data.problem import ContactEdit, MassTable, MotionProblem, OffsetAxes, Pin
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 from .syntax.items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
 from .syntax.source_lines import KeyPath, json_lines, toml_lines
@@ -49,7 +49,11 @@ OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "c
 TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
-PARTS = ("pelvis", "head", *(f"{side} {p.value}" for p in SIDED for side in ("left", "right")))
+PARTS = (
+    "pelvis",
+    "head",
+    *(f"{side} {p.value}" for p in SIDED_PARTS for side in ("left", "right")),
+)
 
 _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 brackets
 
@@ -214,12 +218,12 @@ def _read_offset(table: Table) -> Values:
     table.not_both("offset", TRAVEL_KEYS)
     offset = table.vector("offset")
     if offset is not None:
-        return {"offset": offset, "axes": Axes3.WORLD}
+        return {"offset": offset, "axes": OffsetAxes.WORLD}
     return {"offset": tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)}
 
 
 def _write_offset(pin: Pin) -> Values:
-    if pin.axes is Axes3.WORLD:
+    if pin.axes is OffsetAxes.WORLD:
         return {"offset": pin.offset}
     return {key: amount or None for key, amount in zip(TRAVEL_KEYS, pin.offset, strict=True)}
 

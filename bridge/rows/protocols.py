@@ -20,6 +20,8 @@ class Rows(Protocol[Row]):
 class ContactRow(Protocol):
     """A contact; frames, and (3,) places in Blender units, world."""
 
+    name: str
+    bone: str
     phase: str
     used: bool
     found_start: float

@@ -167,7 +167,7 @@ class FollowedDrag:
             self._fault = said(message.fault)
             live().clear()
         elif isinstance(message, Followed):
-            self._fault = LOST if message.course is DragStatus.LOST else ""
+            self._fault = LOST if message.course is DragStatus.DIVERGED else ""
             live().show(self._armature.name, message)
 
     def _look(self) -> None:

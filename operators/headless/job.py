@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...solver.analysis.analyse import Analysis, analyse, figure
+from ...solver.analysis.analyse import Analysis, analyse, build_figure
 from ...solver.analysis.pinned_places import pinned_places
 from ...solver.data.faults import NoArmature, NoFit, NoSolution, OutputNotWritable, UnreadableClip
 from ...solver.data.problem import MotionProblem
@@ -101,7 +101,7 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> Loaded:
         armature, origin = _import(clip)
     with stages.stage("Finding contacts"):
         if problem.height is not None:
-            measured = figure(_read(armature, problem), problem)[1].height
+            measured = build_figure(_read(armature, problem), problem)[1].height
             _scale(armature, problem.height / measured)
         analysis = _analyse(armature, problem)
         # Wrong pins are said before the fit takes its seconds.

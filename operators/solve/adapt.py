@@ -20,10 +20,10 @@ from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import problem_of, wanted_range
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
-from ...solver.data.digest import alike, digest
+from ...solver.data.digest import digest, same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import Recording
-from ...solver.data.requests import Method, Objective, SolverOptions
+from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, Failed, Kind
 from ..names import OperatorId
@@ -103,7 +103,10 @@ class RefineOperator(_Adapting, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
-        weights = ((Objective[settings.objective], 1.0), (Objective.CLOSENESS, settings.stay_close))
+        weights = (
+            (ObjectiveKind[settings.objective], 1.0),
+            (ObjectiveKind.CLOSENESS, settings.stay_close),
+        )
         if asked.method is Method.EXPLICIT:
             return asked
         return replace(asked, method=Method.EXPLICIT, objectives=weights)
@@ -205,7 +208,7 @@ def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
             now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
         except Fault as fault:  # another action, a scale: whatever it is, it is new
             raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
-        if alike(now, asked.recording):
+        if same_motion(now, asked.recording):
             return armature
     raise ChangedMeanwhile(asked.armature, while_solving=True)
 

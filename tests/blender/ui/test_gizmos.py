@@ -26,8 +26,8 @@ from hangtime.tests.blender.helpers.overlays import (
 )
 from hangtime.ui.gizmos.limit_handles import handles as limit_handles
 from hangtime.ui.gizmos.pin_handles import handles as pin_handles
-from hangtime.ui.gizmos.places import Knob, Places
-from hangtime.ui.overlay.context.figure_cache import Figures
+from hangtime.ui.gizmos.places import Knob, LimitHandlePlaces
+from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Part
 from hangtime.ui.overlay.geometry.shapes import Look
 from mathutils import Matrix, Vector
@@ -44,8 +44,8 @@ def armature(request: pytest.FixtureRequest) -> bpy.types.Object:
     return adapted(WHERE[request.param])
 
 
-def limit_places(armature: bpy.types.Object) -> Places:
-    return limit_handles(seen(armature), Figures(), SIGHT)
+def limit_places(armature: bpy.types.Object) -> LimitHandlePlaces:
+    return limit_handles(seen(armature), FigureCache(), SIGHT)
 
 
 def knob(armature: bpy.types.Object, end: str) -> Knob:

@@ -31,13 +31,13 @@ from hangtime.tests.blender.helpers.overlays import (
     traced,
 )
 from hangtime.ui.overlay import handlers
-from hangtime.ui.overlay.context.figure_cache import Figures
+from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Layer, Part
-from hangtime.ui.overlay.context.view_context import look_at
+from hangtime.ui.overlay.context.view_context import read_view
 from hangtime.ui.overlay.geometry.shapes import Label, Shape, Standing
 from hangtime.ui.overlay.layer_selection import layers
 from hangtime.ui.overlay.layers import limits, pins
-from hangtime.ui.overlay.picture_cache import Pictures
+from hangtime.ui.overlay.picture_cache import PictureCache
 from mathutils import Matrix
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -98,18 +98,18 @@ def test_phases_and_instants_tell_when_a_constraint_holds(armature: bpy.types.Ob
 
 def test_overlays_follow_the_viewport(armature: bpy.types.Object) -> None:
     context = viewport()
-    assert look_at(context) is not None
+    assert read_view(context) is not None
     context.space_data.overlay.show_overlays = False
-    assert look_at(context) is None
+    assert read_view(context) is None
     context.space_data.overlay.show_overlays = True
     armature.hide_set(True)
-    assert look_at(context) is None
+    assert read_view(context) is None
     armature.hide_set(False)
     bpy.context.scene.hangtime.view.show = False
-    assert look_at(context) is None
+    assert read_view(context) is None
     bpy.context.scene.hangtime.view.show = True
     bpy.data.objects.remove(armature)
-    assert look_at(context) is None
+    assert read_view(context) is None
 
 
 def viewport() -> SimpleNamespace:
@@ -145,8 +145,8 @@ class Counted:
     def __init__(self) -> None:
         self.built: list[Part] = []
         self.uploads = 0
-        self.pictures = Pictures(self._upload)
-        self.figures = Figures()
+        self.pictures = PictureCache(self._upload)
+        self.figures = FigureCache()
 
     def _upload(self, shapes: Sequence[Shape]) -> tuple[Shape, ...]:
         self.uploads += 1
@@ -262,7 +262,7 @@ def test_a_figure_of_one_body_without_a_length_is_drawn() -> None:
 def test_an_armature_without_anything_shows_nothing() -> None:
     rigs.reset()
     armature = rigs.make_armature()
-    for layer in layers(seen(armature), Figures()):
+    for layer in layers(seen(armature), FigureCache()):
         assert list(layer.build()) == []
 
 
@@ -277,10 +277,10 @@ def test_handlers_come_and_go_without_a_graphics_card() -> None:
 
 def test_a_chosen_limit_that_is_off_is_still_seen(armature: bpy.types.Object) -> None:
     row = constrain(armature, KINDS["CONE"], "shin", half_angle=radians(30.0), used=False)
-    assert [x.standing for x in limits.layer(seen(armature), Figures()).content[0]] == [
+    assert [x.standing for x in limits.layer(seen(armature), FigureCache()).content[0]] == [
         Standing.OFF
     ]
     armature.hangtime.active_constraint = -1
-    assert not limits.layer(seen(armature), Figures()).content[0]
+    assert not limits.layer(seen(armature), FigureCache()).content[0]
     row.used = True
-    assert limits.layer(seen(armature), Figures()).content[0]
+    assert limits.layer(seen(armature), FigureCache()).content[0]

@@ -1,4 +1,4 @@
-"""What was built for a content is kept while that content is asked for."""
+"""A cache of what was built for a content, of the last few contents that were asked for."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 
-REMEMBERED = 4  # contents of a name: windows may show different scenes and frames
+CACHED_CONTENTS = 4  # contents of a name: windows may show different scenes and frames
 
 
-class Cache(Generic[T]):
+class ContentCache(Generic[T]):
     """For each name the last few things built, by content."""
 
-    def __init__(self, remembered: int = REMEMBERED) -> None:
+    def __init__(self, remembered: int = CACHED_CONTENTS) -> None:
         self._remembered = remembered
         self._made: dict[Hashable, dict[Hashable, T]] = {}
 
