@@ -14,6 +14,7 @@ from ...bridge.armature.reproportioned import other_figure
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import problem_of, wanted_range
+from ...bridge.constraints.status import write_status
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import alike, digest
@@ -23,6 +24,7 @@ from ...solver.data.requests import Method, Objective, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, Failed, Kind
 from ..names import OperatorId
+from ..words.report_text import as_text
 from .common import chosen_armature, hindrance, required_armature
 from .live import live
 from .session import Asked, Best, session
@@ -182,9 +184,6 @@ def _note(
     answer: Adapted,
 ) -> None:
     """Keeps what was found beside the action, and how each constraint came out."""
-    from ...bridge.constraints.status import write_status
-    from ..words.report_text import as_text
-
     settings = armature.hangtime
     settings.status = summary(answer)
     write_status(settings, answer.report)

@@ -7,6 +7,7 @@ import bpy
 from ...bridge.accessors import current_action
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
+from ..words.wording import sentence
 from .session import session
 
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
@@ -46,12 +47,8 @@ def hindrance(context: bpy.types.Context) -> str | None:
 
 
 def said(fault: Fault) -> str:
-    """The fault's sentence."""
-    from ..words.wording import (
-        sentence,
-    )  # loads half of the solver, which a mere start-up does not need
-
-    return sentence(fault)
+    """The fault's sentence, in the language of Blender's reports."""
+    return sentence(fault, bpy.app.translations.pgettext_rpt)
 
 
 class FaultyOperator:
