@@ -22,6 +22,8 @@ class Rows(Protocol[Row]):
 class ContactRow(Protocol):
     """A contact; frames, and (3,) places in Blender units, world."""
 
+    name: str
+    added: bool
     phase: str
     used: bool
     found_start: float
@@ -40,6 +42,7 @@ class StanceRow(Protocol):
     forward_axis: Sequence[float]
     shifted: Sequence[float]
     turned: float
+    turn: float
 
 
 class ConstraintRow(Protocol):

@@ -7,8 +7,10 @@ from math import degrees, radians
 import bpy
 import numpy as np
 
+from ...bridge.properties.constraint import HangtimeConstraint
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
 from .limit_mixin import NO_LIMIT, STEP, LimitDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about, scaled
@@ -42,10 +44,10 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
     )
     angle: bpy.props.FloatProperty(name="Angle", subtype="ANGLE")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """In scripts and for redo: sets the angle, within its bounds."""
-        self._armature = chosen_armature(context)
-        row = self.row
+        self._armature = required_armature(context)
+        row = self.find_row()
         if row is None:
             self.report({"ERROR"}, NO_LIMIT)
             return {"CANCELLED"}
@@ -54,8 +56,8 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
         return {"FINISHED"}
 
     def take(self, context: bpy.types.Context) -> bool:
-        vectors = (np.array(each) for each in (self.centre, self.zero, self.ahead))
-        self._circle = Circle(*vectors, self.radius)
+        centre, zero, ahead = (np.array(each) for each in (self.centre, self.zero, self.ahead))
+        self._circle = Circle(centre, zero, ahead, self.radius)
         if not self._circle.normal.any():
             return False
         value = getattr(self.row, self.end)
@@ -71,7 +73,7 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
         value = self._drag.move(now - self._drag.start, precise=event.shift, snap=event.ctrl)
         setattr(self.row, self.end, value)
 
-    def put_back(self, row: bpy.types.PropertyGroup) -> None:
+    def put_back(self, row: HangtimeConstraint) -> None:
         setattr(row, self.end, self._drag.put_back())
 
     def let_go(self) -> bool:
@@ -83,7 +85,7 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
         return f"{WORDS[self.end]} {degrees(self._drag.value):.1f}° ({change:+.1f}°)"
 
 
-def bounds(row: bpy.types.PropertyGroup, end: str) -> tuple[float, float]:
+def bounds(row: HangtimeConstraint, end: str) -> tuple[float, float]:
     """How far an end of a limit goes, rad: its own bounds, and not past the other end."""
     if end == "half_angle":
         return radians(1.0), radians(179.0)

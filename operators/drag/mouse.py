@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import bpy
 from bpy_extras import view3d_utils
 
+from ...bridge.accessors import present
 from .rays import Ray
 
 SLACK = 3.0  # px, at an interface scale of 1, until a click becomes a drag
@@ -17,15 +18,17 @@ Pixel = tuple[float, float]
 
 def ray_at(context: bpy.types.Context, at: Pixel) -> Ray:
     """Through a pixel of the 3D viewport's region; Blender units, world."""
-    region, view = context.region, context.region_data
+    region, view = present(context.region), present(context.region_data)
     origin = view3d_utils.region_2d_to_origin_3d(region, view, at)
-    return Ray.of(origin, view3d_utils.region_2d_to_vector_3d(region, view, at))
+    along = view3d_utils.region_2d_to_vector_3d(region, view, at)
+    return Ray.of(origin.to_tuple(), along.to_tuple())
 
 
 def pixel_of(context: bpy.types.Context, place: Sequence[float]) -> Pixel | None:
     """Where a place is seen, Blender units, world; None for what is behind the viewer."""
-    at = view3d_utils.location_3d_to_region_2d(context.region, context.region_data, place)
-    return tuple(at) if at is not None else None
+    region, view = present(context.region), present(context.region_data)
+    at = view3d_utils.location_3d_to_region_2d(region, view, place)
+    return (at.x, at.y) if at is not None else None
 
 
 def pixel(event: bpy.types.Event) -> Pixel:
@@ -44,7 +47,7 @@ class Press:
     @staticmethod
     def of(context: bpy.types.Context, event: bpy.types.Event, *, click: bool) -> Press:
         """click: whether it may still be one, as the button is down."""
-        slack = SLACK * context.preferences.system.ui_scale
+        slack = SLACK * present(context.preferences).system.ui_scale
         return Press(pixel(event), slack, dragging=not click)
 
     def drags(self, event: bpy.types.Event) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 
+from ...bridge.accessors import present
 from ...bridge.armature.actions import read_take_in_parts, recorded_action, write_take_in_parts
 from ...bridge.armature.incremental import Parts
 from ...bridge.armature.reproportioned import other_figure
@@ -15,6 +16,7 @@ from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import problem_of, wanted_range
 from ...bridge.constraints.status import write_status
+from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import alike, digest
@@ -24,8 +26,9 @@ from ...solver.data.requests import Method, Objective, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, Failed, Kind
 from ..names import OperatorId
+from ..operator_types import OperatorResult
 from ..words.report_text import as_text
-from .common import chosen_armature, hindrance, required_armature
+from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, Best, session
 from .solving import State
@@ -40,18 +43,18 @@ class _Adapting(TaskOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         why = hindrance(context)
-        if why is None and not chosen_armature(context).hangtime.contacts:
+        if why is None and not settings_of(required_armature(context)).contacts:
             why = NOT_ANALYSED
         if why is not None:
             cls.poll_message_set(why)
         return why is None
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
+    def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         """How to solve; asked: what a recipe says of it."""
         raise NotImplementedError
 
     def task(self, context: bpy.types.Context) -> Task:
-        context.view_layer.update()  # empties that a script moved
+        present(context.view_layer).update()  # empties that a script moved
         try:
             asked = yield from self._asked(context)
             answer = yield from answered(shared().ask(Kind.ADAPT, asked.recording, asked.problem))
@@ -71,7 +74,7 @@ class _Adapting(TaskOperator):
         solving = session().solving
         assert solving is not None
         solving.advance(State.SOLVING)
-        settings, requests = required_armature(context).hangtime, asked.problem.requests
+        settings, requests = settings_of(required_armature(context)), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
         return replace(asked, problem=replace(asked.problem, requests=requests))
 
@@ -85,7 +88,7 @@ class AdaptOperator(_Adapting, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
+    def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         if asked.method is not Method.IMPLICIT:  # a recipe's own choice
             return asked
         return replace(asked, method=Method[settings.method])
@@ -100,7 +103,7 @@ class RefineOperator(_Adapting, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
+    def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         weights = ((Objective[settings.objective], 1.0), (Objective.CLOSENESS, settings.stay_close))
         if asked.method is Method.EXPLICIT:
             return asked
@@ -124,7 +127,7 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
             return False
         return True
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         return {"FINISHED"} if take_best() else super().invoke(context, event)
 
     def task(self, _context: bpy.types.Context) -> Task:
@@ -140,7 +143,7 @@ def ask_for(context: bpy.types.Context) -> Parts[Asked]:
     """What the settings ask, of the recording as it is. Raises any Fault of reading, and
     ChangedMeanwhile where it is not what was analysed."""
     armature = required_armature(context)
-    settings = armature.hangtime
+    settings = settings_of(armature)
     recording = yield from read_take_in_parts(armature, *wanted_range(settings))
     if digest(recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
@@ -170,8 +173,8 @@ def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Obje
     other, track, _ = other_figure(recording, answer.track)
     other.name = f"{armature.name} changed"
     action = write_action(other, track, name=f"{recording.name} adapted")
-    action.hangtime.recording = recorded_action(armature)
-    armature.hangtime.adapted = action
+    action_settings(action).recording = recorded_action(armature)
+    settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
     _note(armature, other, action, answer)
     return f"Made the armature {other.name}, which performs the adapted motion"
@@ -184,11 +187,11 @@ def _note(
     answer: Adapted,
 ) -> None:
     """Keeps what was found beside the action, and how each constraint came out."""
-    settings = armature.hangtime
+    settings = settings_of(armature)
     settings.status = summary(answer)
     write_status(settings, answer.report)
-    action.hangtime.report = as_text(answer.report)
-    action.hangtime.performer = performer
+    action_settings(action).report = as_text(answer.report)
+    action_settings(action).performer = performer
 
 
 def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:

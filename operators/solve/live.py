@@ -7,6 +7,7 @@ from functools import cache
 
 import bpy
 
+from ...bridge.accessors import present
 from ...solver.data.traces import Traces
 from ...solver.worker.protocol import Followed
 
@@ -46,7 +47,7 @@ def live() -> Live:
 
 def redraw_viewports() -> None:
     """Every 3D viewport is drawn again."""
-    for window in bpy.context.window_manager.windows:
+    for window in present(bpy.context.window_manager).windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
