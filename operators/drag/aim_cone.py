@@ -13,9 +13,10 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
 from . import rays
-from .limit_mixin import NO_LIMIT, STEP, LimitDrag
+from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import Pixel, pixel, ray_at
 from .pin_state import PinDrag
+from .value_state import ANGLE_STEP
 
 
 class AimConeOperator(LimitDrag, bpy.types.Operator):
@@ -61,7 +62,7 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
         arm = np.array(self._drag.move((x, y, z), precise=event.shift)) - np.array(self.centre)
         axis = rays.unit(np.array(Matrix(self.turn)) @ arm)
         self.row.use_axis = True
-        self.row.axis = rays.rounded(axis, STEP) if event.ctrl else axis
+        self.row.axis = rays.rounded(axis, ANGLE_STEP) if event.ctrl else axis
 
     def put_back(self, row: HangtimeConstraint) -> None:
         self._drag.put_back()

@@ -1,4 +1,4 @@
-"""What dragging contacts shares: the motion follows as a ghost, and letting go adapts."""
+"""Modal drag of contacts and points: the motion follows as a ghost; letting go adapts."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class FollowedDrag(OperatorMixin):
         return False
 
     def text(self) -> str:
-        """How far it is dragged, for the header."""
+        """The displacement, for the header."""
         raise NotImplementedError
 
     # -- Blender's way -------------------------------------------------------------------------

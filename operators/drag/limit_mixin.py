@@ -1,11 +1,9 @@
-"""What dragging a limit's handle in the viewport shares.
+"""Modal drag of a joint limit's handle in the viewport.
 
 The handles (ui/gizmos) say where a limit is drawn; what the mouse does there is the same for all.
 """
 
 from __future__ import annotations
-
-from math import radians
 
 import bpy
 
@@ -17,7 +15,6 @@ from ..solve.common import EDIT_MODE, chosen_armature, required_armature
 from ..solve.live import redraw_viewports
 from .mouse import Press
 
-STEP = radians(5.0)
 KEYS = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
 NO_LIMIT = "There is no such joint limit or cone"
 BY_HANDLES = "Drag the limit's handles in a 3D viewport"
@@ -65,7 +62,7 @@ class LimitDrag(OperatorMixin):
         raise NotImplementedError
 
     def text(self) -> str:
-        """What it is now, for the header."""
+        """The present value, for the header."""
         raise NotImplementedError
 
     # -- Blender's way -------------------------------------------------------------------------

@@ -11,12 +11,12 @@ from ...bridge.properties.constraint import HangtimeConstraint
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
-from .limit_mixin import NO_LIMIT, STEP, LimitDrag
+from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about, scaled
-from .value_state import ValueDrag
+from .value_state import ANGLE_STEP, ValueDrag
 
-WORDS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
+END_LABELS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
 
 
 class DragLimitOperator(LimitDrag, bpy.types.Operator):
@@ -61,7 +61,7 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
         if not self._circle.normal.any():
             return False
         value = getattr(self.row, self.end)
-        self._drag = ValueDrag(value, *bounds(self.row, self.end), STEP)
+        self._drag = ValueDrag(value, *bounds(self.row, self.end), ANGLE_STEP)
         ray = ray_at(context, self._press.at)
         self._seen = scaled(value, 1.0 / self.narrow)
         self._began = self._angle = angle_about(ray, self._circle, self._seen)
@@ -82,11 +82,11 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
 
     def text(self) -> str:
         change = degrees(self._drag.value - self._drag.start)
-        return f"{WORDS[self.end]} {degrees(self._drag.value):.1f}° ({change:+.1f}°)"
+        return f"{END_LABELS[self.end]} {degrees(self._drag.value):.1f}° ({change:+.1f}°)"
 
 
 def bounds(row: HangtimeConstraint, end: str) -> tuple[float, float]:
-    """How far an end of a limit goes, rad: its own bounds, and not past the other end."""
+    """Range of an end of a limit, rad: its own bounds, and not past the other end."""
     if end == "half_angle":
         return radians(1.0), radians(179.0)
     low, high = radians(-180.0), radians(180.0)

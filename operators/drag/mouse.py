@@ -1,4 +1,4 @@
-"""The mouse in a 3D viewport: what it points at, and whether it drags or clicks."""
+"""Mouse in a 3D viewport: view rays, projection, and telling a drag from a click."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ def ray_at(context: bpy.types.Context, at: Pixel) -> Ray:
 
 
 def pixel_of(context: bpy.types.Context, place: Sequence[float]) -> Pixel | None:
-    """Where a place is seen, Blender units, world; None for what is behind the viewer."""
+    """Projection of a place (Blender units, world) to a pixel; None behind the viewer."""
     region, view = present(context.region), present(context.region_data)
     at = view3d_utils.location_3d_to_region_2d(region, view, place)
     return (at.x, at.y) if at is not None else None
 
 
 def pixel(event: bpy.types.Event) -> Pixel:
-    """Where the mouse is in the region."""
+    """Mouse position in the region."""
     return event.mouse_region_x, event.mouse_region_y
 
 
 @dataclass
 class Press:
-    """Where the mouse took hold. A click moves nothing, however it trembles."""
+    """Press of a mouse button. A click moves nothing, however it trembles."""
 
     at: Pixel
     slack: float
@@ -51,7 +51,7 @@ class Press:
         return Press(pixel(event), slack, dragging=not click)
 
     def drags(self, event: bpy.types.Event) -> bool:
-        """Whether it has become a drag."""
+        """True once it has become a drag."""
         x, y = pixel(event)
         self.dragging = self.dragging or max(abs(x - self.at[0]), abs(y - self.at[1])) > self.slack
         return self.dragging

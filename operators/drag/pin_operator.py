@@ -163,7 +163,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             place(settings_of(self._armature), row, to.to_tuple(), whole=self.whole or None)
 
     def _remembered(self) -> tuple[int, int, dict[int, Vector], tuple[bool, Vector]]:
-        """What the drag may change: what is chosen, contacts' places, the point's."""
+        """State to restore: what is chosen, contacts' places, the point's."""
         settings, row = settings_of(self._armature), self._row
         places, point = {}, (False, Vector())
         if isinstance(row, HangtimeConstraint):
@@ -181,7 +181,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             settings.active_contact = self.contact
 
     def _aim(self, context: bpy.types.Context, at: Pixel) -> rays.Vector | None:
-        """What a pixel points at on the ground, the plane that faces the viewer, or the axis
+        """The place under a pixel on the ground, the plane that faces the viewer, or the axis
         through the pin; Blender units, world. None where it points at none of that."""
         ray = ray_at(context, at)
         start = np.array(self._drag.start) / self._metres

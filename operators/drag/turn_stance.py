@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, inf, radians
+from math import degrees, inf
 
 import bpy
 import numpy as np
@@ -16,9 +16,8 @@ from ..solve.common import required_armature
 from .follow_mixin import FollowedDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about
-from .value_state import ValueDrag
+from .value_state import ANGLE_STEP, ValueDrag
 
-STEP = radians(5.0)
 NO_STANCE = "Choose a contact of the stance first"
 
 
@@ -56,7 +55,7 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         x, y = np.eye(3)[:2]
         self._circle = Circle(np.array(middle.to_tuple()), x, y, max(radius, 1e-6))
         self._began = self._angle = angle_about(ray_at(context, self._press.at), self._circle, 0.0)
-        self._drag = ValueDrag(stance.turn, -inf, inf, STEP)
+        self._drag = ValueDrag(stance.turn, -inf, inf, ANGLE_STEP)
         return None
 
     def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:

@@ -16,7 +16,7 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import FaultyOperator, chosen_armature, required_armature
 
-NOTHING = "Press Analyze first: there is no motion to plot"
+NOTHING_TO_PLOT = "Press Analyze first: there is no motion to plot"
 DIGITS = 6
 
 
@@ -37,7 +37,7 @@ class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  # ty
         armature = chosen_armature(context)
         possible = armature is not None and bool(kept_takes(armature))
         if not possible:
-            cls.poll_message_set(NOTHING)
+            cls.poll_message_set(NOTHING_TO_PLOT)
         return possible
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:  # type: ignore[override]

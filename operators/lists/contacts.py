@@ -16,7 +16,7 @@ from ..solve.common import chosen_armature, required_armature
 from .place_by_empty import NO_CONTACT
 
 USUAL_FRAMES = 10
-NOT_ANALYSED = "Press Analyze first, to know what may touch"
+NO_POINTS_KNOWN = "Press Analyze first, to know what may touch"
 
 
 def _points(
@@ -39,7 +39,7 @@ class AddContactOperator(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
         if armature is None or kept(armature) is None:
-            cls.poll_message_set(NOT_ANALYSED)
+            cls.poll_message_set(NO_POINTS_KNOWN)
             return False
         return True
 

@@ -27,6 +27,7 @@ from ...bridge.properties.phases import PhaseSpan, phases_of
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult
+from ..solve.analyze import USUAL_HEIGHT
 from ..solve.common import required_armature
 from .chosen_bones import chosen_bones
 from .row_lists import AddingOperator, cannot_change
@@ -34,12 +35,11 @@ from .row_lists import AddingOperator, cannot_change
 NO_BONES_SELECTED = "Select bones in pose mode first"
 NO_LANDING = "Press Analyze first: no landing is known"
 NO_FIGURE = "No bones of joints were found; choose them in the panel Bones"
-USUAL_HEIGHT = 1.75  # m
 SOFTER = 0.8  # of the peak that was needed
 USUAL_PEAK = 3.0  # BW
 WEIGHT = 10.0  # kg
 MOST_NAMED = 4  # in a message
-SAME = np.radians(1.0)
+LIMIT_SLACK = np.radians(1.0)
 
 
 class JointLimitsOperator(AddingOperator, bpy.types.Operator):
@@ -61,7 +61,9 @@ class JointLimitsOperator(AddingOperator, bpy.types.Operator):
             return {"CANCELLED"}
         told = [f"Added {len(found.made)} joint limits"]
         told += [f"no bone for {_listed(found.missing)}"] if found.missing else []
-        beyond = sorted(((by, row) for row, by in found.beyond.items() if by > SAME), reverse=True)
+        beyond = sorted(
+            ((by, row) for row, by in found.beyond.items() if by > LIMIT_SLACK), reverse=True
+        )
         named = [f"{row} by {degrees(by):.0f}°" for by, row in beyond]
         told += [f"the recording itself goes beyond {_listed(named)}"] if beyond else []
         told += ["the recording could not be checked"] if not found.checked else []

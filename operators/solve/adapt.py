@@ -31,14 +31,14 @@ from ..words.report_text import as_text
 from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, Best, session
-from .solving import State
+from .solving import SolveState
 from .task import Task, TaskOperator, answered, take_best
 
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
 
 class _Adapting(TaskOperator):
-    """What Adapt and Refine share."""
+    """Base of Adapt and Refine."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -50,7 +50,7 @@ class _Adapting(TaskOperator):
         return why is None
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
-        """How to solve; asked: what a recipe says of it."""
+        """Solver options; asked: those of a recipe."""
         raise NotImplementedError
 
     def task(self, context: bpy.types.Context) -> Task:
@@ -73,7 +73,7 @@ class _Adapting(TaskOperator):
         asked = yield from ask_for(context)
         solving = session().solving
         assert solving is not None
-        solving.advance(State.SOLVING)
+        solving.advance(SolveState.SOLVING)
         settings, requests = settings_of(required_armature(context)), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
         return replace(asked, problem=replace(asked.problem, requests=requests))
@@ -140,8 +140,10 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
 
 
 def ask_for(context: bpy.types.Context) -> Parts[Asked]:
-    """What the settings ask, of the recording as it is. Raises any Fault of reading, and
-    ChangedMeanwhile where it is not what was analysed."""
+    """The motion problem that the settings state, with the recording as it is.
+
+    Raises any Fault of reading, and ChangedMeanwhile where it is not what was analysed.
+    """
     armature = required_armature(context)
     settings = settings_of(armature)
     recording = yield from read_take_in_parts(armature, *wanted_range(settings))
@@ -155,9 +157,9 @@ def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
     """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
     solving = session().solving
     assert solving is not None
-    solving.advance(State.CHECKING)
+    solving.advance(SolveState.CHECKING)
     armature = yield from _unchanged(asked)
-    solving.advance(State.WRITING)
+    solving.advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
         return _write_other(changed_recording(asked.recording, limbs), answer, armature)

@@ -27,11 +27,11 @@ from ..operator_types import OperatorResult
 from .adapt import ask_for
 from .common import FaultyOperator, chosen_armature, hindrance, required_armature, said
 from .session import session
-from .solving import State
+from .solving import SolveState
 from .task import Task, TaskOperator, answered
 
 # rms of the joint centres' distance, cm
-WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
+CLOSENESS_WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
 HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was imported at a wrong scale
 USUAL_HEIGHT = 1.75  # m
 LOOSE = "only roughly like the recording: check the contacts' frames, and the scale"
@@ -87,7 +87,7 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
         problem = problem_of(settings, recording, with_contacts=False)
         solving = session().solving
         assert solving is not None
-        solving.advance(State.SOLVING)
+        solving.advance(SolveState.SOLVING)
         answer = yield from answered(shared().ask(Kind.ANALYSE, recording, problem))
         if isinstance(answer, Failed):
             raise _telling(answer.fault, armature, recording, problem)
@@ -105,8 +105,8 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
 def _telling(
     fault: Fault, armature: bpy.types.Object, recording: Recording, problem: MotionProblem
 ) -> Fault:
-    """Why an analysis failed: beside the keys nothing moves, and at a wrong scale feet seem to
-    slide and bodies to float."""
+    """Diagnosis of a failed analysis: beside the keys nothing moves, and at a wrong scale feet
+    seem to slide and bodies to float."""
     if not isinstance(fault, NoFlight | UnseenSupport):
         return fault
     first, last = present(recorded_action(armature)).frame_range.to_tuple()
@@ -138,7 +138,7 @@ class FitOperator(_OnRecording, bpy.types.Operator):
         solving = session().solving
         assert solving is not None
         asked = yield from ask_for(context)
-        solving.advance(State.SOLVING)
+        solving.advance(SolveState.SOLVING)
         answer = yield from answered(shared().ask(Kind.FIT, asked.recording, asked.problem))
         if isinstance(answer, Failed):
             raise answer.fault
@@ -148,9 +148,9 @@ class FitOperator(_OnRecording, bpy.types.Operator):
 
 
 def in_words(closeness: dict[str, float]) -> str:
-    """How near a fit is (report.closeness)."""
+    """Quality of a fit in words (report.closeness)."""
     off = closeness["joint_centres_rms_cm"]
-    return next((words for limit, words in WORDS if off < limit), LOOSE)
+    return next((words for limit, words in CLOSENESS_WORDS if off < limit), LOOSE)
 
 
 def quality(closeness: dict[str, float]) -> str:

@@ -1,4 +1,4 @@
-"""What the operators share: the armature that they work on, and how they say what is wrong."""
+"""The operators' common base: target armature, preconditions, fault reporting."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ EDIT_MODE = "Leave edit mode first"
 
 
 def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The one chosen in the sidebar, else the active object if that is one."""
+    """The target armature: the one chosen in the sidebar, else the active object if that is one."""
     scene = present(context.scene)
     chosen: bpy.types.Object | None = scene_settings(scene).armature
     if chosen is not None and chosen.name in scene.objects:
@@ -27,7 +27,7 @@ def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
 
 
 def required_armature(context: bpy.types.Context) -> bpy.types.Object:
-    """The same; raises NoArmature, for it may have been deleted since the button was pressed."""
+    """The same. Raises NoArmature, for it may have been deleted since the button was pressed."""
     armature = chosen_armature(context)
     if armature is None:
         raise NoArmature(None)
@@ -35,7 +35,7 @@ def required_armature(context: bpy.types.Context) -> bpy.types.Object:
 
 
 def hindrance(context: bpy.types.Context) -> str | None:
-    """Why the armature cannot be read now, in a sentence; None where it can."""
+    """Precondition: a sentence why the armature cannot be read now; None where it can."""
     armature = chosen_armature(context)
     if shared().busy or session().solving is not None:
         return BUSY

@@ -1,4 +1,4 @@
-"""The motion that follows a pin while it is dragged: shown as a ghost, never written."""
+"""Live preview: the motion that follows a dragged pin, shown as a ghost, never written."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Live:
             redraw_viewports()
 
     def ghost(self, armature: bpy.types.Object) -> Traces | None:
-        """What is to be drawn beside an armature; m, world."""
+        """The preview of an armature's motion; m, world."""
         mine = self.seen is not None and armature.name == self.armature
         return self.seen.traces if mine and self.seen is not None else None
 

@@ -1,4 +1,4 @@
-"""What becomes of an adapted motion: compare, accept, discard, read the report."""
+"""Operators on the result: Compare, Accept, Discard, Show Report, Cancel."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .common import chosen_armature, required_armature
 from .session import session
 from .task import CANCELLED
 
-NOTHING = "Nothing has been adapted yet"
+NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
 ACCEPTED = "The result is accepted already"
 
@@ -41,7 +41,7 @@ class _OfResult(OperatorMixin):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if result_of(chosen_armature(context)) is None:
-            cls.poll_message_set(NOTHING)
+            cls.poll_message_set(NOTHING_ADAPTED)
             return False
         return True
 
@@ -82,7 +82,7 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         result = result_of(chosen_armature(context))
         if result is None or action_settings(result).accepted:
-            cls.poll_message_set(NOTHING if result is None else ACCEPTED)
+            cls.poll_message_set(NOTHING_ADAPTED if result is None else ACCEPTED)
             return False
         return True
 

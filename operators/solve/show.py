@@ -10,6 +10,7 @@ from ...bridge.properties.settings import settings_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from .common import chosen_armature, required_armature
+from .results import NOTHING_ADAPTED
 
 
 class ShowRecordingOperator(bpy.types.Operator):
@@ -42,7 +43,7 @@ class ShowAdaptedOperator(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
         if armature is None or settings_of(armature).adapted is None:
-            cls.poll_message_set("Nothing has been adapted yet")
+            cls.poll_message_set(NOTHING_ADAPTED)
             return False
         if current_action(armature) == settings_of(armature).adapted:
             cls.poll_message_set("The adapted motion is what is shown")

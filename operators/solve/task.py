@@ -1,4 +1,4 @@
-"""Operators whose work is long: in parts and with a worker, so that Blender is never frozen."""
+"""Cooperative multitasking of long operators: parts and a worker, so that Blender never freezes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...solver.worker.protocol import Answer, Progress
 from ..operator_types import OperatorResult
 from .common import FaultyOperator, said
 from .session import session
-from .solving import Solving, State
+from .solving import SolveState, Solving
 
 LOOK_EVERY = 0.02  # s
 BUDGET = 0.012  # s of work at each look
@@ -57,7 +57,7 @@ class TaskOperator(FaultyOperator):
             session().solving = None
             if not finished:
                 task.close()
-                if solving.state is State.SOLVING and shared().busy:  # interrupted
+                if solving.state is SolveState.SOLVING and shared().busy:  # interrupted
                     shared().close()
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:

@@ -14,7 +14,7 @@ from .contact_bars import Grip
 from .contact_edge_state import Edge, EdgeDrag, Touch, contact_drag, phase_drag
 from .timeline_bars import bars_in, frames_axis
 
-NOT_ANALYSED = "Press Analyze first: there are no contacts to retime"
+NOTHING_TO_RETIME = "Press Analyze first: there are no contacts to retime"
 FOLLOW_AFTER = 3.0  # px, at an interface scale of 1, until a click becomes a drag
 FIELDS = {Edge.START: "start_frame", Edge.END: "end_frame"}
 VERBS = {Edge.START: "starts", Edge.END: "ends"}
@@ -169,11 +169,11 @@ class PickContactOperator(bpy.types.Operator):
 
 
 def contacts_known(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Whether an armature has contacts; else says what to do."""
+    """Poll: true if the armature has contacts; else says what to do."""
     armature = chosen_armature(context)
     known = armature is not None and len(settings_of(armature).contacts) > 0
     if not known:
-        operator.poll_message_set(NOT_ANALYSED)
+        operator.poll_message_set(NOTHING_TO_RETIME)
     return known
 
 

@@ -66,6 +66,6 @@ def _wanted(context: bpy.types.Context) -> bool:
 
 
 def _markers(context: bpy.types.Context) -> bool:
-    """Whether the editor shows markers, which have a strip of their own at its foot."""
+    """True where the editor shows markers, which have a strip of their own at its foot."""
     shown = getattr(context.space_data, "show_markers", False)
     return bool(shown and present(context.scene).timeline_markers)

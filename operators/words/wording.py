@@ -177,12 +177,12 @@ def sentence(fault: Fault, translate: Translate = str) -> str:
 
 
 def outcome(status: Status, translate: Translate = str) -> str:
-    """How a solve ended, and what to do about it."""
+    """The solver's termination status in words, and what to do about it."""
     return translate(OUTCOMES[status])
 
 
 def recipe_place(path: str | Path, line: int | None) -> str:
-    """Where in a recipe something is wrong."""
+    """Location of a fault in a recipe."""
     return PLACES[line is not None].format(path=path, line=line)
 
 
@@ -205,7 +205,7 @@ def _variant(fault: Fault) -> int:
 
 
 class _Missed(NamedTuple):
-    """What of a constraint is left; in mm where that is its unit."""
+    """Remaining violation of a constraint, in its own unit."""
 
     name: str
     amount: float

@@ -1,4 +1,4 @@
-"""What can be wrong with what the artist gave us, as data. Worded in operators/words only."""
+"""Exceptions for faulty input and failed solves, as data; worded in operators/words only."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
