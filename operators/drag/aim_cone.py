@@ -7,8 +7,8 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ...bridge.accessors import present
+from ...bridge.constraint_kinds import cone
 from ...bridge.properties.constraint import HangtimeConstraint
-from ...bridge.properties.kinds import ConstraintKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
@@ -40,7 +40,7 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
         """In scripts and for redo."""
         self._armature = required_armature(context)
         row = self.find_row()
-        if row is None or row.kind != ConstraintKind.CONE.name:
+        if row is None or row.kind != cone.KIND.name:
             self.report({"ERROR"}, NO_LIMIT)
             return {"CANCELLED"}
         row.use_axis, row.axis = True, self.axis

@@ -6,9 +6,9 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.poses import metres_per_unit
-from ...bridge.properties.protocols import ContactRow
 from ...bridge.properties.settings import scene_settings, settings_of
 from ...bridge.properties.stances import active_contact
+from ...bridge.rows.protocols import ContactRow
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import chosen_armature, required_armature

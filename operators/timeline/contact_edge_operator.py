@@ -5,8 +5,8 @@ from __future__ import annotations
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.properties.phases import carried, clip_ends, phases
 from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ...bridge.rows.phases import carried, clip_ends, phases
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import chosen_armature, required_armature

@@ -6,8 +6,8 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.plots.screen import Axis
-from ...bridge.properties.phases import carried, clip_ends, phases
 from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ...bridge.rows.phases import carried, clip_ends, phases
 from ...solver.data.contacts import PhaseKind
 from ..solve.common import chosen_armature
 from .contact_bars import Bar, Bars, Row, lay_out

@@ -4,38 +4,18 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.constraint_kinds import KINDS
 from ...bridge.constraints.linked_rows import linked_count
-from ...bridge.properties.kinds import BodyKind, ConstraintKind, Met, Span
+from ...bridge.rows.choices import BodyKind, Met
 from ...operators.names import ListId
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
 ICONS = {
-    ConstraintKind.POINT.name: "PINNED",
-    ConstraintKind.LIFT.name: "TRIA_UP_BAR",
-    ConstraintKind.ANGLE.name: "DRIVER_ROTATIONAL_DIFFERENCE",
-    ConstraintKind.CONE.name: "CONE",
-    ConstraintKind.TWIST.name: "FORCE_VORTEX",
-    ConstraintKind.TORQUE.name: "FORCE_MAGNETIC",
-    ConstraintKind.POSE.name: "ARMATURE_DATA",
-    ConstraintKind.ORIENTATION.name: "ORIENTATION_GIMBAL",
-    ConstraintKind.FORCE.name: "FORCE_FORCE",
-    ConstraintKind.TIMING.name: "TIME",
-    ConstraintKind.HOLD.name: "PAUSE",
+    **{kind.name: kind.icon for kind in KINDS.values()},
     BodyKind.LOAD.name: "PACKAGE",
     BodyKind.LIMB.name: "BONE_DATA",
 }
 MET_ICONS = {Met.UNKNOWN.name: "INFO", Met.MET.name: "CHECKMARK", Met.MISSED.name: "ERROR"}
-
-
-def range_text(row: bpy.types.PropertyGroup) -> str:
-    """When a constraint holds, in a few letters."""
-    if row.kind in (ConstraintKind.TIMING.name, ConstraintKind.LIFT.name):
-        return str(row.phase)
-    if row.kind == ConstraintKind.HOLD.name or row.span == Span.FRAME.name:
-        return f"{row.first_frame:.0f}"
-    if row.span == Span.FRAMES.name:
-        return f"{row.first_frame:.0f}–{row.last_frame:.0f}"
-    return str(row.phase) if row.span == Span.PHASE.name else ""
 
 
 class _RowList:
@@ -84,7 +64,7 @@ class ConstraintList(_RowList, bpy.types.UIList):
     rows = "constraints"
 
     def told(self, row: bpy.types.PropertyGroup) -> str:
-        return range_text(row)
+        return KINDS[row.kind].told(row)
 
 
 class BodyChangeList(_RowList, bpy.types.UIList):

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.properties.kinds import BodyKind, ConstraintKind
+from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
+from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.kind import MenuGroup
 from ...operators.names import MenuId, OperatorId
 from .constraint_lists import ICONS
-
-GROUPS = (
-    (ConstraintKind.POINT, ConstraintKind.POSE, ConstraintKind.ORIENTATION),
-    (ConstraintKind.ANGLE, ConstraintKind.CONE, ConstraintKind.TWIST, ConstraintKind.TORQUE),
-    (ConstraintKind.FORCE, ConstraintKind.LIFT),
-    (ConstraintKind.TIMING, ConstraintKind.HOLD),
-)
 
 
 class AddConstraintMenu(bpy.types.Menu):
@@ -23,11 +18,9 @@ class AddConstraintMenu(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
-        for group in GROUPS:
-            for kind in group:
-                entry = layout.operator(
-                    OperatorId.ADD_CONSTRAINT, text=kind.value, icon=ICONS[kind.name]
-                )
+        for group in MenuGroup:
+            for kind in (kind for kind in KINDS.values() if kind.menu is group):
+                entry = layout.operator(OperatorId.ADD_CONSTRAINT, text=kind.label, icon=kind.icon)
                 entry.kind = kind.name
             layout.separator()
         layout.menu(MenuId.PRESETS, icon="PRESET")
@@ -39,11 +32,11 @@ class PresetsMenu(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
-        layout.operator(OperatorId.JOINT_LIMITS, icon=ICONS[ConstraintKind.CONE.name])
-        layout.operator(OperatorId.JOINT_STRENGTH, icon=ICONS[ConstraintKind.TORQUE.name])
+        layout.operator(OperatorId.JOINT_LIMITS, icon=cone.KIND.icon)
+        layout.operator(OperatorId.JOINT_STRENGTH, icon=torque_limit.KIND.icon)
         layout.separator()
-        layout.operator(OperatorId.SOFT_LANDING, icon=ICONS[ConstraintKind.FORCE.name])
-        layout.operator(OperatorId.LIMP_LIMB, icon=ICONS[ConstraintKind.TORQUE.name])
+        layout.operator(OperatorId.SOFT_LANDING, icon=contact_force.KIND.icon)
+        layout.operator(OperatorId.LIMP_LIMB, icon=torque_limit.KIND.icon)
         layout.operator(OperatorId.CARRY_WEIGHT, icon=ICONS[BodyKind.LOAD.name])
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.properties.kinds import BodyKind, ConstraintKind
+from ...bridge.constraint_kinds import KINDS
+from ...bridge.rows.choices import BodyKind
 from ...operators.lists.row_lists import RowList
 from ...operators.names import ListId, MenuId, OperatorId, PanelId
 from ...operators.solve.common import chosen_armature
 from .constraint_fields import draw_bone, draw_bones, draw_constraint
-from .constraint_lists import ICONS, MET_ICONS
+from .constraint_lists import MET_ICONS
 from .sidebar import ArmaturePanel, split
 
 
@@ -47,8 +48,8 @@ class ConstraintPanel(ArmaturePanel, bpy.types.Panel):
 
     def draw_header(self, context: bpy.types.Context) -> None:
         row = _chosen(chosen_armature(context), RowList.CONSTRAINTS)
-        kind = ConstraintKind[row.kind].value
-        self.layout.label(text=kind, icon=ICONS[row.kind])
+        kind = KINDS[row.kind]
+        self.layout.label(text=kind.label, icon=kind.icon)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
