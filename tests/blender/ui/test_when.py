@@ -42,7 +42,7 @@ def test_overlay_plot_and_solver_agree(instant: str, frame: float) -> None:
     assert seen(armature).span(row) == (frame, frame)
     shown = plotted(armature, bpy.context.scene.hangtime.view)
     assert shown is not None
-    (cap,) = shown.asked.force_caps
+    (cap,) = shown.content.force_caps
     assert 0.5 * (cap.start + cap.end) == frame
     assert solved(armature, row, traces) == pytest.approx(frame)
 
