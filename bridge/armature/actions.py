@@ -1,4 +1,4 @@
-"""The recording's action and the actions made from it: which is which, reading and writing them."""
+"""Recorded and adapted actions: lookup, reading and writing."""
 
 from __future__ import annotations
 
@@ -13,40 +13,40 @@ from ...solver.data.recording import PoseTrack, Recording
 from ..accessors import current_action, current_scene
 from ..properties.settings import action_settings, settings_of
 from . import fcurves
-from .incremental import Parts, complete, sample_in_parts
+from .incremental import Incremental, complete, sample_incrementally
 from .poses import Poses, sample
-from .read import recorded, whole_frames
-from .write import write_in_parts
+from .read import recording_of, whole_frames
+from .write import write_incrementally
 
 
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The recording's: the armature's action, or the one that this was adapted from."""
+    """Recorded action: the armature's own, or the one that this was adapted from."""
     action = current_action(armature)
     if action is None:
         return None
     return action_settings(action).recording or action
 
 
-def read_take(
+def read_recorded(
     armature: bpy.types.Object | None, first: float | None, last: float | None
 ) -> Recording:
-    """Reads the recording, whichever of its actions is shown. Raises as `read_recording`."""
-    return complete(read_take_in_parts(armature, first, last))
+    """Read the recording, whichever of its actions is shown. Raises as `read_recording`."""
+    return complete(read_recorded_incrementally(armature, first, last))
 
 
-def read_take_in_parts(
+def read_recorded_incrementally(
     armature: bpy.types.Object | None, first: float | None, last: float | None
-) -> Parts[Recording]:
-    """The same, a few frames a part."""
+) -> Incremental[Recording]:
+    """Read the recording, a few frames a slice."""
     if armature is None or current_action(armature) is None:
         whole_frames(armature, first, last)
     assert armature is not None
     showing = partial(_showing, armature, recorded_action(armature))
     with showing():
         frames = whole_frames(armature, first, last)
-    poses = yield from sample_in_parts(armature, frames, showing)
+    poses = yield from sample_incrementally(armature, frames, showing)
     with showing():
-        return recorded(armature, frames, poses)
+        return recording_of(armature, frames, poses)
 
 
 def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
@@ -55,15 +55,17 @@ def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
         return sample(armature, frames)
 
 
-def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[bpy.types.Action]:
+def write_adapted_incrementally(
+    armature: bpy.types.Object, track: PoseTrack
+) -> Incremental[bpy.types.Action]:
     """Write an adapted performance as a new action, which is assigned and knows its recording.
 
-    Before the last part the armature is as it was.
+    Before the last slice the armature is as it was.
     """
     original = recorded_action(armature)
     assert original is not None
     slot = fcurves.slot_identifier(armature)
-    action = yield from write_in_parts(
+    action = yield from write_incrementally(
         armature,
         track,
         original,
@@ -77,8 +79,10 @@ def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[b
     return action
 
 
-def show(armature: bpy.types.Object, action: bpy.types.Action, slot: str | None = None) -> None:
-    """Lets the armature perform an action; the pose follows."""
+def show(
+    armature: bpy.types.Object, action: bpy.types.Action | None, slot: str | None = None
+) -> None:
+    """Let the armature perform an action; the pose follows."""
     fcurves.assign(armature, action, slot or fcurves.slot_identifier(armature))
     scene = current_scene()
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
@@ -86,7 +90,7 @@ def show(armature: bpy.types.Object, action: bpy.types.Action, slot: str | None 
 
 @contextmanager
 def _showing(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
-    """The armature performs `action`; what it performed before comes back."""
+    """Context in which the armature performs `action`; afterwards what it performed before."""
     before, slot = current_action(armature), fcurves.slot_identifier(armature)
     if action == before:
         yield

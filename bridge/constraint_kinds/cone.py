@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import radians
 
 from ...solver.data.requests import ConeLimit
-from ..recipe.syntax.items import BONE, WHEN, Kind, angle, direction, one
-from ..recipe.syntax.table import NumberRange, Table
+from ..recipe_syntax.items import BONE, WHEN, Kind, angle, direction, one
+from ..recipe_syntax.table import NumberRange, Table
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, Row
 from ..rows.row_parts import RowContext, bone_of, direction_of
 from ..rows.stored import boolean, number, vector
@@ -40,8 +40,8 @@ def _draw(fields: FieldDrawing, row: Row) -> None:
     fields.when()
 
 
-def _stretch(table: Table, key: str) -> tuple[float, ...] | None:
-    values = table.numbers(key, "[sideways, forwards]")
+def _stretch(table: Table, key: str) -> tuple[float, float] | None:
+    values = table.pair(key, "[sideways, forwards]")
     if values is not None and min(values) <= 0.0:
         table.refuse(key, f'"{key}" must be above zero in both directions')
     return values

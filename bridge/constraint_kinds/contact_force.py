@@ -6,8 +6,8 @@ from enum import Enum
 
 from ...solver.data.faults import AsksNothing
 from ...solver.data.requests import ConeShape, ForceRequest
-from ..recipe.syntax.items import TOUCHING, WHEN, Kind, choice, number
-from ..recipe.syntax.table import ABOVE_ZERO, NOT_NEGATIVE
+from ..recipe_syntax.items import TOUCHING, WHEN, Kind, choice, number
+from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE
 from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, Row
 from ..rows.row_parts import RowContext, bones_of
 from ..rows.stored import boolean

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ...solver.data.requests import Hold
-from ..recipe.syntax.items import Kind, flag, number
-from ..recipe.syntax.table import ABOVE_ZERO
+from ..recipe_syntax.items import Kind, flag, number
+from ..recipe_syntax.table import ABOVE_ZERO
 from ..rows.choices import HOLD
 from ..rows.kind import (
     BoneUse,

@@ -6,7 +6,7 @@ from math import degrees, pi, radians
 
 from ...solver.data.faults import AsksNothing
 from ...solver.data.requests import AngleLimit, Bound
-from ..recipe.syntax.items import BONE, LIMIT_KEYS, LIMITS, WHEN, Kind
+from ..recipe_syntax.items import BONE, LIMIT_KEYS, LIMITS, WHEN, Kind
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, Row
 from ..rows.row_parts import RowContext, bone_of, ordered_bound
 from ..rows.stored import boolean, number

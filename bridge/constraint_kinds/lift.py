@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...solver.data.requests import Lift
-from ..recipe.syntax.items import TOUCHING, Kind, word
+from ..recipe_syntax.items import TOUCHING, Kind, word
 from ..rows.kind import (
     BoneUse,
     ConstraintKind,

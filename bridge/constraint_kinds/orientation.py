@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...solver.data.requests import OrientationRequest
-from ..recipe.syntax.items import BONE, SLACK, WHEN, Kind, angle
+from ..recipe_syntax.items import BONE, SLACK, WHEN, Kind, angle
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
 from ..rows.row_parts import RowContext, bone_of
 from ..rows.stored import number

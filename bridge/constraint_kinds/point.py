@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from ...solver.data.faults import AsksNothing
 from ...solver.data.requests import Bound, PointAxes, PointRequest
-from ..recipe.syntax.items import BONE, WHEN, Kind, vector
-from ..recipe.syntax.points import ENVIRONMENT, PATH, POINT_AXES
+from ..recipe_syntax.items import BONE, WHEN, Kind, vector
+from ..recipe_syntax.points import ENVIRONMENT, PATH, POINT_AXES
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
 from ..rows.row_parts import RowContext, bone_of, direction_of, offset_of, ordered_bound, scaled
 from ..rows.stored import boolean, booleans, choice, target

@@ -6,8 +6,8 @@ from enum import Enum
 from math import pi
 
 from ...solver.data.requests import PoseRequest, Reference
-from ..recipe.syntax.items import BONES, SLACK, WHEN, Kind, choice, number
-from ..recipe.syntax.table import ABOVE_ZERO
+from ..recipe_syntax.items import BONES, SLACK, WHEN, Kind, choice, number
+from ..recipe_syntax.table import ABOVE_ZERO
 from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
 from ..rows.row_parts import RowContext, bones_of
 from ..rows.stored import boolean, frame

@@ -5,8 +5,8 @@ from __future__ import annotations
 from enum import Enum
 
 from ...solver.data.requests import PhaseTiming
-from ..recipe.syntax.items import Kind, number, word
-from ..recipe.syntax.table import ABOVE_ZERO
+from ..recipe_syntax.items import Kind, number, word
+from ..recipe_syntax.table import ABOVE_ZERO
 from ..rows.kind import (
     BoneUse,
     ConstraintKind,

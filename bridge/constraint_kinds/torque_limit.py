@@ -5,8 +5,8 @@ from __future__ import annotations
 from enum import Enum
 
 from ...solver.data.requests import TorqueLimit
-from ..recipe.syntax.items import BONES, WHEN, Kind, number, whole
-from ..recipe.syntax.table import NOT_NEGATIVE, NumberRange
+from ..recipe_syntax.items import BONES, WHEN, Kind, number, whole
+from ..recipe_syntax.table import NOT_NEGATIVE, NumberRange
 from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, Row
 from ..rows.row_parts import RowContext, some_bones
 from ..rows.stored import boolean, choice

@@ -7,7 +7,7 @@ from math import radians
 from typing import TYPE_CHECKING
 
 from ...solver.data.requests import TwistLimit
-from ..recipe.syntax.items import BONE, LIMIT_KEYS, LIMITS, WHEN, Kind
+from ..recipe_syntax.items import BONE, LIMIT_KEYS, LIMITS, WHEN, Kind
 from ..rows.kind import ConstraintKind, MenuGroup, Row
 from ..rows.row_parts import RowContext, bone_of
 from ..rows.times import when_of

@@ -9,7 +9,13 @@ from math import degrees, radians
 import bpy
 import numpy as np
 
-from ...solver.body.human_limits import ConeRange, Range, beyond, human_ranges, missing_joints
+from ...solver.body.human_limits import (
+    ConeRange,
+    JointRange,
+    human_ranges,
+    limit_violation,
+    missing_joints,
+)
 from ..constraint_kinds import cone, joint_limit
 from ..properties.settings import settings_of
 from .rest_figure import directions, parts_of, recorded_looks, rest_figure, rest_rotations
@@ -43,7 +49,7 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
     made: dict[str, float] = {}
     for limit in human_ranges(figure):
         name = _add(armature, limit)
-        by = beyond(limit, seen[limit.bone], figure) if limit.bone in seen else 0.0
+        by = limit_violation(limit, seen[limit.bone], figure) if limit.bone in seen else 0.0
         made[name] = by
         if by > NOTICED:
             row = settings_of(armature).constraints[-1]
@@ -51,7 +57,7 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
     return JointLimits(tuple(made), missing_joints(figure), made, checked=looks is not None)
 
 
-def _add(armature: bpy.types.Object, limit: Range) -> str:
+def _add(armature: bpy.types.Object, limit: JointRange) -> str:
     kind = (cone if isinstance(limit, ConeRange) else joint_limit).KIND
     row = add_constraint(armature, kind, [limit.bone], 0.0)
     row.name = free_name(settings_of(armature), limit.name)

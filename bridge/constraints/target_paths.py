@@ -59,11 +59,9 @@ def _moves_by_keys_alone(target: bpy.types.Object) -> bool:
 def _keyed(target: bpy.types.Object, frames: FloatArray) -> FloatArray:
     """(T, 3) places of an object that is moved by keys alone, Blender units."""
     places = np.tile(np.array(target.location), (len(frames), 1))
-    curves = fcurves.holder(target)
-    for index in range(3) if curves is not None else ():
-        curve = curves.fcurves.find("location", index=index)
-        if curve is not None and not curve.mute:
-            places[:, index] = [curve.evaluate(frame) for frame in frames]
+    for curve in fcurves.curves_of(target):
+        if curve.data_path == "location" and not curve.mute:
+            places[:, curve.array_index] = [curve.evaluate(frame) for frame in frames]
     return np.asarray(places + np.array(target.delta_location))
 
 

@@ -9,7 +9,7 @@ import bpy
 
 from ...solver.data.traces import Traces
 from ..accessors import armature_data
-from ..armature.traces_store import Kept, kept
+from ..armature.traces_store import StoredTraces, kept
 from ..constraint_kinds import contact_force, torque_limit
 from ..properties.constraint import HangtimeConstraint
 from ..properties.settings import HangtimeSettings, settings_of
@@ -97,7 +97,7 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> PlottedMotions | 
     return PlottedMotions(content, takes)
 
 
-def kept_takes(armature: bpy.types.Object) -> dict[Take, Kept]:
+def kept_takes(armature: bpy.types.Object) -> dict[Take, StoredTraces]:
     """The motions of an armature of which traces are stored."""
     owners = {Take.RECORDING: armature, Take.ADAPTED: settings_of(armature).adapted}
     found = {take: kept(owner) for take, owner in owners.items()}

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import bpy
 
+from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
 from ..accessors import attached
 from ..rows.row import CLASSES as ROW_CLASSES
@@ -249,7 +250,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     gravity: bpy.props.FloatProperty(
         name="Gravity (m/s²)",
         description="Of the place where the motion is performed; 1.62 m/s² on the Moon",
-        default=9.81,
+        default=STANDARD_GRAVITY,
         min=0.1,
         max=50.0,
         precision=3,

@@ -101,10 +101,10 @@ from typing import Any
 
 from ...solver.data.requests import AddedMass, BodyChange, LimbChange, Requests
 from ..constraint_kinds import KINDS
+from ..recipe_syntax.items import BONE, BONES, Kind, number, vector
+from ..recipe_syntax.table import ABOVE_ZERO, Table
+from ..recipe_syntax.toml_text import sections
 from .solution import SOLUTION
-from .syntax.items import BONE, BONES, Kind, number, vector
-from .syntax.table import ABOVE_ZERO, Table
-from .syntax.toml_text import sections
 
 BODY = Kind(
     "body",
@@ -133,7 +133,7 @@ REQUEST_KEYS = (*(kind.header for kind in NAMED), BODY.header, SOLUTION.header)
 
 
 def read_requests(top: Table) -> Requests:
-    """What a recipe asks for. top: its outermost table. Raises BadRecipe."""
+    """Read the requests of a recipe. top: its outermost table. Raises BadRecipe."""
     body = BODY.read(top)
     records = {field: kind.read_all(top) for field, kind in RECORDS.items()}
     parts = {field: kind.read_all(top) for field, kind in BODY_RECORDS.items()}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol
 
-from ..recipe.syntax.items import Kind as RecipeKind
+from ..recipe_syntax.items import Kind as RecipeKind
 from .row_parts import RowContext
 from .stored import Fields
 
@@ -48,7 +48,8 @@ class MenuGroup(Enum):
 class FieldDrawing(Protocol):
     """The sidebar's side of drawing a row's fields."""
 
-    layout: bpy.types.UILayout
+    @property
+    def layout(self) -> bpy.types.UILayout: ...
 
     def bone(self) -> None:
         """The one bone that the row is about."""
@@ -108,7 +109,7 @@ class ConstraintKind:
     number: int
     label: str
     description: str
-    icon: str
+    icon: Icon
     menu: MenuGroup
     requests: str
     record: Callable[[Row, RowContext], Any]

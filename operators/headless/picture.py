@@ -14,7 +14,7 @@ from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.body.character import Body
 from ...solver.data.contacts import Phase, PhaseKind
-from ...solver.data.problem import Axes3, MotionProblem, Pin
+from ...solver.data.problem import MotionProblem, OffsetAxes, Pin
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
 
@@ -151,9 +151,9 @@ def caption(pin: Pin) -> str:
     words = []
     if pin.place is not None:
         words.append(f"to ({', '.join(f'{x:g}' for x in pin.place)}) m")
-    if pin.axes is Axes3.WORLD and any(pin.offset):
+    if pin.axes is OffsetAxes.WORLD and any(pin.offset):
         words.append(f"by ({', '.join(f'{x:g}' for x in pin.offset)}) m")
-    elif pin.axes is Axes3.TRAVEL:
+    elif pin.axes is OffsetAxes.TRAVEL:
         ways = (("forward", "back"), ("left", "right"), ("up", "down"))
         for amount, (ahead, behind) in zip(pin.offset, ways, strict=True):
             if amount:

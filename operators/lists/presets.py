@@ -80,20 +80,20 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from ...bridge.constraints.rest_figure import parts_of  # loads parts of the solver
         from ...solver.body.anatomy import Side
-        from ...solver.body.human_strength import JOINTS, strongest
+        from ...solver.body.human_strength import LEG_JOINTS, peak_torque
 
         armature = chosen_armature(context)
         settings, parts = armature.hangtime, parts_of(armature)
         mass = settings.new_mass if settings.use_new_mass else settings.mass
         told, lost = [], []
-        for part, joint in JOINTS.items():
+        for part, joint in LEG_JOINTS.items():
             bones = [b for side in Side for b in parts.get((part, side), ())]
             if not bones:
                 lost.append(joint.lower())
                 continue
             row = add_constraint(armature, torque_limit.KIND, bones, 0.0)
             row.name = free_name(settings, f"{joint} Strength")
-            row.torque = strongest(part, mass, _height(settings))
+            row.torque = peak_torque(part, mass, _height(settings))
             hold_throughout(row)
             told.append(f"{joint.lower()} {row.torque:.0f} N·m{_needed(settings, bones)}")
         if not told:

@@ -15,7 +15,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.kinematics import BodyPoint, Pose, point_velocity
 from ..data.contacts import Contact
 from ..numerics.interpolation import interpolate
-from ..numerics.splines import ORDER, Basis
+from ..numerics.splines import ORDER, SplineBasis
 from .rows import Layout, RowKind, Rows
 
 FRICTION = 1.0  # of a rubber sole on a hall's floor
@@ -100,7 +100,9 @@ class _Held:
 class Pins:
     """Pin rows on one basis. times: (U,) the breaks at which anything is pinned."""
 
-    def __init__(self, basis: Basis, layout: Layout, contacts: Sequence[PointContact]) -> None:
+    def __init__(
+        self, basis: SplineBasis, layout: Layout, contacts: Sequence[PointContact]
+    ) -> None:
         self.layout = layout
         slack = 1e-9
         pinned = np.array(

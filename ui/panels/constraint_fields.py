@@ -8,13 +8,13 @@ import bpy
 
 from ...bridge.constraint_kinds import KINDS
 from ...bridge.rows.choices import Span
+from ...bridge.rows.kind import Row
 from ...operators.names import OperatorId
 
-Row = bpy.types.PropertyGroup
 Layout = bpy.types.UILayout
 
 
-def draw_constraint(layout: Layout, row: Row, bones: bpy.types.ID, *, own: bool) -> None:
+def draw_constraint(layout: Layout, row: Row, bones: bpy.types.Armature, *, own: bool) -> None:
     """The fields of a row. bones: the armature's data. own: whether its bones may be changed."""
     KINDS[row.kind].draw(RowDrawing(layout, row, bones, own), row)
 
@@ -25,7 +25,7 @@ class RowDrawing:
 
     layout: Layout
     row: Row
-    data: bpy.types.ID
+    data: bpy.types.Armature
     own: bool
 
     def bone(self) -> None:
@@ -65,7 +65,7 @@ class RowDrawing:
         line.prop(self.row, "phase", icon="PREVIEW_RANGE")
 
 
-def draw_bone(layout: Layout, row: Row, data: bpy.types.ID, *, own: bool) -> None:
+def draw_bone(layout: Layout, row: Row, data: bpy.types.Armature, *, own: bool) -> None:
     """The one bone that a row is about. data: the armature's."""
     line = layout.row()
     line.enabled = own
@@ -77,7 +77,7 @@ def draw_bone(layout: Layout, row: Row, data: bpy.types.ID, *, own: bool) -> Non
 
 
 def draw_bones(
-    layout: Layout, row: Row, data: bpy.types.ID, of: str, none: str, *, own: bool
+    layout: Layout, row: Row, data: bpy.types.Armature, of: str, none: str, *, own: bool
 ) -> None:
     """All bones of a row. of: the list's name. none: what no bones mean."""
     column = layout.column(align=True)

@@ -4,22 +4,34 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS
 from ...bridge.constraints.linked_rows import linked_count
+from ...bridge.properties.settings import HangtimeSettings
 from ...bridge.rows.choices import BodyKind, Met
+from ...bridge.rows.kind import Icon, Row
 from ...operators.names import ListId
+from ..drawing.editor import ui_scale
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
-ICONS = {
+ICONS: dict[str, Icon] = {
     **{kind.name: kind.icon for kind in KINDS.values()},
     BodyKind.LOAD.name: "PACKAGE",
     BodyKind.LIMB.name: "BONE_DATA",
 }
-MET_ICONS = {Met.UNKNOWN.name: "INFO", Met.MET.name: "CHECKMARK", Met.MISSED.name: "ERROR"}
+MET_ICONS: dict[str, Icon] = {
+    Met.UNKNOWN.name: "INFO",
+    Met.MET.name: "CHECKMARK",
+    Met.MISSED.name: "ERROR",
+}
+    Met.UNKNOWN.name: "INFO",
+    Met.MET.name: "CHECKMARK",
+    Met.MISSED.name: "ERROR",
+}
 
 
-class _RowList:
-    """Mixin: a line of either list."""
+class _RowList(bpy.types.UIList):
+    """Base: a line of either list."""
 
     rows = ""  # the settings' property
 
@@ -27,23 +39,24 @@ class _RowList:
         self,
         context: bpy.types.Context,
         layout: bpy.types.UILayout,
-        settings: bpy.types.PropertyGroup,
-        row: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_owner: bpy.types.PropertyGroup,
-        _active_name: str,
-        index: int,
+        settings: HangtimeSettings | None,
+        row: Row,
+        _icon: int | None,
+        _active_owner: HangtimeSettings | None,
+        _active_name: str | None,
+        index: int | None,
+        _filter: int | None,
     ) -> None:
         line = layout.row(align=True)
         line.prop(row, "used", text="")
         line = line.row(align=True)
         line.active = row.used
-        wide = context.region.width > WIDE * context.preferences.system.ui_scale
+        wide = present(context.region).width > WIDE * ui_scale(context)
         text = self.told(row) if wide else ""
         if text:
             line = line.split(factor=0.65, align=True)
         name = line.row(align=True)
-        if index < linked_count(settings.id_data, self.rows):
+        if present(index) < linked_count(row.id_data, self.rows):
             name.label(text=row.name, icon=ICONS[row.kind])
         else:
             name.prop(row, "name", text="", emboss=False, icon=ICONS[row.kind])
@@ -54,24 +67,24 @@ class _RowList:
         if row.status:
             end.label(text="", icon=MET_ICONS[row.met])
 
-    def told(self, row: bpy.types.PropertyGroup) -> str:
+    def told(self, row: Row) -> str:
         """What stands beside the name."""
         raise NotImplementedError
 
 
-class ConstraintList(_RowList, bpy.types.UIList):
+class ConstraintList(_RowList):
     bl_idname = ListId.CONSTRAINTS
     rows = "constraints"
 
-    def told(self, row: bpy.types.PropertyGroup) -> str:
+    def told(self, row: Row) -> str:
         return KINDS[row.kind].told(row)
 
 
-class BodyChangeList(_RowList, bpy.types.UIList):
+class BodyChangeList(_RowList):
     bl_idname = ListId.BODY_CHANGES
     rows = "body_changes"
 
-    def told(self, row: bpy.types.PropertyGroup) -> str:
+    def told(self, row: Row) -> str:
         if row.kind == BodyKind.LIMB.name:
             return f"× {row.length:.2g}" if row.length != 1.0 else ""
         return f"{100.0 * row.share:.0f} %" if row.by_share else f"{row.mass:.3g} kg"

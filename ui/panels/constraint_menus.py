@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
 from ...bridge.rows.choices import BodyKind
-from ...bridge.rows.kind import MenuGroup
+from ...bridge.rows.kind import Icon, MenuGroup
 from ...operators.names import MenuId, OperatorId
 from .constraint_lists import ICONS
 
@@ -17,7 +18,7 @@ class AddConstraintMenu(bpy.types.Menu):
     bl_description = "Add a constraint about the selected pose bones and the current frame"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         for group in MenuGroup:
             for kind in (kind for kind in KINDS.values() if kind.menu is group):
                 entry = layout.operator(OperatorId.ADD_CONSTRAINT, text=kind.label, icon=kind.icon)
@@ -31,7 +32,7 @@ class PresetsMenu(bpy.types.Menu):
     bl_label = "Add Preset"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         layout.operator(OperatorId.JOINT_LIMITS, icon=cone.KIND.icon)
         layout.operator(OperatorId.JOINT_STRENGTH, icon=torque_limit.KIND.icon)
         layout.separator()
@@ -45,16 +46,17 @@ class ConstraintMoreMenu(bpy.types.Menu):
     bl_label = "Constraint Specials"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         layout.operator(OperatorId.COPY_CONSTRAINT, icon="DUPLICATE")
         layout.operator(OperatorId.ASSIGN_BONES, icon="RESTRICT_SELECT_OFF").of = "CONSTRAINTS"
         layout.operator(OperatorId.PLACE_CONSTRAINT, icon="CON_LOCLIKE")
         layout.separator()
-        for to, text, icon in (
+        ranges: tuple[tuple[str, str, Icon], ...] = (
             ("FRAME", "Set Range to Current Frame", "KEYFRAME"),
             ("PHASE", "Set Range to Current Phase", "CENTER_ONLY"),
             ("PREVIEW", "Set Range to Preview Range", "PREVIEW_RANGE"),
-        ):
+        )
+        for to, text, icon in ranges:
             layout.operator(OperatorId.SET_CONSTRAINT_RANGE, text=text, icon=icon).to = to
         layout.separator()
         layout.menu(MenuId.PRESETS, icon="PRESET")
@@ -67,7 +69,7 @@ class AddBodyChangeMenu(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         for kind in BodyKind:
-            entry = self.layout.operator(
+            entry = present(self.layout).operator(
                 OperatorId.ADD_BODY_CHANGE, text=kind.value, icon=ICONS[kind.name]
             )
             entry.kind = kind.name

@@ -7,7 +7,7 @@ import numpy as np
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.traces_store import keep
 from hangtime.bridge.rows.kind import ConstraintKind
-from hangtime.solver.data.traces import Flight, Traces
+from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.tests.blender.helpers import rigs
 from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Layer, Part
@@ -75,7 +75,7 @@ def traced(armature: bpy.types.Object, *, adapted: bool = False) -> Traces:
         weight=700.0,
         joints=(),
         torques=np.zeros((count, 0)),
-        flights=(Flight("flight 1", 12.0, 18.0, np.eye(3)),) * contacts,
+        flights=(FlightParabola("flight 1", 12.0, 18.0, np.eye(3)),) * contacts,
     )
 
 

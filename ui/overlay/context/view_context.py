@@ -11,7 +11,7 @@ from mathutils import Matrix
 
 from ....bridge.accessors import current_action, present
 from ....bridge.armature.poses import metres_per_unit
-from ....bridge.armature.traces_store import Kept, kept
+from ....bridge.armature.traces_store import StoredTraces, kept
 from ....bridge.properties.constraint import HangtimeConstraint
 from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ....bridge.properties.view import HangtimeView
@@ -124,7 +124,7 @@ class ViewContext:
             if row.kind in kinds:
                 yield row, index == chosen
 
-    def _of(self, found: Kept | None) -> ShownMotion | None:
+    def _of(self, found: StoredTraces | None) -> ShownMotion | None:
         if found is None or not len(found.traces.frames):
             return None
         matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)

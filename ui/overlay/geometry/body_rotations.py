@@ -14,9 +14,9 @@ import numpy as np
 
 from ....bridge.shapes.vectors import unit
 from ....solver.arrays import FloatArray
+from ....solver.body.human_limits import MIN_BEND_SINE
 
 FLAT = 0.15  # joints whose second extent is a smaller share of the first lie on a line
-LEAST_BEND = 0.05  # one that bends less does not tell its direction; as in constraint_builder.py
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class TracedFigure:
         straight = self.along[[max(parent, 0) for parent in self.parents]]
         ahead = unit(self.leans.mean(axis=0))
         bent = ahead - straight * (ahead * straight).sum(axis=1, keepdims=True)
-        tells = np.linalg.norm(bent, axis=1, keepdims=True) > LEAST_BEND
+        tells = np.linalg.norm(bent, axis=1, keepdims=True) > MIN_BEND_SINE
         return np.where(tells, unit(bent), np.nan)
 
     @cached_property

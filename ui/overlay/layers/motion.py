@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....solver.arrays import FloatArray
+from ....solver.data.constants import STANDARD_GRAVITY
 from ....solver.data.traces import Traces
 from ...drawing.sketch import Colour
 from ..context.layer import Layer, Part
@@ -19,7 +20,6 @@ LEAST_FORCE = 0.03  # body weights; less is not drawn
 LEAST_SAID = 0.1  # body weights; less is not written
 SHAFT = 0.011  # m, radius of an arrow
 PER_MOMENTUM = 1.6  # s, an arrow's length per angular momentum and kg
-GRAVITY = 9.81  # m/s², of which a weight is
 DASH, GAP = 0.05, 0.035  # m, of a parabola
 CORNERS = 80  # of a path at most
 CENTRE = 0.03  # m, radius of the centre of mass
@@ -111,7 +111,7 @@ def centre_shapes(
         yield rings(at, CENTRE * size, faded(colour, 0.6))
     momentum = interpolated(traces, traces.momentum, frame)
     if spin:
-        along = momentum * PER_MOMENTUM * GRAVITY / max(traces.weight, 1e-9) * size
+        along = momentum * PER_MOMENTUM * STANDARD_GRAVITY / max(traces.weight, 1e-9) * size
         yield solids.arrows(at, along, 0.9 * SHAFT * size, palette.MOMENTUM)
         words = f"{np.linalg.norm(momentum):.1f} N·m·s"
         yield Label(words, tuple((at + along).tolist()), palette.MOMENTUM)

@@ -10,15 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solver.data.problem import MotionProblem
-from ..solver.numerics.block_banded import BlockBanded
-from ..solver.numerics.splines import ORDER
-from ..solver.optimisation.sqp import worst_violation
-from ..solver.stages.fit import Fit
-from ..solver.stages.setup import set_up
-from ..solver.stages.warm_start import stance_moves, warm_start
-from ..solver.transcription.rows import Rows
-from ..solver.transcription.transcription import Transcription
+from ...solver.data.problem import MotionProblem
+from ...solver.numerics.block_banded import BlockBanded
+from ...solver.numerics.splines import ORDER
+from ...solver.optimisation.sqp import worst_violation
+from ...solver.stages.fit import Fit
+from ...solver.stages.setup import set_up
+from ...solver.stages.warm_start import stance_moves, warm_start
+from ...solver.transcription.rows import Rows
+from ...solver.transcription.transcription import Transcription
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int_]

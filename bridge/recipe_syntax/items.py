@@ -1,4 +1,4 @@
-"""Items: what some keys of a recipe's table say of a record, both ways; kinds are made of them."""
+"""Bidirectional mapping between the keys of a recipe's tables and the fields of records."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, Generic, TypeVar
 
-from ....solver.data.requests import Moment, When
+from ...solver.data.requests import Moment, When
 from .table import ANY_NUMBER, NOT_NEGATIVE, NumberRange, Table
 from .toml_text import degrees, entries
 
@@ -18,7 +18,7 @@ TRAVEL_KEYS = ("forward", "left", "up")
 
 @dataclass(frozen=True)
 class Item:
-    """Some keys of a table.
+    """Mapping between some keys of a table and fields of its record.
 
     read: the record's fields that the keys say, by name; those that are left out keep their
     default. Raises BadRecipe. write: the other way, from the record to the keys.
@@ -31,7 +31,7 @@ class Item:
 
 @dataclass(frozen=True)
 class Kind(Generic[Record]):
-    """A kind of table, and the record that it is read as.
+    """Schema of one kind of table, and the record that it is read as.
 
     needs: groups of keys of each of which one must be there. excludes: keys, the first of which
     must not stand beside any of the others. named: whether it has a name of the artist's.
@@ -60,7 +60,7 @@ class Kind(Generic[Record]):
         return self._read(inside.table(self.header, self.keys, "key"), "")
 
     def default_name(self, i: int) -> str:
-        """What the i-th is called that has no name."""
+        """Default name of the i-th (from 0) record."""
         return f"{self.header.capitalize()} {i + 1}"
 
     def write(self, record: Record) -> Values:
@@ -118,29 +118,29 @@ def flag(key: str) -> Item:
     return one(key, Table.flag)
 
 
-def number(key: str, span: NumberRange = ANY_NUMBER, attribute: str | None = None) -> Item:
+def number(key: str, allowed: NumberRange = ANY_NUMBER, attribute: str | None = None) -> Item:
     """A number."""
-    return one(key, lambda table, key: table.number(key, span), attribute=attribute)
+    return one(key, lambda table, key: table.number(key, allowed), attribute=attribute)
 
 
-def whole(key: str, span: NumberRange) -> Item:
-    """A whole number; `span` must allow no other."""
-    return one(key, lambda table, key: int(table.number(key, span) or 0))
+def whole(key: str, allowed: NumberRange) -> Item:
+    """A whole number; `allowed` must hold no other."""
+    return one(key, lambda table, key: int(table.number(key, allowed) or 0))
 
 
-def angle(key: str, span: NumberRange = ANY_NUMBER) -> Item:
-    """Degrees in the recipe, in which `span` is; rad in the record."""
-    return one(key, lambda table, key: math.radians(table.number(key, span) or 0.0), degrees)
+def angle(key: str, allowed: NumberRange = ANY_NUMBER) -> Item:
+    """Degrees in the recipe, in which `allowed` is; rad in the record."""
+    return one(key, lambda table, key: math.radians(table.number(key, allowed) or 0.0), degrees)
 
 
 def vector(key: str) -> Item:
     """A place or an offset."""
-    return one(key, lambda table, key: table.numbers(key, "[x, y, z]"))
+    return one(key, Table.vector)
 
 
-def direction(table: Table, key: str) -> tuple[float, ...] | None:
+def direction(table: Table, key: str) -> tuple[float, float, float] | None:
     """A vector that points somewhere; as long as it is written."""
-    values = table.numbers(key, "[x, y, z]")
+    values = table.vector(key)
     if values is not None and not any(values):
         table.refuse(key, f'"{key}" must point somewhere; [0, 0, 0] does not')
     return values
@@ -156,7 +156,7 @@ def choice(key: str, of: type[Enum]) -> Item:
 
 def _read_when(table: Table) -> Values:
     table.not_both("frame", ("frames", "moment"))
-    frames = table.numbers("frames", "[first, last]")
+    frames = table.pair("frames", "[first, last]")
     if frames is not None and frames[0] > frames[1]:
         table.refuse("frames", f"the last frame, {frames[1]:g}, comes before the first")
     if "moment" in table.values and not {"phase", "frames"} & set(table.values):

@@ -1,4 +1,4 @@
-"""Values as the TOML text that a person would write."""
+"""TOML serialisation in the style of a text that a person would write."""
 
 import json
 import math

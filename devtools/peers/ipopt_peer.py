@@ -10,8 +10,8 @@ import time
 import casadi as ca
 import numpy as np
 
-from ..solver.data.problem import MotionProblem
-from ..solver.stages.fit import Fit
+from ...solver.data.problem import MotionProblem
+from ...solver.stages.fit import Fit
 from .task import Entries, Equations, FloatArray, PeerResult, Task, judged, metric_entries
 
 Buffers = tuple[memoryview, ...]

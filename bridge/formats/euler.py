@@ -1,4 +1,4 @@
-"""Rotation matrices of whole clips from angles about coordinate axes."""
+"""Euler angles of whole clips to rotation matrices."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from ...solver.arrays import FloatArray
 from ...solver.numerics.rotations import axis_rotation
 
 
-def product(axes: Sequence[int], angles: FloatArray) -> FloatArray:
+def euler_matrices(axes: Sequence[int], angles: FloatArray) -> FloatArray:
     """(T, 3, 3): R(axes[0]) R(axes[1]) ..., by the columns of angles (T, len(axes)), rad."""
     out = np.broadcast_to(np.eye(3), (len(angles), 3, 3)).copy()
     for column, axis in enumerate(axes):

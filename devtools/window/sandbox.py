@@ -1,6 +1,6 @@
-"""A room with a real Blender in it: Debian by debootstrap, entered with nothing of ours around it.
+"""Sandbox with a real Blender: Debian by debootstrap, entered by chroot in namespaces of its own.
 
-Whatever is mounted for the room is mounted in a namespace that ends with the command that needed
+Whatever is mounted for the sandbox is mounted in a namespace that ends with the command that needed
 it, killed or not, so nothing is ever left mounted. Linux and root only. Standard library only.
 """
 
@@ -55,8 +55,8 @@ VARIABLES = {
 
 
 @dataclass(frozen=True)
-class View:
-    """A folder of this machine, and where the room sees it."""
+class Mount:
+    """A folder of this machine and its mount point in the sandbox."""
 
     folder: Path
     place: str
@@ -64,7 +64,7 @@ class View:
 
 
 @dataclass(frozen=True)
-class Room:
+class Sandbox:
     """A folder with a Debian in it."""
 
     folder: Path
@@ -88,17 +88,17 @@ class Room:
         self,
         script: str,
         *,
-        views: Sequence[View],
+        mounts: Sequence[Mount],
         variables: Mapping[str, str],
         limit: float,
         log: Path,
     ) -> int:
-        """Run a shell script in the room, without network, with a /tmp and a home that it loses.
+        """Run a shell script in the sandbox, without network, with a /tmp and a home that it loses.
 
         Its output goes to `log`. Whatever it started ends with it, after `limit` seconds at the
         latest. The exit code, or 124 where it ran out of time.
         """
-        command = [*ALONE, "--net", "sh", "-ec", self.entrance(script, views, variables)]
+        command = [*ALONE, "--net", "sh", "-ec", self.entry_script(script, mounts, variables)]
         with log.open("wb") as output:
             process = subprocess.Popen(
                 command,
@@ -115,8 +115,10 @@ class Room:
                 process.send_signal(signal.SIGKILL)  # and so, by --kill-child, all that it started
                 process.wait()
 
-    def entrance(self, script: str, views: Sequence[View], variables: Mapping[str, str]) -> str:
-        """What mounts the room's surroundings and goes in."""
+    def entry_script(
+        self, script: str, mounts: Sequence[Mount], variables: Mapping[str, str]
+    ) -> str:
+        """Shell script that mounts the sandbox's surroundings and enters by chroot."""
         inside = shlex.quote(str(self.folder))
         lines = [
             f"mount -t proc proc {inside}/proc",
@@ -124,41 +126,41 @@ class Room:
             *(f"mount -t tmpfs tmpfs {inside}/{name}" for name in ("tmp", "mnt", "root")),
             f"chmod 1777 {inside}/tmp",
         ]
-        for view in views:
-            there = f"{inside}{shlex.quote(view.place)}"
-            lines += [f"mkdir -p {there}", f"mount --bind {shlex.quote(str(view.folder))} {there}"]
-            if not view.writable:
+        for mount in mounts:
+            there = f"{inside}{shlex.quote(mount.place)}"
+            lines += [f"mkdir -p {there}", f"mount --bind {shlex.quote(str(mount.folder))} {there}"]
+            if not mount.writable:
                 lines.append(f"mount -o remount,bind,ro {there}")
         settings = [f"{name}={value}" for name, value in {**VARIABLES, **variables}.items()]
         inner = ["chroot", str(self.folder), "env", "-i", *settings, "sh", "-ec", script]
         return "\n".join([*lines, f"exec {shlex.join(inner)}"])
 
 
-def prepare(suite: str = SUITE) -> Room:
-    """The room, made where it is missing. Raises SetUpError with what this machine lacks."""
-    room = Room(CACHE / "window" / suite)
+def prepare(suite: str = SUITE) -> Sandbox:
+    """The sandbox, made where it is missing. Raises SetUpError with what this machine lacks."""
+    sandbox = Sandbox(CACHE / "window" / suite)
     check_rights()
-    if room.ready:
-        return room
+    if sandbox.ready:
+        return sandbox
     begun = time.monotonic()
-    room.folder.parent.mkdir(parents=True, exist_ok=True)
-    room.log.unlink(missing_ok=True)
-    have_debootstrap(room.log)
-    make(room, suite)
-    print(f"The room with Blender was made in {time.monotonic() - begun:.0f} s", flush=True)
-    return room
+    sandbox.folder.parent.mkdir(parents=True, exist_ok=True)
+    sandbox.log.unlink(missing_ok=True)
+    have_debootstrap(sandbox.log)
+    make(sandbox, suite)
+    print(f"The sandbox with Blender was made in {time.monotonic() - begun:.0f} s", flush=True)
+    return sandbox
 
 
 def check_rights() -> None:
-    """Raises SetUpError where a room can be neither made nor entered."""
+    """Raises SetUpError where a sandbox can be neither made nor entered."""
     if not Path("/etc/debian_version").is_file():
-        raise SetUpError("The window's room is made of Debian's packages; run this on Debian.")
+        raise SetUpError("The window's sandbox is made of Debian's packages; run this on Debian.")
     if os.geteuid() != 0:
-        raise SetUpError("Only root may make and enter the window's room; run this with sudo.")
+        raise SetUpError("Only root may make and enter the window's sandbox; run this with sudo.")
     probe = subprocess.run([*ALONE, "--net", "true"], capture_output=True, text=True)
     if probe.returncode != 0:
         problem = probe.stderr.strip() or f"unshare ended with code {probe.returncode}"
-        raise SetUpError(f"The window's room needs the right to mount, not had here: {problem}")
+        raise SetUpError(f"The window's sandbox needs the right to mount, not had here: {problem}")
 
 
 def have_debootstrap(log: Path) -> None:
@@ -171,33 +173,33 @@ def have_debootstrap(log: Path) -> None:
     run_quietly("Installing debootstrap", install, log, variables)
 
 
-def make(room: Room, suite: str) -> None:
-    """A new room in place of whatever lies there."""
-    room.stamp.unlink(missing_ok=True)
-    remove(room.folder)
+def make(sandbox: Sandbox, suite: str) -> None:
+    """A new sandbox in place of whatever lies there."""
+    sandbox.stamp.unlink(missing_ok=True)
+    remove(sandbox.folder)
     source = apt_sources.mirror()
-    bootstrap = ["debootstrap", "--variant=minbase", suite, str(room.folder)]
+    bootstrap = ["debootstrap", "--variant=minbase", suite, str(sandbox.folder)]
     bootstrap += [source] if source else []
-    run_quietly(f"Fetching Debian {suite}", [*ALONE, *bootstrap], room.log)
-    (room.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text(FAST)
-    (room.folder / "etc/apt/apt.conf.d/99machine").write_text(ways_to_fetch())
+    run_quietly(f"Fetching Debian {suite}", [*ALONE, *bootstrap], sandbox.log)
+    (sandbox.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text(FAST)
+    (sandbox.folder / "etc/apt/apt.conf.d/99machine").write_text(fetch_settings())
     install = "apt-get install -y --no-install-recommends " + " ".join(PACKAGES)
     inner = [f"{name}={value}" for name, value in VARIABLES.items()]
-    chroot = ["chroot", str(room.folder), "env", "-i", *inner, "sh", "-ec"]
+    chroot = ["chroot", str(sandbox.folder), "env", "-i", *inner, "sh", "-ec"]
     chroot.append(f"mount -t proc proc /proc; apt-get update; {install}; apt-get clean")
-    run_quietly("Installing Blender in it (400 MB to fetch)", [*ALONE, *chroot], room.log)
-    room.stamp.write_text(json.dumps(PACKAGES))
+    run_quietly("Installing Blender in it (400 MB to fetch)", [*ALONE, *chroot], sandbox.log)
+    sandbox.stamp.write_text(json.dumps(PACKAGES))
 
 
-def ways_to_fetch() -> str:
-    """What this machine's apt is told about fetching, such as a proxy, for the room's to do so."""
+def fetch_settings() -> str:
+    """This machine's apt settings for fetching, such as a proxy, for the sandbox's apt."""
     told = subprocess.run(["apt-config", "dump", "Acquire"], capture_output=True, text=True)
     lines = told.stdout.splitlines()
     return "".join(f"{line}\n" for line in lines if line.startswith(FETCHING))
 
 
 def remove(folder: Path) -> None:
-    """Remove a room. Raises SetUpError where something is mounted in it, which must not go too."""
+    """Remove a sandbox. Raises SetUpError where something is mounted in it."""
     for line in Path("/proc/mounts").read_text().splitlines():
         place = Path(line.split()[1].replace("\\040", " "))
         if place == folder or folder in place.parents:

@@ -1,8 +1,8 @@
-"""Sees Blender's window as a person does: where a button, a tab or a place of the scene lies.
+"""Locator of buttons, tabs and points of the scene on the screen of Blender's window.
 
 Works inside a Blender with a window. Buttons are found by going over the region with the pointer
 and asking Blender what lies under it, the way its own "copy data path" and "copy Python command" do
-(Ctrl-C over a button). Generators of waits, in seconds; see window_stage.py.
+(Ctrl-C over a button). Generators of waits, in seconds; see driver.py.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
-from .hands import Hands, Place
+from .input_device import InputDevice, Place
 
 Result = TypeVar("Result")
 Waits = Generator[float, None, Result]
@@ -30,8 +30,15 @@ MARGIN = 12  # pixels beside lists and buttons
 SEARCH = "a tab of the sidebar"
 
 
-class NotSeen(Exception):
-    """What was looked for is not there. Says what and where."""
+def window_manager() -> bpy.types.WindowManager:
+    """Blender's one window manager."""
+    manager = bpy.context.window_manager
+    assert manager is not None
+    return manager
+
+
+class NotFound(Exception):
+    """An element is not on the screen; the message names it."""
 
 
 @dataclass(frozen=True)
@@ -43,21 +50,22 @@ class Spot:
 
 
 @dataclass
-class Eyes:
-    """Looks at the first window's 3D viewport and its sidebar."""
+class Screen:
+    """Finds elements of the first window's 3D viewport and its sidebar."""
 
-    hands: Hands
-    _seen: dict[str, Spot] = field(default_factory=dict)  # what lay where, as long as it may
+    input: InputDevice
+    _cache: dict[str, Spot] = field(default_factory=dict)  # places by element; tried first
 
     @property
     def window(self) -> bpy.types.Window:
-        return bpy.context.window_manager.windows[0]
+        """Blender's first window."""
+        return window_manager().windows[0]
 
     def area(self, kind: str = "VIEW_3D") -> bpy.types.Area:
-        """The largest area of a kind. Raises NotSeen."""
+        """The largest area of a kind. Raises NotFound."""
         areas = [area for area in self.window.screen.areas if area.type == kind]
         if not areas:
-            raise NotSeen(f"no area of the kind {kind}")
+            raise NotFound(f"no area of the kind {kind}")
         return max(areas, key=lambda area: area.width * area.height)
 
     def has(self, kind: str) -> bool:
@@ -82,42 +90,44 @@ class Eyes:
         return self.on_screen(region.x + 0.2 * region.width, region.y + 0.15 * region.height)
 
     def place_of(self, point: Vector) -> Place:
-        """Where a point of the world is drawn. Raises NotSeen where that is out of the region."""
+        """Project a point of the world to the screen. Raises NotFound outside the region."""
         region = self.region()
-        seen = location_3d_to_region_2d(region, self.area().spaces[0].region_3d, point)
+        space = self.area().spaces[0]
+        assert isinstance(space, bpy.types.SpaceView3D)
+        assert space.region_3d is not None
+        seen = location_3d_to_region_2d(region, space.region_3d, point)
         if seen is None or not (0 <= seen.x < region.width and 0 <= seen.y < region.height):
-            raise NotSeen(f"the point {tuple(point)} is not in the viewport")
+            raise NotFound(
+                f"the point ({point.x:g}, {point.y:g}, {point.z:g}) is not in the viewport"
+            )
         return self.on_screen(region.x + seen.x, region.y + seen.y)
 
     def under(self, kind: str = "UI", area: str = "VIEW_3D") -> str:
-        """What lies under the pointer: `bpy.ops.a.b(...)`, a data path, or nothing."""
-        manager = bpy.context.window_manager
+        """Element under the pointer: `bpy.ops.a.b(...)`, a data path, or nothing."""
+        manager = window_manager()
         kept = manager.clipboard
-        regions = {
-            "window": self.window,
-            "area": self.area(area),
-            "region": self.region(kind, area),
-        }
+        over = self.region(kind, area)
         try:
-            with bpy.context.temp_override(**regions):
+            with bpy.context.temp_override(window=self.window, area=self.area(area), region=over):
                 manager.clipboard = ""
-                if bpy.ops.ui.copy_python_command_button.poll():
+                # The stubs ask poll() for an argument that Blender does not take.
+                if bpy.ops.ui.copy_python_command_button.poll():  # type: ignore[call-arg]
                     bpy.ops.ui.copy_python_command_button()
-                elif bpy.ops.ui.copy_data_path_button.poll():
+                elif bpy.ops.ui.copy_data_path_button.poll():  # type: ignore[call-arg]
                     bpy.ops.ui.copy_data_path_button(full_path=True)
                 return str(manager.clipboard)
         finally:
             manager.clipboard = kept
 
     def find_button(self, what: str, *columns: float) -> Waits[Place]:
-        """Where the sidebar's button is whose command or data path has `what` in it, scrolling if
-        need be. columns: where to look, in the sidebar's width. Raises NotSeen."""
-        for on, spot in list(self._seen.items()):
+        """Find the sidebar's button whose command or data path has `what` in it, scrolling if
+        need be. columns: where to look, in the sidebar's width. Raises NotFound."""
+        for on, spot in list(self._cache.items()):
             if what in on:
                 place = yield from self._bring(spot)
                 if what in (yield from self.look(place)):
                     return place
-                del self._seen[on]
+                del self._cache[on]
         columns = columns or COLUMNS
         looked = dict.fromkeys(columns, math.inf)  # at all above that height, in each column
         for notches in (0, *FOLDS):
@@ -131,23 +141,23 @@ class Eyes:
                     looked[column] = spot.height
                     on = yield from self.look(place)
                     if on:
-                        self._seen.setdefault(on, spot)
+                        self._cache.setdefault(on, spot)
                     if what in on:
                         return place
-        raise NotSeen(f"no button of the sidebar is {what}")
+        raise NotFound(f"no button of the sidebar is {what}")
 
     def look(self, place: Place) -> Waits[str]:
-        """What lies at a place of the sidebar."""
-        yield self.hands.move(place, 0.0)
+        """Element at a place of the sidebar."""
+        yield self.input.move(place, 0.0)
         yield LOOK
         return self.under()
 
     def forget(self) -> None:
-        """What lay where no longer counts."""
-        self._seen.clear()
+        """Drop the cached places."""
+        self._cache.clear()
 
     def _spot(self, place: Place) -> Spot:
-        """What a place on the screen is in the sidebar's content."""
+        """A place on the screen in the sidebar's content."""
         region = self.region("UI")
         y = self.window.height - 1 - place[1] - region.y
         return Spot(place[0], region.view2d.region_to_view(0, y)[1])
@@ -168,12 +178,12 @@ class Eyes:
         region = self.region("UI")  # at its left edge: over a list the wheel would turn that
         edge = self.on_screen(region.x + MARGIN, region.y + region.height / 2)
         before = region.view2d.region_to_view(0, 0)[1]
-        yield self.hands.wheel(edge, notches)
+        yield self.input.wheel(edge, notches)
         yield 0.2
         return bool(region.view2d.region_to_view(0, 0)[1] != before)
 
     def scroll_down(self) -> Waits[None]:
-        """To the sidebar's foot."""
+        """Scroll to the sidebar's foot."""
         yield from self._scroll(-FOLDS[0])
 
     def _column(self, column: float) -> list[Place]:
@@ -192,14 +202,14 @@ class Eyes:
         return found
 
     def open_tab(self, name: str) -> Waits[None]:
-        """Click the sidebar's tabs, from the top, until this one is open. Raises NotSeen."""
+        """Click the sidebar's tabs, from the top, until this one is open. Raises NotFound."""
         region = self.region("UI")
         x = region.x + region.width - TAB_WIDTH / 2
         for y in range(region.y + region.height - 20, region.y, -30):
             if region.active_panel_category == name:
                 self.forget()
                 return
-            self.hands.forget(SEARCH)  # who can read clicks the right one at once
-            yield self.hands.click(self.on_screen(x, y), SEARCH)
+            self.input.forget(SEARCH)  # who can read clicks the right one at once
+            yield self.input.click(self.on_screen(x, y), SEARCH)
             yield 0.2
-        raise NotSeen(f"the sidebar has no tab {name}")
+        raise NotFound(f"the sidebar has no tab {name}")

@@ -1,4 +1,4 @@
-"""On which line of a TOML or JSON text each key and each element stands.
+"""Source map of a TOML or JSON text: the line of each key and each array element.
 
 The standard parsers do not tell. The text has been parsed before: what is wrong in it is not
 noticed here.
@@ -9,7 +9,7 @@ import re
 import tomllib
 from collections.abc import Callable
 
-Path = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 
 _BARE = re.compile(r"[A-Za-z0-9_+.:-]+(?: \d\d:[0-9:.Z+-]+)?")  # numbers, words, dates
 _STRING = re.compile(
@@ -24,36 +24,36 @@ _SPACE = re.compile(r"[ \t]*")
 _WORD = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def toml_lines(text: str) -> list[tuple[Path, int]]:
+def toml_lines(text: str) -> list[tuple[KeyPath, int]]:
     """Every key and array element of a valid TOML text with its line, counted from 1, in order.
 
     ("pin", 1, "phase") is the phase of the second [[pin]].
     """
-    return _Walk(text, lambda key: tomllib.loads(f"key = {key}")["key"]).toml()
+    return _Cursor(text, lambda key: tomllib.loads(f"key = {key}")["key"]).toml()
 
 
-def json_lines(text: str) -> list[tuple[Path, int]]:
-    """The same of a valid JSON text; a key that occurs twice is there twice."""
-    return _Walk(text, json.loads).json()
+def json_lines(text: str) -> list[tuple[KeyPath, int]]:
+    """Like `toml_lines`, of a valid JSON text; a key that occurs twice is there twice."""
+    return _Cursor(text, json.loads).json()
 
 
-class _Walk:
-    """A position in a text that moves over keys and values and notes their lines."""
+class _Cursor:
+    """Cursor over a text that notes the lines of keys and values."""
 
     def __init__(self, text: str, unquote: Callable[[str], str]) -> None:
         self.text = text
         self.unquote = unquote
         self.at = 0
-        self.found: list[tuple[Path, int]] = []
-        self.tables: dict[Path, int] = {}  # how many [[tables]] of a path there are
+        self.found: list[tuple[KeyPath, int]] = []
+        self.tables: dict[KeyPath, int] = {}  # how many [[tables]] of a path there are
 
-    def json(self) -> list[tuple[Path, int]]:
+    def json(self) -> list[tuple[KeyPath, int]]:
         self._skip(_BLANK)
         self._value(())
         return self.found
 
-    def toml(self) -> list[tuple[Path, int]]:
-        table: Path = ()
+    def toml(self) -> list[tuple[KeyPath, int]]:
+        table: KeyPath = ()
         self._skip(_BLANK)
         while self.at < len(self.text):
             if self.text.startswith("[", self.at):
@@ -63,7 +63,7 @@ class _Walk:
             self._skip(_BLANK)
         return self.found
 
-    def _note(self, path: Path, at: int) -> None:
+    def _note(self, path: KeyPath, at: int) -> None:
         self.found.append((path, self.text.count("\n", 0, at) + 1))
 
     def _skip(self, pattern: re.Pattern[str]) -> str:
@@ -72,13 +72,13 @@ class _Walk:
         self.at = match.end() if match else self.at
         return match[0] if match else ""
 
-    def _header(self) -> Path:
+    def _header(self) -> KeyPath:
         """[table] or [[table]]; inside an array of tables its last element is meant."""
         start = self.at
         repeated = self.text.startswith("[[", self.at)
         self.at += 2 if repeated else 1
         *parents, last = self._dotted()
-        path: Path = ()
+        path: KeyPath = ()
         for key in parents:
             path = self._entered((*path, key))
         path = (*path, last)
@@ -90,7 +90,7 @@ class _Walk:
         self.at += 2 if repeated else 1
         return path
 
-    def _entered(self, path: Path) -> Path:
+    def _entered(self, path: KeyPath) -> KeyPath:
         return (*path, self.tables[path] - 1) if path in self.tables else path
 
     def _dotted(self) -> list[str]:
@@ -108,7 +108,7 @@ class _Walk:
         quoted = self._skip(_STRING)
         return self.unquote(quoted) if quoted else self._skip(_WORD)
 
-    def _pair(self, table: Path) -> None:
+    def _pair(self, table: KeyPath) -> None:
         """key = value, or "key": value."""
         start = self.at
         path = (*table, *self._dotted())
@@ -118,7 +118,7 @@ class _Walk:
         self._skip(_BLANK)
         self._value(path)
 
-    def _value(self, path: Path) -> None:
+    def _value(self, path: KeyPath) -> None:
         if self.text.startswith("{", self.at):
             self._members("}", lambda _: self._pair(path))
         elif self.text.startswith("[", self.at):
@@ -126,12 +126,12 @@ class _Walk:
         elif not self._skip(_STRING):
             self._skip(_BARE)
 
-    def _element(self, path: Path) -> None:
+    def _element(self, path: KeyPath) -> None:
         self._note(path, self.at)
         self._value(path)
 
     def _members(self, close: str, member: Callable[[int], None]) -> None:
-        """What stands between brackets, with commas between."""
+        """Members between brackets, with commas between."""
         self.at += 1
         count = 0
         self._skip(_BLANK)

@@ -1,4 +1,4 @@
-"""Typed reading of a recipe's tables; what does not fit is refused at its line."""
+"""Schema validation of a recipe's tables: typed access, refusals with their line."""
 
 import difflib
 import math
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NoReturn, TypeVar
 
-from ....solver.data.faults import BadRecipe
-from .source_lines import Path
+from ...solver.data.faults import BadRecipe
+from .source_lines import KeyPath
 
 Word = TypeVar("Word", bound=Enum)
 
 
 @dataclass(frozen=True)
 class NumberRange:
-    """Which numbers are allowed, and how that is said: "must be ..."."""
+    """Admissible range of a number, with its wording: "must be ..."."""
 
     words: str
     holds: Callable[[float], bool]
@@ -31,9 +31,9 @@ class Source:
     """A recipe's path, for faults, and the line of each of its keys and elements."""
 
     path: str
-    lines: Mapping[Path, int]
+    lines: Mapping[KeyPath, int]
 
-    def refuse(self, place: Path, problem: str) -> NoReturn:
+    def refuse(self, place: KeyPath, problem: str) -> NoReturn:
         """Raises BadRecipe at the innermost part of the place that has a line, or what is in it."""
         for length in range(len(place), 0, -1):
             outer = place[:length]
@@ -51,7 +51,7 @@ class Table:
     """
 
     source: Source
-    place: Path
+    place: KeyPath
     values: dict[str, Any]
     known: Sequence[str]
     kind: str = "key"
@@ -81,26 +81,38 @@ class Table:
             wanted = " or ".join(f'"{key}"' for key in keys)
             self.source.refuse(self.place, f"this {what} has no {wanted}; add it")
 
-    def number(self, key: str, span: NumberRange = ANY_NUMBER) -> float | None:
+    def number(self, key: str, allowed: NumberRange = ANY_NUMBER) -> float | None:
         """A finite number that is allowed, None where absent."""
         if key not in self.values:
             return None
         value = self.values[key]
         if not _is_number(value):
             self.refuse(key, f'"{key}" must be a number, not {shown(value)}')
-        if not span.holds(float(value)):
-            self.refuse(key, f'"{key}" must be {span.words}, not {value:g}')
+        if not allowed.holds(float(value)):
+            self.refuse(key, f'"{key}" must be {allowed.words}, not {value:g}')
         return float(value)
 
-    def numbers(self, key: str, form: str) -> tuple[float, ...] | None:
-        """As many finite numbers as `form`, such as "[x, y, z]", has; None where absent."""
+    def pair(self, key: str, form: str) -> tuple[float, float] | None:
+        """Two finite numbers, None where absent; form: how they are written, "[first, last]"."""
         if key not in self.values:
             return None
+        first, second = self._numbers(key, form)
+        return first, second
+
+    def vector(self, key: str) -> tuple[float, float, float] | None:
+        """Three finite numbers, None where absent."""
+        if key not in self.values:
+            return None
+        x, y, z = self._numbers(key, "[x, y, z]")
+        return x, y, z
+
+    def _numbers(self, key: str, form: str) -> list[float]:
+        """As many finite numbers as `form` has."""
         value = self.values[key]
         right = isinstance(value, list) and len(value) == form.count(",") + 1
         if not right or not all(map(_is_number, value)):
             self.refuse(key, f'"{key}" must be {form} in finite numbers, not {shown(value)}')
-        return tuple(map(float, value))
+        return list(map(float, value))
 
     def all_numbers(self, key: str) -> tuple[float, ...]:
         """Any number of finite numbers, but not none."""
@@ -163,7 +175,9 @@ class Table:
         form = f"write every {key} as a table of its own, under [[{header}]]"
         return self.inner((key,), self.values.get(key, []), known, form)
 
-    def inner(self, place: Path, values: object, known: Sequence[str], form: str) -> list["Table"]:
+    def inner(
+        self, place: KeyPath, values: object, known: Sequence[str], form: str
+    ) -> list["Table"]:
         """The tables of an array at a place inside; form: how it is to be written."""
         place = (*self.place, *place)
         if not isinstance(values, list) or not all(isinstance(v, dict) for v in values):

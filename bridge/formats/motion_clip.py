@@ -1,4 +1,4 @@
-"""A motion file as plain arrays, its forward kinematics, and its form as a `Recording`.
+"""Motion clip: a file's skeleton and motion as plain arrays; conversion to a `Recording` and back.
 
 Every joint's rest frame has the file's axes, so a joint's rotation matrix is the rotation of the
 figure's part itself, whatever the file calls its channels.
@@ -27,7 +27,7 @@ _TO_Z_UP: dict[UpAxis, FloatArray] = {
 
 @dataclass(frozen=True)
 class Joint:
-    """One joint of the rest skeleton, in the file's units and axes.
+    """Joint of the rest skeleton, in the file's units and axes.
 
     parent: index in `MotionClip.joints`, -1 for a root; parents come first.
     offset: (3,) from the parent's head to this head at rest (a root's: from the origin).
@@ -42,7 +42,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class MotionClip:
-    """What a motion file says, in its own units and axes.
+    """Skeleton and motion of a file, in its own units and axes.
 
     positions: (T, J, 3) each head in its parent's frame. rotations: (T, J, 3, 3) each joint's
     frame in its parent's. frame_time: s. unit: m per unit of length, None where the file is silent.
@@ -103,7 +103,7 @@ def rest_axes(clip: MotionClip) -> FloatArray:
 
 
 def to_recording(clip: MotionClip, unit: float, up: UpAxis) -> Recording:
-    """The clip as a recording: metres, Z up, frames counted from 1, rest frames along the world.
+    """Convert to a recording: metres, Z up, frames counted from 1, rest frames along the world.
 
     unit: m per unit of the file.
     """
@@ -124,3 +124,26 @@ def to_recording(clip: MotionClip, unit: float, up: UpAxis) -> Recording:
         unit * heads @ turn.T,
         turn @ rotations @ turn.T,
     )
+
+
+def from_recording(recording: Recording) -> MotionClip:
+    """Inverse of `to_recording`: a clip in metres, Z up, for `build_armature(clip, 1.0, "Z")`.
+
+    Rest frames along the world, as a clip has them, so bones lose their roll: read the armature
+    that is built before poses are written to it. Its first frame is scene frame 1.
+    """
+    heads = recording.heads.copy()
+    rest = np.stack([bone.rotation for bone in recording.bones])
+    turns = recording.rotations @ np.swapaxes(rest, -1, -2)
+    rotations, joints = turns.copy(), []
+    for b, bone in enumerate(recording.bones):
+        offset = bone.head
+        if bone.parent >= 0:
+            up = np.swapaxes(turns[:, bone.parent], -1, -2)
+            apart = recording.heads[:, b] - recording.heads[:, bone.parent]
+            heads[:, b] = np.einsum("tij,tj->ti", up, apart)
+            rotations[:, b] = up @ turns[:, b]
+            offset = bone.head - recording.bones[bone.parent].head
+        joints.append(Joint(bone.name, bone.parent, offset, bone.tail - bone.head))
+    step = float(np.median(np.diff(recording.times)))
+    return MotionClip(recording.name, tuple(joints), heads, rotations, step, 1.0)

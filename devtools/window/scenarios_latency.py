@@ -1,4 +1,4 @@
-"""How it feels: the ghost that follows a dragged pin, and what overlays cost."""
+"""Latency: updates of the ghost that follows a dragged pin, and cost of overlays per redraw."""
 
 from __future__ import annotations
 
@@ -11,9 +11,17 @@ from itertools import cycle, islice
 import bpy
 from mathutils import Vector
 
-from .acts import LANDING, armature, idle, part, shown_action
-from .hands import Place
-from .stage import Acting, Scene, Stage, Until
+from .actions import (
+    LANDING,
+    armature,
+    extension_module,
+    idle,
+    scene_settings,
+    settings,
+    shown_action,
+)
+from .driver import Actions, Driver, Scenario, Until
+from .input_device import Place
 
 DRAG = 4.0  # s that the pin is dragged about while the ghost's updates are counted
 LEGS = 4
@@ -24,14 +32,14 @@ BONES = ("LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm", "LeftLeg")
 
 
 @dataclass
-class DrawnGhosts:
+class GhostCounter:
     """Counts the ghosts of a live drag that came to be drawn: (time, version) of each new one."""
 
     seen: list[tuple[float, int]] = field(default_factory=list)
 
     def look(self) -> None:
         """Called at each redraw of a viewport."""
-        live = part("operators.solve.live").live()
+        live = extension_module("operators.solve.live").live()
         if live.seen is not None and (not self.seen or self.seen[-1][1] != live.version):
             self.seen.append((time.monotonic(), live.version))
 
@@ -40,36 +48,37 @@ class DrawnGhosts:
         return sum(since <= at <= until for at, _ in self.seen) / (until - since)
 
 
-def drags_landing(stage: Stage) -> Acting:
+def drags_landing(driver: Driver) -> Actions:
     """Grips the chosen pin, moves it about while the ghost follows, lets go 0.2 m further."""
-    settings = armature().hangtime
+    own = settings()
     before = shown_action()
-    row = settings.contacts[settings.active_contact]
+    row = own.contacts[own.active_contact]
     pin = Vector(row.at)
-    start = stage.eyes.place_of(pin)
-    end = stage.eyes.place_of(pin + 0.2 * Vector(settings.stances[LANDING].forward_axis))
-    ghosts = DrawnGhosts()
+    start = driver.screen.place_of(pin)
+    end = driver.screen.place_of(pin + 0.2 * Vector(own.stances[LANDING].forward_axis))
+    ghosts = GhostCounter()
     space = bpy.types.SpaceView3D
     handler = space.draw_handler_add(ghosts.look, (), "WINDOW", "POST_PIXEL")
     try:
-        yield stage.hands.press(start, "the landing's pin")
-        yield stage.hands.move(end, 0.5)
+        yield driver.input.press(start, "the landing's pin")
+        yield driver.input.move(end, 0.5)
         assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
         yield Until("the ghost", lambda: len(ghosts.seen) > 0, 40)
-        begun, first = time.monotonic(), part("operators.solve.live").live().version
-        stage.gauge.start(lambda: "drag")
+        begun, first = time.monotonic(), extension_module("operators.solve.live").live().version
+        driver.profiler.start(lambda: "drag")
         for place in islice(cycle(about(end)), LEGS):
-            yield stage.hands.move(place, DRAG / LEGS)
-        stage.gauge.stop()
+            yield driver.input.move(place, DRAG / LEGS)
+        driver.profiler.stop()
         rate = ghosts.rate(begun, time.monotonic())
-        made = (part("operators.solve.live").live().version - first) / (time.monotonic() - begun)
-        yield from stage.picture("ghost_follows")
-        yield stage.hands.move(end, 0.5)
-        yield stage.hands.let_go()
+        last = extension_module("operators.solve.live").live().version
+        made = (last - first) / (time.monotonic() - begun)
+        yield from driver.picture("ghost_follows")
+        yield driver.input.move(end, 0.5)
+        yield driver.input.let_go()
     finally:
         space.draw_handler_remove(handler, "WINDOW")
-    stage.figures["ghost updates per second during a drag"] = rate
-    stage.figures["ghost updates per second during a drag, drawn or not"] = made
+    driver.figures["ghost updates per second during a drag"] = rate
+    driver.figures["ghost updates per second during a drag, drawn or not"] = made
     yield Until("an adapted action", lambda: idle() and shown_action() != before, 60)
     went = (Vector(row.at) - pin).length
     assert 0.1 < went < 0.3, f"the pin went {went:.3f} m, not about 0.2 m"
@@ -82,41 +91,41 @@ def about(place: Place) -> list[Place]:
     return [(x + 60 * math.cos(turn), y + 30 * math.sin(turn)) for turn in turns]
 
 
-def overlays(stage: Stage) -> Acting:
-    """Measures what drawing costs with many constraints, in our code and as a whole."""
-    settings, view = armature().hangtime, bpy.context.scene.hangtime.view
-    kinds = part("bridge.constraint_kinds").KINDS
+def overlays(driver: Driver) -> Actions:
+    """Measures the cost of drawing with many constraints, in our code and as a whole."""
+    own, view = settings(), scene_settings().view
+    kinds = extension_module("bridge.constraint_kinds").KINDS
     drawn = [kinds[name] for name in ("POINT", "CONE", "ANGLE", "POSE", "TWIST")]
-    add = part("bridge.constraints.rows").add_constraint
+    add = extension_module("bridge.constraints.rows").add_constraint
     for i in range(CONSTRAINTS):
         add(armature(), drawn[i % len(drawn)], [BONES[i // len(drawn)]], 200.0)
-    area = stage.eyes.area()
+    area = driver.screen.area()
 
     def redraw(label: str) -> str:
         area.tag_redraw()
         return label
 
     yield 1.0
-    yield from stage.picture("overlays_of_constraints")
-    stage.gauge.start(lambda: redraw("overlays"))
+    yield from driver.picture("overlays_of_constraints")
+    driver.profiler.start(lambda: redraw("overlays"))
     yield REDRAWS
     view.show = False
-    stage.gauge.start(lambda: redraw("no overlays"))
+    driver.profiler.start(lambda: redraw("no overlays"))
     yield REDRAWS
-    stage.gauge.stop()
+    driver.profiler.stop()
     view.show = True
-    settings.constraints.clear()
-    calls = stage.gauge.stretches["overlays"].calls
+    own.constraints.clear()
+    calls = driver.profiler.profiles["overlays"].calls
     # all that is drawn in the viewport: overlays and handles, but not the sidebar
     ours = {name: spans for name, spans in calls.items() if not OF_SIDEBAR.search(name)}
     assert "Overlay.draw_view" in ours, f"no overlay was drawn: {list(calls)}"
     redraws = ours["Overlay.draw_view"].count
     assert redraws > 2, f"only {redraws} redraws were measured"
     name = "overlay per redraw with 20 constraints"
-    stage.figures[name] = 1000 * sum(spans.busy_total for spans in ours.values()) / redraws
-    stage.figures[f"{name}, by the clock"] = (
+    driver.figures[name] = 1000 * sum(spans.busy_total for spans in ours.values()) / redraws
+    driver.figures[f"{name}, by the clock"] = (
         1000 * sum(spans.total for spans in ours.values()) / redraws
     )
 
 
-SCENES = (Scene("overlays", overlays, ("analyses",)),)
+SCENARIOS = (Scenario("overlays", overlays, ("analyses",)),)

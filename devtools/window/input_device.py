@@ -1,4 +1,4 @@
-"""Mouse and keys for a program under X, by one xdotool that is fed line after line.
+"""Mouse and keyboard input for a program under X, by one xdotool that is fed line after line.
 
 The moves run in that process at their own pace, so that whoever gives them is not held up.
 Standard library only. Places are pixels of the screen from its upper left corner.
@@ -34,8 +34,8 @@ class Click:
 
 
 @dataclass
-class Hands:
-    """One pair of hands. Each action is told at once and says how many seconds it will take at
+class InputDevice:
+    """A mouse and a keyboard. Each action is told at once and says how many seconds it will take at
     least; it is done when `busy` is false.
 
     task: what the clicks are for, kept with each.
@@ -49,7 +49,7 @@ class Hands:
     _done: int = 0
     _xdotool: subprocess.Popen[bytes] | None = None
 
-    def __enter__(self) -> Hands:
+    def __enter__(self) -> InputDevice:
         self._xdotool = subprocess.Popen(
             ["xdotool", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
@@ -70,7 +70,7 @@ class Hands:
 
     @property
     def busy(self) -> bool:
-        """Whether something that was told is not done yet."""
+        """Whether actions are still pending."""
         self._done += (self._output.read() or b"").count(b"\n")
         return self._done < self._told
 
@@ -86,17 +86,17 @@ class Hands:
         self._xdotool.wait(timeout=5)
 
     def move(self, to: Place, seconds: float | None = None) -> float:
-        """Move there by a straight and smooth way."""
-        return self._act(way(self.place, to, seconds), to)
+        """Move there by a straight and smooth path."""
+        return self._act(smooth_path(self.place, to, seconds), to)
 
     def click(self, to: Place, on: str, *, button: int = 1, times: int = 1) -> float:
         """Move there and click; `on` says what lies there."""
         self.clicks += [Click(time.monotonic(), to, on, self.task)] * times
         press = [f"mousedown {button}", f"sleep {PRESS}", f"mouseup {button}", "sleep 0.02"]
-        return self._act([*way(self.place, to), "sleep 0.05", *press * times], to)
+        return self._act([*smooth_path(self.place, to), "sleep 0.05", *press * times], to)
 
     def forget(self, on: str) -> None:
-        """Take back that the last clicks were made, as far as they were on this."""
+        """Drop the last clicks from the record, as far as they were on this."""
         while self.clicks and self.clicks[-1].on == on:
             self.clicks.pop()
 
@@ -107,7 +107,9 @@ class Hands:
     def press(self, to: Place, on: str) -> float:
         """Move there and press the left button."""
         self.clicks.append(Click(time.monotonic(), to, on, self.task))
-        return self._act([*way(self.place, to), "sleep 0.1", "mousedown 1", "sleep 0.05"], to)
+        return self._act(
+            [*smooth_path(self.place, to), "sleep 0.1", "mousedown 1", "sleep 0.05"], to
+        )
 
     def let_go(self) -> float:
         """Let go of the left button."""
@@ -117,7 +119,7 @@ class Hands:
         """Turn the wheel there, downwards where positive."""
         button = 5 if notches > 0 else 4
         return self._act(
-            [*way(self.place, to), *[f"click {button}", "sleep 0.02"] * abs(notches)], to
+            [*smooth_path(self.place, to), *[f"click {button}", "sleep 0.02"] * abs(notches)], to
         )
 
     def key(self, *names: str) -> float:
@@ -141,7 +143,7 @@ class Hands:
         return self._free_at - now
 
 
-def way(start: Place, end: Place, seconds: float | None = None) -> list[str]:
+def smooth_path(start: Place, end: Place, seconds: float | None = None) -> list[str]:
     """Lines that move the pointer from one place to another, slowly at both ends; in no time where
     that is asked for."""
     if seconds == 0.0:

@@ -1,9 +1,9 @@
-"""Measures how long a Blender with a window is held up, and by which of the extension's functions.
+"""Profiler of interface latency: how long Blender is blocked, and by which function of ours.
 
 A timer that Blender calls whenever it is free tells how long it was not. Where a processor draws
 the window, most of that is waiting for the picture; so the time that the thread itself computed is
 kept beside it, which is what a graphics card would leave. Python's own monitoring tells how long
-Blender was in the extension's code at a stretch: operators, panels, handlers, timers.
+Blender was in the extension's code at a profile: operators, panels, handlers, timers.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ GENERATOR = 0x20  # of a code's flags: its calls are told by other events, and a
 
 
 @dataclass(frozen=True)
-class Moment:
-    """By the clock, and by what Blender's main thread has computed (s)."""
+class ClockReading:
+    """Wall-clock time, and CPU time of Blender's main thread (s)."""
 
     clock: float
     busy: float
 
     @staticmethod
-    def now() -> Moment:
-        return Moment(time.perf_counter(), time.thread_time())
+    def now() -> ClockReading:
+        return ClockReading(time.perf_counter(), time.thread_time())
 
 
-NEVER = Moment(0.0, 0.0)
+NEVER = ClockReading(0.0, 0.0)
 
 
 @dataclass
-class Spans:
-    """How often something took place, and how long at most and in all (s). busy: computing."""
+class Durations:
+    """Count, maximum and sum of durations (s), by the clock; busy: of CPU time."""
 
     count: int = 0
     longest: float = 0.0
@@ -46,7 +46,7 @@ class Spans:
     busy_longest: float = 0.0
     busy_total: float = 0.0
 
-    def add(self, since: Moment, until: Moment) -> None:
+    def add(self, since: ClockReading, until: ClockReading) -> None:
         seconds, busy = until.clock - since.clock, until.busy - since.busy
         self.count += 1
         self.longest = max(self.longest, seconds)
@@ -56,36 +56,36 @@ class Spans:
 
 
 @dataclass
-class Stretch:
-    """What was measured under one label. gaps: between Blender's free moments; calls: of the
+class Profile:
+    """Durations measured under one label. gaps: between Blender's free moments; calls: of the
     package's functions by Blender, by their names."""
 
-    gaps: Spans = field(default_factory=Spans)
-    calls: dict[str, Spans] = field(default_factory=dict)
+    gaps: Durations = field(default_factory=Durations)
+    calls: dict[str, Durations] = field(default_factory=dict)
 
 
 @dataclass
-class Gauge:
+class Profiler:
     """Measures between `start` and `stop`. label: says what goes on; asked at each free moment."""
 
     package: str
-    stretches: dict[str, Stretch] = field(default_factory=dict)
+    profiles: dict[str, Profile] = field(default_factory=dict)
     _label: Callable[[], str] | None = None
     _now: str = ""  # the label as it was at the last free moment
-    _free_since: Moment = NEVER
+    _free_since: ClockReading = NEVER
     _running: bool = False  # the timer is on
     _codes: set[CodeType] = field(default_factory=set)
     _depth: int = 0
-    _entered: Moment = NEVER
+    _entered: ClockReading = NEVER
     _fresh: set[str] = field(default_factory=set)
     _thread: int = field(default_factory=get_ident)
 
     def start(self, label: Callable[[], str]) -> None:
-        """Measure from now on; what was measured under the same labels is forgotten."""
+        """Measure from now on; earlier profiles of the same labels are dropped."""
         self._watch()
         self._depth, self._label, self._now = 0, label, label()
         self._fresh.clear()
-        self._free_since = Moment.now()
+        self._free_since = ClockReading.now()
         if not self._running:
             self._running = True
             bpy.app.timers.register(self._free, first_interval=0.0, persistent=True)
@@ -94,23 +94,23 @@ class Gauge:
         """Measure no more; the numbers stay."""
         self._label = None
 
-    def _stretch(self) -> Stretch:
+    def _profile(self) -> Profile:
         if self._now not in self._fresh:
             self._fresh.add(self._now)
-            self.stretches[self._now] = Stretch()
-        return self.stretches[self._now]
+            self.profiles[self._now] = Profile()
+        return self.profiles[self._now]
 
     def _free(self) -> float | None:
         if self._label is None:
             self._running = False
             return None
-        self._stretch().gaps.add(self._free_since, Moment.now())
-        self._free_since = Moment.now()
+        self._profile().gaps.add(self._free_since, ClockReading.now())
+        self._free_since = ClockReading.now()
         self._now = self._label()
         return 0.0
 
     def _watch(self) -> None:
-        """Have Python tell of the calls of all the package's functions that are loaded by now."""
+        """Trace calls of the package's functions that are loaded by now (sys.monitoring)."""
         monitoring = vars(sys)["monitoring"]  # Python 3.12, which Debian's Blender has
         events = monitoring.events
         if monitoring.get_tool(TOOL) is None:
@@ -127,7 +127,7 @@ class Gauge:
         if get_ident() != self._thread:
             return
         if self._depth == 0:
-            self._entered = Moment.now()
+            self._entered = ClockReading.now()
         self._depth += 1
 
     def _leave(self, code: CodeType, _offset: int, _result: object) -> None:
@@ -135,8 +135,8 @@ class Gauge:
             return
         self._depth -= 1
         if self._depth == 0 and self._label is not None:
-            spans = self._stretch().calls.setdefault(code.co_qualname, Spans())
-            spans.add(self._entered, Moment.now())
+            spans = self._profile().calls.setdefault(code.co_qualname, Durations())
+            spans.add(self._entered, ClockReading.now())
 
 
 def codes(package: str) -> Iterator[CodeType]:

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from ....solver.data.requests import Bound, Path, PointAxes, PointRequest
+from ...solver.data.requests import Bound, Path, PointAxes, PointRequest
 from .items import TRAVEL_KEYS, Item, Values, direction
 from .table import Table, listed
 
@@ -17,17 +17,18 @@ BOUND_KEYS = ("at_least", "at_most")
 
 def _read_axes(table: Table) -> Values:
     table.not_both("relative", TRAVEL_KEYS)
-    bounds = [table.table(key, sum(AXIS_NAMES.values(), ()), "axis") for key in BOUND_KEYS]
+    names = sum(AXIS_NAMES.values(), ())
+    at_least, at_most = bounds = [table.table(key, names, "axis") for key in BOUND_KEYS]
     axes = _axes(table, bounds)
     values: Values = {"axes": axes}
     if "normal" in table.values:
         values["normal"] = direction(table, "normal")
     if "relative" in table.values:
-        values["relative"] = table.numbers("relative", "[x, y, z]")
+        values["relative"] = table.vector("relative")
     elif axes is PointAxes.TRAVEL:
         values["relative"] = tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)
     if set(BOUND_KEYS) & set(table.values):
-        values["bounds"] = tuple(_bound(*bounds, name) for name in AXIS_NAMES[axes])
+        values["bounds"] = tuple(_bound(at_least, at_most, name) for name in AXIS_NAMES[axes])
         for key, bound in zip(BOUND_KEYS, bounds, strict=True):
             if key in table.values and not bound.values:
                 table.refuse(key, f'"{key}" bounds no axis; give it one, such as {{ z = 0.3 }}')
@@ -93,12 +94,12 @@ def _read_path(table: Table) -> Values:
     if "path" not in table.values:
         return {}
     frames: list[float] = []
-    places = []
+    places: list[tuple[float, float, float]] = []
     for entry in table.tables("path", ("frame", "place")):
         entry.needs(("frame",))
         entry.needs(("place",))
         frames.append(entry.number("frame") or 0.0)
-        places.append(entry.numbers("place", "[x, y, z]"))
+        places.append(entry.vector("place") or (0.0, 0.0, 0.0))
         if frames[-1] <= max(frames[:-1], default=-math.inf):
             entry.refuse("frame", f"frame {frames[-1]:g} must come after the one before it")
     if not frames:
