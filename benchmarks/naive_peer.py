@@ -14,8 +14,9 @@ import casadi as ca
 import numpy as np
 
 from ..solver.body.dynamics import GRAVITY, Moving, body_frames, carried, momentum_rate
+from ..solver.data.row_kinds import RowKind
 from ..solver.numerics.splines import ORDER
-from ..solver.transcription.rows import RowKind, Rows
+from ..solver.transcription.rows import Rows
 from ..solver.transcription.transcription import Transcription
 from .ipopt_peer import sparse
 from .task import Entries, FloatArray, IntArray, PeerResult, Task, judged, metric_entries

@@ -22,7 +22,7 @@ from pydrake.autodiffutils import ExtractValue, InitializeAutoDiff
 from pydrake.solvers import MathematicalProgram, SnoptSolver, SolverOptions
 from scipy.sparse import csc_matrix
 
-from ..solver.transcription.rows import RowKind
+from ..solver.data.row_kinds import RowKind
 from .task import Entries, Equations, FloatArray, PeerResult, Task, judged, metric_entries
 
 LINEAR = (RowKind.BALANCE, RowKind.PUSH)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...solver.data import faults
 from ...solver.data.faults import UnknownContact, UnknownPhase
+from ...solver.data.row_kinds import RowKind, Violation
 from ...solver.data.status import Status
 
 OUTCOMES = {
@@ -131,7 +132,7 @@ def _(fault: faults.ContradictoryPins) -> str:
 
 @sentence.register
 def _(fault: faults.NoSolution) -> str:
-    return outcome(Status(fault.reason)) + _furthest_off(fault)
+    return outcome(fault.reason) + _furthest_off(fault)
 
 
 @sentence.register
@@ -143,7 +144,7 @@ def _(fault: faults.NoFit) -> str:
 
 
 def _furthest_off(fault: faults.NoSolution) -> str:
-    worst = "; ".join(_missed(*each) for each in fault.worst)
+    worst = "; ".join(map(_missed, fault.worst))
     if not worst:
         return ""
     way = f"The best found goes {100.0 * fault.reached:.0f} % of the way; furthest off"
@@ -410,28 +411,29 @@ def recipe_place(path: str | Path, line: int | None) -> str:
     return f"Recipe {path}" if line is None else f"Recipe {path}, line {line}"
 
 
-def _missed(name: str, amount: float, unit: str) -> str:
-    """What of a constraint is left, by the unit that it is measured in."""
-    match unit:
-        case "mm":
-            return f"{_quoted(name)} stays {_length(amount / 1000.0)} from its place"
-        case "m/s":
-            return f"{_quoted(name)} still slides at {amount:.3g} m/s"
-        case "BW":
-            return f"in {name}, {amount:.3g} of the body's weight is not carried as it must be"
-        case "BW·m":
-            return f"in {name}, the body turns without cause ({amount:.3g} BW·m)"
-        case "N·m beyond the limit":
-            return f"{_quoted(name)} needs {amount:.3g} N·m more than its limit"
-        case "degrees":
-            return f"{_quoted(name)} is missed by {amount:.3g}°"
-        case "BW of pull":
-            return f"{_quoted(name)} would have to pull with {amount:.3g} of the body's weight"
-        case "BW beyond friction":
-            return f"{_quoted(name)} slips: {amount:.3g} of the body's weight beyond its friction"
-        case "BW beyond the cap":
-            return f"{_quoted(name)} is exceeded by {amount:.3g} of the body's weight"
-    return f"{name}: {amount:.3g} {unit}"
+# What of a constraint is left, by its type; with its name, quoted or bare, and how much.
+MISSED = {
+    RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
+    RowKind.MOMENT: "in {name}, the body turns without cause ({amount:.3g} BW·m)",
+    RowKind.PIN: "{quoted} stays {length} from its place",
+    RowKind.PIN_SPEED: "{quoted} still slides at {amount:.3g} m/s",
+    RowKind.POINT: "{quoted} stays {length} from its place",
+    RowKind.BEND: "{quoted} is missed by {amount:.3g}°",
+    RowKind.CONE: "{quoted} is missed by {amount:.3g}°",
+    RowKind.TWIST: "{quoted} is missed by {amount:.3g}°",
+    RowKind.ORIENTATION: "{quoted} is missed by {amount:.3g}°",
+    RowKind.POSE: "{quoted} is missed by {amount:.3g}°",
+    RowKind.PUSH: "{quoted} would have to pull with {amount:.3g} of the body's weight",
+    RowKind.FRICTION: "{quoted} slips: {amount:.3g} of the body's weight beyond its friction",
+    RowKind.PEAK: "{quoted} is exceeded by {amount:.3g} of the body's weight",
+    RowKind.TORQUE: "{quoted} needs {amount:.3g} N·m more than its limit",
+}
+
+
+def _missed(violation: Violation) -> str:
+    name, amount = violation.name, violation.amount
+    words = {"name": name, "quoted": _quoted(name), "amount": amount}
+    return MISSED[violation.kind].format(**words, length=_length(amount / 1000.0))
 
 
 def _quoted(name: str) -> str:

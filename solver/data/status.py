@@ -1,10 +1,10 @@
-"""How a solve ends; apart, so that it can be worded where CasADi is missing."""
+"""Outcome of a solve and progress of a drag; apart, to be worded where CasADi is missing."""
 
 from enum import Enum
 
 
 class Status(Enum):
-    """How a solve ended."""
+    """Outcome of a solve."""
 
     SOLVED = "solved"
     STALLED = "stalled"
@@ -14,7 +14,7 @@ class Status(Enum):
 
 
 class DragStatus(Enum):
-    """How a motion gets on that follows a dragged pin."""
+    """Drag status: converging, converged, diverged."""
 
     ON_ITS_WAY = "on its way"
     ARRIVED = "arrived"  # the pin is reached and physics holds

@@ -17,7 +17,7 @@ from ..body.character import Character
 from ..body.dynamics import GRAVITY, evaluate
 from ..body.inverse_dynamics import inverse_dynamics
 from ..body.kinematics import BodyPoint
-from .rows import RowKind
+from ..data.row_kinds import RowKind
 from .sampling import Channel, Slope, State
 from .transcription import Transcription
 

@@ -26,12 +26,13 @@ from ..body.character import Character
 from ..body.dynamics import GRAVITY, MomentFunction
 from ..body.kinematics import BodyPoint, Pose, pose
 from ..data.contacts import Contact
+from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix
 from ..numerics.splines import ORDER, Basis, gauss_instants
 from .constraint import Bounded, Constraint
 from .contact_pins import Pins, PointContact
 from .friction_cones import ForceCones
-from .rows import Layout, RowKind, Rows
+from .rows import Layout, Rows
 from .sampling import Instants, Slope
 
 GAUSS = 3  # dynamics nodes a span
