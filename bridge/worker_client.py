@@ -139,7 +139,7 @@ class DragStream:
     def deliver(self, message: Progress | Answer) -> None:
         """Called by the thread that listens; a motion that is still on its way is asked again."""
         self._arrived.put(message)
-        if isinstance(message, Followed) and message.status is DragStatus.ON_ITS_WAY:
+        if isinstance(message, Followed) and message.status is DragStatus.CONVERGING:
             with self._changed:
                 self._problem = self._problem or self._last
 

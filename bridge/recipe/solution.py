@@ -1,31 +1,31 @@
-"""How to solve, in a recipe: method, objectives and reduction. Keys: see recipe_requests.py."""
+"""Solver options of a recipe: method, objectives and reduction. Keys: see requests.py."""
 
 from ...solver.data.requests import (
     Dynamics,
     Method,
-    Objective,
+    ObjectiveKind,
     Reduction,
     ReductionKind,
     SolverOptions,
 )
-from .items import Kind, Values, choice, number, one, whole
-from .table import ABOVE_ZERO, NOT_NEGATIVE, Span, Table, listed
+from ..recipe_syntax.items import Kind, Values, choice, number, one, whole
+from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table, listed
 
 Rows = tuple[tuple[tuple[str, tuple[float, ...]], ...], ...]
 
-COUNT = Span("a whole number above zero", lambda value: value > 0.0 and value.is_integer())
-PART_OF_ALL = Span("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
+COUNT = NumberRange("a whole number above zero", lambda value: value > 0.0 and value.is_integer())
+PART_OF_ALL = NumberRange("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
 CHOSEN_BY_HAND = (ReductionKind.MATRIX, ReductionKind.MIRROR_LEGS)
 
 
-def _objectives(table: Table, key: str) -> tuple[tuple[Objective, float], ...]:
-    weights = table.table(key, [member.value for member in Objective], "objective")
+def _objectives(table: Table, key: str) -> tuple[tuple[ObjectiveKind, float], ...]:
+    weights = table.table(key, [member.value for member in ObjectiveKind], "objective")
     if not weights.values:
         table.refuse(key, f"nothing to weigh; known: {listed(weights.known)}")
-    return tuple((Objective(k), weights.number(k, NOT_NEGATIVE) or 0.0) for k in weights.values)
+    return tuple((ObjectiveKind(k), weights.number(k, NOT_NEGATIVE) or 0.0) for k in weights.values)
 
 
-def _weights(objectives: tuple[tuple[Objective, float], ...]) -> Values:
+def _weights(objectives: tuple[tuple[ObjectiveKind, float], ...]) -> Values:
     return {objective.value: weight for objective, weight in objectives}
 
 

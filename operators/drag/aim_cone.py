@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ...bridge.properties.kinds import ConstraintKind
+from ...bridge.constraint_kinds import cone
 from ..names import OperatorId
 from ..solve.common import chosen_armature
 from . import rays
@@ -36,7 +36,7 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
         """In scripts and for redo."""
         self._armature = chosen_armature(context)
         row = self.row
-        if row is None or row.kind != ConstraintKind.CONE.name:
+        if row is None or row.kind != cone.KIND.name:
             self.report({"ERROR"}, NO_LIMIT)
             return {"CANCELLED"}
         row.use_axis, row.axis = True, self.axis

@@ -6,7 +6,7 @@ from functools import partial
 
 import bpy
 
-from ...bridge.armature.incremental import Parts
+from ...bridge.armature.incremental import Incremental
 from ...bridge.constraints.motion_problem import problem_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
@@ -148,7 +148,7 @@ class FollowedDrag:
 
     # -- the motion that follows ---------------------------------------------------------------
 
-    def _follow(self, context: bpy.types.Context) -> Parts[None]:
+    def _follow(self, context: bpy.types.Context) -> Incremental[None]:
         """Reads the recording in parts, then has the worker follow what is dragged."""
         asked = yield from ask_for(context)
         stream = shared().follow(asked.recording)
@@ -167,7 +167,7 @@ class FollowedDrag:
             self._fault = said(message.fault)
             live().clear()
         elif isinstance(message, Followed):
-            self._fault = LOST if message.status is DragStatus.LOST else ""
+            self._fault = LOST if message.status is DragStatus.DIVERGED else ""
             live().show(self._armature.name, message)
 
     def _look(self) -> None:

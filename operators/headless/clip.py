@@ -19,7 +19,7 @@ from .stages import Stages
 if TYPE_CHECKING:
     import bpy
 
-    from ...bridge.formats.skeleton import UpAxis
+    from ...bridge.formats.motion_clip import UpAxis
 
 
 @dataclass(frozen=True)

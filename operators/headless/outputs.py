@@ -93,14 +93,14 @@ class Outputs:
         from mathutils import Vector
 
         from ...bridge.armature.actions import current_action
-        from ...bridge.armature.reproportioned import other_figure
+        from ...bridge.armature.reproportioned import build_reproportioned
         from ...bridge.armature.write import side_by_side, write_action
 
         recorded = current_action(self.clip.armature)
         assert recorded is not None
         armature, track = self.clip.armature, self.result.track
         if self.result.subject.problem.requests.body.limbs:
-            armature, track, _ = other_figure(self.result.recording, track)
+            armature, track, _ = build_reproportioned(self.result.recording, track)
         adapted = write_action(armature, track, name=f"{recorded.name} {called}")
         if armature is self.clip.armature:
             side_by_side(armature, recorded, adapted, offset=self._beside())

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ...bridge.picture.annotations import Bar, Mark, Span, Sphere
+from ...bridge.picture.annotations import Bar, Mark, Sphere, TimeSpan
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.body.character import Body
 from ...solver.data.contacts import Phase, PhaseKind
-from ...solver.data.problem import Axes3, MotionProblem, Pin
+from ...solver.data.problem import MotionProblem, OffsetAxes, Pin
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
 
@@ -99,7 +99,7 @@ class ContactHold:
 
     part: Part
     place: FloatArray
-    span: Span
+    span: TimeSpan
 
 
 def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
@@ -151,9 +151,9 @@ def caption(pin: Pin) -> str:
     words = []
     if pin.place is not None:
         words.append(f"to ({', '.join(f'{x:g}' for x in pin.place)}) m")
-    if pin.axes is Axes3.WORLD and any(pin.offset):
+    if pin.axes is OffsetAxes.WORLD and any(pin.offset):
         words.append(f"by ({', '.join(f'{x:g}' for x in pin.offset)}) m")
-    elif pin.axes is Axes3.TRAVEL:
+    elif pin.axes is OffsetAxes.TRAVEL:
         ways = (("forward", "back"), ("left", "right"), ("up", "down"))
         for amount, (ahead, behind) in zip(pin.offset, ways, strict=True):
             if amount:

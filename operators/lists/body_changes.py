@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.constraints.rows import SINGLE_BONE, add_body_change, set_bones
-from ...bridge.properties.kinds import BodyKind
+from ...bridge.constraint_kinds import KINDS
+from ...bridge.constraints.rows import add_body_change, set_bones
+from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.kind import BoneUse
 from ..names import OperatorId
 from ..solve.common import chosen_armature
 from .chosen_bones import chosen_bones
 from .row_lists import FROM_LIBRARY, AddingOperator, RowList, RowOperator, list_items
 
 NONE_SELECTED = "Select bones in pose mode first"
-_OF_ONE_BONE = {kind.name for kind in (*SINGLE_BONE, BodyKind.LOAD)}
+_OF_ONE_BONE = {
+    BodyKind.LOAD.name,
+    *(kind.name for kind in KINDS.values() if kind.bones is BoneUse.ONE),
+}
 DESCRIPTIONS = {
     BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
     BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",

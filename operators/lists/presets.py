@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 
 from ...bridge.armature.traces_store import kept
+from ...bridge.constraint_kinds import contact_force, torque_limit
 from ...bridge.constraints.rows import (
     add_body_change,
     add_constraint,
@@ -21,8 +22,8 @@ from ...bridge.constraints.rows import (
     hold_throughout,
     title,
 )
-from ...bridge.properties.kinds import BodyKind, ConstraintKind
-from ...bridge.properties.phases import PhaseSpan, phases_of
+from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.phases import PhaseSpan, phases_of
 from ..names import OperatorId
 from ..solve.common import chosen_armature
 from .chosen_bones import chosen_bones
@@ -79,20 +80,20 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from ...bridge.constraints.rest_figure import parts_of  # loads parts of the solver
         from ...solver.body.anatomy import Side
-        from ...solver.body.human_strength import JOINTS, strongest
+        from ...solver.body.human_strength import LEG_JOINTS, peak_torque
 
         armature = chosen_armature(context)
         settings, parts = armature.hangtime, parts_of(armature)
         mass = settings.new_mass if settings.use_new_mass else settings.mass
         told, lost = [], []
-        for part, joint in JOINTS.items():
+        for part, joint in LEG_JOINTS.items():
             bones = [b for side in Side for b in parts.get((part, side), ())]
             if not bones:
                 lost.append(joint.lower())
                 continue
-            row = add_constraint(armature, ConstraintKind.TORQUE, bones, 0.0)
+            row = add_constraint(armature, torque_limit.KIND, bones, 0.0)
             row.name = free_name(settings, f"{joint} Strength")
-            row.torque = strongest(part, mass, _height(settings))
+            row.torque = peak_torque(part, mass, _height(settings))
             hold_throughout(row)
             told.append(f"{joint.lower()} {row.torque:.0f} N·m{_needed(settings, bones)}")
         if not told:
@@ -122,7 +123,7 @@ class SoftLandingOperator(AddingOperator, bpy.types.Operator):
         armature = chosen_armature(context)
         landing = _landing(armature)
         peak = _peak(armature, landing)
-        row = add_constraint(armature, ConstraintKind.FORCE, (), landing.start)
+        row = add_constraint(armature, contact_force.KIND, (), landing.start)
         row.name = free_name(armature.hangtime, "Softer Landing")
         hold_in(row, landing.name)
         row.use_peak, row.peak = True, USUAL_PEAK if peak is None else SOFTER * peak
@@ -162,7 +163,7 @@ class LimpLimbOperator(_SelectedBonesOperator, bpy.types.Operator):
             self.report({"WARNING"}, "None of the selected bones has a joint that physics moves")
             return {"CANCELLED"}
         frame = context.scene.frame_current_final
-        row = add_constraint(armature, ConstraintKind.TORQUE, bones, frame)
+        row = add_constraint(armature, torque_limit.KIND, bones, frame)
         row.name = free_name(armature.hangtime, f"Limp {title(chosen[0])}")
         row.torque = 0.0
         others = len(limb) - len(bones)

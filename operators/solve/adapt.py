@@ -7,19 +7,23 @@ from dataclasses import replace
 
 import bpy
 
-from ...bridge.armature.actions import read_take_in_parts, recorded_action, write_take_in_parts
-from ...bridge.armature.incremental import Parts
-from ...bridge.armature.reproportioned import other_figure
+from ...bridge.armature.actions import (
+    read_recorded_incrementally,
+    recorded_action,
+    write_adapted_incrementally,
+)
+from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import problem_of, wanted_range
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
-from ...solver.data.digest import alike, digest
+from ...solver.data.digest import digest, same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import Recording
 from ...solver.data.report import ConstraintReport
-from ...solver.data.requests import Method, Objective, SolverOptions
+from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, Failed, RequestKind
 from ..names import OperatorId
@@ -66,7 +70,7 @@ class _Adapting(TaskOperator):
             raise answer.fault
         return (yield from write_answer(asked, answer))
 
-    def _asked(self, context: bpy.types.Context) -> Parts[Asked]:
+    def _asked(self, context: bpy.types.Context) -> Incremental[Asked]:
         asked = yield from ask_for(context)
         solving = session().solving
         assert solving is not None
@@ -101,7 +105,10 @@ class RefineOperator(_Adapting, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
-        weights = ((Objective[settings.objective], 1.0), (Objective.CLOSENESS, settings.stay_close))
+        weights = (
+            (ObjectiveKind[settings.objective], 1.0),
+            (ObjectiveKind.CLOSENESS, settings.stay_close),
+        )
         if asked.method is Method.EXPLICIT:
             return asked
         return replace(asked, method=Method.EXPLICIT, objectives=weights)
@@ -136,19 +143,19 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
         return done
 
 
-def ask_for(context: bpy.types.Context) -> Parts[Asked]:
+def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """What the settings ask, of the recording as it is. Raises any Fault of reading, and
     ChangedMeanwhile where it is not what was analysed."""
     armature = required_armature(context)
     settings = armature.hangtime
-    recording = yield from read_take_in_parts(armature, *wanted_range(settings))
+    recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
     if digest(recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     problem = problem_of(settings, recording)
     return Asked(armature.name, armature.session_uid, recording, problem)
 
 
-def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
+def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
     solving = session().solving
     assert solving is not None
@@ -159,7 +166,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
     if limbs:
         return _write_other(changed_recording(asked.recording, limbs), answer, armature)
     stood = armature.matrix_world.copy()
-    action = yield from write_take_in_parts(armature, answer.track)
+    action = yield from write_adapted_incrementally(armature, answer.track)
     keep(action, answer.traces, stood)
     _note(armature, armature, action, answer)
     return f"Wrote the action {action.name}"
@@ -167,7 +174,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
 
 def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Object) -> str:
     """The answer on an armature of its own, for the artist's keeps its proportions."""
-    other, track, _ = other_figure(recording, answer.track)
+    other, track, _ = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
     action = write_action(other, track, name=f"{recording.name} adapted")
     action.hangtime.recording = recorded_action(armature)
@@ -200,10 +207,10 @@ def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
     if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
         frames = asked.recording.frames
         try:
-            now = yield from read_take_in_parts(armature, frames[0], frames[-1])
+            now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
         except Fault as fault:  # another action, a scale: whatever it is, it is new
             raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
-        if alike(now, asked.recording):
+        if same_motion(now, asked.recording):
             return armature
     raise ChangedMeanwhile(asked.armature, while_solving=True)
 

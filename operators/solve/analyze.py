@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.armature.actions import read_take_in_parts, recorded_action
+from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import find_parts, missing_parts
 from ...bridge.constraints.motion_problem import problem_of, wanted_range, write_analysis
@@ -78,7 +78,7 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
         settings = armature.hangtime
-        recording = yield from read_take_in_parts(armature, *wanted_range(settings))
+        recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
         find_parts(armature)
         for missing in missing_parts(settings):
             raise MissingPart(missing)

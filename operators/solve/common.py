@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.armature.actions import current_action
+from ...bridge.accessors import current_action
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
 from .session import session

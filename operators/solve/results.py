@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.armature.actions import current_action, recorded_action, show
+from ...bridge.accessors import current_action
+from ...bridge.armature.actions import recorded_action, show
 from ..names import OperatorId
 from .common import chosen_armature
 from .session import session

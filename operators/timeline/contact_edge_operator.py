@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.properties.phases import carried, clip_ends, phases
+from ...bridge.rows.phases import carried, clip_ends, phases
 from ..names import OperatorId
 from ..solve.common import chosen_armature
 from .contact_bars import Grip

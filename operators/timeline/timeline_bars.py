@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...bridge.plots.screen import Axis
-from ...bridge.properties.phases import carried, clip_ends, phases
+from ...bridge.rows.phases import carried, clip_ends, phases
 from ...solver.data.contacts import PhaseKind
 from ..solve.common import chosen_armature
 from .contact_bars import Bar, Bars, Row, lay_out

@@ -1,4 +1,4 @@
-"""A figure of another height: the recording scaled for the solver, its answer scaled back."""
+"""Uniform length scaling of recordings, problems, schedules and results, about the origin."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from .requests import PointRequest, Vector
 
 
 def scaled_recording(recording: Recording, factor: float) -> Recording:
-    """Every length times `factor`, about the world's origin."""
+    """The recording with every length times `factor`, about the world's origin."""
     bones = tuple(
         replace(bone, head=factor * bone.head, tail=factor * bone.tail) for bone in recording.bones
     )
@@ -19,7 +19,7 @@ def scaled_recording(recording: Recording, factor: float) -> Recording:
 
 
 def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
-    """The same edit of a recording scaled by `factor`."""
+    """The problem with every length times `factor`: offsets, places, bounds, paths."""
 
     def scaled(vector: tuple[float, float, float]) -> tuple[float, float, float]:
         x, y, z = (factor * value for value in vector)
@@ -65,7 +65,7 @@ def _scaled_point(point: PointRequest, factor: float) -> PointRequest:
 
 
 def scaled_schedule(schedule: ContactSchedule, factor: float) -> ContactSchedule:
-    """Contacts whose places and points are `factor` times as far."""
+    """The schedule with places, offsets and floor height times `factor`."""
     contacts = (
         replace(c, place=np.asarray(factor * c.place), offset=np.asarray(factor * c.offset))
         for c in schedule.contacts
@@ -74,5 +74,5 @@ def scaled_schedule(schedule: ContactSchedule, factor: float) -> ContactSchedule
 
 
 def scaled_track(track: PoseTrack, factor: float) -> PoseTrack:
-    """The same poses with the pelvis `factor` times as far."""
+    """The pose track with the pelvis's positions times `factor`."""
     return replace(track, root_head=factor * track.root_head)

@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..numerics.block_banded import Factor
+from ..numerics.block_banded import CholeskyFactor
 from ..transcription.rows import violation
 
 SOFT = 1e-7  # share of a row's own stiffness by which it gives, so that rows may depend on others
@@ -32,7 +32,7 @@ class BoundedStep:
 
     def __init__(
         self,
-        factor: Factor,
+        factor: CholeskyFactor,
         columns: Callable[[IntArray], FloatArray],
         bounds: tuple[FloatArray, FloatArray],
         tolerance: FloatArray,

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
-from ..numerics.block_banded import BlockBanded, Factor
+from ..numerics.block_banded import BlockBanded, CholeskyFactor
 from ..numerics.parallel import in_threads
 from ..numerics.splines import ORDER
 from ..transcription.rows import Rows, by_kind
@@ -95,7 +95,7 @@ class _Windows:
         return columns
 
 
-def _factor(system: BlockBanded) -> Factor:
+def _factor(system: BlockBanded) -> CholeskyFactor:
     """Cholesky; far from any motion rounding can spoil it, and a small ridge mends that."""
     try:
         return system.factor()
@@ -122,7 +122,7 @@ class Linearised:
     ) -> None:
         self._transcription, self._basis = transcription, basis
         self.rows = rows
-        self._metric = metric if basis is None else metric.changed(basis)
+        self._metric = metric if basis is None else metric.congruent(basis)
         self._blocks = transcription.basis.n_coefficients
         self._norm = by_kind(rows.kind, NORM)
         self._tolerance = rows.tolerance

@@ -7,9 +7,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..body.character import Character
-from ..body.dynamics import GRAVITY
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase, PhaseKind
-from ..data.problem import Axes3, MotionProblem, Pin
+from ..data.problem import MotionProblem, OffsetAxes, Pin
 from ..data.report import (
     ConstraintReport,
     ContactReport,
@@ -120,7 +120,7 @@ def _figure(fit: Fit, motion: Motion, problem: MotionProblem) -> FigureSummary:
 
 
 def _pin(pin: Pin) -> PinReport:
-    in_world = pin.axes is Axes3.WORLD
+    in_world = pin.axes is OffsetAxes.WORLD
     return PinReport(
         name=pin.name,
         phase=pin.phase,
@@ -151,7 +151,7 @@ def _condition(missed: Missed, fit: Fit, character: Character) -> ConstraintRepo
     return ConstraintReport(
         name=missed.name,
         kind=missed.kind,
-        worst_violation=missed.kind.reported(missed.amount, character.mass * GRAVITY),
+        worst_violation=missed.kind.reported(missed.amount, character.mass * STANDARD_GRAVITY),
         worst_violation_frame=scene_frame(fit, missed.time),
         met=missed.amount <= missed.kind.tolerance,
     )
@@ -230,7 +230,7 @@ def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> DenseResiduals:
 def _forces(adaptation: Adaptation) -> ForcesReport:
     fit, motion = adaptation.fit, adaptation.motion
     times = instants(motion.duration, SAMPLE_RATE)
-    forces = motion.forces(times) / (motion.transcription.character.mass * GRAVITY)
+    forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
     ground = forces.sum(axis=1)
     total = np.linalg.norm(ground, axis=1)
     carried = np.where(ground[:, 2] > LEAST_CARRIED, ground[:, 2], np.inf)

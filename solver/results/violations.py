@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..analysis.pinned_places import chosen_contacts, phase_of
-from ..body.dynamics import GRAVITY
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
@@ -68,7 +68,7 @@ def worst_constraints(
         key=lambda each: each[0],
         reverse=True,
     )
-    weight = t.character.mass * GRAVITY
+    weight = t.character.mass * STANDARD_GRAVITY
     return [
         Violation(name, kind, kind.reported(share * kind.tolerance, weight))
         for share, name, kind in ranked

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.anatomy import Part
-from ..body.kinematics import BodyPoint, pose
+from ..body.kinematics import BodyPoint, forward_kinematics
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
 from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants
@@ -46,10 +46,10 @@ def _turn_arm(
     start = contact.contact.start - EASE
     during = np.flatnonzero((times >= start) & (times <= contact.contact.end))
     moved = angles[during]
-    pelvis = pose(character, moved).centres[:, 0] + motion.com(times[during])
+    pelvis = forward_kinematics(character, moved).centres[:, 0] + motion.com(times[during])
     chain = _chain(motion, point.body)
     for _ in range(STEPS):
-        posed = pose(character, moved)
+        posed = forward_kinematics(character, moved)
         at = posed.points([point])[:, 0] - posed.centres[:, 0] + pelvis
         pelvis_by = posed.point_jacobian([BodyPoint(0, np.zeros(3))])
         by = (posed.point_jacobian([point]) - pelvis_by)[:, 0]
@@ -65,6 +65,6 @@ def _turn_arm(
 def _chain(motion: Motion, body: int) -> IntArray:
     """The angles of the joints from the shoulder to a body."""
     character = motion.transcription.character
-    bodies = {body, *character.lineage(body)}
+    bodies = {body, *character.ancestors(body)}
     joints = [character.joints[b] for b in sorted(bodies) if character.bodies[b].part in ARM]
     return np.concatenate([np.arange(j.first, j.dofs.stop) for j in joints])

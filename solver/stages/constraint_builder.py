@@ -9,8 +9,9 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..body.anatomy import Part
 from ..body.character import Body, Character
-from ..body.dynamics import GRAVITY
+from ..body.human_limits import MIN_BEND_SINE
 from ..body.kinematics import BodyPoint
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Contact, ContactSchedule, Phase
 from ..data.faults import BadTiming, NothingTouches, RootHasNoJoint, StillBone, WrongAngle
 from ..data.recording import Recording
@@ -29,7 +30,7 @@ from ..data.requests import (
     TwistLimit,
     When,
 )
-from ..data.timeline import Timeline, interval
+from ..data.timeline import Timeline, active_interval
 from ..numerics.rotations import axis_rotation, perpendicular, unit
 from ..transcription.constraint import Bounds, Constraint
 from ..transcription.constraint_functions import (
@@ -50,7 +51,6 @@ from ..transcription.transcription import Transcription
 
 LIMP = 2.0  # N·m; what tendons and clothes hold of themselves, so zero is taken as this
 DENSE = 240.0  # Hz, at which the start is sampled
-LEAST_BEND = 0.05  # of a bone's length; a joint that bends less does not tell its direction
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class EvaluationContext:
 
     def interval(self, name: str, when: When) -> tuple[float, float]:
         """Start and end, s. Raises UnknownPhaseIn, BadTiming."""
-        return interval(name, when, self.timeline, self.phases, self.apex)
+        return active_interval(name, when, self.timeline, self.phases, self.apex)
 
     def body(self, name: str, bone: str) -> int:
         """Raises StillBone."""
@@ -156,7 +156,7 @@ def bend_measure(scene: EvaluationContext, body: int) -> Bend:
     turned = joint.axes.rotation(scene.reference.angles(times)[:, joint.dofs]) @ along
     mean = turned.mean(axis=0)
     across = mean - straight * (mean @ straight)
-    if np.linalg.norm(across) < LEAST_BEND:
+    if np.linalg.norm(across) < MIN_BEND_SINE:
         across = _expected_flexion(character.bodies[body], straight)
     return Bend(joint, along, straight, unit(across))
 
@@ -166,7 +166,7 @@ def _expected_flexion(body: Body, straight: FloatArray) -> FloatArray:
     forward = body.box_rotation[:, 1]
     forward = -forward if body.part is Part.SHANK else forward
     across = forward - straight * (forward @ straight)
-    return across if np.linalg.norm(across) > LEAST_BEND else perpendicular(straight)
+    return across if np.linalg.norm(across) > MIN_BEND_SINE else perpendicular(straight)
 
 
 def _cone(request: ConeLimit, scene: EvaluationContext) -> Constraint:
@@ -224,7 +224,7 @@ def _torque(
         angles += mine
         bounds += [max(bound, LIMP)] * len(mine)
     measure = Torques(TorqueFunction(scene.character, transcription.points, angles))
-    unit_nm = scene.character.mass * GRAVITY
+    unit_nm = scene.character.mass * STANDARD_GRAVITY
     middle, half = request.value / unit_nm, np.array(bounds) / unit_nm
     return Constraint(request.name, measure, Bounds(middle - half, middle + half), *span)
 
@@ -238,7 +238,7 @@ def _peak_torque(
     function = TorqueFunction(t.character, t.points, angles)
     times = np.unique(scene.reference_times(np.linspace(*span, 400)))
     state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
-    return float(np.abs(function.value(state)).max()) * t.character.mass * GRAVITY
+    return float(np.abs(function.value(state)).max()) * t.character.mass * STANDARD_GRAVITY
 
 
 # ---------------------------------------------------------------- poses

@@ -6,7 +6,7 @@ It starts from an implicit one, where every equation holds, and takes Gauss-Newt
 from collections.abc import Mapping
 
 from ..arrays import FloatArray
-from ..data.requests import Objective
+from ..data.requests import ObjectiveKind
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..optimisation.kkt_step import Linearised
@@ -58,7 +58,7 @@ class Near:
 def explicit(
     outcome: Outcome,
     plan: Setup,
-    objectives: Mapping[Objective, float],
+    objectives: Mapping[ObjectiveKind, float],
     progress: Progress | None,
 ) -> tuple[list[Outcome], float]:
     """Lessens weighted objectives from a motion that meets every request.
@@ -147,7 +147,7 @@ def _settled_step(
 
 
 def weighed(
-    t: Transcription, x: FloatArray, plan: Setup, objectives: Mapping[Objective, float]
+    t: Transcription, x: FloatArray, plan: Setup, objectives: Mapping[ObjectiveKind, float]
 ) -> WeightedSum:
     """The goal of weighted objectives, each in shares of its value at x (K, n_block), and of poses
     that are only preferred. Without objectives it is closeness to x that these have to outweigh."""
@@ -160,7 +160,7 @@ def weighed(
     for objective, weight in objectives.items():
         if weight <= 0.0:
             continue
-        if objective is Objective.CLOSENESS:
+        if objective is ObjectiveKind.CLOSENESS:
             terms.append(Near(closeness, weight / typical))
             continue
         for term in _terms(objective, t, plan):
@@ -172,24 +172,24 @@ def weighed(
     return WeightedSum(terms, lambda _: still)
 
 
-def _terms(objective: Objective, t: Transcription, plan: Setup) -> list[Term]:
+def _terms(objective: ObjectiveKind, t: Transcription, plan: Setup) -> list[Term]:
     def from_start(quantity: Quantity) -> Term:
         return Squares(t, quantity, nodes_of(plan.start, t, quantity))
 
     match objective:
-        case Objective.TORQUE_SMOOTHNESS:
+        case ObjectiveKind.TORQUE_SMOOTHNESS:
             return [TorqueSmoothness(t, plan.torques)]
-        case Objective.TORQUE_OUTPUT:
+        case ObjectiveKind.TORQUE_OUTPUT:
             return [Squares(t, plan.torques)]
-        case Objective.POWER:
+        case ObjectiveKind.POWER:
             return [Squares(t, Power(plan.torques))]
-        case Objective.MASS_DISPLACEMENT:
+        case ObjectiveKind.MASS_DISPLACEMENT:
             return [from_start(MassPlaces())]
-        case Objective.ANGLE_DISPLACEMENT:
+        case ObjectiveKind.ANGLE_DISPLACEMENT:
             return [from_start(AngleRates(0))]
-        case Objective.ANGLE_SMOOTHNESS:
+        case ObjectiveKind.ANGLE_SMOOTHNESS:
             return [Squares(t, AngleRates(2))]
-        case Objective.TOTAL_CHANGE:
+        case ObjectiveKind.TOTAL_CHANGE:
             return [
                 from_start(AngleRates(0)),
                 from_start(plan.torques),

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
-from ..data.requests import Method, Objective
+from ..data.requests import Method, ObjectiveKind
 from ..data.status import Status
 from ..optimisation.sqp import Outcome, Progress, Stopped, restore, worst_violation
 from ..transcription.constraint import exchange, missed
@@ -83,7 +83,7 @@ def _adapted(
         return _failed(max(ways, key=lambda way: way.reached), outcomes, fit, plan)
     outcomes += finish(outcomes[-1], plan, progress)
     gain = None
-    method, weights = problem.requests.solution.method, dict[Objective, float]()
+    method, weights = problem.requests.solution.method, dict[ObjectiveKind, float]()
     if method is Method.EXPLICIT:
         weights = dict(problem.requests.solution.objectives)
     if weights or problem.requests.preferred:

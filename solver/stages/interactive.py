@@ -66,11 +66,11 @@ class Follower:
         x = warm_start(self.motion, stance_moves(self._plan.schedule, was, goal))
         if not self._settle(x, goal):
             self.motion, self._line = self._held, None
-            return DragStatus.LOST
+            return DragStatus.DIVERGED
         if self.violation < NEAR:
             self._held = self.motion
         there = stages == 1 and self.violation <= 1.0
-        return DragStatus.ARRIVED if there else DragStatus.ON_ITS_WAY
+        return DragStatus.CONVERGED if there else DragStatus.CONVERGING
 
     def _rearrange(self, problem: MotionProblem) -> None:
         """Other bounds or places of points: the same unknowns where the structure allows."""

@@ -5,7 +5,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..body.body_changes import changed_points
 from ..body.character import Character
-from ..body.kinematics import pose
+from ..body.kinematics import forward_kinematics
 from ..numerics.splines import gauss_instants
 from ..transcription.motion import Motion
 
@@ -37,7 +37,7 @@ def reseated(motion: Motion, character: Character) -> FloatArray:
 def _reseat(motion: Motion, character: Character, times: FloatArray) -> FloatArray:
     """(T, 3) how far the centre of mass moves, m."""
     t = motion.transcription
-    old, new = motion.pose(times), pose(character, motion.angles(times))
+    old, new = motion.pose(times), forward_kinematics(character, motion.angles(times))
     off = old.centres[:, 0] - new.centres[:, 0]  # with the root where it was
     pinned = np.array([(c.pin_start <= times) & (times <= c.pin_end) for c in t.contacts])
     if not pinned.any():

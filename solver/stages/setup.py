@@ -14,8 +14,9 @@ import numpy as np
 from ..analysis.pinned_places import pinned_places, travel_axes
 from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
-from ..body.dynamics import GRAVITY, MomentFunction
+from ..body.dynamics import MomentFunction
 from ..body.proportions import changed_recording
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Contact, ContactSchedule, Phase
 from ..data.faults import (
     BadTiming,
@@ -27,10 +28,10 @@ from ..data.faults import (
 )
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
-from ..data.requests import ConeShape, Dynamics, Method, Objective, PointRequest, Requests
-from ..data.timeline import SHORTEST_PHASE, timeline
+from ..data.requests import ConeShape, Dynamics, Method, ObjectiveKind, PointRequest, Requests
+from ..data.timeline import MIN_PHASE_DURATION, timeline
 from ..numerics.block_banded import BlockBanded
-from ..numerics.splines import Basis, phase_breaks
+from ..numerics.splines import SplineBasis, phase_breaks
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..transcription.contact_pins import PointContact, Track
 from ..transcription.motion import Motion
@@ -62,10 +63,10 @@ from .reseat import reseated
 HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
 SAMPLES_PER_TRACK = 60.0  # Hz
 OF_TORQUES = (
-    Objective.TORQUE_SMOOTHNESS.value,
-    Objective.POWER.value,
-    Objective.TORQUE_OUTPUT.value,
-    Objective.TOTAL_CHANGE.value,
+    ObjectiveKind.TORQUE_SMOOTHNESS.value,
+    ObjectiveKind.POWER.value,
+    ObjectiveKind.TORQUE_OUTPUT.value,
+    ObjectiveKind.TOTAL_CHANGE.value,
     Method.IMPLICIT_TORQUES.value,
 )
 
@@ -250,7 +251,7 @@ def _added(request: PointRequest, scene: EvaluationContext) -> Contact:
     """The contact that an environment point makes, from when it holds."""
     body = scene.body(request.name, request.bone)
     span = scene.interval(request.name, request.when)
-    if span[1] - span[0] < SHORTEST_PHASE:
+    if span[1] - span[0] < MIN_PHASE_DURATION:
         raise BadTiming(request.name, span[1] - span[0])
     if any(request.name in (c.name, c.point) for c in scene.schedule.contacts):
         raise TakenName(request.name)
@@ -325,14 +326,16 @@ def _start(
     if coarse is None:
         basis = _mapped_basis(t.basis, scene, extra)
     else:
-        basis = Basis(*phase_breaks(schedule.boundaries, extra, coarse))
+        basis = SplineBasis(*phase_breaks(schedule.boundaries, extra, coarse))
     new = Transcription(t.character, basis, points, contacts, t.moment)
     x = _resampled(reference, new, scene.timeline.eased)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
     return replace(motion, places=_current_places(motion, fit))
 
 
-def _mapped_basis(old: Basis, scene: EvaluationContext, extra: Sequence[float]) -> Basis:
+def _mapped_basis(
+    old: SplineBasis, scene: EvaluationContext, extra: Sequence[float]
+) -> SplineBasis:
     """The old knots at their new instants, and those that new boundaries and holds need."""
     line, boundaries = scene.timeline, scene.schedule.boundaries
     fixed = sorted({*boundaries, *extra})
@@ -345,7 +348,7 @@ def _mapped_basis(old: Basis, scene: EvaluationContext, extra: Sequence[float]) 
         near = min(abs(t - other) for other in (*fixed, *kept))
         if 0.0 < t < line.duration and near > SHORTEST_SPAN:
             kept.append(t)
-    return Basis(*phase_breaks(boundaries, [*extra, *kept], SPANS[0]))
+    return SplineBasis(*phase_breaks(boundaries, [*extra, *kept], SPANS[0]))
 
 
 def _resampled(
@@ -363,7 +366,7 @@ def _resampled(
     came_from = {name: point for point, name in names.items()}
     nodes = basis.force_nodes(np.arange(basis.n_spans))
     inside = 1e-6 * np.diff(basis.breaks)
-    weight = old.character.mass * GRAVITY
+    weight = old.character.mass * STANDARD_GRAVITY
     for side, at in enumerate((basis.breaks[:-1] + inside, basis.breaks[1:] - inside)):
         forces = motion.forces(to_old(at)) / weight
         for contact in new.contacts:

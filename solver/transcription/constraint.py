@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..body.character import Character
 from ..data.row_kinds import RowKind
-from ..numerics.splines import Basis
+from ..numerics.splines import SplineBasis
 from .rows import Layout, Rows, violation
 from .sampling import Instants, Slope, State
 
@@ -66,7 +66,7 @@ class Constraint:
     def kind(self) -> RowKind:
         return self.measure.kind
 
-    def instants(self, basis: Basis) -> Instants:
+    def instants(self, basis: SplineBasis) -> Instants:
         """Where its rows are on a basis: at the ends, and evenly inside every span.
 
         Torques follow accelerations, which have corners at the breaks and jump at the double ones:
@@ -83,7 +83,7 @@ class Constraint:
         ends = [self.start, self.end]
         return Instants(basis, np.unique(np.concatenate([times, ends, self.extra])))
 
-    def _node_instants(self, basis: Basis) -> Instants:
+    def _node_instants(self, basis: SplineBasis) -> Instants:
         """The force nodes: forces are linear in between, so a bound that is convex holds there."""
         inside = (basis.breaks[1:] > self.start) & (basis.breaks[:-1] < self.end)
         spans = np.flatnonzero(inside)
@@ -92,7 +92,7 @@ class Constraint:
         times = np.concatenate([basis.breaks[spans], basis.breaks[spans + 1]])
         return Instants(basis, times, np.concatenate([spans, spans]))
 
-    def _sided_instants(self, basis: Basis) -> Instants:
+    def _sided_instants(self, basis: SplineBasis) -> Instants:
         first, last = basis.breaks[:-1], basis.breaks[1:]
         spans = np.arange(basis.n_spans)
         ends = np.append(basis.double[1:-1], True)
@@ -112,7 +112,7 @@ class Constraint:
             return Instants(basis, np.array([0.5 * (self.start + self.end)]))
         return Instants(basis, times[order], owner[order])
 
-    def dense(self, basis: Basis) -> Instants:
+    def dense(self, basis: SplineBasis) -> Instants:
         """Instants that tell whether it holds between the rows."""
         longest = float(np.diff(basis.breaks).max())
         per_span = max(FEWEST_DENSE, int(np.ceil(longest / DENSE)))
@@ -126,7 +126,7 @@ class Bounded:
         self,
         condition: Constraint,
         character: Character,
-        basis: Basis,
+        basis: SplineBasis,
         layout: Layout,
         owner: int,
     ) -> None:
@@ -175,7 +175,7 @@ class Missed:
 
 
 def missed(
-    condition: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    condition: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> Missed:
     """How badly a motion misses a condition at worst, between its rows too."""
     instants, off = _dense_violation(condition, character, basis, layout, x)
@@ -184,7 +184,7 @@ def missed(
 
 
 def exchange(
-    condition: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    condition: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> Constraint:
     """The condition with the instants added at which it is missed most, one for each stretch."""
     instants, off = _dense_violation(condition, character, basis, layout, x)
@@ -197,7 +197,7 @@ def exchange(
 
 
 def _dense_violation(
-    condition: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    condition: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> tuple[Instants, FloatArray]:
     instants = condition.dense(basis)
     value = condition.measure.value(State(character, layout, instants, x))

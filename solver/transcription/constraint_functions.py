@@ -170,7 +170,7 @@ class Orientation:
             state.pose.axes, 1, 2
         )
         moves = np.zeros(state.character.n_angles)
-        for ancestor in state.character.lineage(self.body):
+        for ancestor in state.character.ancestors(self.body):
             moves[state.character.joints[ancestor].dofs] = 1.0
         return [Slope(Channel.ANGLES, 0, _inverse_left_jacobian(off) @ turned * moves)]
 

@@ -16,7 +16,7 @@ from ..body.kinematics import BodyPoint, Pose, point_velocity
 from ..data.contacts import Contact
 from ..data.row_kinds import RowKind
 from ..numerics.interpolation import interpolate
-from ..numerics.splines import ORDER, Basis
+from ..numerics.splines import ORDER, SplineBasis
 from .rows import Layout, Rows
 
 FRICTION = 1.0  # of a rubber sole on a hall's floor
@@ -101,7 +101,9 @@ class _Held:
 class Pins:
     """Pin rows on one basis. times: (U,) the breaks at which anything is pinned."""
 
-    def __init__(self, basis: Basis, layout: Layout, contacts: Sequence[PointContact]) -> None:
+    def __init__(
+        self, basis: SplineBasis, layout: Layout, contacts: Sequence[PointContact]
+    ) -> None:
         self.layout = layout
         slack = 1e-9
         pinned = np.array(

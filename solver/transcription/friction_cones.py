@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import perpendicular, unit
-from ..numerics.splines import ORDER, Basis
+from ..numerics.splines import ORDER, SplineBasis
 from .contact_pins import PointContact
 from .rows import Layout, Rows
 
@@ -22,7 +22,9 @@ LEAST = 1e-9  # BW; below it a tangential force has no direction
 class ForceCones:
     """Push and friction rows of contacts on one basis, at U pairs of a force node and a contact."""
 
-    def __init__(self, basis: Basis, layout: Layout, contacts: Sequence[PointContact]) -> None:
+    def __init__(
+        self, basis: SplineBasis, layout: Layout, contacts: Sequence[PointContact]
+    ) -> None:
         self._layout = layout
         nodes, owner = [], []
         middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])

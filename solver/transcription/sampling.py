@@ -8,8 +8,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
-from ..body.kinematics import Pose, pose
-from ..numerics.splines import ORDER, Basis
+from ..body.kinematics import Pose, forward_kinematics
+from ..numerics.splines import ORDER, SplineBasis
 from .rows import Layout
 
 
@@ -34,7 +34,9 @@ class Instants:
     """Instants (U,) s, each in a span, with what a basis is there. Values and derivatives of the
     four basis functions; weights of the span's two force values."""
 
-    def __init__(self, basis: Basis, times: FloatArray, spans: IntArray | None = None) -> None:
+    def __init__(
+        self, basis: SplineBasis, times: FloatArray, spans: IntArray | None = None
+    ) -> None:
         self.times = times
         self.spans = basis.spans(times) if spans is None else spans
         self.values = [basis.evaluate(times, k, self.spans) for k in range(3)]
@@ -92,4 +94,4 @@ class State:
 
     @cached_property
     def pose(self) -> Pose:
-        return pose(self.character, self.angles())
+        return forward_kinematics(self.character, self.angles())

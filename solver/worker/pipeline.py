@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
-from ..analysis.analyse import Analysis, analyse, figure
+from ..analysis.analyse import Analysis, analyse, build_figure
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..data.contacts import ContactSchedule
@@ -139,7 +139,7 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
         analysis = analyse(recording, problem)
         return Subject(analysis, problem, analysis.performance.character.height, 1.0)
     # Before any contact is sought: at a wrong scale none would be found.
-    height = figure(recording, problem)[1].height
+    height = build_figure(recording, problem)[1].height
     factor = problem.height / height
     problem = scaled_problem(problem, factor)
     analysis = analyse(scaled_recording(recording, factor), problem)

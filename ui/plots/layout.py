@@ -1,4 +1,4 @@
-"""Where plots go in a viewport: what bars and the sidebar leave free, and the cards in it."""
+"""Layout of plots in a viewport: the room that bars and the sidebar leave, and the cards in it."""
 
 from __future__ import annotations
 

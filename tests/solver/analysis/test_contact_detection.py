@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hangtime.bridge.formats.bvh import read_bvh
-from hangtime.bridge.formats.skeleton import to_recording
+from hangtime.bridge.formats.motion_clip import to_recording
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.contact_detection import detect_contacts, require_flight
 from hangtime.solver.analysis.performance import Performance, contact_points, find_contacts, perform
@@ -17,7 +17,7 @@ from hangtime.solver.data.contacts import (
     Contact,
     ContactPoint,
     ContactSchedule,
-    Flight,
+    Interval,
     PhaseKind,
     PointKind,
     numbered,
@@ -97,7 +97,7 @@ def test_snap_joins_what_nearly_coincides_and_leaves_flights_alone() -> None:
     )
     snapped = snap(s, 0.0125)
     assert snapped.boundaries == pytest.approx((0.0, 1.0, 2.0, 2.108, 2.5, 3.0))
-    assert snapped.flights == s.flights == (Flight(1.0, 2.0),)
+    assert snapped.flights == s.flights == (Interval(1.0, 2.0),)
     assert "Right heel 1" not in [c.name for c in snapped.contacts]  # nothing of it was left
 
 

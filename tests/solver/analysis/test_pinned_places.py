@@ -13,7 +13,7 @@ from hangtime.solver.data.faults import (
     UnknownContactName,
     UnknownPhase,
 )
-from hangtime.solver.data.problem import Axes3, ContactEdit, MotionProblem, Pin
+from hangtime.solver.data.problem import ContactEdit, MotionProblem, OffsetAxes, Pin
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, frames_of, hop
 
@@ -47,7 +47,7 @@ def test_no_pins_leave_every_contact() -> None:
 
 def test_a_phase_s_pin_moves_all_of_its_contacts_and_no_others() -> None:
     shift = np.array([0.3, -0.1, 0.2])
-    moved = after(Pin("landing", LANDING, offset=tuple(shift), axes=Axes3.WORLD)) - before()
+    moved = after(Pin("landing", LANDING, offset=tuple(shift), axes=OffsetAxes.WORLD)) - before()
     here = landing()
     assert 0 < here.sum() < len(here)
     assert moved[here] == pytest.approx(np.tile(shift, (here.sum(), 1)))
@@ -86,7 +86,7 @@ def test_places_are_for_the_contacts_centre() -> None:
     assert moved.mean(axis=0) == pytest.approx(goal)
     shape = before()[landing()]
     assert moved - moved.mean(axis=0) == pytest.approx(shape - shape.mean(axis=0))
-    added = Pin("there", LANDING, place=goal, offset=(0.1, 0.0, 0.0), axes=Axes3.WORLD)
+    added = Pin("there", LANDING, place=goal, offset=(0.1, 0.0, 0.0), axes=OffsetAxes.WORLD)
     assert after(added)[landing()].mean(axis=0) == pytest.approx([1.1, 2.0, 0.5])
 
 

@@ -11,10 +11,11 @@ from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
-from hangtime.solver.body.dynamics import GRAVITY, MomentFunction, evaluate, momentum_rate
+from hangtime.solver.body.dynamics import MomentFunction, evaluate, momentum_rate
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
-from hangtime.solver.body.joint_axes import Axes
-from hangtime.solver.body.kinematics import BodyPoint, point_velocity, pose
+from hangtime.solver.body.joint_axes import JointAxes
+from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics, point_velocity
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.numerics.rotations import rotation_matrix
@@ -49,7 +50,7 @@ def random_tree(seed: int, bodies: int = 9) -> Character:
         before, after = rotation_matrix(random.normal(size=(2, 3)))
         parent = int(random.integers(0, i)) if i else -1
         offset = 0.3 * random.normal(size=3) if i else np.zeros(3)
-        joints.append(Joint(parent, offset, Axes(dofs, before, after), first))
+        joints.append(Joint(parent, offset, JointAxes(dofs, before, after), first))
         first += dofs
     made = [random_body(random, f"body {i}") for i in range(bodies)]
     return Character(tuple(made), tuple(joints), 1.7)
@@ -119,9 +120,9 @@ def test_root_rows_of_random_trees_are_mujocos(seed: int) -> None:
     x = [ca.SX.sym(name, character.n_angles) for name in "qva"]
     function = ca.Function("rate", [ca.vertcat(*x)], [momentum_rate(character, *x)])
     (rate,) = evaluate(function, np.concatenate([q, v, a], axis=1), [(3,)])
-    arms = pose(character, q).points(points)
+    arms = forward_kinematics(character, q).points(points)
     ours_moment = rate - np.cross(arms, forces).sum(axis=1)
-    gravity = np.array([0.0, 0.0, -GRAVITY])
+    gravity = np.array([0.0, 0.0, -STANDARD_GRAVITY])
     ours_force = character.mass * (com[2] - gravity) - forces.sum(axis=1)
 
     model = mujoco.MjModel.from_xml_string(mjcf(character, points))
@@ -130,7 +131,7 @@ def test_root_rows_of_random_trees_are_mujocos(seed: int) -> None:
     force, moment = root_wrench(qpos, theirs, centre)
     assert relative(ours_force, force) < 1e-9
     assert relative(ours_moment, moment) < 1e-9
-    scaled = MomentFunction(character).value(q, v, a) * character.mass * GRAVITY
+    scaled = MomentFunction(character).value(q, v, a) * character.mass * STANDARD_GRAVITY
     assert relative(scaled, rate) < 1e-12
 
 
@@ -176,9 +177,9 @@ def test_point_jacobian(seed: int) -> None:
     character = random_tree(seed)
     points = random_points(seed, character)
     q = random_movement(seed, character.n_angles)[0]
-    jacobian = pose(character, q).point_jacobian(points)
+    jacobian = forward_kinematics(character, q).point_jacobian(points)
     for i in range(2):
-        numeric = central(lambda x: pose(character, x[None]).points(points)[0], q[i])
+        numeric = central(lambda x: forward_kinematics(character, x[None]).points(points)[0], q[i])
         assert relative(jacobian[i], numeric) < 1e-7
 
 
@@ -187,7 +188,7 @@ def test_point_velocity_and_its_jacobian(seed: int) -> None:
     character = random_tree(seed, bodies=6)
     points = random_points(seed, character)
     q, v, _ = random_movement(seed, character.n_angles)
-    posed = pose(character, q)
+    posed = forward_kinematics(character, q)
     speeds, *jacobian = point_velocity(posed, points, v)
     by_angle = posed.point_jacobian(points)
     np.testing.assert_allclose(speeds, np.einsum("npij,nj->npi", by_angle, v), atol=1e-11)
@@ -195,7 +196,9 @@ def test_point_velocity_and_its_jacobian(seed: int) -> None:
 
         def moved(x: np.ndarray) -> np.ndarray:
             angles, rates = np.split(x, 2)
-            return point_velocity(pose(character, angles[None]), points, rates[None])[0][0]
+            return point_velocity(forward_kinematics(character, angles[None]), points, rates[None])[
+                0
+            ][0]
 
         numeric = central(moved, np.concatenate([q[i], v[i]]))
         ours = np.concatenate([by[i] for by in jacobian], axis=-1)
@@ -274,7 +277,7 @@ def test_efforts_of_an_adapted_jump_leave_nothing_at_the_root() -> None:
     motion = adapted.motion
     t = motion.transcription
     efforts = motion_efforts(InverseDynamics(t.character, t.points), motion, t.node_times)
-    weight = t.character.mass * GRAVITY
+    weight = t.character.mass * STANDARD_GRAVITY
     assert np.abs(efforts.root_force).max() < 1e-4 * weight
     assert np.abs(efforts.root_moment).max() < 1e-4 * weight
     assert 50.0 < np.abs(efforts.torques).max() < 2000.0

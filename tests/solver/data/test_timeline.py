@@ -5,7 +5,7 @@ import pytest
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.faults import BadTiming, UnknownPhaseIn
 from hangtime.solver.data.requests import Hold, Moment, PhaseTiming, When
-from hangtime.solver.data.timeline import Timeline, interval, timeline
+from hangtime.solver.data.timeline import Timeline, active_interval, timeline
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -153,7 +153,7 @@ def when(*, line: Timeline | None = None, **asked: object) -> tuple[float, float
     line = line or made()
     apex = np.stack([np.linspace(0.0, 1.2, 121), np.linspace(0.0, 1.2, 121)], axis=1)
     apex[:, 1] = -((apex[:, 1] - 0.52) ** 2)
-    return interval("asked", When(**asked), line, line.schedule(schedule()).phases, apex)
+    return active_interval("asked", When(**asked), line, line.schedule(schedule()).phases, apex)
 
 
 def test_when_is_the_whole_clip_a_phase_frames_or_what_they_share() -> None:

@@ -9,7 +9,7 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     Method,
     Moment,
-    Objective,
+    ObjectiveKind,
     PoseRequest,
     Reduction,
     ReductionKind,
@@ -40,7 +40,7 @@ from hangtime.tests.helpers.toy_problems import random_state, standing, stood
 
 FURTHER = (Pin("Landing", "ground 2", offset=(0.15, 0.0, 0.05)),)
 SAME = 1e-3  # m; a step's sweeps end at a thousandth, so two ways to one motion part by less
-WEIGHED = [objective for objective in Objective if objective is not Objective.CLOSENESS]
+WEIGHED = [objective for objective in ObjectiveKind if objective is not ObjectiveKind.CLOSENESS]
 
 
 def asked(requests: Requests) -> MotionProblem:
@@ -95,9 +95,9 @@ def test_hessians_are_the_squares_of_the_residuals_slopes(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("objective", WEIGHED)
-def test_every_objective_is_lessened_and_every_request_still_met(objective: Objective) -> None:
+def test_every_objective_is_lessened_and_every_request_still_met(objective: ObjectiveKind) -> None:
     start = implicit()
-    weights = ((objective, 1.0), (Objective.CLOSENESS, 0.3))
+    weights = ((objective, 1.0), (ObjectiveKind.CLOSENESS, 0.3))
     solution = SolverOptions(Method.EXPLICIT, objectives=weights)
     found = adapt(fitted_hop(), asked(Requests(solution=solution)))
     assert found.solved
@@ -114,7 +114,7 @@ def test_every_objective_is_lessened_and_every_request_still_met(objective: Obje
     assert drift < 1e-3
 
 
-def other_terms(found: Adaptation, objective: Objective) -> list[Term]:
+def other_terms(found: Adaptation, objective: ObjectiveKind) -> list[Term]:
     motion = found.motion
     return list(weighed(motion.transcription, motion.x, found.plan, {objective: 1.0}).terms)
 

@@ -42,7 +42,7 @@ from hangtime.solver.data.scaling import (
     scaled_track,
 )
 from hangtime.solver.data.status import DragStatus, Status
-from hangtime.solver.data.traces import Flight, Traces
+from hangtime.solver.data.traces import Traces
 from hangtime.solver.worker.protocol import (
     LARGEST,
     PROTOCOL,
@@ -97,7 +97,7 @@ TRACES = Traces(
     weight=700.0,
     joints=(),
     torques=NONE[:, :, 0],
-    flights=(Flight("flight 1", 1.0, 2.0, np.ones((3, 3))),),
+    flights=(FlightParabola("flight 1", 1.0, 2.0, np.ones((3, 3))),),
 )
 FAULT = faults.NoSolution(Status.STOPPED, (Violation("pin", RowKind.PIN, 1.0),))
 FLIGHT = FlightSummary(None, 1.1, 0.5)
@@ -133,7 +133,7 @@ MESSAGES: tuple[Message, ...] = (
     Fitted(1, REPORT.fit_to_recording, 2.0, TRACES),
     Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, None),
     Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, FAULT),
-    Followed(1, TRACES, DragStatus.ARRIVED, DragSummary(3.0, 1.0, 2.0, 4.5)),
+    Followed(1, TRACES, DragStatus.CONVERGED, DragSummary(3.0, 1.0, 2.0, 4.5)),
     Cancelled(1),
     Failed(1, faults.NoFlight(lowest_cm=1.5)),
 )
