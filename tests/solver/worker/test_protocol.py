@@ -42,7 +42,7 @@ from hangtime.solver.data.scaling import (
     scaled_track,
 )
 from hangtime.solver.data.status import DragStatus, Status
-from hangtime.solver.data.traces import Traces
+from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.solver.worker.protocol import (
     LARGEST,
     PROTOCOL,
