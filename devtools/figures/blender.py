@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...bridge.accessors import current_action
 from ...bridge.armature import fcurves
-from ...bridge.armature.actions import current_action
 from ...bridge.armature.read import read_recording
 from ...bridge.armature.write import write_action
 from ...bridge.files.export import export_fbx, reimport_fbx

@@ -62,7 +62,7 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
         return _open(clip.path), Origin(clip.path.name)
     import bpy
 
-    from ...bridge.armature.actions import current_action
+    from ...bridge.accessors import current_action
     from ...bridge.files.import_clip import import_clip
     from ...bridge.formats.acclaim import USUAL_RATE
 
@@ -116,7 +116,7 @@ def _recorded_frames(
     armature: bpy.types.Object, problem: MotionProblem
 ) -> tuple[float | None, float | None]:
     """The problem's frames as far as the recording goes: beyond, Blender holds the last pose."""
-    from ...bridge.armature.actions import current_action
+    from ...bridge.accessors import current_action
 
     action = current_action(armature)
     if problem.frames is None or action is None:

@@ -92,7 +92,7 @@ class Outputs:
         recording's on a copy beside it."""
         from mathutils import Vector
 
-        from ...bridge.armature.actions import current_action
+        from ...bridge.accessors import current_action
         from ...bridge.armature.reproportioned import build_reproportioned
         from ...bridge.armature.write import side_by_side, write_action
 
