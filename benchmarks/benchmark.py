@@ -12,8 +12,8 @@ from pathlib import Path
 from ..devtools.environment.problem import SetUpError
 from ..devtools.environment.virtual_environment import ROOT
 from ..devtools.recordings import HOPS, find
+from ..solver.one_thread import ONE_THREAD
 
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 DOCUMENT = ROOT / "docs" / "benchmark.md"
 HEAD = """# The benchmark
 

@@ -25,8 +25,9 @@ from ..devtools.peers.task import (
 )
 from ..solver.body.dynamics import BodyMotion, body_frames, momentum_rate, point_motion
 from ..solver.data.constants import STANDARD_GRAVITY
+from ..solver.data.row_kinds import RowKind
 from ..solver.numerics.splines import ORDER
-from ..solver.transcription.rows import RowKind, Rows
+from ..solver.transcription.rows import Rows
 from ..solver.transcription.transcription import Transcription
 
 LEAST = 1e-6  # BW; rounds off the tip of the friction cone, where it has no derivative

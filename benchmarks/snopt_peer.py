@@ -31,7 +31,7 @@ from ..devtools.peers.task import (
     judged,
     metric_entries,
 )
-from ..solver.transcription.rows import RowKind
+from ..solver.data.row_kinds import RowKind
 
 LINEAR = (RowKind.BALANCE, RowKind.PUSH)
 GRACE = 1.0  # s, for the process to hand over its answer

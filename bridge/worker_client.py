@@ -1,7 +1,7 @@
-"""Starts, asks and ends the process that solves, so that neither time nor a crash is Blender's.
+"""Client of the worker process: starts, asks and ends it. Its time and crashes are not Blender's.
 
-A request is made and its news gathered by a thread of its own; the thread that Blender runs on
-only looks at what has come (`Job.news`) or waits for it (`Job.wait`).
+A request is made and its messages gathered by a thread of its own; the thread that Blender runs on
+only polls them (`PendingRequest.news`) or waits for the answer (`PendingRequest.wait`).
 """
 
 from __future__ import annotations
@@ -14,17 +14,19 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
-from io import BufferedReader, RawIOBase
+from io import BufferedReader, FileIO
 from itertools import count
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Condition, Lock, Thread
 from time import monotonic
+from typing import cast
 
 from ..solver.data.faults import WorkerDied
 from ..solver.data.problem import MotionProblem
 from ..solver.data.recording import Recording
 from ..solver.data.status import DragStatus
+from ..solver.one_thread import ONE_THREAD
 from ..solver.worker.protocol import (
     PROTOCOL,
     Answer,
@@ -33,35 +35,24 @@ from ..solver.worker.protocol import (
     Followed,
     Halt,
     Hello,
-    Kind,
     Message,
     Progress,
     ProtocolError,
     Ready,
     Request,
+    RequestKind,
     receive,
     send,
 )
 
 _PROGRAM = Path(__file__).resolve().parents[1] / "solver" / "worker" / "main.py"
-# On a busy machine several threads make small factorisations a hundred times slower.
-_ONE_THREAD = dict.fromkeys(
-    (
-        "OMP_NUM_THREADS",
-        "OPENBLAS_NUM_THREADS",
-        "MKL_NUM_THREADS",
-        "VECLIB_MAXIMUM_THREADS",
-        "NUMEXPR_NUM_THREADS",
-    ),
-    "1",
-)
 _KEPT_LINES = 20
 _LAST_WORDS_S = 2.0
 _PATIENCE_S = 2.0  # with a request that was dropped, before the worker is ended for it
 
 
 class PendingRequest:
-    """One request on its way; `answer` is set once it has been seen in the news."""
+    """Pending request; `answer` is set once polling has consumed the reply."""
 
     def __init__(self, request: Request) -> None:
         self.request = request
@@ -69,7 +60,7 @@ class PendingRequest:
         self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
 
     def requests(self) -> Iterator[Request]:
-        """The one."""
+        """This one alone."""
         yield self.request
 
     def deliver(self, message: Progress | Answer) -> None:
@@ -77,7 +68,7 @@ class PendingRequest:
         self._arrived.put(message)
 
     def news(self) -> Iterator[Progress | Answer]:
-        """What has arrived since the last look; never waits."""
+        """Messages that arrived since the last poll; never waits."""
         while self.answer is None:
             try:
                 yield self._seen(self._arrived.get_nowait())
@@ -99,8 +90,8 @@ class PendingRequest:
 
 
 class DragStream:
-    """Follows what is wanted as it changes: the next request leaves as soon as the last one is
-    answered, without waiting until Blender looks, and is always about the latest problem."""
+    """Stream of requests during a drag, each about the latest problem: the next one leaves as soon
+    as the last is answered, without waiting until Blender polls."""
 
     def __init__(self, recording: Recording, ids: Iterator[int]) -> None:
         self._recording: Recording | None = recording
@@ -111,19 +102,19 @@ class DragStream:
         self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
 
     def want(self, problem: MotionProblem) -> None:
-        """This is what to follow from now on."""
+        """Sets the problem to follow from now on."""
         with self._changed:
             self._problem = problem
             self._changed.notify()
 
     def end(self) -> None:
-        """Nobody follows any more."""
+        """Ends the stream."""
         with self._changed:
             self._ended = True
             self._changed.notify()
 
     def news(self) -> Iterator[Progress | Answer]:
-        """What has arrived since the last look; never waits."""
+        """Messages that arrived since the last poll; never waits."""
         while True:
             try:
                 yield self._arrived.get_nowait()
@@ -131,7 +122,7 @@ class DragStream:
                 return
 
     def requests(self) -> Iterator[Request]:
-        """What to ask one after another; waits while there is nothing new. On the thread that
+        """The requests one after another; waits while there is nothing new. Runs on the thread that
         listens to the worker, which delivers what comes before it takes the next."""
         problem: MotionProblem | None = None
         while True:
@@ -142,13 +133,13 @@ class DragStream:
                 problem, self._problem = self._problem, None
             assert problem is not None
             self._last = problem
-            yield Request(next(self._ids), Kind.FOLLOW, self._recording, problem)
+            yield Request(next(self._ids), RequestKind.FOLLOW, self._recording, problem)
             self._recording = None  # the worker knows it now
 
     def deliver(self, message: Progress | Answer) -> None:
         """Called by the thread that listens; a motion that is still on its way is asked again."""
         self._arrived.put(message)
-        if isinstance(message, Followed) and message.course is DragStatus.CONVERGING:
+        if isinstance(message, Followed) and message.status is DragStatus.CONVERGING:
             with self._changed:
                 self._problem = self._problem or self._last
 
@@ -158,75 +149,72 @@ class Worker:
 
     def __init__(self) -> None:
         self._process: _Process | None = None
-        self._job: PendingRequest | None = None
-        self._chase: DragStream | None = None
+        self._pending: PendingRequest | None = None
+        self._stream: DragStream | None = None
         self._dropped: tuple[PendingRequest, float] | None = None  # and when
         self._ids = count(1)
 
     @property
     def busy(self) -> bool:
         """Whether a request that has not been dropped has not had its answer seen."""
-        waits = self._job is not None and self._job.answer is None
-        return waits or self._chase is not None
+        waits = self._pending is not None and self._pending.answer is None
+        return waits or self._stream is not None
 
     @property
     def pid(self) -> int | None:
         """The process's number while it lives."""
-        alive = self._process is not None and self._process.alive
-        return self._process.pid if alive else None
+        return self._process.pid if self._process is not None and self._process.alive else None
 
     def ask(
-        self, kind: Kind, recording: Recording | None, problem: MotionProblem
+        self, kind: RequestKind, recording: Recording | None, problem: MotionProblem
     ) -> PendingRequest:
         """Makes a request, in a new process if there is none alive.
 
         recording: None is the last request's. Raises WorkerDied where none can be started,
         RuntimeError while another is under way.
         """
-        self._ready()
-        assert self._process is not None
-        self._job = PendingRequest(Request(next(self._ids), kind, recording, problem))
-        self._process.ask(self._job)
-        return self._job
+        process = self._free_process()
+        self._pending = PendingRequest(Request(next(self._ids), kind, recording, problem))
+        process.ask(self._pending)
+        return self._pending
 
-    def chase(self, recording: Recording) -> DragStream:
-        """Begins to follow what is wanted of a recording. Raises as `ask` does."""
-        self._ready()
-        assert self._process is not None
-        self._chase = DragStream(recording, self._ids)
-        self._process.ask(self._chase)
-        return self._chase
+    def follow(self, recording: Recording) -> DragStream:
+        """Begins a drag stream about a recording. Raises as `ask` does."""
+        process = self._free_process()
+        self._stream = DragStream(recording, self._ids)
+        process.ask(self._stream)
+        return self._stream
 
-    def _ready(self) -> None:
-        """A process that is free."""
+    def _free_process(self) -> _Process:
         if self.busy:
             raise RuntimeError("one request at a time")
-        if self.pid is None or self._stuck():
+        if self._process is None or not self._process.alive or self._stuck():
             self.close()
             self._process = _Process()
+        return self._process
 
     def drop(self) -> None:
         """Nobody waits for the request under way any more; the worker ends it at its next step."""
-        if self._chase is not None:
-            self._chase.end()
-            self._chase = None
+        if self._stream is not None:
+            self._stream.end()
+            self._stream = None
         if self.busy and self._process is not None:
-            assert self._job is not None
-            self._dropped = (self._job, monotonic())
-            self._process.halt(self._job, Ending.CANCEL)
-        self._job = None
+            assert self._pending is not None
+            self._dropped = (self._pending, monotonic())
+            self._process.halt(self._pending, Ending.CANCEL)
+        self._pending = None
 
     def as_it_stands(self) -> None:
         """The request under way shall be answered with the motion as it stands."""
-        if self._job is not None and self._job.answer is None and self._process is not None:
-            self._process.halt(self._job, Ending.AS_IT_STANDS)
+        if self._pending is not None and self._pending.answer is None and self._process is not None:
+            self._process.halt(self._pending, Ending.AS_IT_STANDS)
 
     def close(self) -> None:
         """Ends the process, whatever it is doing; the next request starts another."""
-        if self._chase is not None:
-            self._chase.end()
-        process, self._process, self._job, self._dropped = self._process, None, None, None
-        self._chase = None
+        if self._stream is not None:
+            self._stream.end()
+        process, self._process, self._pending, self._dropped = self._process, None, None, None
+        self._stream = None
         if process is not None:
             process.end()
 
@@ -234,10 +222,10 @@ class Worker:
         """Whether a request that was dropped a while ago still goes on."""
         if self._dropped is None:
             return False
-        job, since = self._dropped
-        for _ in job.news():
+        dropped, since = self._dropped
+        for _ in dropped.news():
             pass  # nobody waits for it
-        return job.answer is None and monotonic() - since > _PATIENCE_S
+        return dropped.answer is None and monotonic() - since > _PATIENCE_S
 
 
 @cache
@@ -257,18 +245,19 @@ class _Process:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 bufsize=0,  # nothing is left for closing to write
-                env={**os.environ, **_ONE_THREAD},
+                env={**os.environ, **ONE_THREAD},
                 creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
             )
         except OSError as problem:
             raise WorkerDied(f"{sys.executable} cannot be started: {problem}") from problem
         assert self._popen.stdin is not None
-        assert isinstance(self._popen.stdout, RawIOBase)
+        assert self._popen.stdout is not None
         self._to_worker = self._popen.stdin
-        self._from_worker = BufferedReader(self._popen.stdout)
+        # Without a buffer (above) the pipe is a raw FileIO, which the stubs do not know.
+        self._from_worker = BufferedReader(cast(FileIO, self._popen.stdout))
         self._greeted = False
         self._sending = Lock()
-        self._jobs: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
+        self._asked: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
         self._listener.start()
@@ -282,13 +271,13 @@ class _Process:
     def alive(self) -> bool:
         return self._popen.poll() is None
 
-    def ask(self, job: PendingRequest | DragStream) -> None:
-        """Has the job's request made once those before it are answered; never waits."""
-        self._jobs.put(job)
+    def ask(self, asked: PendingRequest | DragStream) -> None:
+        """Has the requests made once those before them are answered; never waits."""
+        self._asked.put(asked)
 
-    def halt(self, job: PendingRequest, how: Ending) -> None:
-        """Tells the worker to end the job's request; never waits."""
-        Thread(target=self._halt, args=(Halt(job.request.id, how),), daemon=True).start()
+    def halt(self, pending: PendingRequest, how: Ending) -> None:
+        """Tells the worker to end a request; never waits."""
+        Thread(target=self._halt, args=(Halt(pending.request.id, how),), daemon=True).start()
 
     def _halt(self, halt: Halt) -> None:
         _survive_broken_pipes()
@@ -296,11 +285,11 @@ class _Process:
             self._send(halt)
 
     def _converse(self) -> None:
-        """Makes the jobs' requests one after another, on a thread of its own."""
+        """Makes requests one after another, on a thread of its own."""
         _survive_broken_pipes()
-        while (job := self._jobs.get()) is not None:
-            for request in job.requests():
-                self._meet(request, job.deliver)
+        while (asked := self._asked.get()) is not None:
+            for request in asked.requests():
+                self._meet(request, asked.deliver)
                 if not self.alive:
                     break
 
@@ -323,7 +312,7 @@ class _Process:
         """Kills the process and lets go of it."""
         self._popen.kill()
         self._popen.wait()
-        self._jobs.put(None)
+        self._asked.put(None)
         self._listener.join(_LAST_WORDS_S)
         for pipe in (self._to_worker, self._from_worker, self._popen.stderr):
             assert pipe is not None

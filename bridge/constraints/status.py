@@ -1,10 +1,12 @@
-"""What a solve made of each constraint and body change, for the rows of their lists."""
+"""Outcome of a solve for each constraint and body change, for the rows of their lists."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from math import isfinite
 
+from ...solver.data.report import Report
+from ...solver.data.row_kinds import RowKind
 from ..properties.body_change import HangtimeBodyChange
 from ..properties.constraint import HangtimeConstraint
 from ..properties.settings import HangtimeSettings
@@ -12,27 +14,22 @@ from ..rows.choices import Met
 from .body_requests import leaves_limb
 
 PINNED = 1.0  # mm; a point that something holds from outside and that is nearer is held
-WORDS = {  # of the report's units
-    "degrees": "°",
-    "N·m beyond the limit": " N·m",
-    "BW beyond the cap": " body weights",
+UNITS = {  # after an amount, where not the report's own
+    RowKind.TORQUE: " N·m",
+    RowKind.PEAK: " body weights",
+    **dict.fromkeys((k for k in RowKind if k.reported_unit == "degrees"), "°"),
 }
 
 
-def write_status(settings: HangtimeSettings, report: Mapping[str, Any]) -> None:
-    """Sets every row's `met` and `status` from a solve's report (solver/results/report.py)."""
+def write_status(settings: HangtimeSettings, report: Report) -> None:
+    """Sets every row's `met` and `status` from a solve's report."""
     found: dict[str, tuple[bool, str]] = {}
-    for contact in report["contacts"]:
-        off = contact["worst_violation_mm"]
-        found[contact["name"]] = _told(
-            met=off <= PINNED, amount=off, unit="mm", frame=contact["worst_violation_frame"]
-        )
-    for condition in report["conditions"]:
-        found[condition["name"]] = _told(
-            met=condition["met"],
-            amount=condition["worst_violation"],
-            unit=condition["unit"],
-            frame=condition["worst_violation_frame"],
+    for contact in report.contacts:
+        off = contact.worst_violation_mm
+        found[contact.name] = _told(off <= PINNED, off, RowKind.PIN, contact.worst_violation_frame)
+    for each in report.conditions:
+        found[each.name] = _told(
+            each.met, each.worst_violation, each.kind, each.worst_violation_frame
         )
     for row in (*settings.constraints, *settings.body_changes):
         row.met, row.status = _status(row, found)
@@ -50,10 +47,11 @@ def _status(
     return (Met.MET if met else Met.MISSED).name, status
 
 
-def _told(*, met: bool, amount: float | None, unit: str, frame: float) -> tuple[bool, str]:
+def _told(met: bool, amount: float, kind: RowKind, frame: float) -> tuple[bool, str]:
     if met:
         return True, "Met"
-    by = "" if amount is None else f" by {_rounded(amount)}{WORDS.get(unit, f' {unit}')}"
+    unit = UNITS.get(kind, f" {kind.reported_unit}")
+    by = f" by {_rounded(amount)}{unit}" if isfinite(amount) else ""
     return False, f"Missed{by} at frame {frame:.0f}"
 
 

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...bridge.accessors import current_action
 from ...bridge.armature import fcurves
 from ...bridge.armature.read import read_recording
 from ...bridge.armature.write import write_action
@@ -84,7 +85,7 @@ def _instants(contact: Contact, times: FloatArray) -> tuple[NDArray[np.bool_], N
 
 @contextmanager
 def _own_action_afterwards(armature: bpy.types.Object) -> Iterator[None]:
-    action, slot = armature.animation_data.action, fcurves.slot_identifier(armature)
+    action, slot = current_action(armature), fcurves.slot_identifier(armature)
     try:
         yield
     finally:

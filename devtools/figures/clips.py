@@ -1,4 +1,4 @@
-"""What the figures are measured on: clips, the part of each that is used, and the edits."""
+"""Clips that the figures are measured on, the part of each that is used, and the edits."""
 
 from dataclasses import dataclass
 from pathlib import Path

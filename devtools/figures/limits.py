@@ -1,4 +1,4 @@
-"""What the project promises: each figure's name, unit, what it must reach and what it aims at."""
+"""Figures and their limits: each one's name, unit, what it must reach and what it aims at."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -16,6 +16,7 @@ class Limit:
     at_least: bool = False
 
     def holds(self, value: float) -> bool:
+        """Whether a value keeps the promise."""
         if self.must is None:
             return True
         return value >= self.must if self.at_least else value <= self.must

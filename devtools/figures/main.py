@@ -10,27 +10,27 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
+from ...solver.one_thread import ONE_THREAD
 from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
 from .limits import Figure, figure, table, write
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # loaded in functions, once the environment keeps numpy to one thread
     import bpy
 
     from ...solver.data.recording import Recording
     from ...solver.stages.fit import Fit
     from ...solver.stages.implicit import Adaptation
     from ...solver.transcription.motion import Motion
+    from ...solver.worker.pipeline import Subject
     from .clips import Clip
 
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 RUNS = 7  # adaptations timed; the median counts
-Result = TypeVar("Result")
 
 
 def main(argv: list[str]) -> int:
@@ -54,7 +54,7 @@ def main(argv: list[str]) -> int:
         return 2
     figures: list[Figure] = []
     for clip in chosen:
-        for found in measure(clip, peer=not options.no_peer):
+        for found in measure_clip(clip, peer=not options.no_peer):
             figures.append(found)
     options.out.mkdir(parents=True, exist_ok=True)
     write(figures, options.out / "figures.json")
@@ -73,18 +73,17 @@ def _in_one_thread(argv: list[str]) -> int:
     return subprocess.call(command, env={**os.environ, **ONE_THREAD})
 
 
-def measure(clip: "Clip", *, peer: bool) -> Iterator[Figure]:
+def measure_clip(clip: "Clip", *, peer: bool) -> Iterator[Figure]:
     """Every figure of one clip."""
-    from ...solver.analysis.analyse import analyse
-    from ...solver.stages.fit import fit
+    from ...solver.worker.pipeline import StageClock, fit_subject, measure
     from .blender import open_clip
     from .clips import EDITS
 
     armature, recording = open_clip(clip)
-    problem = clip.problem(next(iter(EDITS)))
-    analysis = analyse(recording, problem)
-    busy = time.process_time()
-    fitted, seconds = timed(lambda: fit(analysis.performance, analysis.schedule))
+    subject = measure(recording, clip.problem(next(iter(EDITS))))
+    busy, clock = time.process_time(), StageClock()
+    fitted = fit_subject(subject, clock)
+    seconds = clock.done[-1].seconds
     busy = time.process_time() - busy
     _say(clip.name, f"fitted in {seconds:.2f} s")
     yield figure("fit", seconds, clip.name, "fit")
@@ -97,43 +96,37 @@ def measure(clip: "Clip", *, peer: bool) -> Iterator[Figure]:
         for name, value in part:
             yield figure(name, value, clip.name, "fit")
     for edit in EDITS:
-        for name, value in measure_edit(clip, edit, fitted, armature, recording, peer=peer):
+        for name, value in measure_edit(clip, edit, subject, fitted, armature, peer=peer):
             yield figure(name, value, clip.name, edit)
 
 
 def measure_edit(
     clip: "Clip",
     edit: str,
+    subject: "Subject",
     fitted: "Fit",
     armature: "bpy.types.Object",
-    recording: "Recording",
     *,
     peer: bool,
 ) -> Iterator[tuple[str, float]]:
     """Every figure of one edit of a fitted clip."""
-    from ...solver.stages.implicit import adapt
+    from ...solver.worker.pipeline import StageClock, adapt_fit
 
-    problem = clip.problem(edit)
+    asked = subject.asked(clip.problem(edit))
     _ = fitted.metric  # part of the stored fit
-    busy = time.process_time()
-    runs = [timed(lambda: adapt(fitted, problem)) for _ in range(RUNS)]
+    busy, clock = time.process_time(), StageClock()
+    runs = [adapt_fit(asked, fitted, clock) for _ in range(RUNS)]
     busy = (time.process_time() - busy) / RUNS
-    adaptation, seconds = runs[0][0], median(seconds for _, seconds in runs)
+    adaptation, seconds = runs[0].adaptation, median(stage.seconds for stage in clock.done)
     _say(clip.name, f"{edit}: adapted in {seconds:.2f} s")
     yield "solved", float(adaptation.solved)
     yield "adaptation from the stored fit", seconds
     yield "adaptation from the stored fit, processor's time", busy
     yield "steps of the adaptation", sum(len(o.steps) for o in adaptation.outcomes)
     yield from physics(adaptation.motion)
-    yield from still(armature, recording, adaptation.motion)
+    yield from still(armature, subject.recording, adaptation.motion)
     if peer:
         yield from beside_ipopt(clip, edit, fitted, adaptation, seconds)
-
-
-def timed(work: Callable[[], Result]) -> tuple[Result, float]:
-    """What `work` gives, and the seconds that it took."""
-    begun = time.perf_counter()
-    return work(), time.perf_counter() - begun
 
 
 def closeness(fitted: "Fit") -> Iterator[tuple[str, float]]:

@@ -1,4 +1,4 @@
-"""What was asked of a result, as data to be checked on what Blender shows: without our solver.
+"""Checks of a result's constraints on what Blender shows: without our solver.
 
 Bones point along their own axis from head to tail; a pose is what the armature evaluates to.
 """

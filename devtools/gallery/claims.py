@@ -1,4 +1,4 @@
-"""What the thesis reports of its results (chapter 6), and whether ours show it again."""
+"""Claims of the thesis about its results (chapter 6), checked on ours."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

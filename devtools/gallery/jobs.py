@@ -16,13 +16,13 @@ from typing import Any
 
 from ...bridge.recipe.problem import parse_recipe, read_recipe_text
 from ...solver.data.problem import MotionProblem
+from ...solver.one_thread import ONE_THREAD
 from ..environment.virtual_environment import ROOT
 
 GALLERY = ROOT / "examples" / "gallery"
 LONGEST = 400.0  # s, that solving one result may take by all methods together
 LEFT = ("sheet.png", "adapted.fbx", "report.json", "trajectory.npz")  # what a result leaves
 SCRATCH = ("recording.pickle", "drawn.pickle", "measured.json", "written.json")
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 Json = dict[str, Any]
 
 

@@ -1,4 +1,4 @@
-"""What the gallery must reach (issue 3), and how a result and the whole measure up to it."""
+"""Limits of the gallery, and the verdicts on a result and on the whole."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -11,7 +11,9 @@ METHODS = ("implicit", "implicit with torques", "explicit")
 
 
 @dataclass(frozen=True)
-class Limit:
+class GalleryLimit:
+    """Upper bound that a number must keep, and the one that is aimed at."""
+
     unit: str
     must: float
     aim: float
@@ -19,26 +21,26 @@ class Limit:
 
 SLACK = {"mm": 1.0, "degrees": 0.5, "% of the bound": 1.0}  # of a constraint, by its unit
 RESIDUALS = {
-    "flight_force": Limit("BW", 0.003, 0.0005),
-    "flight_moment": Limit("BW·m", 0.001, 0.0003),
-    "ground_force": Limit("BW", 0.02, 0.005),
+    "flight_force": GalleryLimit("BW", 0.003, 0.0005),
+    "flight_moment": GalleryLimit("BW·m", 0.001, 0.0003),
+    "ground_force": GalleryLimit("BW", 0.02, 0.005),
 }
 SECONDS = {
-    "implicit": Limit("s", 0.5, 0.1),
-    "implicit with torques": Limit("s", 2.0, 0.5),
-    "explicit": Limit("s", 15.0, 5.0),
+    "implicit": GalleryLimit("s", 0.5, 0.1),
+    "implicit with torques": GalleryLimit("s", 2.0, 0.5),
+    "explicit": GalleryLimit("s", 15.0, 5.0),
 }
-MEMORY = Limit("GB", 1.0, 0.4)
+MEMORY = GalleryLimit("GB", 1.0, 0.4)
 LOOKS = {  # what a picture must not show, at any instant
-    "overlap_cm": Limit("cm that limbs are in each other", 3.0, 0.0),
-    "below_floor_cm": Limit("cm under the floor", 2.0, 0.0),
-    "jerk": Limit("times the fit's sharpest acceleration", 2.5, 1.0),
+    "overlap_cm": GalleryLimit("cm that limbs are in each other", 3.0, 0.0),
+    "below_floor_cm": GalleryLimit("cm under the floor", 2.0, 0.0),
+    "jerk": GalleryLimit("times the fit's sharpest acceleration", 2.5, 1.0),
 }
 LEAST_KNEE = 0.0  # degrees; below zero a knee is bent backwards
 
 
 @dataclass(frozen=True)
-class Figure:
+class GalleryFigure:
     """One measured number. must, aim: None where it is only told. result: whose, "all" of them."""
 
     name: str
@@ -94,13 +96,13 @@ def _ugly(looks: Json) -> Iterator[str]:
         yield f"a knee is bent backwards by {-looks['least_knee_deg']:.1f}°"
 
 
-def figures(rows: Sequence[Json]) -> list[Figure]:
+def figures(rows: Sequence[Json]) -> list[GalleryFigure]:
     """Every number of every result, and over all of them what has a limit."""
     found = [figure for row in rows for figure in _of(row)]
     adapted = [row for row in rows if not row["name"].endswith("_fit")]
     good = sum(not faults(row) for row in adapted)
     count = len(adapted)
-    found.append(Figure("results in order", good, "1", count, count, good == count, "all"))
+    found.append(GalleryFigure("results in order", good, "1", count, count, good == count, "all"))
     for method, limit in SECONDS.items():
         times = [s for row in adapted if (s := seconds(row, method)) is not None]
         if times:
@@ -113,9 +115,11 @@ def seconds(row: Json, method: str) -> float | None:
     return value
 
 
-def _of(row: Json) -> Iterator[Figure]:
+def _of(row: Json) -> Iterator[GalleryFigure]:
     name = row["name"]
-    yield Figure("in order", float(not faults(row)), "1 = yes", 1.0, 1.0, not faults(row), name)
+    yield GalleryFigure(
+        "in order", float(not faults(row)), "1 = yes", 1.0, 1.0, not faults(row), name
+    )
     for key, limit in RESIDUALS.items():
         if key in row.get("residuals", {}):
             yield _figure(key.replace("_", " "), row["residuals"][key], limit, name)
@@ -129,22 +133,22 @@ def _of(row: Json) -> Iterator[Figure]:
     for c in all_conditions(row):
         slack = SLACK.get(c["unit"], 0.01)
         label = f"{c['kind']}: {c['name']}"
-        yield Figure(label, c["worst"], c["unit"], slack, None, c["worst"] <= slack, name)
+        yield GalleryFigure(label, c["worst"], c["unit"], slack, None, c["worst"] <= slack, name)
     for part in ("loads", "from_fit", "shape", "looks"):
         for key, value in row.get(part, {}).items():
             if isinstance(value, float):
                 yield _told(key, value, "", name)
 
 
-def _figure(name: str, value: float, limit: Limit, result: str) -> Figure:
+def _figure(name: str, value: float, limit: GalleryLimit, result: str) -> GalleryFigure:
     ok = bool(value <= limit.must)
     finite = value if math.isfinite(value) else None
-    return Figure(name, finite, limit.unit, limit.must, limit.aim, ok, result)
+    return GalleryFigure(name, finite, limit.unit, limit.must, limit.aim, ok, result)
 
 
-def _told(name: str, value: float, unit: str, result: str) -> Figure:
-    return Figure(name, float(value), unit, None, None, True, result)
+def _told(name: str, value: float, unit: str, result: str) -> GalleryFigure:
+    return GalleryFigure(name, float(value), unit, None, None, True, result)
 
 
-def as_json(found: Sequence[Figure]) -> list[Json]:
+def as_json(found: Sequence[GalleryFigure]) -> list[Json]:
     return [asdict(figure) for figure in found]

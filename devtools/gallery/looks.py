@@ -1,4 +1,4 @@
-"""What makes a motion look wrong: limbs through each other, knees bent backwards, jerking limbs.
+"""Visible defects of a motion: limbs through each other, knees bent backwards, jerking limbs.
 
 Limbs are rods from joint to tip as thick as their boxes are at the least. Pictures are looked at,
 too; this looks at every instant.

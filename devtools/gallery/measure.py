@@ -1,4 +1,4 @@
-"""What a result is worth: its physics by MuJoCo, its torques and forces, how far it went."""
+"""Measurements of a result: its physics by MuJoCo, its loads, its distance from the fit."""
 
 import mujoco
 import numpy as np
@@ -6,12 +6,11 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.data.row_kinds import RowKind
 from ...solver.results.mjcf import hinge_order
-from ...solver.results.violations import shown
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.constraint import missed
 from ...solver.transcription.constraint_functions import PeakForce
-from ...solver.transcription.rows import RowKind
 from ...solver.transcription.torque_constraint import Torques
 from ..checks.mujoco_check import Residual, check_motion
 from .jobs import Json
@@ -72,7 +71,7 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
     found = []
     for c in t.conditions:
         during = (residual.times >= c.start) & (residual.times <= c.end)
-        entry: Json = {"name": c.name, "kind": c.kind.value[0], "by": "MuJoCo"}
+        entry: Json = {"name": c.name, "kind": c.kind.label, "by": "MuJoCo"}
         if isinstance(c.measure, Torques):
             columns = [int(np.flatnonzero(order == a)[0]) for a in c.measure.function.angles]
             applied = torques[during][:, columns]
@@ -89,8 +88,8 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
             continue
         else:
             off = missed(c, t.character, t.basis, t.layout, motion.x)
-            amount, unit = shown(off.amount, off.kind, t.character)
-            entry |= {"worst": amount, "unit": unit, "by": "the solver"}
+            worst = off.kind.reported(off.amount, weight)
+            entry |= {"worst": worst, "unit": off.kind.reported_unit, "by": "the solver"}
         found.append(entry)
     return found
 

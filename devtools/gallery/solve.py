@@ -1,18 +1,24 @@
-"""The process that only solves: every solution of one result, then what MuJoCo makes of it."""
+"""The process that only solves: every solution of one result, then its check by MuJoCo."""
 
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
-from ...solver.analysis.analyse import analyse
 from ...solver.data.problem import MotionProblem
+from ...solver.data.report import Origin, as_json
 from ...solver.data.requests import Method
 from ...solver.results.npz_export import save
-from ...solver.results.report import Origin, report
-from ...solver.stages.fit import Fit, fit
-from ...solver.stages.implicit import Adaptation, adapt
+from ...solver.stages.fit import Fit
+from ...solver.stages.implicit import Adaptation
+from ...solver.worker.pipeline import (
+    AdaptationResult,
+    StageClock,
+    Subject,
+    adapt_fit,
+    fit_subject,
+    measure,
+)
 from .jobs import Json, Result, dump, load, undump, write_json
 
 RUNS = 3  # of the quick solution; the median counts
@@ -22,38 +28,42 @@ def main(argv: list[str]) -> int:
     name, folder = argv[0], Path(argv[1])
     methods = tuple(Method)[:1] if "--quick" in argv else tuple(Method)
     result = load(name)
-    recording = undump(folder / "recording.pickle")
-    analysis = analyse(recording, result.problem)
-    began = time.perf_counter()
-    fitted = fit(analysis.performance, analysis.schedule)
-    found: Json = {"fit": _solved(fitted, time.perf_counter() - began), "methods": {}}
+    subject = measure(undump(folder / "recording.pickle"), result.problem)
+    clock = StageClock()
+    fitted = fit_subject(subject, clock)
+    found: Json = {"fit": _solved(fitted, clock.done[-1].seconds), "methods": {}}
     if not fitted.solved:
         write_json(found, folder / "measured.json")
         return 1
     _ = fitted.metric, fitted.torque_metric  # parts of the stored fit
-    adaptation = solve(result, fitted, methods, found, folder)
-    measure(result, adaptation, found, folder)
+    adapted = adapt_by(methods, result.problem, subject, fitted, found, folder)
+    write_down(result, adapted, found, folder)
     return 0
 
 
-def solve(
-    result: Result, fitted: Fit, methods: tuple[Method, ...], found: Json, folder: Path
-) -> Adaptation:
-    """Every solution in turn, each written down as soon as it ends; the implicit one."""
-    first: Adaptation | None = None
+def adapt_by(
+    methods: tuple[Method, ...],
+    problem: MotionProblem,
+    subject: Subject,
+    fitted: Fit,
+    found: Json,
+    folder: Path,
+) -> AdaptationResult:
+    """Every solution in turn, each written down as soon as it ends; the first of them."""
+    first: AdaptationResult | None = None
     for method in methods:
-        problem = _by(result.problem, method)
+        asked = subject.asked(_by(problem, method))
         seconds, memory = [], 0.0
         for _ in range(RUNS if method is Method.IMPLICIT else 1):
-            began = time.perf_counter()
-            adaptation = adapt(fitted, problem)
-            seconds.append(time.perf_counter() - began)
+            clock = StageClock()
+            result = adapt_fit(asked, fitted, clock)
+            seconds.append(clock.done[-1].seconds)
             memory = memory or peak_memory()  # once: repeating is for the clock alone
             if seconds[0] > 5.0:
                 break
-        solved = _solved(adaptation, median(seconds)) | {"peak_memory_gb": memory}
+        solved = _solved(result.adaptation, median(seconds)) | {"peak_memory_gb": memory}
         found["methods"][method.value] = solved
-        first = first or adaptation
+        first = first or result
         write_json(found, folder / "measured.json")
     assert first is not None
     return first
@@ -91,24 +101,25 @@ def peak_memory() -> float:
     return unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e9
 
 
-def measure(result: Result, adaptation: Adaptation, found: Json, folder: Path) -> None:
-    """Everything that needs no Blender; MuJoCo is loaded now that the memory is known."""
+def write_down(result: Result, adapted: AdaptationResult, found: Json, folder: Path) -> None:
+    """Measures and writes what needs no Blender; MuJoCo is loaded now that the memory is known."""
     from ...operators.headless.annotate import marks_of
     from ...operators.headless.picture import adapted_row
     from .checks import checks
     from .measure import measured
 
+    adaptation = adapted.adaptation
     found |= measured(adaptation)
     write_json(found, folder / "measured.json")
-    write_json(report(adaptation, result.problem, Origin(result.clip.name)), folder / "report.json")
+    write_json(as_json(adapted.report(Origin(result.clip.name))), folder / "report.json")
     save(adaptation.motion, folder / "trajectory.npz")
-    marks = marks_of(adaptation, result.problem)
+    marks = marks_of(adaptation, adapted.subject.problem)
     travel = adaptation.fit.performance.com[[0, -1], :2]
     drawn = {
         "heading": tuple((travel[1] - travel[0]).tolist()),  # which all results of a clip share
         "row": adapted_row(adaptation, result.heading, marks),
-        "track": adaptation.track,
-        "recording": adaptation.plan.recording,
+        "track": adapted.track,
+        "recording": adapted.recording,
         "checks": checks(adaptation),
     }
     dump(drawn, folder / "drawn.pickle")

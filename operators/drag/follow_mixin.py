@@ -153,14 +153,14 @@ class FollowedDrag(OperatorMixin):
     # -- the motion that follows ---------------------------------------------------------------
 
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
-        """Reads the recording in parts, then has the worker chase what is dragged."""
+        """Reads the recording in parts, then has the worker follow what is dragged."""
         asked = yield from ask_for(context)
-        chase = shared().chase(asked.recording)
+        stream = shared().follow(asked.recording)
         while True:
             if self._moved:
                 self._moved = False
-                chase.want(problem_of(settings_of(self._armature), asked.recording))
-            for message in chase.news():
+                stream.want(problem_of(settings_of(self._armature), asked.recording))
+            for message in stream.news():
                 self._hear(message)
             yield
 
@@ -171,7 +171,7 @@ class FollowedDrag(OperatorMixin):
             self._fault = said(message.fault)
             live().clear()
         elif isinstance(message, Followed):
-            self._fault = LOST if message.course is DragStatus.DIVERGED else ""
+            self._fault = LOST if message.status is DragStatus.DIVERGED else ""
             live().show(self._armature.name, message)
 
     def _look(self) -> None:
@@ -198,10 +198,10 @@ class FollowedDrag(OperatorMixin):
             return ""
         if seen is None:
             return f" · fitting the physics, {100.0 * self._share:.0f} %"
-        change = seen.change
+        summary = seen.summary
         return (
-            f" · pelvis {change['deeper_cm']:+.1f} cm deeper, {change['higher_cm']:+.1f} cm "
-            f"higher, force up to {change['peak_bw']:.1f} body weights"
+            f" · pelvis {summary.deeper_cm:+.1f} cm deeper, {summary.higher_cm:+.1f} cm "
+            f"higher, force up to {summary.peak_bw:.1f} body weights"
         )
 
 

@@ -5,15 +5,14 @@ Exit codes: 0 done; 2 wrong input, in one sentence on the standard error; 3 no s
 
 import os
 
-# A small factorisation on many threads takes longer than on one; read once, when numpy loads.
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+from ...solver.one_thread import ONE_THREAD
 
 
 def main(argv: list[str]) -> int:
     """Runs `adapt` or `analyze` with its arguments; the exit code."""
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
-    from .commands import run
+    for name, value in ONE_THREAD.items():
+        os.environ.setdefault(name, value)
+    from .commands import run  # loads numpy, which reads them
 
     return run(argv)
 

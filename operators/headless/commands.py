@@ -1,4 +1,4 @@
-"""What `adapt` and `analyze` take and do."""
+"""The commands `adapt` and `analyze`, and their options."""
 
 import argparse
 import math
@@ -13,7 +13,8 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.wording import recipe_place, sentence
-from .job import AdaptationJob, Clip, load
+from .clip import Clip, load
+from .job import AdaptationJob
 from .job import run as run_job
 from .outbox import not_writable
 from .stages import WIDTH, Stages
@@ -139,10 +140,10 @@ def analyze(options: argparse.Namespace) -> None:
     problem = overridden(MotionProblem(), options)
     loaded = load(_clip(options, None), problem, Stages(sys.stdout))
     print()
-    print(analysis_text(loaded.analysis, loaded.origin), end="")
+    print(analysis_text(loaded.subject.analysis, loaded.origin), end="")
     target: Path | None = options.write_recipe
     if target is not None:
-        text = starter_recipe(loaded.analysis, problem, options.clip, target)
+        text = starter_recipe(loaded.subject.analysis, problem, options.clip, target)
         try:
             with target.open("x", encoding="utf-8") as file:
                 file.write(text)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping
+from collections.abc import Generator
 from dataclasses import replace
-from typing import Any
 
 import bpy
 
@@ -26,9 +25,10 @@ from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import digest, same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import Recording
+from ...solver.data.report import ConstraintReport
 from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
-from ...solver.worker.protocol import Adapted, Failed, Kind
+from ...solver.worker.protocol import Adapted, Failed, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import as_text
@@ -61,14 +61,16 @@ class _Adapting(TaskOperator):
         present(context.view_layer).update()  # empties that a script moved
         try:
             asked = yield from self._asked(context)
-            answer = yield from answered(shared().ask(Kind.ADAPT, asked.recording, asked.problem))
+            answer = yield from answered(
+                shared().ask(RequestKind.ADAPT, asked.recording, asked.problem)
+            )
         finally:
             live().clear()  # a drag's ghost stays until there is something better, or nothing
         if isinstance(answer, Failed):
             raise answer.fault
         assert isinstance(answer, Adapted)
         session().best = None
-        if answer.fault is not None and answer.fault.reason != Status.STOPPED.value:
+        if answer.fault is not None and answer.fault.reason is not Status.STOPPED:
             session().best = Best(asked, answer)
             raise answer.fault
         return (yield from write_answer(asked, answer))
@@ -220,25 +222,24 @@ def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
 def summary(answer: Adapted) -> str:
     """Lines for the sidebar: how well it holds, how long it took, how hard the ground pushes."""
     report = answer.report
-    contacts = report["contacts"]
-    worst = max(contacts, key=lambda contact: contact["worst_violation_mm"])
-    seconds = sum(stage["seconds"] for stage in report["stages"])
-    peak = max(report["forces"]["peaks"], key=lambda peak: peak["peak_bw"])
+    worst = max(report.contacts, key=lambda contact: contact.worst_violation_mm)
+    seconds = sum(stage.seconds for stage in report.stages or ())
+    peak = max(report.forces.peaks, key=lambda peak: peak.peak_bw)
     said = "Solved" if answer.fault is None else "Best found, not all is met;"
     return "\n".join(
         [
             f"{said} in {seconds:.1f} s",
-            f"Pins: {worst['worst_violation_mm']:.2f} mm off at most ({worst['name']})",
-            *(f"{each['name']}: {_held(each)}" for each in report["conditions"]),
-            f"Peak force: {peak['peak_bw']:.1f} body weights (frame {peak['frame']:.0f})",
+            f"Pins: {worst.worst_violation_mm:.2f} mm off at most ({worst.name})",
+            *(f"{each.name}: {_held(each)}" for each in report.conditions),
+            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
         ]
     )
 
 
-def _held(condition: Mapping[str, Any]) -> str:
-    if condition["met"]:
+def _held(constraint: ConstraintReport) -> str:
+    if constraint.met:
         return "held"
-    return f"missed by {condition['worst_violation']:.0f} {condition['unit']}"
+    return f"missed by {constraint.worst_violation:.0f} {constraint.kind.reported_unit}"
 
 
 CLASSES = (AdaptOperator, RefineOperator, UseBestOperator)

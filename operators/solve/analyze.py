@@ -21,7 +21,8 @@ from ...solver.data.faults import (
 )
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
-from ...solver.worker.protocol import Analysed, Failed, Fitted, Kind
+from ...solver.data.report import FitQuality
+from ...solver.worker.protocol import Analysed, Failed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from .adapt import ask_for
@@ -88,7 +89,7 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
         solving = session().solving
         assert solving is not None
         solving.advance(SolveState.SOLVING)
-        answer = yield from answered(shared().ask(Kind.ANALYSE, recording, problem))
+        answer = yield from answered(shared().ask(RequestKind.ANALYSE, recording, problem))
         if isinstance(answer, Failed):
             raise _telling(answer.fault, armature, recording, problem)
         assert isinstance(answer, Analysed)
@@ -139,27 +140,27 @@ class FitOperator(_OnRecording, bpy.types.Operator):
         assert solving is not None
         asked = yield from ask_for(context)
         solving.advance(SolveState.SOLVING)
-        answer = yield from answered(shared().ask(Kind.FIT, asked.recording, asked.problem))
+        answer = yield from answered(shared().ask(RequestKind.FIT, asked.recording, asked.problem))
         if isinstance(answer, Failed):
             raise answer.fault
         assert isinstance(answer, Fitted)
-        settings_of(armature).fit_quality = quality(answer.closeness)
-        return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.closeness)}"
+        settings_of(armature).fit_quality = quality(answer.quality)
+        return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.quality)}"
 
 
-def in_words(closeness: dict[str, float]) -> str:
-    """Quality of a fit in words (report.closeness)."""
-    off = closeness["joint_centres_rms_cm"]
+def in_words(fit: FitQuality) -> str:
+    """Quality of a fit in words."""
+    off = fit.joint_centres_rms_cm
     return next((words for limit, words in CLOSENESS_WORDS if off < limit), LOOSE)
 
 
-def quality(closeness: dict[str, float]) -> str:
+def quality(fit: FitQuality) -> str:
     """Lines for the sidebar."""
-    words = in_words(closeness)
+    words = in_words(fit)
     return (
         f"{words[0].upper()}{words[1:]}\n"
-        f"Joints {closeness['joint_centres_rms_cm']:.1f} cm apart, "
-        f"apex {closeness['pelvis_apex_difference_cm']:+.1f} cm"
+        f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
+        f"apex {fit.pelvis_apex_difference_cm:+.1f} cm"
     )
 
 

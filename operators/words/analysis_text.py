@@ -1,4 +1,4 @@
-"""Text of an analysis, for a person who is about to write a recipe."""
+"""Wording of an analysis, and the starter recipe that is made from it."""
 
 import json
 import os
@@ -7,7 +7,7 @@ from pathlib import Path
 from ...solver.analysis.analyse import Analysis
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.problem import MotionProblem
-from ...solver.results.report import Origin
+from ...solver.data.report import Origin
 
 
 def analysis_text(analysis: Analysis, origin: Origin) -> str:
@@ -15,7 +15,7 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
     recording, figure = analysis.performance.recording, analysis.performance.character
     lines = [
         f"{origin.clip}: frames {recording.frames[0] + 0.0:g} to {recording.frames[-1]:g}, "
-        f"{recording.times[-1]:.2f} s at {_rate(analysis):.4g} frames a second",
+        f"{recording.times[-1]:.2f} s at {recording.rate:.4g} frames a second",
         f"figure: {figure.height:.2f} m tall, {figure.mass:g} kg, {len(figure.bodies)} bodies, "
         f"{figure.n_dofs} degrees of freedom; floor at {analysis.schedule.floor_m:.3f} m",
     ]
@@ -47,14 +47,10 @@ def _apex(analysis: Analysis, phase: Phase) -> float:
     return float(performance.com[inside, 2].max()) if inside.any() else float("nan")
 
 
-def _rate(analysis: Analysis) -> float:
-    recording = analysis.performance.recording
-    return (len(recording.times) - 1) / float(recording.times[-1])
-
-
 def _span(analysis: Analysis, start: float, end: float) -> str:
     """The scene's frames from start to end, s."""
-    first, rate = float(analysis.performance.recording.frames[0]), _rate(analysis)
+    recording = analysis.performance.recording
+    first, rate = float(recording.frames[0]), recording.rate
     return f"{first + start * rate:.1f} to {first + end * rate:.1f}"
 
 

@@ -1,120 +1,118 @@
-"""The report as people read it: what changed, then how well it holds."""
-
-from __future__ import annotations
+"""Wording of the report: what changed, then how well it holds."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
-from ...solver.data.status import Status
+from ...solver.data.contacts import PhaseKind
+from ...solver.data.report import Report
 from .wording import outcome
 
-if TYPE_CHECKING:
-    from ...solver.results.report import Json
-
-LEFT_AT_MOST = {"flight": 0.001, "ground": 0.02}  # BW·m, rms; what the project promises
+LEFT_AT_MOST = {
+    PhaseKind.FLIGHT: 0.001,
+    PhaseKind.GROUND: 0.02,
+}  # BW·m, rms; what the project promises
 GRIPPING = 1.2  # friction coefficient of sports shoes on a good floor, at most
 BEARABLE = 12.0  # times the body's weight; the hardest landings of gymnasts
 
 
-def as_text(report: Json) -> str:
-    """A report of solver/results/report.py in plain words, some twenty lines."""
-    lines = [outcome(Status(report["status"])), ""]
+def as_text(report: Report) -> str:
+    """A report in plain words, some twenty lines."""
+    lines = [outcome(report.status), ""]
     lines += [*_input(report), ""]
     lines += [*_changes(report), ""]
     lines += [*_quality(report), ""]
     lines += [*_contacts(report), ""]
-    if report["conditions"]:
+    if report.conditions:
         lines += [*_conditions(report), ""]
     lines += [*_objective(report), *_stages(report)]
     return "\n".join(lines) + "\n"
 
 
-def _input(report: Json) -> Iterator[str]:
-    r, figure = report["recording"], report["figure"]
+def _input(report: Report) -> Iterator[str]:
+    r, figure = report.recording, report.figure
     yield (
-        f"Recording   {r['clip']}, frames {r['first_frame']:g} to {r['last_frame']:g} "
-        f"({r['seconds']:.2f} s at {r['frames_per_second']:.4g} frames a second)"
+        f"Recording   {r.clip}, frames {r.first_frame:g} to {r.last_frame:g} "
+        f"({r.seconds:.2f} s at {r.frames_per_second:.4g} frames a second)"
     )
     yield (
-        f"Figure      {figure['height_m']:.2f} m, {figure['mass_kg']:g} kg, "
-        f"{figure['bodies']} bodies, {figure['degrees_of_freedom']} degrees of freedom"
+        f"Figure      {figure.height_m:.2f} m, {figure.mass_kg:g} kg, "
+        f"{figure.bodies} bodies, {figure.degrees_of_freedom} degrees of freedom"
     )
     guesses = []
-    if r["unit_guessed"]:
-        guesses.append(f"one unit of the file is {r['unit_m']:.4g} m (--unit)")
-    if r["up_axis_guessed"]:
-        guesses.append(f"{r['up_axis']} points up (--up)")
+    if r.unit_guessed:
+        guesses.append(f"one unit of the file is {r.unit_m:.4g} m (--unit)")
+    if r.up_axis_guessed:
+        guesses.append(f"{r.up_axis} points up (--up)")
     if guesses:
         yield f"Guessed     {' and '.join(guesses)}"
 
 
-def _changes(report: Json) -> Iterator[str]:
-    for jump in report["jumps"]:
-        was, now = jump["fit"], jump["adapted"]
+def _changes(report: Report) -> Iterator[str]:
+    for jump in report.jumps:
+        was, now = jump.fit, jump.adapted
         yield (
-            f"{jump['flight'].capitalize():<11} frames {jump['take_off_frame']:.1f} to "
-            f"{jump['landing_frame']:.1f}; the body flies {now['flight_length_m']:.2f} m "
-            f"instead of {was['flight_length_m']:.2f} m"
+            f"{jump.flight.capitalize():<11} frames {jump.take_off_frame:.1f} to "
+            f"{jump.landing_frame:.1f}; the body flies {now.flight_length_m:.2f} m "
+            f"instead of {was.flight_length_m:.2f} m"
         )
         yield (
-            f"            the pelvis rises to {now['apex_pelvis_height_m']:.2f} m above the floor "
-            f"({_signed(jump['apex_higher_cm'])} cm)"
+            f"            the pelvis rises to {now.apex_pelvis_height_m:.2f} m above the floor "
+            f"({_signed(jump.apex_higher_cm)} cm)"
         )
-        if jump["crouch_deeper_cm"] is not None:
-            deeper = jump["crouch_deeper_cm"]
+        if jump.crouch_deeper_cm is not None:
+            deeper = jump.crouch_deeper_cm
             way = "deeper" if deeper >= 0.0 else "less deep"
             yield f"            the crouch before it is {abs(deeper):.1f} cm {way}"
-    for peak in report["forces"]["peaks"]:
-        beyond = ": more than people can bear" if peak["peak_bw"] > BEARABLE else ""
+    for peak in report.forces.peaks:
+        beyond = ": more than people can bear" if peak.peak_bw > BEARABLE else ""
         yield (
-            f"{peak['phase'].capitalize():<11} what carries the body pushes with at most "
-            f"{peak['peak_bw']:.1f} times the body's weight (frame {peak['frame']:.0f}){beyond}"
+            f"{peak.phase.capitalize():<11} what carries the body pushes with at most "
+            f"{peak.peak_bw:.1f} times the body's weight (frame {peak.frame:.0f}){beyond}"
         )
-        grip = peak["friction_coefficient_needed"]
+        grip = peak.friction_coefficient_needed
         if grip > GRIPPING:
             yield f"            it must grip with a friction of {grip:.1f}: more than shoes have"
 
 
-def _quality(report: Json) -> Iterator[str]:
-    fit = report["fit_to_recording"]
+def _quality(report: Report) -> Iterator[str]:
+    fit = report.fit_to_recording
     yield (
-        f"Fit         joints {fit['joint_centres_rms_cm']:.1f} cm from the recording (rms), "
-        f"apex {_signed(fit['pelvis_apex_difference_cm'])} cm"
+        f"Fit         joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms), "
+        f"apex {_signed(fit.pelvis_apex_difference_cm)} cm"
     )
-    for kind in ("flight", "ground"):
-        left = report["between_nodes"].get(kind)
+    residuals = report.between_nodes
+    for kind, left in ((PhaseKind.FLIGHT, residuals.flight), (PhaseKind.GROUND, residuals.ground)):
         if left is not None:
             yield (
-                f"Physics     {kind}: unexplained force {left['force_rms_bw']:.1e} of the weight, "
-                f"moment {left['moment_rms_bw_m']:.1e} of weight × metre (rms)"
+                f"Physics     {kind.value}: unexplained force {left.force_rms_bw:.1e} "
+                f"of the weight, moment {left.moment_rms_bw_m:.1e} of weight × metre (rms)"
             )
-            if left["moment_rms_bw_m"] > LEFT_AT_MOST[kind]:
+            if left.moment_rms_bw_m > LEFT_AT_MOST[kind]:
                 yield "            more than it should be between the solver's nodes: choose fewer"
                 yield "            frames, or correct contacts whose feet slide"
 
 
-def _contacts(report: Json) -> Iterator[str]:
+def _contacts(report: Report) -> Iterator[str]:
     yield f"{'Contact':<20}{'frames':>18}{'off its place':>16}  pin"
-    for contact in report["contacts"]:
-        span = f"{contact['start_frame']:.1f} to {contact['end_frame']:.1f}"
-        off = f"{contact['worst_violation_mm']:.2f} mm"
-        yield f"{contact['name']:<20}{span:>18}{off:>16}  {contact['pin'] or ''}".rstrip()
+    for contact in report.contacts:
+        span = f"{contact.start_frame:.1f} to {contact.end_frame:.1f}"
+        off = f"{contact.worst_violation_mm:.2f} mm"
+        yield f"{contact.name:<20}{span:>18}{off:>16}  {contact.pin or ''}".rstrip()
 
 
-def _conditions(report: Json) -> Iterator[str]:
+def _conditions(report: Report) -> Iterator[str]:
     yield f"{'Request':<24}{'':<14}held"
-    for each in report["conditions"]:
+    for each in report.conditions:
         held = "yes"
-        if not each["met"]:
+        if not each.met:
             held = (
-                f"missed by {each['worst_violation']:.3g} {each['unit']} "
-                f"(frame {each['worst_violation_frame']:.0f})"
+                f"missed by {each.worst_violation:.3g} {each.kind.reported_unit} "
+                f"(frame {each.worst_violation_frame:.0f})"
             )
-        yield f"{each['name']:<24}{each['kind']:<14}{held}"
+        yield f"{each.name:<24}{each.kind.label:<14}{held}"
 
 
-def _objective(report: Json) -> Iterator[str]:
-    left = report["objective_end_over_start"]
+def _objective(report: Report) -> Iterator[str]:
+    left = report.objective_end_over_start
     if left is None:
         return
     if left < 1.0:
@@ -123,14 +121,14 @@ def _objective(report: Json) -> Iterator[str]:
         yield "Objective   no motion was found with less of it; the one before stands"
 
 
-def _stages(report: Json) -> Iterator[str]:
+def _stages(report: Report) -> Iterator[str]:
     steps: dict[str, int] = {}
-    for solve in report["solves"]:
-        steps[solve["name"]] = steps.get(solve["name"], 0) + solve["iterations"]
+    for solve in report.solves:
+        steps[solve.name] = steps.get(solve.name, 0) + solve.iterations
     counted = ", ".join(f"{name} {count}" for name, count in steps.items())
-    yield f"Steps       {counted} ({report['unknowns']} unknowns, {report['rows']} equations)"
-    for i, stage in enumerate(report["stages"]):
-        yield f"{'' if i else 'Time':<12}{stage['name']} {stage['seconds']:.1f} s"
+    yield f"Steps       {counted} ({report.unknowns} unknowns, {report.rows} equations)"
+    for i, stage in enumerate(report.stages or ()):
+        yield f"{'' if i else 'Time':<12}{stage.name} {stage.seconds:.1f} s"
 
 
 def _signed(amount: float) -> str:

@@ -6,10 +6,11 @@ A template names attributes of its fault in braces; formats with names are those
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from string import Formatter
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...solver.data import faults
 from ...solver.data.faults import Fault
+from ...solver.data.row_kinds import RowKind, Violation
 from ...solver.data.status import Status
 
 Translate = Callable[[str], str]
@@ -150,18 +151,24 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
 }
 PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
 
-MISSED = {  # by the unit that it is measured in
-    "mm": "“{name}” stays {metres:length} from its place",
-    "m/s": "“{name}” still slides at {amount:.3g} m/s",
-    "BW": "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
-    "BW·m": "in {name}, the body turns without cause ({amount:.3g} BW·m)",
-    "N·m beyond the limit": "“{name}” needs {amount:.3g} N·m more than its limit",
-    "degrees": "“{name}” is missed by {amount:.3g}°",
-    "BW of pull": "“{name}” would have to pull with {amount:.3g} of the body's weight",
-    "BW beyond friction": "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
-    "BW beyond the cap": "“{name}” is exceeded by {amount:.3g} of the body's weight",
+ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"
+AWAY = "“{name}” stays {amount:millimetres} from its place"
+MISSED = {  # of a constraint, by its type
+    RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
+    RowKind.MOMENT: "in {name}, the body turns without cause ({amount:.3g} BW·m)",
+    RowKind.PIN: AWAY,
+    RowKind.PIN_SPEED: "“{name}” still slides at {amount:.3g} m/s",
+    RowKind.POINT: AWAY,
+    RowKind.BEND: ANGLE_MISSED,
+    RowKind.CONE: ANGLE_MISSED,
+    RowKind.TWIST: ANGLE_MISSED,
+    RowKind.ORIENTATION: ANGLE_MISSED,
+    RowKind.POSE: ANGLE_MISSED,
+    RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} of the body's weight",
+    RowKind.FRICTION: "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
+    RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} of the body's weight",
+    RowKind.TORQUE: "“{name}” needs {amount:.3g} N·m more than its limit",
 }
-MISSED_OTHERWISE = "{name}: {amount:.3g} {unit}"
 
 
 def sentence(fault: Fault, translate: Translate = str) -> str:
@@ -204,18 +211,6 @@ def _variant(fault: Fault) -> int:
     raise TypeError(f"which words are for {type(fault).__name__}?")
 
 
-class _Missed(NamedTuple):
-    """Remaining violation of a constraint, in its own unit."""
-
-    name: str
-    amount: float
-    unit: str
-
-    @property
-    def metres(self) -> float:
-        return self.amount / 1000.0
-
-
 class _Formatter(Formatter):
     """`str.format`, whose fields are the attributes of what it is given."""
 
@@ -237,17 +232,18 @@ class _Formatter(Formatter):
                 return f"{100.0 * value:.0f} %"
             case "length":
                 return _length(value)
+            case "millimetres":
+                return _length(value / 1000.0)
             case "ended":
                 return value if value.endswith("?") else f"{value}."
             case "outcome":
-                return outcome(Status(value), self._translate)
+                return outcome(value, self._translate)
             case "missed":
-                return "; ".join(self._missed(_Missed(*each)) for each in value)
+                return "; ".join(self._missed(each) for each in value)
         return super().format_field(value, format_spec)
 
-    def _missed(self, missed: _Missed) -> str:
-        template = MISSED.get(missed.unit, MISSED_OTHERWISE)
-        return self.format(self._translate(template), missed)
+    def _missed(self, violation: Violation) -> str:
+        return self.format(self._translate(MISSED[violation.kind]), violation)
 
 
 def _length(metres: float) -> str:

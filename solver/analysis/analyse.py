@@ -62,8 +62,7 @@ def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recordin
 
 def _frame(recording: Recording, time: float) -> float:
     """Nearest scene frame of an instant, s."""
-    rate = (len(recording.times) - 1) / float(recording.times[-1])
-    return float(round(recording.frames[0] + time * rate))
+    return float(round(recording.frames[0] + time * recording.rate))
 
 
 def _corrected(
@@ -77,7 +76,7 @@ def _corrected(
         return schedule
     contacts: dict[str, Contact] = {c.name: c for c in schedule.contacts}
     first = float(performance.recording.frames[0])
-    rate = (len(performance.times) - 1) / float(performance.times[-1])
+    rate = performance.recording.rate
     for edit in problem.contacts:
         if edit.name not in contacts:
             raise UnknownContactName(edit.name, tuple(contacts))

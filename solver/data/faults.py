@@ -4,6 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from difflib import get_close_matches
 
+from .row_kinds import Violation
+from .status import Status
+
 
 @dataclass
 class Fault(Exception):
@@ -125,13 +128,13 @@ class ContradictoryPins(Fault):
 
 @dataclass
 class NoSolution(Fault):
-    """The solver ended without meeting every constraint; worst first: (name, violation, unit).
+    """The solver ended without meeting every constraint; worst first.
 
     reached: the share of the way that the best motion found goes.
     """
 
-    reason: str
-    worst: tuple[tuple[str, float, str], ...] = ()
+    reason: Status
+    worst: tuple[Violation, ...] = ()
     reached: float = 0.0
 
 

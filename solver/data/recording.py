@@ -35,6 +35,11 @@ class Recording:
     heads: FloatArray
     rotations: FloatArray
 
+    @property
+    def rate(self) -> float:
+        """Frames per second."""
+        return (len(self.times) - 1) / float(self.times[-1])
+
     def index(self, bone: str) -> int:
         """Index of the bone called `bone`. Raises KeyError where there is none."""
         for i, b in enumerate(self.bones):

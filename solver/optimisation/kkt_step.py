@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..data.row_kinds import RowKind
 from ..numerics.block_banded import BlockBanded, CholeskyFactor
 from ..numerics.parallel import in_threads
 from ..numerics.splines import ORDER
-from ..transcription.rows import RowKind, Rows, by_kind
+from ..transcription.rows import Rows, by_kind
 from ..transcription.transcription import Transcription
 from .bounded_qp import BoundedStep
 
@@ -159,7 +160,7 @@ class Linearised:
         worst = int(np.argmax(np.abs(self.rows.violation(value)) / self._tolerance))
         owner = int(self.rows.owner[worst])
         kind: RowKind = self.rows.kind[worst]
-        return self._transcription.owners[owner] if owner >= 0 else kind.value[0]
+        return self._transcription.owners[owner] if owner >= 0 else kind.label
 
     def merit(self, value: FloatArray) -> float:
         """The summed squared violations in units of NORM (thesis eq. 4.6).

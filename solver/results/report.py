@@ -1,12 +1,7 @@
-"""What was found and how well it holds, as numbers with their units in the keys.
-
-bw is the body's weight.
-"""
+"""Measures a report (data/report.py): what was found and how well it holds."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +10,27 @@ from ..body.character import Character
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase, PhaseKind
 from ..data.problem import MotionProblem, OffsetAxes, Pin
-from ..data.requests import ConeShape, Dynamics, Method
+from ..data.report import (
+    ConstraintReport,
+    ContactReport,
+    DenseResiduals,
+    FigureSummary,
+    FitQuality,
+    ForcePeak,
+    ForcesReport,
+    MotionChange,
+    Origin,
+    PhaseResidual,
+    PinReport,
+    RecordingSummary,
+    ReductionReport,
+    Report,
+    SolveReport,
+    StageReport,
+    TorquePeak,
+    TorquesReport,
+)
+from ..data.requests import ConeShape, Dynamics, Method, Vector
 from ..optimisation.sqp import Outcome
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
@@ -25,122 +40,106 @@ from ..transcription.motion import Motion, dynamics_residual, pinned_instants
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
-from .violations import missed_conditions, pins_of_contacts, shown, worst_constraints
+from .violations import missed_conditions, pins_of_contacts, worst_constraints
 
-RATE = 1000.0  # Hz, of what is measured between the nodes
-LIGHTEST = 0.2  # BW
-Json = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Origin:
-    """Where a recording came from and how it was read; None where nothing had to be settled.
-
-    unit_m: m per unit of length in the file. up: its axis that points up.
-    """
-
-    clip: str
-    unit_m: float | None = None
-    unit_guessed: bool = False
-    up: str | None = None
-    up_guessed: bool = False
+SAMPLE_RATE = 1000.0  # Hz, of what is measured between the nodes
+LEAST_CARRIED = 0.2  # BW; below, a shoe may slip a little, which is no need of friction
 
 
 def report(
     adaptation: Adaptation,
     problem: MotionProblem,
     origin: Origin,
-) -> Json:
-    """Everything about an adaptation that a JSON file can hold; what is not finite is None."""
+    stages: Sequence[StageReport] | None = None,
+) -> Report:
+    """The report on an adaptation of what `problem` asks for. stages: None leaves out times.
+
+    Raises UnknownPhase, UnknownContact where a pin of the problem names none.
+    """
     fit, motion, schedule = adaptation.fit, adaptation.motion, adaptation.plan.schedule
+    transcription = motion.transcription
     pins = pins_of_contacts(fit, problem)
-    contacts = motion.transcription.contacts
-    content = {
-        "status": adaptation.outcome.status.value,
-        "recording": _recording(fit, origin),
-        "figure": _figure(fit, motion, problem),
-        "pins": [_pin(pin) for pin in problem.pins],
-        "solves": _solves(fit.outcomes, "fit") + _solves(adaptation.outcomes, "adapt"),
-        "unknowns": motion.transcription.n_unknowns,
-        "rows": len(motion.transcription.values(motion.x, motion.places)),
-        "equations": [
-            {"name": name, "violation": amount, "unit": unit}
-            for name, amount, unit in worst_constraints(adaptation, problem, least=0.0)
-        ],
-        "conditions": [
-            _condition(each, fit, motion.transcription.character)
-            for each in missed_conditions(adaptation)
-        ],
-        "contacts": [
-            _contact(motion, adaptation, i, pins.get(contacts[i].contact.name))
-            for i in range(len(contacts))
-        ],
-        "between_nodes": dense_residuals(motion, schedule.phases),
-        "forces": _forces(motion, adaptation),
-        "objective_end_over_start": adaptation.gain,
-        "reduction": _reduction(adaptation),
-        "torques": _torques(adaptation, problem) if _in_play(problem) else None,
-        "fit_to_recording": closeness(fit),
-        "change": change(adaptation),
-        "jumps": jumps(fit, motion, schedule),
-    }
-    finite: Json = _finite(content)
-    return finite
+    return Report(
+        status=adaptation.outcome.status,
+        recording=_recording(fit, origin),
+        figure=_figure(fit, motion, problem),
+        pins=tuple(_pin(pin) for pin in problem.pins),
+        solves=(*_solves(fit.outcomes, "fit"), *_solves(adaptation.outcomes, "adapt")),
+        unknowns=transcription.n_unknowns,
+        rows=len(transcription.values(motion.x, motion.places)),
+        equations=tuple(worst_constraints(adaptation, problem, least=0.0)),
+        conditions=tuple(
+            _condition(each, fit, transcription.character) for each in missed_conditions(adaptation)
+        ),
+        contacts=tuple(
+            _contact(adaptation, i, pins.get(each.contact.name))
+            for i, each in enumerate(transcription.contacts)
+        ),
+        between_nodes=dense_residuals(motion, schedule.phases),
+        forces=_forces(adaptation),
+        objective_end_over_start=adaptation.gain,
+        reduction=_reduction(adaptation),
+        torques=_torques(adaptation, problem) if _in_play(problem) else None,
+        fit_to_recording=fit_quality(fit),
+        change=change(adaptation),
+        jumps=tuple(jumps(fit, motion, schedule)),
+        stages=None if stages is None else tuple(stages),
+    )
 
 
 # ---------------------------------------------------------------- what went in
 
 
-def _recording(fit: Fit, origin: Origin) -> Json:
+def _recording(fit: Fit, origin: Origin) -> RecordingSummary:
     recording = fit.performance.recording
-    seconds = float(recording.times[-1])
-    return {
-        "clip": origin.clip,
-        "action": recording.name,
-        "first_frame": float(recording.frames[0]),
-        "last_frame": float(recording.frames[-1]),
-        "seconds": seconds,
-        "frames_per_second": frames_per_second(fit),
-        "unit_m": origin.unit_m,
-        "unit_guessed": origin.unit_guessed,
-        "up_axis": origin.up,
-        "up_axis_guessed": origin.up_guessed,
-    }
+    return RecordingSummary(
+        clip=origin.clip,
+        action=recording.name,
+        first_frame=float(recording.frames[0]),
+        last_frame=float(recording.frames[-1]),
+        seconds=float(recording.times[-1]),
+        frames_per_second=frames_per_second(fit),
+        unit_m=origin.unit_m,
+        unit_guessed=origin.unit_guessed,
+        up_axis=origin.up,
+        up_axis_guessed=origin.up_guessed,
+    )
 
 
-def _figure(fit: Fit, motion: Motion, problem: MotionProblem) -> Json:
+def _figure(fit: Fit, motion: Motion, problem: MotionProblem) -> FigureSummary:
     character = motion.transcription.character  # which may carry more than the fit's
-    return {
-        "mass_kg": character.mass,
-        "mass_table": problem.mass_table.value,
-        "height_m": character.height,
-        "gravity_m_s2": character.gravity,
-        "bodies": len(character.bodies),
-        "degrees_of_freedom": character.n_dofs,
-        "floor_m": fit.schedule.floor_m,
-    }
+    return FigureSummary(
+        mass_kg=character.mass,
+        mass_table=problem.mass_table,
+        height_m=character.height,
+        gravity_m_s2=character.gravity,
+        bodies=len(character.bodies),
+        degrees_of_freedom=character.n_dofs,
+        floor_m=fit.schedule.floor_m,
+    )
 
 
-def _pin(pin: Pin) -> Json:
-    axes = "offset_world_m" if pin.axes is OffsetAxes.WORLD else "offset_forward_left_up_m"
-    return {
-        "name": pin.name,
-        "phase": pin.phase,
-        "points": list(pin.touching),
-        axes: list(pin.offset),
-        "place_m": None if pin.place is None else list(pin.place),
-        "turn_deg": math.degrees(pin.turn),
-    }
+def _pin(pin: Pin) -> PinReport:
+    in_world = pin.axes is OffsetAxes.WORLD
+    return PinReport(
+        name=pin.name,
+        phase=pin.phase,
+        points=pin.touching,
+        offset_world_m=pin.offset if in_world else None,
+        offset_forward_left_up_m=None if in_world else pin.offset,
+        place_m=pin.place,
+        turn_deg=math.degrees(pin.turn),
+    )
 
 
-def _solves(outcomes: Sequence[Outcome], name: str) -> list[Json]:
+def _solves(outcomes: Sequence[Outcome], name: str) -> list[SolveReport]:
     return [
-        {
-            "name": outcome.steps[0].stage if outcome.steps else name,
-            "status": outcome.status.value,
-            "iterations": len(outcome.steps),
-            "violation_over_tolerance": outcome.violation,
-        }
+        SolveReport(
+            name=outcome.steps[0].stage if outcome.steps else name,
+            status=outcome.status,
+            iterations=len(outcome.steps),
+            violation_over_tolerance=outcome.violation,
+        )
         for outcome in outcomes
     ]
 
@@ -148,123 +147,126 @@ def _solves(outcomes: Sequence[Outcome], name: str) -> list[Json]:
 # ---------------------------------------------------------------- how well it holds
 
 
-def _condition(missed: Missed, fit: Fit, character: Character) -> Json:
-    amount, unit = shown(missed.amount, missed.kind, character)
-    return {
-        "name": missed.name,
-        "kind": missed.kind.value[0],
-        "worst_violation": amount,
-        "unit": unit,
-        "worst_violation_frame": scene_frame(fit, missed.time),
-        "met": missed.amount <= missed.kind.tolerance,
-    }
+def _condition(missed: Missed, fit: Fit, character: Character) -> ConstraintReport:
+    return ConstraintReport(
+        name=missed.name,
+        kind=missed.kind,
+        worst_violation=missed.kind.reported(missed.amount, character.mass * STANDARD_GRAVITY),
+        worst_violation_frame=scene_frame(fit, missed.time),
+        met=missed.amount <= missed.kind.tolerance,
+    )
 
 
-def _contact(motion: Motion, adaptation: Adaptation, i: int, pin: str | None) -> Json:
-    fit, at = adaptation.fit, motion.transcription.contacts[i]
+def _contact(adaptation: Adaptation, i: int, pin: str | None) -> ContactReport:
+    fit, motion = adaptation.fit, adaptation.motion
+    at = motion.transcription.contacts[i]
     contact = at.contact
-    pinned = pinned_instants(at, RATE)
+    pinned = pinned_instants(at, SAMPLE_RATE)
     drift = motion.drift(i, pinned)
     settling = motion.drift(i, _settling(at))
-    return {
-        "name": contact.name,
-        "pin": pin,
-        "point": contact.point,
-        "bone": contact.bone,
-        "friction_coefficient": at.friction,
-        "friction_cone": _cone(at),
-        "start_s": contact.start,
-        "end_s": contact.end,
-        "start_frame": scene_frame(fit, contact.start),
-        "end_frame": scene_frame(fit, contact.end),
-        "pinned_from_s": at.pin_start,
-        "pinned_to_s": at.pin_end,
-        "fitted_place_m": adaptation.plan.start.places[i].tolist(),
-        "place_m": motion.places[i].tolist(),
-        "worst_violation_mm": 1000.0 * float(drift.max()),
-        "worst_violation_frame": scene_frame(fit, float(pinned[drift.argmax()])),
-        "worst_while_settling_mm": 1000.0 * float(settling.max()),
-    }
+    return ContactReport(
+        name=contact.name,
+        pin=pin,
+        point=contact.point,
+        bone=contact.bone,
+        friction_coefficient=at.friction,
+        friction_cone=_cone(at),
+        start_s=contact.start,
+        end_s=contact.end,
+        start_frame=scene_frame(fit, contact.start),
+        end_frame=scene_frame(fit, contact.end),
+        pinned_from_s=at.pin_start,
+        pinned_to_s=at.pin_end,
+        fitted_place_m=_vector(adaptation.plan.start.places[i]),
+        place_m=_vector(motion.places[i]),
+        worst_violation_mm=1000.0 * float(drift.max()),
+        worst_violation_frame=scene_frame(fit, float(pinned[drift.argmax()])),
+        worst_while_settling_mm=1000.0 * float(settling.max()),
+    )
+
+
+def _vector(values: FloatArray) -> Vector:
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 def _cone(contact: PointContact) -> str:
     if contact.friction is None:
         return "none: a grip"
     shape = ConeShape.PYRAMID if contact.pyramid else ConeShape.EXACT
-    return str(shape.value)
+    return shape.value
 
 
 def _settling(contact: PointContact) -> FloatArray:
     """Instants at which a contact carries force but may still move, its pinned ends among them."""
     span = contact.contact
-    before = span.start + instants(contact.pin_start - span.start, RATE)
-    after = contact.pin_end + instants(span.end - contact.pin_end, RATE)
+    before = span.start + instants(contact.pin_start - span.start, SAMPLE_RATE)
+    after = contact.pin_end + instants(span.end - contact.pin_end, SAMPLE_RATE)
     return np.concatenate([before, after])
 
 
-def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> Json:
-    """Root force (bw) and moment (bw·m) that nothing explains, between the nodes too."""
-    left = dynamics_residual(motion, (instants(motion.duration, RATE) + 0.5 / RATE)[:-1])
+def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> DenseResiduals:
+    """Dynamics residual between the nodes too, by kind of phase."""
+    left = dynamics_residual(
+        motion, (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
+    )
     force, moment = (np.linalg.norm(part, axis=1) for part in (left.force, left.moment))
-    content: Json = {"rate_hz": RATE}
+    found: dict[PhaseKind, PhaseResidual] = {}
     for kind in PhaseKind:
         inside = np.zeros(len(left.times), dtype=bool)
         for phase in phases:
             if phase.kind is kind:
                 inside |= (left.times > phase.start) & (left.times < phase.end)
         if inside.any():
-            content[kind.value] = {
-                "force_rms_bw": _rms(force[inside]),
-                "force_max_bw": float(force[inside].max()),
-                "moment_rms_bw_m": _rms(moment[inside]),
-                "moment_max_bw_m": float(moment[inside].max()),
-            }
-    return content
+            found[kind] = PhaseResidual(
+                force_rms_bw=_rms(force[inside]),
+                force_max_bw=float(force[inside].max()),
+                moment_rms_bw_m=_rms(moment[inside]),
+                moment_max_bw_m=float(moment[inside].max()),
+            )
+    return DenseResiduals(SAMPLE_RATE, found.get(PhaseKind.GROUND), found.get(PhaseKind.FLIGHT))
 
 
-def _forces(motion: Motion, adaptation: Adaptation) -> Json:
-    fit = adaptation.fit
-    times = instants(motion.duration, RATE)
+def _forces(adaptation: Adaptation) -> ForcesReport:
+    fit, motion = adaptation.fit, adaptation.motion
+    times = instants(motion.duration, SAMPLE_RATE)
     forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
     ground = forces.sum(axis=1)
     total = np.linalg.norm(ground, axis=1)
-    # Where the ground hardly carries, a shoe may slip a little; that is no need of friction.
-    carried = np.where(ground[:, 2] > LIGHTEST, ground[:, 2], np.inf)
-    grip = np.linalg.norm(ground[:, :2], axis=1) / carried
+    carried = np.where(ground[:, 2] > LEAST_CARRIED, ground[:, 2], np.inf)
+    friction = np.linalg.norm(ground[:, :2], axis=1) / carried
     peaks = []
     for phase in adaptation.plan.schedule.phases:
         inside = (times >= phase.start) & (times <= phase.end)
         if phase.kind is PhaseKind.GROUND and inside.any():
             at = int(np.argmax(np.where(inside, total, -1.0)))
-            peak = {"peak_bw": float(total[at]), "frame": scene_frame(fit, float(times[at]))}
-            needed = {"friction_coefficient_needed": float(grip[inside].max())}
-            peaks.append({"phase": phase.name, **peak, **needed})
-    smallest = float(forces[:, :, 2].min(initial=0.0))
-    return {"peaks": peaks, "smallest_vertical_force_bw": smallest}
+            frame = scene_frame(fit, float(times[at]))
+            needed = float(friction[inside].max())
+            peaks.append(ForcePeak(phase.name, float(total[at]), frame, needed))
+    return ForcesReport(tuple(peaks), float(forces[:, :, 2].min(initial=0.0)))
 
 
-def closeness(fit: Fit) -> Json:
-    """How far the fit is from the recording, at the recording's frames."""
+def fit_quality(fit: Fit) -> FitQuality:
+    """Distance of the fit from the recording, at the recording's frames."""
     performance = fit.performance
     apart = fit.motion.joint_centres(performance.times) - performance.centres
     lost = [apex(fit.motion, f) - recorded_apex(fit, f) for f in flights(fit)]
-    return {
-        "joint_centres_rms_cm": 100.0 * _rms(np.linalg.norm(apart, axis=2)),
-        "pelvis_apex_difference_cm": 100.0 * max(lost, key=abs, default=0.0),
-    }
+    return FitQuality(
+        joint_centres_rms_cm=100.0 * _rms(np.linalg.norm(apart, axis=2)),
+        pelvis_apex_difference_cm=100.0 * max(lost, key=abs, default=0.0),
+    )
 
 
-def _reduction(adaptation: Adaptation) -> Json | None:
-    """The reduced figure, with the curve that its size is chosen by."""
+def _reduction(adaptation: Adaptation) -> ReductionReport | None:
     space = adaptation.plan.space
     if space is None:
         return None
-    return {
-        "kind": space.kind.value,
-        "degrees_of_freedom": space.basis.shape[1],
-        "eigenvalues_rad2": space.eigenvalues.tolist(),
-        "explained_share": space.explained.tolist(),
-    }
+    return ReductionReport(
+        kind=space.kind,
+        degrees_of_freedom=space.basis.shape[1],
+        eigenvalues_rad2=tuple(space.eigenvalues.tolist()),
+        explained_share=tuple(space.explained.tolist()),
+    )
 
 
 def _in_play(problem: MotionProblem) -> bool:
@@ -277,51 +279,35 @@ def _in_play(problem: MotionProblem) -> bool:
     )
 
 
-def _torques(adaptation: Adaptation, problem: MotionProblem) -> Json:
-    """The largest torque at every joint, and the splines that hold them."""
+def _torques(adaptation: Adaptation, problem: MotionProblem) -> TorquesReport:
     motion, torques = adaptation.motion, adaptation.plan.torques
-    times = (instants(motion.duration, RATE) + 0.5 / RATE)[:-1]
+    times = (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
     sizes = np.abs(exact_torques(motion, torques, times))
     character = motion.transcription.character
-    peaks = {}
-    for body, joint in zip(character.bodies[1:], character.joints[1:], strict=True):
-        peaks[body.bone] = float(sizes[:, joint.first - 3 : joint.dofs.stop - 3].max())
+    peaks = tuple(
+        TorquePeak(body.bone, float(sizes[:, joint.first - 3 : joint.dofs.stop - 3].max()))
+        for body, joint in zip(character.bodies[1:], character.joints[1:], strict=True)
+    )
     curve = torque_curve(motion, torques, longest=problem.requests.solution.torque_span)
-    return {
-        "peaks_nm": [{"bone": bone, "peak_nm": peak} for bone, peak in peaks.items()],
-        "spline_unknowns": curve.n_coefficients * sizes.shape[1],
-        "spline_error_rms_nm": curve.error,
-    }
+    return TorquesReport(peaks, curve.n_coefficients * sizes.shape[1], curve.error)
 
 
 # ---------------------------------------------------------------- what changed
 
 
-def change(adaptation: Adaptation) -> Json:
-    """How far the motion is from the fit, at the recording's frames and on its own time."""
+def change(adaptation: Adaptation) -> MotionChange:
+    """Distance of the motion from the fit, at the recording's frames and on its own time."""
     times = adaptation.fit.performance.times
     moved = adaptation.plan.scene.timeline.to_new(times)
     kept = moved <= adaptation.motion.duration
     was, now = adaptation.fit.motion, adaptation.motion
     places = now.joint_centres(moved[kept]) - was.joint_centres(times[kept])
     angles = now.angles(moved[kept])[:, 3:] - was.angles(times[kept])[:, 3:]
-    return {
-        "joint_centres_rms_cm": 100.0 * _rms(np.linalg.norm(places, axis=2)),
-        "joint_angles_rms_deg": math.degrees(_rms(angles)),
-    }
+    return MotionChange(
+        joint_centres_rms_cm=100.0 * _rms(np.linalg.norm(places, axis=2)),
+        joint_angles_rms_deg=math.degrees(_rms(angles)),
+    )
 
 
 def _rms(values: FloatArray) -> float:
     return float(np.sqrt(np.mean(values**2)))
-
-
-def _finite(value: Any) -> Any:
-    """The same with plain numbers, and None for those that JSON cannot hold."""
-    match value:
-        case dict():
-            return {key: _finite(each) for key, each in value.items()}
-        case list() | tuple():
-            return [_finite(each) for each in value]
-        case float() | np.floating():
-            return float(value) if math.isfinite(value) else None
-    return value

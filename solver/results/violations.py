@@ -1,20 +1,18 @@
-"""What of an adaptation does not hold, by the names that the artist knows."""
+"""Constraint violations of an adaptation, by the names that the artist knows."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ..analysis.pinned_places import chosen_contacts, phase_of
-from ..body.character import Character
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase
 from ..data.problem import MotionProblem
+from ..data.row_kinds import RowKind, Violation
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import Missed, missed
-from ..transcription.rows import RowKind
 
 MOST_LISTED = 3  # constraints that a failure names
 
@@ -32,15 +30,15 @@ def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
 
 
 def missed_conditions(adaptation: Adaptation) -> list[Missed]:
-    """By how much each of the artist's conditions is missed at worst, between the nodes too."""
+    """Worst violation of each of the artist's constraints, between the nodes too."""
     x, t = adaptation.motion.x, adaptation.motion.transcription
     return [missed(c, t.character, t.basis, t.layout, x) for c in t.conditions]
 
 
 def worst_constraints(
     adaptation: Adaptation, problem: MotionProblem, *, least: float = 1.0
-) -> list[tuple[str, float, str]]:
-    """(name, violation, unit) of every contact, condition and phase's equations, worst first.
+) -> list[Violation]:
+    """The violation of every contact, condition and phase's equations, worst first.
 
     Of a solve that failed: those that conflict where it got stuck, then what the best motion found
     misses. least: how often its tolerance a violation must reach to be listed.
@@ -51,7 +49,7 @@ def worst_constraints(
         here = replace(adaptation, stuck=None)
         conflicts = worst_constraints(failed, problem, least=least)
         short = worst_constraints(here, problem, least=least)
-        return conflicts + [each for each in short if each[0] not in {c[0] for c in conflicts}]
+        return conflicts + [each for each in short if each.name not in {c.name for c in conflicts}]
     t = motion.transcription
     rows = t.rows(motion.x, adaptation.outcome.places)
     pins = pins_of_contacts(adaptation.fit, problem)
@@ -70,39 +68,26 @@ def worst_constraints(
         key=lambda each: each[0],
         reverse=True,
     )
-    listed = []
-    for share, name, kind in ranked:
-        if share >= least:
-            amount, unit = shown(share * kind.tolerance, kind, t.character)
-            listed.append((name, amount, unit))
-    return listed
+    weight = t.character.mass * STANDARD_GRAVITY
+    return [
+        Violation(name, kind, kind.reported(share * kind.tolerance, weight))
+        for share, name, kind in ranked
+        if share >= least
+    ]
 
 
-def most_telling(
-    adaptation: Adaptation, problem: MotionProblem
-) -> tuple[tuple[str, float, str], ...]:
+def most_telling(adaptation: Adaptation, problem: MotionProblem) -> tuple[Violation, ...]:
     """The few worst constraints of a failed solve, the worst that the artist asked for among them.
 
     What gives way first may be a foot that nobody moved; what it gave way to has to be named too.
     """
     ranked = worst_constraints(adaptation, problem)
     asked = {pin.name for pin in problem.pins} | set(problem.requests.names)
-    own = [each for each in ranked if each[0] in asked or each[0].partition(": ")[0] in asked]
+    own = [each for each in ranked if each.name in asked or each.name.partition(": ")[0] in asked]
     first = ranked[:MOST_LISTED]
     if own and not any(each in first for each in own):
         first = [*first[: MOST_LISTED - 1], own[0]]
     return tuple(first)
-
-
-def shown(amount: float, kind: RowKind, character: Character) -> tuple[float, str]:
-    """A violation in the unit that people read."""
-    if kind in (RowKind.PIN, RowKind.POINT):
-        return 1000.0 * amount, "mm"
-    if kind is RowKind.TORQUE:
-        return amount * character.mass * STANDARD_GRAVITY, "N·m beyond the limit"
-    if kind.unit == "rad":
-        return math.degrees(amount), "degrees"
-    return amount, kind.unit
 
 
 def _phase_at(phases: Sequence[Phase], time: float) -> Phase:

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.problem import MotionProblem
+from ..data.report import DragSummary
 from ..data.status import DragStatus
 from ..data.traces import Traces
 from ..optimisation.kkt_step import Linearised
@@ -108,12 +109,8 @@ class Follower:
         return Linearised(t, t.rows(x, places), self._metric, basis=self._plan.basis)
 
 
-def change(fit: Fit, plan: Setup, motion: Motion, seen: Traces) -> dict[str, float]:
-    """What an artist wants to know while dragging, against the fit, and of the motion as seen.
-
-    moved_cm: of the contact that is furthest from where it was recorded; deeper_cm: the lowest
-    that the pelvis comes; higher_cm: the highest; peak_bw: the largest force.
-    """
+def change(fit: Fit, plan: Setup, motion: Motion, seen: Traces) -> DragSummary:
+    """Change of a motion against the fit. seen: the motion's traces."""
     known = {c.name: place for c, place in zip(fit.schedule.contacts, fit.places, strict=True)}
     moves = [
         float(np.linalg.norm(place - known[c.name]))
@@ -123,9 +120,9 @@ def change(fit: Fit, plan: Setup, motion: Motion, seen: Traces) -> dict[str, flo
     was = fit.motion.joint_centres(fit.performance.times)[:, 0, 2]
     now = seen.heads[:, 0, 2]
     forces = np.linalg.norm(seen.forces.sum(axis=1), axis=1)
-    return {
-        "moved_cm": 100.0 * max(moves, default=0.0),
-        "deeper_cm": 100.0 * float(was.min() - now.min()),
-        "higher_cm": 100.0 * float(now.max() - was.max()),
-        "peak_bw": float(forces.max(initial=0.0)) / seen.weight,
-    }
+    return DragSummary(
+        moved_cm=100.0 * max(moves, default=0.0),
+        deeper_cm=100.0 * float(was.min() - now.min()),
+        higher_cm=100.0 * float(now.max() - was.max()),
+        peak_bw=float(forces.max(initial=0.0)) / seen.weight,
+    )

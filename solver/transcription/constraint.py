@@ -12,8 +12,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..body.character import Character
+from ..data.row_kinds import RowKind
 from ..numerics.splines import SplineBasis
-from .rows import Layout, RowKind, Rows, violation
+from .rows import Layout, Rows, violation
 from .sampling import Instants, Slope, State
 
 DENSE = 0.004  # s, between the instants that tell whether a bound holds

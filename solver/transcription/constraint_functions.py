@@ -12,8 +12,8 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character, Joint
 from ..body.kinematics import BodyPoint
+from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix, rotation_vector
-from .rows import RowKind
 from .sampling import Channel, Slope, State
 
 Follows = Callable[[FloatArray], FloatArray]  # of instants (U,) s

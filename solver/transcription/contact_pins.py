@@ -14,9 +14,10 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.kinematics import BodyPoint, Pose, point_velocity
 from ..data.contacts import Contact
+from ..data.row_kinds import RowKind
 from ..numerics.interpolation import interpolate
 from ..numerics.splines import ORDER, SplineBasis
-from .rows import Layout, RowKind, Rows
+from .rows import Layout, Rows
 
 FRICTION = 1.0  # of a rubber sole on a hall's floor
 STEP = 1e-3  # s, of the differences that give a moving place its speed

@@ -10,10 +10,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.row_kinds import RowKind
 from ..numerics.rotations import perpendicular, unit
 from ..numerics.splines import ORDER, SplineBasis
 from .contact_pins import PointContact
-from .rows import Layout, RowKind, Rows
+from .rows import Layout, Rows
 
 LEAST = 1e-9  # BW; below it a tangential force has no direction
 

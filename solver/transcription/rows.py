@@ -2,39 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import BoolArray, FloatArray, IntArray
-
-
-class RowKind(Enum):
-    """What a row states: a name, the unit of its value, and the violation that is let stand."""
-
-    BALANCE = ("balance", "BW", 1e-5)
-    MOMENT = ("moment", "BW·m", 2e-5)
-    PIN = ("pin", "m", 1e-5)
-    PIN_SPEED = ("pin's speed", "m/s", 1e-3)
-    POINT = ("point", "m", 3e-4)
-    BEND = ("bend", "rad", 2e-3)
-    CONE = ("cone", "rad", 2e-3)
-    TWIST = ("twist", "rad", 2e-3)
-    ORIENTATION = ("orientation", "rad", 2e-3)
-    POSE = ("pose", "rad", 2e-3)
-    PUSH = ("push", "BW of pull", 0.01)
-    FRICTION = ("friction", "BW beyond friction", 0.01)
-    PEAK = ("peak", "BW beyond the cap", 0.01)
-    TORQUE = ("torque", "BW·m beyond the limit", 2e-5)
-
-    @property
-    def unit(self) -> str:
-        return self.value[1]
-
-    @property
-    def tolerance(self) -> float:
-        return self.value[2]
+from ..data.row_kinds import RowKind
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ..body.dynamics import evaluate
 from ..body.inverse_dynamics import inverse_dynamics
 from ..body.kinematics import BodyPoint
 from ..data.constants import STANDARD_GRAVITY
-from .rows import RowKind
+from ..data.row_kinds import RowKind
 from .sampling import Channel, Slope, State
 from .transcription import Transcription
 

@@ -27,12 +27,13 @@ from ..body.dynamics import MomentFunction
 from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Contact
+from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix
 from ..numerics.splines import ORDER, SplineBasis, gauss_instants
 from .constraint import Bounded, Constraint
 from .contact_pins import Pins, PointContact
 from .friction_cones import ForceCones
-from .rows import Layout, RowKind, Rows
+from .rows import Layout, Rows
 from .sampling import Instants, Slope
 
 GAUSS = 3  # dynamics nodes a span

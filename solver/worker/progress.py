@@ -1,4 +1,4 @@
-"""How far a solve has come: a share between 0 and 1 that never falls, from its steps."""
+"""Monotonic progress fraction of a solve, 0 to 1, from its steps."""
 
 from dataclasses import dataclass, field
 from math import log
@@ -12,7 +12,7 @@ STAGES_PER_SPAN = 3.0  # a stage of steps begun again counts as another third of
 
 @dataclass
 class ProgressFraction:
-    """The share done. A stage's violation falls to 1 roughly evenly in its logarithm."""
+    """Monotonic progress fraction. The logarithm of a stage's violation falls roughly evenly."""
 
     share: float = 0.0
     _stage: str = ""
@@ -20,7 +20,7 @@ class ProgressFraction:
     _begun: float = 0.0
 
     def step(self, step: Step) -> float:
-        """The share done once this step is, which began from its violation."""
+        """The fraction done once this step is, which began from its violation."""
         begins_again = step.violation > self._first
         if step.stage != self._stage or begins_again:
             self._stage, self._first = step.stage, max(step.violation, 1.0)

@@ -1,4 +1,4 @@
-"""What the artist's program and the worker process say to each other, and how it is framed.
+"""Protocol between the artist's program and the worker process: messages and their framing.
 
 The parent starts the worker and says Hello; the worker answers Ready. Then the parent makes one
 Request at a time, and the worker tells any number of Progress and one answer.
@@ -6,11 +6,9 @@ Request at a time, and the worker tells any number of Progress and one answer.
 Meanwhile the parent may tell it to Halt: to drop the request, which is answered by Cancelled, or to
 end with the motion as it stands.
 
-Each message is a length (8 bytes, little-endian), a checksum (4 bytes) and a pickle. Both ends run
-the same files of one version, under the package names that their importers gave them; what arrives
-whole may name nothing but this package's data classes and enums and numpy's arrays.
-
-Standard library only: the worker learns where numpy is from the first message.
+Each message is a length (8 bytes, little-endian) and a pickle. Both ends run the same files of one
+version, under the package names that their importers gave them; what arrives may name nothing but
+this package's data classes and enums and numpy's arrays.
 """
 
 from __future__ import annotations
@@ -21,22 +19,23 @@ from dataclasses import dataclass, is_dataclass
 from enum import Enum
 from importlib import import_module
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, BinaryIO
-from zlib import crc32
+from typing import IO, TYPE_CHECKING, Any
 
 from ..data.status import DragStatus
 
+# Standard library only: the worker learns where numpy is from the first message.
 if TYPE_CHECKING:
     from ..arrays import FloatArray
     from ..data.contacts import ContactSchedule
     from ..data.faults import Fault, NoSolution
     from ..data.problem import MotionProblem
     from ..data.recording import PoseTrack, Recording
+    from ..data.report import DragSummary, FitQuality, Report
     from ..data.traces import Traces
 
-PROTOCOL = 2
+PROTOCOL = 3
 LARGEST = 1 << 30  # bytes; a longer message is not one
-_HEAD = struct.Struct("<QI")  # length and CRC-32 of the pickle
+_HEAD = struct.Struct("<Q")  # length of the pickle
 _NUMPY = {
     ("numpy", "ndarray"),
     ("numpy", "dtype"),
@@ -61,8 +60,8 @@ _UNREADABLE = (
 )
 
 
-class Kind(Enum):
-    """What a request asks for."""
+class RequestKind(Enum):
+    """Task that a request sets the worker."""
 
     ANALYSE = "analyse"
     FIT = "fit"
@@ -87,19 +86,19 @@ class Ready:
 
 @dataclass(frozen=True)
 class Request:
-    """Something to solve; id comes back with everything that is said about it.
+    """A task for the worker; id comes back with everything that is said about it.
 
     recording: None is the last request's.
     """
 
     id: int
-    kind: Kind
+    kind: RequestKind
     recording: Recording | None
     problem: MotionProblem
 
 
 class Ending(Enum):
-    """How a request is halted."""
+    """Way in which a request is halted."""
 
     CANCEL = "cancel"
     AS_IT_STANDS = "as it stands"
@@ -115,8 +114,11 @@ class Halt:
 
 @dataclass(frozen=True)
 class Progress:
-    """The stage's step-th step is done; violation: the worst over its tolerance, before it, and
-    worst: whose it was (a contact, a condition or an equation). share: of the request, 0 to 1."""
+    """Progress of a request: the stage's step-th step is done.
+
+    violation: the worst over its tolerance, before it; worst: whose it was (a contact, a condition
+    or an equation). share: progress fraction of the request, 0 to 1.
+    """
 
     id: int
     stage: str
@@ -144,10 +146,10 @@ class Analysed:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The nearest valid motion is found. closeness: see report.closeness."""
+    """The nearest valid motion is found."""
 
     id: int
-    closeness: dict[str, float]
+    quality: FitQuality
     seconds: float
     traces: Traces
 
@@ -161,7 +163,7 @@ class Adapted:
 
     id: int
     track: PoseTrack
-    report: dict[str, Any]
+    report: Report
     schedule: ContactSchedule
     traces: Traces
     fault: NoSolution | None
@@ -169,13 +171,12 @@ class Adapted:
 
 @dataclass(frozen=True)
 class Followed:
-    """Where the motion has come that follows a dragged pin. change: numbers by what they are, see
-    follow.change."""
+    """The motion that follows a dragged pin, after a few steps more."""
 
     id: int
     traces: Traces
-    course: DragStatus
-    change: dict[str, float]
+    status: DragStatus
+    summary: DragSummary
 
 
 @dataclass(frozen=True)
@@ -198,33 +199,31 @@ Message = Hello | Ready | Request | Halt | Progress | Answer
 
 
 class ProtocolError(Exception):
-    """What arrived is not a message of this version."""
+    """Raised where what arrived is not a message of this version."""
 
 
-def send(stream: BinaryIO, message: Message) -> None:
+def send(stream: IO[bytes], message: Message) -> None:
     """Writes one message. Raises OSError (BrokenPipeError where nobody listens any more)."""
     body = pickle.dumps(message, protocol=5)
-    rest = memoryview(_HEAD.pack(len(body), crc32(body)) + body)
+    rest = memoryview(_HEAD.pack(len(body)) + body)
     while rest:
         rest = rest[stream.write(rest) :]  # a bare pipe takes what it has room for
     stream.flush()
 
 
-def receive(stream: BinaryIO) -> Message | None:
+def receive(stream: IO[bytes]) -> Message | None:
     """The next message; None where the stream ends before one. Raises ProtocolError."""
     head = stream.read(_HEAD.size)
     if not head:
         return None
     if len(head) < _HEAD.size:
         raise ProtocolError("a message breaks off")
-    length, checksum = _HEAD.unpack(head)
+    (length,) = _HEAD.unpack(head)
     if length > LARGEST:
         raise ProtocolError(f"a message of {length} bytes is announced")
     body = stream.read(length)
     if len(body) < length:
         raise ProtocolError("a message breaks off")
-    if crc32(body) != checksum:
-        raise ProtocolError("a message arrived damaged")
     try:
         message = _Reader(BytesIO(body)).load()
     except _UNREADABLE as problem:

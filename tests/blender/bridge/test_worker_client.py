@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hangtime.bridge.worker_client import DragStream, Kind, PendingRequest, Worker
+from hangtime.bridge.worker_client import DragStream, PendingRequest, RequestKind, Worker
 from hangtime.solver.data.faults import (
     ClipTooShort,
     NoFlight,
@@ -21,7 +21,7 @@ from hangtime.solver.data.faults import (
 )
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
-from hangtime.solver.data.status import DragStatus
+from hangtime.solver.data.status import DragStatus, Status
 from hangtime.solver.worker.protocol import Adapted, Analysed, Failed, Fitted, Followed, Progress
 from hangtime.tests.helpers.clips import load_recording
 
@@ -35,11 +35,11 @@ LOADER = str(Path(__file__).parents[3] / "devtools" / "package.py")
 ORPHAN = """
 import os, runpy, sys
 runpy.run_path(sys.argv[1])["load"]()
-from hangtime.bridge.worker_client import Kind, Worker
+from hangtime.bridge.worker_client import RequestKind, Worker
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.solver.data.problem import MotionProblem
 worker = Worker()
-worker.ask(Kind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
+worker.ask(RequestKind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
 print(worker.pid, flush=True)
 os._exit(0)
 """
@@ -54,8 +54,8 @@ from hangtime.bridge import worker_client
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.solver.data.problem import MotionProblem
 worker_client._PROGRAM = Path(sys.argv[3])
-one = worker_client.Worker()
-answer = one.ask(worker_client.Kind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
+one, recording = worker_client.Worker(), load_recording(sys.argv[2])
+answer = one.ask(worker_client.RequestKind.ANALYSE, recording, MotionProblem()).wait()
 one.close()
 print(answer.fault)
 """
@@ -97,9 +97,9 @@ def test_the_second_adaptation_starts_from_the_stored_fit(worker: Worker, jump: 
     stages: list[set[str]] = []
     for problem in (UP, AHEAD):
         told: list[Progress] = []
-        answer = worker.ask(Kind.ADAPT, jump, problem).wait(told.append)
+        answer = worker.ask(RequestKind.ADAPT, jump, problem).wait(told.append)
         assert isinstance(answer, Adapted)
-        assert answer.report["pins"][0]["name"] == problem.pins[0].name
+        assert answer.report.pins[0].name == problem.pins[0].name
         np.testing.assert_array_equal(answer.track.frames, np.arange(SPAN[0], SPAN[1] + 1))
         stages.append({progress.stage for progress in told})
     assert "fit" in stages[0]
@@ -115,7 +115,7 @@ def test_a_fault_is_an_answer_and_the_worker_lives_on(worker: Worker, jump: Reco
     ]
     numbers = set()
     for problem, fault in asked:
-        answer = worker.ask(Kind.ANALYSE, jump, problem).wait()
+        answer = worker.ask(RequestKind.ANALYSE, jump, problem).wait()
         assert isinstance(answer, Failed)
         assert type(answer.fault) is fault
         numbers.add(worker.pid)
@@ -127,7 +127,7 @@ def test_the_stated_height_leaves_places_in_the_recordings_lengths(
     worker: Worker, jump: Recording
 ) -> None:
     measured, stated = (
-        worker.ask(Kind.ANALYSE, jump, MotionProblem(frames=SPAN, height=height)).wait()
+        worker.ask(RequestKind.ANALYSE, jump, MotionProblem(frames=SPAN, height=height)).wait()
         for height in (None, 1.75)
     )
     assert isinstance(measured, Analysed)
@@ -141,7 +141,7 @@ def test_the_stated_height_leaves_places_in_the_recordings_lengths(
 
 def started(worker: Worker, recording: Recording, problem: MotionProblem) -> PendingRequest:
     """An adaptation of which a first step has been told."""
-    job = worker.ask(Kind.ADAPT, recording, problem)
+    job = worker.ask(RequestKind.ADAPT, recording, problem)
     while not list(job.news()):
         time.sleep(0.01)
     return job
@@ -150,13 +150,13 @@ def started(worker: Worker, recording: Recording, problem: MotionProblem) -> Pen
 def test_a_request_that_is_dropped_costs_neither_worker_nor_fit(
     worker: Worker, jump: Recording
 ) -> None:
-    worker.ask(Kind.FIT, jump, UP).wait()
+    worker.ask(RequestKind.FIT, jump, UP).wait()
     pid = worker.pid
     started(worker, jump, UP)
     worker.drop()
     assert not worker.busy
     told: list[Progress] = []
-    answer = worker.ask(Kind.ADAPT, jump, AHEAD).wait(told.append)
+    answer = worker.ask(RequestKind.ADAPT, jump, AHEAD).wait(told.append)
     assert isinstance(answer, Adapted)
     assert worker.pid == pid
     assert "fit" not in {progress.stage for progress in told}
@@ -170,15 +170,15 @@ def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
     answer = job.wait()
     assert isinstance(answer, Adapted)
     assert answer.fault is not None
-    assert answer.fault.reason == "stopped"
+    assert answer.fault.reason is Status.STOPPED
     assert len(answer.track.frames) == len(answer.traces.frames)
 
 
 def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(worker: Worker, jump: Recording) -> None:
     told: list[Progress] = []
-    answer = worker.ask(Kind.FIT, jump, UP).wait(told.append)
+    answer = worker.ask(RequestKind.FIT, jump, UP).wait(told.append)
     assert isinstance(answer, Fitted)
-    assert 0.0 < answer.closeness["joint_centres_rms_cm"] < 2.5
+    assert 0.0 < answer.quality.joint_centres_rms_cm < 2.5
     shares = [progress.share for progress in told]
     assert shares == sorted(shares)
     assert 0.0 < shares[-1] < 1.0
@@ -190,11 +190,11 @@ def raised(up: float, name: str = "up") -> MotionProblem:
     return MotionProblem(frames=SPAN, pins=(pin,))
 
 
-def chased(chase: DragStream) -> Iterator[Followed]:
+def followed(stream: DragStream) -> Iterator[Followed]:
     """The motions that come, for at most a minute."""
     until = time.monotonic() + 60.0
     while time.monotonic() < until:
-        for message in chase.news():
+        for message in stream.news():
             if not isinstance(message, Progress):
                 assert isinstance(message, Followed), message
                 yield message
@@ -202,46 +202,46 @@ def chased(chase: DragStream) -> Iterator[Followed]:
 
 
 def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
-    chase = worker.chase(jump)
+    stream = worker.follow(jump)
     assert worker.busy
     apexes = []
     for up in (0.01, 0.05):
-        chase.want(raised(up))
-        reached = (seen for seen in chased(chase) if seen.course is DragStatus.CONVERGED)
-        seen = next(s for s in reached if abs(s.change["moved_cm"] - 100.0 * up) < 0.1)
+        stream.want(raised(up))
+        reached = (seen for seen in followed(stream) if seen.status is DragStatus.CONVERGED)
+        seen = next(s for s in reached if abs(s.summary.moved_cm - 100.0 * up) < 0.1)
         apexes.append(seen.traces.heads[:, 0, 2].max())
     assert apexes[1] > apexes[0] + 0.01
     worker.drop()
     assert not worker.busy
-    assert isinstance(worker.ask(Kind.ADAPT, None, raised(0.05)).wait(), Adapted)
+    assert isinstance(worker.ask(RequestKind.ADAPT, None, raised(0.05)).wait(), Adapted)
 
 
-def test_what_cannot_be_followed_is_said_and_the_chase_goes_on(
+def test_what_cannot_be_followed_is_said_and_the_drag_goes_on(
     worker: Worker, jump: Recording
 ) -> None:
-    chase = worker.chase(jump)
+    stream = worker.follow(jump)
     nowhere = MotionProblem(frames=SPAN, pins=(Pin("Nowhere", "ground 9"),))
-    chase.want(nowhere)
+    stream.want(nowhere)
     failed = None
     while failed is None:
-        failed = next((m for m in chase.news() if isinstance(m, Failed)), None)
+        failed = next((m for m in stream.news() if isinstance(m, Failed)), None)
         time.sleep(0.005)
     assert isinstance(failed.fault, UnknownPhase)
-    chase.want(raised(0.01))
-    assert next(chased(chase)).change["moved_cm"] == pytest.approx(1.0, abs=0.1)
+    stream.want(raised(0.01))
+    assert next(followed(stream)).summary.moved_cm == pytest.approx(1.0, abs=0.1)
 
 
 def test_a_worker_that_is_killed_answers_so_and_another_takes_over(
     worker: Worker, jump: Recording
 ) -> None:
-    job = worker.ask(Kind.ADAPT, jump, UP)
+    job = worker.ask(RequestKind.ADAPT, jump, UP)
     assert worker.busy
     job.wait(lambda progress: kill(worker) if progress.step == 1 else None)
     assert isinstance(job.answer, Failed)
     assert isinstance(job.answer.fault, WorkerDied)
     assert job.answer.fault.detail == "exit code -9"
     assert not worker.busy
-    assert isinstance(worker.ask(Kind.ANALYSE, jump, UP).wait(), Analysed)
+    assert isinstance(worker.ask(RequestKind.ANALYSE, jump, UP).wait(), Analysed)
 
 
 def kill(worker: Worker) -> None:
@@ -255,7 +255,7 @@ def test_what_a_worker_said_last_is_told(
     program = tmp_path / "broken.py"
     program.write_text("raise SystemExit('the disk is upside down')")
     monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
-    answer = worker.ask(Kind.ANALYSE, jump, UP).wait()
+    answer = worker.ask(RequestKind.ANALYSE, jump, UP).wait()
     assert isinstance(answer, Failed)
     assert answer.fault == WorkerDied("the disk is upside down (exit code 1)")
 
@@ -266,7 +266,7 @@ def test_a_worker_that_talks_nonsense_is_not_believed(
     program = tmp_path / "babbling.py"
     program.write_text("print('Hello, this is more than a length', flush=True); input()")
     monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
-    answer = worker.ask(Kind.ANALYSE, jump, UP).wait()
+    answer = worker.ask(RequestKind.ANALYSE, jump, UP).wait()
     assert isinstance(answer, Failed)
     assert isinstance(answer.fault, WorkerDied)
     assert "bytes is announced" in answer.fault.detail
@@ -277,19 +277,19 @@ def test_without_a_python_there_is_a_fault(
 ) -> None:
     monkeypatch.setattr(sys, "executable", str(tmp_path / "no python"))
     with pytest.raises(WorkerDied) as caught:
-        worker.ask(Kind.ANALYSE, jump, UP)
+        worker.ask(RequestKind.ANALYSE, jump, UP)
     assert "no python" in caught.value.detail
 
 
 def test_one_request_at_a_time(worker: Worker, jump: Recording) -> None:
-    worker.ask(Kind.ADAPT, jump, UP)
+    worker.ask(RequestKind.ADAPT, jump, UP)
     with pytest.raises(RuntimeError, match="one request"):
-        worker.ask(Kind.ANALYSE, jump, UP)
+        worker.ask(RequestKind.ANALYSE, jump, UP)
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
 def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recording) -> None:
-    job = worker.ask(Kind.ADAPT, jump, UP)
+    job = worker.ask(RequestKind.ADAPT, jump, UP)
     pid = worker.pid
     assert pid is not None
     while not list(job.news()):

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,8 @@ from hangtime.operators.headless import picture
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.outbox import Outbox
 from hangtime.solver.data.faults import OutputNotWritable
+from hangtime.solver.worker.protocol import Adapted, Request, RequestKind
+from hangtime.solver.worker.service import Service
 from hangtime.tests.helpers.clips import mocap_path
 
 CLIP = "forward_jump_116cm.bvh"
@@ -143,6 +146,25 @@ def test_the_command_line_wins_over_the_recipe(clip: Path, tmp_path: Path) -> No
     assert report["figure"]["height_m"] == pytest.approx(1.2)
     assert report["recording"]["first_frame"] == 100.0
     assert report["recording"]["last_frame"] == 280.0
+    _assert_written_as_the_worker_answers(clip, tmp_path / "out" / "adapted.blend")
+
+
+def _assert_written_as_the_worker_answers(clip: Path, written: Path) -> None:
+    """A stated height scales for the solver alone: the recording's armature keeps its lengths."""
+    asked = parse_recipe(EDIT).problem
+    problem = replace(asked, frames=(WINDOW[0], 280.0), mass=35.0, height=1.2)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    recording = read_recording(import_clip(clip).armature, first=WINDOW[0], last=280.0)
+    request = Request(1, RequestKind.ADAPT, recording, problem)
+    answer = Service().answer(request, lambda _: None)
+    assert isinstance(answer, Adapted)
+    assert answer.fault is None
+    bpy.ops.wm.open_mainfile(filepath=str(written))
+    shown = read_recording(bpy.data.objects[clip.stem])
+    track, bones = answer.track, [shown.index(bone) for bone in answer.track.bones]
+    np.testing.assert_array_equal(shown.frames, track.frames)
+    np.testing.assert_allclose(shown.heads[:, bones[0]], track.root_head, atol=1e-5)
+    np.testing.assert_allclose(shown.rotations[:, bones], track.rotations, atol=1e-5)
 
 
 def test_a_blend_is_a_clip_too(clip: Path, tmp_path: Path, capsys) -> None:

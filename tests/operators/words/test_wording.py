@@ -13,6 +13,7 @@ import pytest
 from hangtime.operators.words import wording
 from hangtime.operators.words.wording import OUTCOMES, TEMPLATES, sentence
 from hangtime.solver.data.faults import BadRecipe, Fault, MissingPart, NoSolution, RequestFault
+from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.status import Status
 
 
@@ -34,8 +35,10 @@ def made(kind: type[Fault]) -> Fault:
 
 def filled(hint: object) -> object:
     text = str(hint)
-    if text.startswith("tuple[tuple"):
-        return (("Landing: Left heel 2", 12.0, "mm"),)
+    if hint is Status:
+        return Status.STALLED
+    if "Violation" in text:
+        return (Violation("Landing: Left heel 2", RowKind.PIN, 12.0),)
     if text.startswith("tuple[float"):
         return (1.0, 2.0, 3.0)
     if text.startswith("tuple[str"):
@@ -83,10 +86,11 @@ def test_templates_are_translated_before_they_are_filled() -> None:
 
 
 def test_what_is_left_is_translated_as_well() -> None:
-    fault = NoSolution("stalled", (("Landing", 12.3, "mm"),), reached=0.25)
+    pin = Violation("Landing", RowKind.PIN, 12.3)
+    fault = NoSolution(Status.STALLED, (pin,), reached=0.25)
     seen: list[str] = []
     sentence(fault, lambda template: seen.append(template) or template)
-    assert seen[1:] == [OUTCOMES[Status.STALLED], wording.MISSED["mm"]]
+    assert seen[1:] == [OUTCOMES[Status.STALLED], wording.MISSED[RowKind.PIN]]
 
 
 def test_a_fault_without_words_is_noticed() -> None:
@@ -103,9 +107,18 @@ def test_every_status_has_words() -> None:
 
 
 def test_a_failed_solve_names_what_is_off() -> None:
-    fault = NoSolution("stalled", (("Landing: Left heel 2", 12.3, "mm"), ("flight 1", 0.1, "BW")))
+    pin = Violation("Landing: Left heel 2", RowKind.PIN, 12.3)
+    fault = NoSolution(Status.STALLED, (pin, Violation("flight 1", RowKind.BALANCE, 0.1)))
     assert "“Landing: Left heel 2” stays 12.3 mm from its place" in sentence(fault)
     assert "in flight 1" in sentence(fault)
+
+
+@pytest.mark.parametrize("kind", RowKind)
+def test_every_kind_of_violation_has_words(kind: RowKind) -> None:
+    words = sentence(NoSolution(Status.STALLED, (Violation("Knee", kind, 0.25),)))
+    assert "Knee" in words
+    assert "0.25" in words
+    assert "{" not in words
 
 
 def test_a_recipe_fault_names_its_line() -> None:

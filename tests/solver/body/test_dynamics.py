@@ -19,12 +19,12 @@ from hangtime.solver.body.joint_axes import JointAxes
 from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics, point_velocity
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.transcription.motion import motion_efforts
-from hangtime.solver.transcription.rows import RowKind
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.clips import load_recording
 

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from hangtime.operators.words.report_text import as_text
 from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.report import Origin, Report, StageReport, as_json
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.results.npz_export import instants, sample, save
-from hangtime.solver.results.report import Origin, report
+from hangtime.solver.results.report import report
 from hangtime.solver.results.violations import worst_constraints
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.tests.helpers.fitted_hop import fitted_hop
@@ -26,8 +28,13 @@ def further() -> Adaptation:
 
 
 @cache
-def content() -> dict:
+def found() -> Report:
     return report(further(), PROBLEM, Origin("hop.bvh", 0.0564, True, "Y", True))
+
+
+@cache
+def content() -> dict:
+    return as_json(found())
 
 
 @cache
@@ -49,7 +56,7 @@ def test_a_report_is_json_without_infinities() -> None:
 
 def test_what_is_not_finite_becomes_none() -> None:
     origin = Origin("hop.bvh", unit_m=math.nan)
-    assert report(further(), PROBLEM, origin)["recording"]["unit_m"] is None
+    assert as_json(report(further(), PROBLEM, origin))["recording"]["unit_m"] is None
 
 
 def test_numbers_carry_units() -> None:
@@ -122,19 +129,16 @@ def test_a_spoilt_motion_is_reported_so() -> None:
         outcomes=(*solved.outcomes, replace(solved.outcome, x=x, status=Status.STALLED)),
     )
     bad = report(spoilt, PROBLEM, Origin("hop.bvh"))
-    assert bad["status"] == "stalled"
-    worst = max(
-        part["force_rms_bw"] for key, part in bad["between_nodes"].items() if key != "rate_hz"
-    )
-    assert worst > 0.1
-    units = {unit for _, _, unit in worst_constraints(spoilt, PROBLEM)}
-    assert "BW" in units
+    assert bad.status is Status.STALLED
+    parts = (bad.between_nodes.ground, bad.between_nodes.flight)
+    assert max(part.force_rms_bw for part in parts if part is not None) > 0.1
+    assert RowKind.BALANCE in {each.kind for each in worst_constraints(spoilt, PROBLEM)}
     assert worst_constraints(solved, PROBLEM) == []
-    assert "No motion was found" in as_text(bad | {"stages": []})
+    assert "No motion was found" in as_text(bad)
 
 
 def test_the_text_names_what_matters() -> None:
-    text = as_text(content() | {"stages": [{"name": "Fitting", "seconds": 1.0}]})
+    text = as_text(replace(found(), stages=(StageReport("Fitting", 1.0),)))
     for word in ("hop.bvh", "Landing", "Left toe 2", "Guessed", "Fitting 1.0 s", "crouch"):
         assert word in text
 
@@ -211,8 +215,9 @@ def test_a_saved_trajectory_loads_without_pickles(tmp_path) -> None:
 
 def test_physics_that_fails_between_the_nodes_is_said() -> None:
     """The equations may hold at the nodes, where the solver drove them to zero, alone."""
-    good = content() | {"stages": []}
+    good = found()
     assert "more than it should be" not in as_text(good)
-    flight = good["between_nodes"]["flight"] | {"moment_rms_bw_m": 0.002}
-    bad = good | {"between_nodes": good["between_nodes"] | {"flight": flight}}
+    assert good.between_nodes.flight is not None
+    flight = replace(good.between_nodes.flight, moment_rms_bw_m=0.002)
+    bad = replace(good, between_nodes=replace(good.between_nodes, flight=flight))
     assert "more than it should be" in as_text(bad)

@@ -65,7 +65,7 @@ def test_a_landing_ten_metres_away() -> None:
     found = adapt(fitted_hop(), far())
     check(found, far(), ("Far",))
     # Whatever else gives way there, the few that the artist reads name the landing.
-    assert any(name.startswith("Far: ") for name, _, _ in most_telling(found, far()))
+    assert any(each.name.startswith("Far: ") for each in most_telling(found, far()))
 
 
 @pytest.mark.slow

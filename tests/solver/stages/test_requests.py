@@ -32,13 +32,13 @@ from hangtime.solver.data.requests import (
     TwistLimit,
     When,
 )
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.constraint import missed
 from hangtime.solver.transcription.constraint_functions import Bend
 from hangtime.solver.transcription.friction_cones import ForceCones
 from hangtime.solver.transcription.motion import dynamics_residual
-from hangtime.solver.transcription.rows import RowKind
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 LANDING = When(phase="ground 2")

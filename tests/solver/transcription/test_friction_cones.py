@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
 from hangtime.solver.transcription.contact_pins import PointContact
 from hangtime.solver.transcription.friction_cones import ForceCones
 from hangtime.solver.transcription.motion import Motion
-from hangtime.solver.transcription.rows import RowKind
 from hangtime.tests.helpers.toy_problems import (
     DURATION,
     STEP,

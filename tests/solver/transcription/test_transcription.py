@@ -18,12 +18,12 @@ from hangtime.solver.data.requests import (
     TorqueLimit,
     TwistLimit,
 )
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
 from hangtime.solver.transcription.contact_pins import PointContact, Track
 from hangtime.solver.transcription.motion import Motion, dynamics_residual
-from hangtime.solver.transcription.rows import RowKind
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.toy_problems import (
     DURATION,

@@ -2,7 +2,6 @@
 
 import io
 import pickle
-import zlib
 from dataclasses import fields
 from typing import Any
 
@@ -12,13 +11,37 @@ from hangtime.solver.data import faults
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.problem import MassTable, MotionProblem, Pin
 from hangtime.solver.data.recording import Bone, PoseTrack, Recording
+from hangtime.solver.data.report import (
+    ConstraintReport,
+    DenseResiduals,
+    DragSummary,
+    FigureSummary,
+    FitQuality,
+    FlightSummary,
+    ForcePeak,
+    ForcesReport,
+    JumpReport,
+    MotionChange,
+    PhaseResidual,
+    PinReport,
+    RecordedFlight,
+    RecordingSummary,
+    ReductionReport,
+    Report,
+    SolveReport,
+    StageReport,
+    TorquePeak,
+    TorquesReport,
+)
+from hangtime.solver.data.requests import ReductionKind
+from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scaling import (
     scaled_problem,
     scaled_recording,
     scaled_schedule,
     scaled_track,
 )
-from hangtime.solver.data.status import DragStatus
+from hangtime.solver.data.status import DragStatus, Status
 from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.solver.worker.protocol import (
     LARGEST,
@@ -32,17 +55,15 @@ from hangtime.solver.worker.protocol import (
     Followed,
     Halt,
     Hello,
-    Kind,
     Message,
     Progress,
     ProtocolError,
     Ready,
     Request,
+    RequestKind,
     receive,
     send,
 )
-from hypothesis import given
-from hypothesis import strategies as st
 
 TIMES = np.arange(5) / 30.0
 RECORDING = Recording(
@@ -78,18 +99,41 @@ TRACES = Traces(
     torques=NONE[:, :, 0],
     flights=(FlightParabola("flight 1", 1.0, 2.0, np.ones((3, 3))),),
 )
+FAULT = faults.NoSolution(Status.STOPPED, (Violation("pin", RowKind.PIN, 1.0),))
+FLIGHT = FlightSummary(None, 1.1, 0.5)
+REPORT = Report(
+    status=Status.SOLVED,
+    recording=RecordingSummary("a.bvh", "walk", 0.0, 4.0, 0.1, 30.0, None, False, "Z", True),
+    figure=FigureSummary(70.0, MassTable.DE_LEVA, 1.7, 9.81, 1, 6, 0.0),
+    pins=(PinReport("further", "ground 1", (), None, (0.3, 0.0, 0.2), None, 0.0),),
+    solves=(SolveReport("fit", Status.SOLVED, 3, 0.5),),
+    unknowns=30,
+    rows=12,
+    equations=(Violation("flight 1", RowKind.BALANCE, np.float64(1e-6)),),
+    conditions=(ConstraintReport("knee", RowKind.BEND, 0.1, 2.0, True),),
+    contacts=(),
+    between_nodes=DenseResiduals(1000.0, flight=PhaseResidual(0.0, 0.0, 0.0, 0.0)),
+    forces=ForcesReport((ForcePeak("ground 1", 3.0, 2.0, 0.4),), 0.0),
+    objective_end_over_start=None,
+    reduction=ReductionReport(ReductionKind.PCA, 5, (1.0,), (1.0,)),
+    torques=TorquesReport((TorquePeak("hips", 10.0),), 8, 0.1),
+    fit_to_recording=FitQuality(1.0, 0.1),
+    change=MotionChange(2.0, 1.0),
+    jumps=(JumpReport("flight 1", 0.0, 0.1, 0, 3, RecordedFlight(1.0), FLIGHT, FLIGHT, None, 0.0),),
+    stages=(StageReport("Adapting", 1.5),),
+)
 MESSAGES: tuple[Message, ...] = (
     Hello(PROTOCOL, ("somewhere",)),
     Ready(PROTOCOL),
-    Request(1, Kind.ADAPT, RECORDING, PROBLEM),
-    Request(2, Kind.FOLLOW, None, PROBLEM),
+    Request(1, RequestKind.ADAPT, RECORDING, PROBLEM),
+    Request(2, RequestKind.FOLLOW, None, PROBLEM),
     Halt(2, Ending.AS_IT_STANDS),
     Progress(1, "fit", 2, 3.5, "Left toe 1", 0.25),
     Analysed(1, SCHEDULE, 1.7, {"ground 1": np.eye(3)}, {"pelvis": "hips"}, TRACES),
-    Fitted(1, {"joint_centres_rms_cm": 1.0}, 2.0, TRACES),
-    Adapted(1, TRACK, {"status": "solved", "none": None}, SCHEDULE, TRACES, None),
-    Adapted(1, TRACK, {}, SCHEDULE, TRACES, faults.NoSolution("stopped", (("pin", 1.0, "mm"),))),
-    Followed(1, TRACES, DragStatus.CONVERGED, {"moved_cm": 3.0}),
+    Fitted(1, REPORT.fit_to_recording, 2.0, TRACES),
+    Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, None),
+    Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, FAULT),
+    Followed(1, TRACES, DragStatus.CONVERGED, DragSummary(3.0, 1.0, 2.0, 4.5)),
     Cancelled(1),
     Failed(1, faults.NoFlight(lowest_cm=1.5)),
 )
@@ -103,8 +147,7 @@ def sent(*messages: Message) -> bytes:
 
 
 def framed(body: bytes) -> io.BytesIO:
-    head = len(body).to_bytes(8, "little") + zlib.crc32(body).to_bytes(4, "little")
-    return io.BytesIO(head + body)
+    return io.BytesIO(len(body).to_bytes(8, "little") + body)
 
 
 def assert_same(one: Any, other: Any) -> None:
@@ -156,7 +199,7 @@ def test_the_sender_may_know_the_package_by_another_name() -> None:
     assert_same(receive(framed(renamed)), MESSAGES[-1])
 
 
-@pytest.mark.parametrize("cut", [1, 11, 12, 13, 60])
+@pytest.mark.parametrize("cut", [1, 7, 8, 9, 60])
 def test_a_message_that_breaks_off_is_refused(cut: int) -> None:
     with pytest.raises(ProtocolError, match="breaks off"):
         receive(io.BytesIO(sent(MESSAGES[2])[:cut]))
@@ -164,7 +207,7 @@ def test_a_message_that_breaks_off_is_refused(cut: int) -> None:
 
 def test_a_length_beyond_reason_is_refused_before_it_is_read() -> None:
     with pytest.raises(ProtocolError, match=str(LARGEST + 1)):
-        receive(io.BytesIO((LARGEST + 1).to_bytes(8, "little") + bytes(4)))
+        receive(io.BytesIO((LARGEST + 1).to_bytes(8, "little")))
 
 
 class Trap:
@@ -197,14 +240,6 @@ def test_a_function_of_the_solver_is_no_class_to_be_called() -> None:
 def test_nonsense_is_refused_as_such(body: bytes) -> None:
     with pytest.raises(ProtocolError):
         receive(framed(body))
-
-
-@given(st.data())
-def test_a_damaged_message_is_refused(data: st.DataObject) -> None:
-    frame = bytearray(sent(MESSAGES[5]))
-    frame[data.draw(st.integers(0, len(frame) - 1))] ^= data.draw(st.integers(1, 255))
-    with pytest.raises(ProtocolError, match=r"breaks off|damaged|announced"):
-        receive(io.BytesIO(bytes(frame)))
 
 
 @pytest.mark.parametrize(

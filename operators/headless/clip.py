@@ -1,0 +1,125 @@
+"""Clips from the command line: a motion file, or a .blend, to an armature and its analysis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...solver.data.faults import NoArmature, UnreadableClip
+from ...solver.data.problem import MotionProblem
+from ...solver.data.recording import Recording
+from ...solver.data.report import Origin
+from ...solver.worker.pipeline import Subject, measure
+from .quiet import quiet
+from .stages import Stages
+
+# bpy and what needs it are loaded in functions: the command line must say what is wrong with its
+# arguments before Blender's module takes its second.
+if TYPE_CHECKING:
+    import bpy
+
+    from ...bridge.formats.motion_clip import UpAxis
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A motion file, or a .blend with a recorded armature, and what it does not tell.
+
+    unit: m per unit of length. up: the axis that points up. rate, asf: of an AMC file.
+    """
+
+    path: Path
+    unit: float | None = None
+    up: UpAxis | None = None
+    rate: float | None = None
+    asf: Path | None = None
+
+
+@dataclass(frozen=True)
+class LoadedClip:
+    """An imported clip: its armature and its analysis."""
+
+    armature: bpy.types.Object
+    origin: Origin
+    subject: Subject
+
+
+def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
+    """Imports a clip into a new, empty file (a .blend is one in itself) and analyses it.
+
+    Raises every Fault that a clip can have.
+    """
+    with stages.stage("Importing the clip"):
+        armature, origin = _import(clip)
+    with stages.stage("Finding contacts"):
+        subject = measure(_read(armature, problem), problem)
+    return LoadedClip(armature, origin, subject)
+
+
+def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
+    if clip.path.suffix.lower() == ".blend":
+        return _open(clip.path), Origin(clip.path.name)
+    import bpy
+
+    from ...bridge.accessors import current_action
+    from ...bridge.files.import_clip import import_clip
+    from ...bridge.formats.acclaim import USUAL_RATE
+
+    # Not the factory *settings*: those would disable the extension that runs this.
+    with quiet():
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    made = import_clip(
+        clip.path,
+        unit=clip.unit,
+        up=clip.up,
+        asf=clip.asf,
+        rate=USUAL_RATE if clip.rate is None else clip.rate,
+    )
+    action = current_action(made.armature)
+    assert action is not None
+    action.name = clip.path.stem
+    origin = Origin(clip.path.name, made.unit_m, made.unit_guessed, made.up, made.up_guessed)
+    return made.armature, origin
+
+
+def _open(path: Path) -> bpy.types.Object:
+    """The armature of a .blend: the active one, else the only one that carries an action."""
+    import bpy
+
+    try:
+        with quiet():
+            bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)
+    except RuntimeError as error:
+        problem = "Blender cannot open it" if path.is_file() else "there is no such file"
+        raise UnreadableClip(str(path), None, problem) from error
+    assert bpy.context.view_layer is not None
+    assert bpy.context.scene is not None
+    active = bpy.context.view_layer.objects.active
+    if active is not None and active.type == "ARMATURE":
+        return active
+    armatures = [o for o in bpy.context.scene.objects if o.type == "ARMATURE"]
+    animated = [o for o in armatures if o.animation_data and o.animation_data.action]
+    if len(animated) != 1:
+        raise NoArmature(path.name)
+    return animated[0]
+
+
+def _read(armature: bpy.types.Object, problem: MotionProblem) -> Recording:
+    from ...bridge.armature.read import read_recording
+
+    first, last = _recorded_frames(armature, problem)
+    return read_recording(armature, first=first, last=last)
+
+
+def _recorded_frames(
+    armature: bpy.types.Object, problem: MotionProblem
+) -> tuple[float | None, float | None]:
+    """The problem's frames as far as the recording goes: beyond, Blender holds the last pose."""
+    from ...bridge.accessors import current_action
+
+    action = current_action(armature)
+    if problem.frames is None or action is None:
+        return None, None
+    start, end = (action.frame_range[k] for k in (0, 1))
+    return max(problem.frames[0], start), min(problem.frames[1], end)

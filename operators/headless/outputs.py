@@ -1,0 +1,136 @@
+"""Files of a headless job: .blend, FBX, picture, trajectory and report."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...solver.data.faults import OutputNotWritable
+from ...solver.data.problem import MotionProblem
+from ...solver.data.report import Report, as_json
+from ...solver.results.npz_export import save
+from ...solver.worker.pipeline import AdaptationResult
+from ..words.report_text import as_text
+from .clip import LoadedClip
+from .outbox import Outbox, not_writable
+from .quiet import quiet
+from .stages import Stages
+
+if TYPE_CHECKING:  # as in clip.py
+    import bpy
+
+ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
+
+
+@dataclass(frozen=True)
+class Performed:
+    """An adapted action, and the armature that performs it."""
+
+    armature: bpy.types.Object
+    action: bpy.types.Action
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Writes the files of one result; every method raises OutputNotWritable.
+
+    problem: as it was asked for, in the recording's own lengths.
+    """
+
+    clip: LoadedClip
+    problem: MotionProblem
+    result: AdaptationResult
+    outbox: Outbox
+    stages: Stages
+
+    def write(self) -> None:
+        """All files of a result that is what was asked for."""
+        adaptation = self.result.adaptation
+        with self.stages.stage("Writing keyframes"):
+            adapted = self._write_actions("adapted")
+            _save_blend(self.outbox.path("adapted.blend"))
+        with self.stages.stage("Exporting FBX"), quiet():
+            from ...bridge.files.export import export_fbx
+
+            export_fbx(adapted.armature, adapted.action, self.outbox.path("adapted.fbx"))
+        with self.stages.stage("Drawing the picture"), quiet():
+            from .annotate import marks_of
+            from .picture import draw
+
+            marks = marks_of(adaptation, self.result.subject.problem)
+            draw(adaptation, self.problem, self.outbox.path("sheet.png"), marks)
+        with self.stages.stage("Measuring"):
+            try:
+                save(adaptation.motion, self.outbox.path("trajectory.npz"))
+            except OSError as error:
+                raise not_writable(self.outbox.folder / "trajectory.npz", error) from error
+            report = self._report()
+        self._write_report(report)
+
+    def write_failure(self) -> None:
+        """The report, and the best motion that was found."""
+        if self.result.adaptation.reached > 0.0:
+            self._write_actions("best found, short of the goal")
+            _save_blend(self.outbox.path("best_found.blend"))
+        self._write_report(self._report())
+
+    def _report(self) -> Report:
+        """With the stages that have ended."""
+        return self.result.report(self.clip.origin, self.stages.done)
+
+    def _write_report(self, report: Report) -> None:
+        text = json.dumps(as_json(report), indent=1, allow_nan=False)
+        self.outbox.write_text("report.json", text + "\n")
+        self.outbox.write_text("report.txt", as_text(report))
+
+    def _write_actions(self, called: str) -> Performed:
+        """The adapted action on the armature, or on one of its own where limbs were changed; the
+        recording's on a copy beside it."""
+        from mathutils import Vector
+
+        from ...bridge.accessors import current_action
+        from ...bridge.armature.reproportioned import build_reproportioned
+        from ...bridge.armature.write import side_by_side, write_action
+
+        recorded = current_action(self.clip.armature)
+        assert recorded is not None
+        armature, track = self.clip.armature, self.result.track
+        if self.result.subject.problem.requests.body.limbs:
+            armature, track, _ = build_reproportioned(self.result.recording, track)
+        adapted = write_action(armature, track, name=f"{recorded.name} {called}")
+        if armature is self.clip.armature:
+            side_by_side(armature, recorded, adapted, offset=self._beside())
+        else:  # the recording's own armature performs it
+            self.clip.armature.location += Vector(self._beside())
+        _show_frames(round(track.frames[0]), round(track.frames[-1]))
+        return Performed(armature, adapted)
+
+    def _beside(self) -> tuple[float, float, float]:
+        """To the left of where the recording travels, m, world."""
+        com = self.result.subject.analysis.performance.com
+        x, y = (com[-1] - com[0])[:2].tolist()
+        far = float(np.hypot(x, y))
+        return (-ASIDE * y / far, ASIDE * x / far, 0.0) if far > 0.05 else (ASIDE, 0.0, 0.0)
+
+
+def _show_frames(first: int, last: int) -> None:
+    import bpy
+
+    scene = bpy.context.scene
+    assert scene is not None
+    scene.frame_start, scene.frame_end = first, last
+    scene.frame_set(first)
+
+
+def _save_blend(path: Path) -> None:
+    import bpy
+
+    try:
+        with quiet():
+            bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True)
+    except RuntimeError as error:
+        raise OutputNotWritable(str(path), "Blender could not save it") from error

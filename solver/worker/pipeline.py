@@ -1,0 +1,195 @@
+"""The pipeline: recording and problem to analysis, fit, adaptation, report and traces.
+
+subject = measure(recording, problem)
+result = solve(subject, StageClock())
+result.track, result.report(origin), result.traces()
+
+Worker, command line, gallery and figures go through here. A stated stature scales the recording for
+the solver, and the answer back: what comes out is in the recording's own lengths, but for the
+report and the adaptation itself.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+from ..analysis.analyse import Analysis, analyse, build_figure
+from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..body.inverse_dynamics import InverseDynamics
+from ..data.contacts import ContactSchedule
+from ..data.faults import NoFit, NoSolution
+from ..data.problem import MotionProblem
+from ..data.recording import PoseTrack, Recording
+from ..data.report import Origin, Report, StageReport
+from ..data.scaling import scaled_problem, scaled_recording, scaled_schedule, scaled_track
+from ..data.traces import Traces, scaled_traces
+from ..optimisation.sqp import Step
+from ..results.report import report
+from ..results.trace_sampling import motion_traces, recorded_traces
+from ..results.violations import most_telling
+from ..stages.fit import Fit, fit
+from ..stages.implicit import Adaptation, adapt, unadapted
+from ..transcription.motion import Motion
+
+FITTING, ADAPTING = "Fitting the physics", "Adapting"
+
+
+class StageClock:
+    """Observer of a run: times its stages. Others show the steps, or halt the run at one."""
+
+    def __init__(self) -> None:
+        self.done: list[StageReport] = []
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """A stage of the run."""
+        began = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.done.append(StageReport(name, time.perf_counter() - began))
+
+    def step(self, step: Step, motion: Motion) -> None:
+        """Hears of each step of the optimiser; what it raises ends the run (Stopped: with the
+        motion as it stands)."""
+
+    def ended(self, violation: float) -> None:
+        """Hears of the violation over its tolerance that a stage's last step left."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """An analysed recording and the problem to solve on it, both at the stated stature.
+
+    height: m, as recorded. factor: the stated stature over that one.
+    """
+
+    analysis: Analysis
+    problem: MotionProblem
+    height: float
+    factor: float
+
+    @property
+    def recording(self) -> Recording:
+        """The problem's frames, at the stated stature."""
+        return self.analysis.performance.recording
+
+    def asked(self, problem: MotionProblem) -> Subject:
+        """The same recording with another problem, in the recording's own lengths."""
+        if problem.height is not None:
+            problem = scaled_problem(problem, self.factor)
+        return replace(self, problem=problem)
+
+    @property
+    def schedule(self) -> ContactSchedule:
+        """The contacts found, in the recording's own lengths."""
+        return scaled_schedule(self.analysis.schedule, 1.0 / self.factor)
+
+    def recorded_traces(self) -> Traces:
+        """Of the recording, in its own lengths."""
+        return scaled_traces(recorded_traces(self.analysis.performance), 1.0 / self.factor)
+
+    def motion_traces(
+        self, motion: Motion, schedule: ContactSchedule, *, torques: bool = True
+    ) -> Traces:
+        """Of a solved motion, in the recording's own lengths. schedule: of the motion."""
+        dynamics = dynamics_of(motion) if torques else None
+        seen = motion_traces(motion, self.recording, schedule, dynamics)
+        return scaled_traces(seen, 1.0 / self.factor)
+
+
+@dataclass(frozen=True)
+class AdaptationResult:
+    """The end of a run. fault: why it is not what was asked for but the best that was found."""
+
+    subject: Subject
+    adaptation: Adaptation
+    fault: NoSolution | None
+
+    @property
+    def recording(self) -> Recording:
+        """The recording on the figure that the motion is for, in its own lengths."""
+        return scaled_recording(self.adaptation.plan.recording, 1.0 / self.subject.factor)
+
+    @property
+    def track(self) -> PoseTrack:
+        """The bones' poses, in the recording's own lengths."""
+        return scaled_track(self.adaptation.track, 1.0 / self.subject.factor)
+
+    @property
+    def schedule(self) -> ContactSchedule:
+        """The motion's contacts, in the recording's own lengths."""
+        return scaled_schedule(self.adaptation.plan.schedule, 1.0 / self.subject.factor)
+
+    def traces(self) -> Traces:
+        """In the recording's own lengths."""
+        return self.subject.motion_traces(self.adaptation.motion, self.adaptation.plan.schedule)
+
+    def report(self, origin: Origin, stages: list[StageReport] | None = None) -> Report:
+        """At the stated stature. stages: None leaves out times."""
+        return report(self.adaptation, self.subject.problem, origin, stages)
+
+
+def measure(recording: Recording, problem: MotionProblem) -> Subject:
+    """Analyses the problem's frames of a recording. Raises what `analyse` does."""
+    if problem.height is None:
+        analysis = analyse(recording, problem)
+        return Subject(analysis, problem, analysis.performance.character.height, 1.0)
+    # Before any contact is sought: at a wrong scale none would be found.
+    height = build_figure(recording, problem)[1].height
+    factor = problem.height / height
+    problem = scaled_problem(problem, factor)
+    analysis = analyse(scaled_recording(recording, factor), problem)
+    return Subject(analysis, problem, height, factor)
+
+
+def fit_subject(subject: Subject, clock: StageClock) -> Fit:
+    """The valid motion nearest to the recording, solved or not."""
+    with clock.stage(FITTING):
+        fitted = fit(subject.analysis.performance, subject.analysis.schedule, progress=clock.step)
+        clock.ended(fitted.outcome.violation)
+    return fitted
+
+
+def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationResult:
+    """What the subject's problem makes of its fit. Raises what `adapt` does."""
+    if not fitted.solved:
+        return AdaptationResult(subject, unadapted(fitted), no_fit(fitted))
+    with clock.stage(ADAPTING):
+        adaptation = adapt(fitted, subject.problem, progress=clock.step)
+        clock.ended(adaptation.outcome.violation)
+    fault = None if adaptation.solved else _unsolved(NoSolution, adaptation, subject.problem)
+    return AdaptationResult(subject, adaptation, fault)
+
+
+def solve(
+    subject: Subject,
+    clock: StageClock,
+    fitted_by: Callable[[Subject, StageClock], Fit] = fit_subject,
+) -> AdaptationResult:
+    """The whole way from an analysis. fitted_by: may remember fits.
+
+    Raises what `adapt` does; wrong names in pins before the fit takes its seconds.
+    """
+    schedule = subject.analysis.schedule
+    for pin in subject.problem.pins:
+        chosen_contacts(pin, phase_of(pin, schedule), schedule)
+    return adapt_fit(subject, fitted_by(subject, clock), clock)
+
+
+def no_fit(fitted: Fit) -> NoSolution:
+    """Why a fit failed."""
+    return _unsolved(NoFit, unadapted(fitted), MotionProblem())
+
+
+def dynamics_of(motion: Motion) -> InverseDynamics:
+    """Inverse dynamics of a motion's own character and contact points."""
+    return InverseDynamics(motion.transcription.character, motion.transcription.points)
+
+
+def _unsolved(kind: type[NoSolution], adaptation: Adaptation, problem: MotionProblem) -> NoSolution:
+    worst = most_telling(adaptation, problem)
+    return kind(adaptation.outcome.status, worst, adaptation.reached)
