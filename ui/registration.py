@@ -18,6 +18,7 @@ from ..operators.export import exports, save_plots
 from ..operators.lists import body_changes, constraints, contacts, place_by_empty, presets, put_back
 from ..operators.solve import adapt, analyze, results, session, show
 from ..operators.timeline import contact_edge_operator
+from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
 from .panels import constraint_lists, constraint_menus, contact_list, display, menu, setup, solve
@@ -80,6 +81,9 @@ def register() -> Callable[[], None]:
         bpy.app.handlers.depsgraph_update_post.append(_follow_empties)
         undo.callback(bpy.app.handlers.depsgraph_update_post.remove, _follow_empties)
         undo.callback(session.session().end)
+        # Keys are pairs, whatever the stubs say.
+        bpy.app.translations.register(__package__, TRANSLATIONS)  # type: ignore[arg-type]
+        undo.callback(bpy.app.translations.unregister, __package__)
         menu.add(undo)
         overlay.add(undo)
         plots.add(undo)

@@ -20,7 +20,7 @@ ALWAYS: TimeSpan = (-float("inf"), float("inf"))
 
 
 class Follows(Enum):
-    """How a vector follows when the world is turned and moved."""
+    """Transformation rule of an array: as points, directions or rotations."""
 
     POINT = "point"
     DIRECTION = "direction"
@@ -71,7 +71,7 @@ class Cone:
 
 @dataclass(frozen=True)
 class LimitArc:
-    """How far a hinge may turn, as a line about its joint.
+    """Angle limits of a hinge, as an arc about its joint.
 
     centre: (3,) m. zero: (3,) unit vector, where the limb points at angle 0. normal: (3,) unit
     vector across it, about which angles count. lower, upper: rad; equal ones give one line.
@@ -121,7 +121,7 @@ class Bar:
 
 
 class Tone(Enum):
-    """Why a limb is coloured."""
+    """Reason for which a limb is coloured."""
 
     FIXED = "fixed"  # its joint keeps its angle
     LIMP = "limp"  # the torque at its joint is limited

@@ -97,6 +97,6 @@ def _quiet() -> Iterator[None]:
 
 
 def _has_denoiser() -> bool:
-    import _cycles
+    import _cycles  # only where Blender was built with it
 
     return bool(_cycles.with_openimagedenoise)

@@ -91,7 +91,7 @@ def nearest(times: FloatArray, t: float) -> int:
 
 
 def during(span: tuple[float, float], times: FloatArray, shown: Sequence[int]) -> list[int]:
-    """Which of the shown instants (indices) lie in a span; its own middle if none does.
+    """Those of the shown instants (indices) that lie in a span; its own middle if none does.
 
     A span that the row does not reach has none. Ends count to the nearest of the row's instants.
     """

@@ -20,7 +20,7 @@ TIP = 0.02  # share of a cone's side at which its surface begins
 
 
 class Look(Enum):
-    """How a mark's surface looks."""
+    """Surface style of a mark."""
 
     SOLID = auto()  # red
     RING = auto()  # red, seen through its middle
@@ -54,7 +54,7 @@ def merged(parts: Iterable[Solid]) -> tuple[Solid, ...]:
 
 
 def solids(mark: Mark) -> Iterator[Solid]:
-    """What is drawn for a mark at one instant (see `annotations.at`)."""
+    """Meshes of a mark at one instant (see `annotations.at`)."""
     match mark:
         case Sphere(place, hollow=hollow):
             look, radius = (Look.RING, HOLLOW_BALL) if hollow else (Look.SOLID, BALL)

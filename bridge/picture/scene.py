@@ -91,7 +91,7 @@ class Painter:
         self.camera(middle, wide, crown - bottom + 2 * EDGE, width)
 
     def head(self, tier: Tier, floor: float) -> float:
-        """How far the tier reaches above the middle of its floor in the picture, m."""
+        """Height of the tier above the middle of its floor in the picture, m."""
         _, back, top = tier.corners()[1]
         return float(np.array([0.0, min(back, 0.2), top - floor]) @ self.up)
 

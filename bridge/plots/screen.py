@@ -31,7 +31,7 @@ class Rect:
         return self.top - self.bottom
 
     def holds(self, x: float, y: float) -> bool:
-        """Whether a point is inside."""
+        """Point-in-rectangle test."""
         return self.left <= x <= self.right and self.bottom <= y <= self.top
 
 

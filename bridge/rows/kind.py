@@ -14,9 +14,10 @@ from .stored import Fields
 if TYPE_CHECKING:
     import bpy
 
-Row = (
-    Any  # a stored constraint: the shared fields of bridge/properties/constraint.py and its kind's
-)
+# A stored constraint, with the fields that all share and those of its kind.
+Row = Any
+# A name of Blender's icons, which its stubs spell out as a literal of a thousand.
+Icon = Any
 
 
 class BoneUse(Enum):

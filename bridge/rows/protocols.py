@@ -22,6 +22,7 @@ class ContactRow(Protocol):
 
     name: str
     bone: str
+    added: bool
     phase: str
     used: bool
     found_start: float
@@ -40,6 +41,7 @@ class StanceRow(Protocol):
     forward_axis: Any
     shifted: Any
     turned: float
+    turn: float
 
 
 class ConstraintRow(Protocol):

@@ -1,4 +1,4 @@
-"""The physics of a motion checked by others: MuJoCo, and plain Newton and Euler on the npz file."""
+"""Independent checks of a motion's dynamics: MuJoCo, and Newton and Euler on the npz file."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,7 @@ RATE = 960.0  # Hz
 
 @dataclass(frozen=True)
 class Residual:
-    """What nothing explains at (T,) instants: force (T, 3) in body weights, moment (T, 3) in body
+    """Dynamics residual at (T,) instants: root force (T, 3) in body weights, moment (T, 3) in body
     weights x m about the centre of mass of the whole body. flying: (T,) bool. A body weight is
     the mass's on the Earth, on the Moon too."""
 

@@ -1,4 +1,4 @@
-"""Which Blender to use and a Python that can run it. Standard library only."""
+"""Choice of a Blender, and search for a Python that can run it. Standard library only."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def candidates(minor: str) -> Iterator[str]:
 
 
 def minor_of(path: str) -> str | None:
-    """What `path` says its version is; None where it does not run (a shim may exist and fail)."""
+    """Minor version of the Python at `path`; None where it does not run, as a shim."""
     if not os.path.isfile(path):
         return None
     question = "import sys; print('%d.%d' % sys.version_info[:2])"

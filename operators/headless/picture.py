@@ -20,7 +20,6 @@ from ...solver.transcription.motion import Motion
 
 FEET = (Part.FOOT, Part.TOE)
 BESIDE_HANDS = 0.3  # m, how far a bar reaches beyond the hands that hold it
-FIGURES = 9  # of a motion alone
 TRAVELS = 0.3  # m, less is no direction
 
 
@@ -36,12 +35,6 @@ def draw(
     edit = "; ".join(asked) or "made to obey physics"
     rows = [recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)]
     draw_sheet(rows, path, View(heading=heading(adaptation)))
-
-
-def draw_result(adaptation: Adaptation, title: str, path: Path, marks: Sequence[Mark] = ()) -> None:
-    """The adapted motion alone, as in the thesis's gallery; otherwise as `draw`."""
-    view = View(figures=FIGURES, heading=heading(adaptation))
-    draw_sheet([adapted_row(adaptation, title, marks)], path, view)
 
 
 def heading(adaptation: Adaptation) -> tuple[float, float] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import pose_of, present
 from ...bridge.constraint_kinds import KINDS, point
 from ...bridge.constraints.rows import (
     add_constraint,
@@ -13,10 +14,13 @@ from ...bridge.constraints.rows import (
     hold_in,
     phase_at,
 )
+from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.settings import settings_of
 from ...bridge.rows.kind import BoneUse, NewRange
 from ...bridge.rows.phases import phases_of
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
 from .chosen_bones import chosen_bones
 from .row_lists import AddingOperator, RowOperator
 
@@ -42,10 +46,10 @@ class AddConstraintOperator(AddingOperator, bpy.types.Operator):
     ) -> str:
         return KINDS[properties.kind].description
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature, kind = chosen_armature(context), KINDS[self.kind]
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, kind = required_armature(context), KINDS[self.kind]
         bones = chosen_bones(armature)
-        frame = context.scene.frame_current_final
+        frame = present(context.scene).frame_current_final
         groups = [[bone] for bone in bones] if kind.bones is BoneUse.ONE and bones else [bones]
         for group in groups:
             add_constraint(armature, kind, group, frame)
@@ -59,8 +63,8 @@ class RemoveConstraintOperator(RowOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     own = True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
         index = self.of.chosen(settings)
         self.of.rows(settings).remove(index)
         self.of.choose(settings, index)
@@ -73,8 +77,8 @@ class CopyConstraintOperator(RowOperator, bpy.types.Operator):
     bl_description = "Add a copy of the chosen constraint"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
         source = self.of.chosen(settings)
         copy = settings.constraints.add()  # may move the others in memory: look rows up after it
         row = settings.constraints[source]
@@ -95,9 +99,9 @@ class MoveConstraintOperator(RowOperator, bpy.types.Operator):
         name="Direction", items=[("UP", "Up", ""), ("DOWN", "Down", "")]
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        settings = armature.hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        settings = settings_of(armature)
         index = self.of.chosen(settings)
         to = index + (-1 if self.direction == "UP" else 1)
         if not self.of.linked(armature) <= to < len(settings.constraints):
@@ -122,8 +126,8 @@ class SetRangeOperator(RowOperator, bpy.types.Operator):
         ],
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        scene, row = context.scene, self.row(context)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        scene, row = present(context.scene), self.row(context)
         kind, why = KINDS[row.kind], None
         if self.to == "PHASE":
             why = self._set_phase(context, row)
@@ -139,10 +143,10 @@ class SetRangeOperator(RowOperator, bpy.types.Operator):
             self.report({"WARNING"}, why)
         return {"FINISHED"} if why is None else {"CANCELLED"}
 
-    def _set_phase(self, context: bpy.types.Context, row: bpy.types.PropertyGroup) -> str | None:
+    def _set_phase(self, context: bpy.types.Context, row: HangtimeConstraint) -> str | None:
         """Why not; None where done."""
-        settings = chosen_armature(context).hangtime
-        phase = phase_at(phases_of(settings), context.scene.frame_current_final)
+        settings = settings_of(required_armature(context))
+        phase = phase_at(phases_of(settings), present(context.scene).frame_current_final)
         if phase is None:
             return NO_PHASE
         hold_in(row, phase.name)
@@ -155,12 +159,12 @@ class PlaceConstraintOperator(RowOperator, bpy.types.Operator):
     bl_description = "Put the point where its bone is shown at the current frame"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature, row = chosen_armature(context), self.row(context)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, row = required_armature(context), self.row(context)
         why = None
         if row.kind != point.KIND.name:
             why = NOT_A_POINT
-        elif not row.bones or row.bones[0].name not in armature.pose.bones:
+        elif not row.bones or row.bones[0].name not in pose_of(armature).bones:
             why = NO_BONE
         if why is not None:
             self.report({"WARNING"}, why)

@@ -45,7 +45,7 @@ def require_flight(schedule: ContactSchedule, points: Mapping[str, ContactPoint]
     """Raises NoFlight, with the largest ground clearance, if the schedule has no flight."""
     if not schedule.flights:
         lowest = np.min([point.track[:, 2] for point in points.values()], axis=0)
-        raise NoFlight(lowest_cm=100.0 * float(lowest.max() - schedule.floor_m))
+        raise NoFlight(lowest_cm=max(100.0 * float(lowest.max() - schedule.floor_m), 0.0))
 
 
 def _touches(

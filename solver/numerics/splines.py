@@ -53,11 +53,6 @@ class SplineBasis:
         jumps = np.concatenate([[0], np.cumsum(1 + self.double[1:-1].astype(int))])
         return np.asarray(jumps, dtype=int)
 
-    @property
-    def n_force_nodes(self) -> int:
-        """Nodes of a piecewise linear force: one at a single knot, two at a double knot."""
-        return self.n_coefficients - 2
-
     def spans(self, times: FloatArray) -> IntArray:
         """(T,) index of the span of each instant, s; a breakpoint belongs to the span after it."""
         inside = np.searchsorted(self.breaks, times, side="right") - 1

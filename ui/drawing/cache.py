@@ -18,7 +18,7 @@ class ContentCache(Generic[T]):
         self._made: dict[Hashable, dict[Hashable, T]] = {}
 
     def get(self, name: Hashable, content: Hashable, make: Callable[[], T]) -> T:
-        """What was made for this content, or what `make` gives."""
+        """The thing made for this content; where there is none, `make` makes it."""
         known = self._made.setdefault(name, {})
         made = known.pop(content, None)
         known[content] = made = make() if made is None else made

@@ -17,7 +17,7 @@ KNOB = 0.1  # radius of a handle, as a share of the size of gizmos in the prefer
 
 
 def handled(context: bpy.types.Context) -> ViewContext | None:
-    """What the viewport shows; None where nothing can be dragged now."""
+    """The context that handles are shown in; None where nothing can be dragged now."""
     space = view_3d(context)
     if space is None or not (space.show_gizmo and space.show_gizmo_context):
         return None

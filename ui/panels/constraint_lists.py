@@ -24,10 +24,6 @@ MET_ICONS: dict[str, Icon] = {
     Met.MET.name: "CHECKMARK",
     Met.MISSED.name: "ERROR",
 }
-    Met.UNKNOWN.name: "INFO",
-    Met.MET.name: "CHECKMARK",
-    Met.MISSED.name: "ERROR",
-}
 
 
 class _RowList(bpy.types.UIList):

@@ -50,7 +50,7 @@ def playhead(figure: PlotFigure) -> Drawing:
 
 
 def readings(figure: PlotFigure, frame: float) -> list[Text]:
-    """What changes with the frame: its number, those beside it, and each curve's value there."""
+    """Texts that change with the frame: its number, those beside it, each curve's value."""
     shift, scale = figure.playhead(frame), figure.scale
     size = looks.SMALL * scale
     hidden = 0.5 * (looks.PLATE_WIDTH + looks.TICK_WIDTH) * scale

@@ -74,7 +74,7 @@ def _wanted(context: bpy.types.Context) -> PlottedMotions | None:
 
 
 def _room(context: bpy.types.Context) -> Rect:
-    """What bars and the sidebar leave of the viewport, in its px."""
+    """The rectangle that bars and the sidebar leave of the viewport, in its px."""
     window = present(context.region)
     overlaps = [
         Overlap(

@@ -24,7 +24,7 @@ class Overlap:
 
 
 def free_room(width: float, height: float, overlaps: Iterable[Overlap]) -> Rect:
-    """What overlapping regions leave of a viewport; their rectangles are in its px."""
+    """The rectangle that overlapping regions leave of a viewport; theirs are in its px."""
     left, bottom, right, top = 0.0, 0.0, width, height
     for overlap in overlaps:
         rect = overlap.rect

@@ -17,7 +17,7 @@ from hangtime.operators.solve.adapt import write_answer
 from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
 from hangtime.operators.solve.common import said
 from hangtime.operators.solve.session import Asked, session
-from hangtime.operators.solve.solving import Solving, State
+from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
 from hangtime.solver.data.digest import digest
 from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature
@@ -90,7 +90,7 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
         run.animation_data.action = bpy.data.actions.new("Other")
     else:
         run.scale = (1.0, 1.0, 2.0)
-    session().solving = replace(Solving(), state=State.SOLVING)
+    session().solving = replace(Solving(), state=SolveState.SOLVING)
     try:
         with pytest.raises(ChangedMeanwhile) as fault:
             complete(write_answer(asked, None))

@@ -10,7 +10,7 @@ from hangtime.bridge.constraint_kinds import KINDS
 from hangtime.bridge.plots.charts import plotted
 from hangtime.bridge.rows.times import Clip, when_of
 from hangtime.solver.data.contacts import Phase, PhaseKind
-from hangtime.solver.data.timeline import Timeline, interval
+from hangtime.solver.data.timeline import Timeline, active_interval
 from hangtime.tests.blender.helpers.overlays import adapted, constrain, seen, traced
 from mathutils import Matrix
 
@@ -42,7 +42,7 @@ def test_overlay_plot_and_solver_agree(instant: str, frame: float) -> None:
     assert seen(armature).span(row) == (frame, frame)
     shown = plotted(armature, bpy.context.scene.hangtime.view)
     assert shown is not None
-    (cap,) = shown.asked.force_caps
+    (cap,) = shown.content.force_caps
     assert 0.5 * (cap.start + cap.end) == frame
     assert solved(armature, row, traces) == pytest.approx(frame)
 
@@ -54,6 +54,6 @@ def solved(armature: bpy.types.Object, row: bpy.types.PropertyGroup, traces: obj
     phase = Phase(PhaseKind.FLIGHT, 1, *((f - 1.0) / RATE for f in FLIGHT))
     when = when_of(row, Clip.of(armature.hangtime))
     heights = np.stack([times, traces.com[:, 2]], axis=1)
-    first, last = interval(row.name, when, line, (phase,), heights)
+    first, last = active_interval(row.name, when, line, (phase,), heights)
     assert first == last
     return 1.0 + RATE * first

@@ -7,6 +7,7 @@ import pytest
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.pinned_places import pinned_places, travel_axes
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
     ContradictoryPins,
     UnknownContact,
@@ -21,15 +22,15 @@ LANDING = "ground 2"
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def before() -> np.ndarray:
+def before() -> FloatArray:
     return np.stack([c.place for c in hop().schedule.contacts])
 
 
-def after(*pins: Pin) -> np.ndarray:
+def after(*pins: Pin) -> FloatArray:
     return pinned_places(MotionProblem(pins=pins), hop().performance, hop().schedule)
 
 
-def landing() -> np.ndarray:
+def landing() -> FloatArray:
     """(n_contacts,) bool: which contacts belong to the landing."""
     schedule = hop().schedule
     phase = next(p for p in schedule.phases if p.name == LANDING)
@@ -37,7 +38,7 @@ def landing() -> np.ndarray:
     return np.array([c.name in mine for c in schedule.contacts])
 
 
-def of_bone(bone: str) -> np.ndarray:
+def of_bone(bone: str) -> FloatArray:
     return np.array([c.bone == bone for c in hop().schedule.contacts])
 
 

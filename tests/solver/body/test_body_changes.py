@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.analysis.performance import perform
+from hangtime.solver.arrays import FloatArray
+from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.body_changes import changed_character, changed_points
 from hangtime.solver.body.body_shapes import stretched, with_ball
 from hangtime.solver.body.character import Character, build_character
@@ -158,8 +160,8 @@ def test_the_changed_figure_stands_where_the_changed_recording_does() -> None:
     mass=st.floats(0.1, 20.0),
 )
 def test_a_stretched_box_is_a_box(factor: float, size: tuple[float, ...], mass: float) -> None:
-    body = toys.body("limb", toys.Part.THIGH, toys.Side.LEFT, mass, (0.0, 0.0, -size[2]))
-    long = toys.body("limb", toys.Part.THIGH, toys.Side.LEFT, mass, (0.0, 0.0, -factor * size[2]))
+    body = toys.body("limb", Part.THIGH, Side.LEFT, mass, (0.0, 0.0, -size[2]))
+    long = toys.body("limb", Part.THIGH, Side.LEFT, mass, (0.0, 0.0, -factor * size[2]))
     made = stretched(body, long.tip)
     np.testing.assert_allclose(made.inertia, long.inertia, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(made.com, long.com)
@@ -236,7 +238,7 @@ def test_what_cannot_be_is_named(change: BodyChange, fault: Exception) -> None:
 # -- MuJoCo's opinion ----------------------------------------------------------------------
 
 
-def random_state(character: Character, seed: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
+def random_state(character: Character, seed: int) -> tuple[list[FloatArray], list[FloatArray]]:
     """Centre of mass and angles, each with two derivatives."""
     random = np.random.default_rng(seed)
     n = character.n_angles
@@ -244,7 +246,7 @@ def random_state(character: Character, seed: int) -> tuple[list[np.ndarray], lis
     return [random.normal(size=(INSTANTS, 3)) for _ in range(3)], angles
 
 
-def relative(ours: np.ndarray, theirs: np.ndarray) -> float:
+def relative(ours: FloatArray, theirs: FloatArray) -> float:
     return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
 
 
@@ -261,7 +263,8 @@ def test_inverse_dynamics_of_a_changed_figure_is_mujocos(gravity: float, table: 
     made = state(character, com, angles)
     theirs, _ = inverse_dynamics(model, made, forces)
     force, moment = root_wrench(made[0], theirs, com[0])
-    ours = InverseDynamics(character, points)(*angles, com[2], forces)
+    q, v, a = angles
+    ours = InverseDynamics(character, points)(q, v, a, com[2], forces)
     assert relative(ours.root_force, force) < 1e-9
     assert relative(ours.root_moment, moment) < 1e-9
     order = hinge_order(character) - 3
@@ -293,7 +296,7 @@ def test_composite_inertia_is_mujocos(
     np.testing.assert_allclose(centre, other_centre, atol=1e-12)
 
 
-def welded(character: Character, body: int, mass: float, place: np.ndarray) -> str:
+def welded(character: Character, body: int, mass: float, place: FloatArray) -> str:
     """The figure's MJCF with a ball as a body of its own, without a joint."""
     root = ET.fromstring(mjcf(character))
     name = f"{body} {character.bodies[body].name}"

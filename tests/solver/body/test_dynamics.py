@@ -1,5 +1,6 @@
 """Our dynamics against MuJoCo on random trees, and every Jacobian against finite differences."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
 from hangtime.solver.body.dynamics import MomentFunction, evaluate, momentum_rate
@@ -62,17 +64,19 @@ def random_points(seed: int, character: Character, count: int = 4) -> tuple[Body
     return tuple(BodyPoint(int(b), 0.3 * random.normal(size=3)) for b in chosen)
 
 
-def random_movement(seed: int, n: int) -> list[np.ndarray]:
+def random_movement(seed: int, n: int) -> list[FloatArray]:
     """Angles, velocities and accelerations (INSTANTS, n)."""
     random = np.random.default_rng(200 + seed)
     return [scale * random.normal(size=(INSTANTS, n)) for scale in (1.2, 4.0, 30.0)]
 
 
-def relative(ours: np.ndarray, theirs: np.ndarray) -> float:
+def relative(ours: FloatArray, theirs: FloatArray) -> float:
     return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
 
 
-def central(function, x: np.ndarray, step: float = 1e-6) -> np.ndarray:
+def central(
+    function: Callable[[FloatArray], FloatArray], x: FloatArray, step: float = 1e-6
+) -> FloatArray:
     """(..., n) derivatives of function at x (n,) by central differences."""
     columns = []
     for i in range(len(x)):
@@ -165,8 +169,8 @@ def test_moment_jacobian(seed: int) -> None:
     np.testing.assert_allclose(value, function.value(q, v, a), rtol=1e-12, atol=1e-12)
     for i in range(2):
 
-        def moved(x: np.ndarray) -> np.ndarray:
-            return function.value(*(part[None] for part in np.split(x, 3)))[0]
+        def moved(x: FloatArray) -> FloatArray:
+            return np.asarray(function.value(*(part[None] for part in np.split(x, 3)))[0])
 
         numeric = central(moved, np.concatenate([q[i], v[i], a[i]]))
         assert relative(jacobian[i].reshape(3, 3 * n), numeric) < 1e-7
@@ -194,11 +198,10 @@ def test_point_velocity_and_its_jacobian(seed: int) -> None:
     np.testing.assert_allclose(speeds, np.einsum("npij,nj->npi", by_angle, v), atol=1e-11)
     for i in range(2):
 
-        def moved(x: np.ndarray) -> np.ndarray:
+        def moved(x: FloatArray) -> FloatArray:
             angles, rates = np.split(x, 2)
-            return point_velocity(forward_kinematics(character, angles[None]), points, rates[None])[
-                0
-            ][0]
+            posed = forward_kinematics(character, angles[None])
+            return np.asarray(point_velocity(posed, points, rates[None])[0][0])
 
         numeric = central(moved, np.concatenate([q[i], v[i]]))
         ours = np.concatenate([by[i] for by in jacobian], axis=-1)
@@ -215,7 +218,7 @@ def jump() -> Fit:
     return fit(analysis.performance, analysis.schedule)
 
 
-def random_unknowns(transcription: Transcription, x: np.ndarray) -> np.ndarray:
+def random_unknowns(transcription: Transcription, x: FloatArray) -> FloatArray:
     random = np.random.default_rng(5)
     return x + transcription.active * 0.03 * random.normal(size=x.shape)
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.joint_axes import (
     JointAxes,
     ball_axes,
@@ -12,6 +13,7 @@ from hangtime.solver.body.joint_axes import (
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_matrix, unit
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import ArrayLike
 
 TIME = np.linspace(0.0, 1.0, 201)
 TURN = 2.0 * np.pi * TIME
@@ -21,22 +23,22 @@ DIRECTIONS = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, -0.64, 0.
 seeds = st.integers(0, 2**31)
 
 
-def about(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
+def about(axis: ArrayLike, angle: FloatArray) -> FloatArray:
     return rotation_matrix(np.asarray(angle)[:, None] * unit(np.asarray(axis, dtype=float)))
 
 
-def smooth_angles(random: np.random.Generator, size: float) -> np.ndarray:
+def smooth_angles(random: np.random.Generator, size: float) -> FloatArray:
     """(T,) a smooth random angle of at most about `size` rad."""
-    return size * np.sin(random.uniform(3.0, 9.0) * TIME + random.uniform(0.0, 6.0))
+    return np.asarray(size * np.sin(random.uniform(3.0, 9.0) * TIME + random.uniform(0.0, 6.0)))
 
 
-def somersault(turn: np.ndarray, twist: np.ndarray) -> np.ndarray:
+def somersault(turn: FloatArray, twist: FloatArray) -> FloatArray:
     """Somersault about y with a twist about the body's own z, tilting a little on the way."""
     tilt = axis_rotation(0, 0.2 * np.sin(2.0 * np.pi * TIME))
     return tilt @ axis_rotation(1, turn) @ axis_rotation(2, twist)
 
 
-def check_ball(axes: JointAxes, R: np.ndarray, largest_middle: float) -> np.ndarray:
+def check_ball(axes: JointAxes, R: FloatArray, largest_middle: float) -> FloatArray:
     angles = axes.angles(R)
     assert np.abs(axes.rotation(angles) - R).max() < 1e-9
     assert np.abs(angles[:, 1]).max() < np.radians(largest_middle)

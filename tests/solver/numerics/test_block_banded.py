@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 WINDOW = BANDWIDTH + 1
 
 
-def random_matrix(seed: int, blocks: int, size: int) -> tuple[BlockBanded, np.ndarray]:
+def random_matrix(seed: int, blocks: int, size: int) -> tuple[BlockBanded, FloatArray]:
     """A positive definite matrix of windows, banded and dense."""
     random = np.random.default_rng(seed)
     n = WINDOW * size

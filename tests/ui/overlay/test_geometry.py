@@ -7,7 +7,6 @@ from math import pi
 import numpy as np
 import pytest
 from hangtime.bridge.shapes.limits import cone_rim
-from hangtime.bridge.shapes.solids import box
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.ui.overlay.geometry import arcs, shapes, solids
 from hangtime.ui.overlay.geometry.body_rotations import TracedFigure, body_turns, posed, shortest
@@ -94,20 +93,7 @@ def test_merged_shapes_keep_their_faces_and_lie_row_by_row() -> None:
         assert shape.colours.flags.c_contiguous
 
 
-def test_a_box_has_twelve_edges() -> None:
-    edges = box((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)).edges
-    lengths = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
-    assert sorted(lengths) == pytest.approx([1.0] * 4 + [2.0] * 4 + [3.0] * 4)
-
-
 # ---------------------------------------------------------------- cones and arcs
-
-
-@pytest.mark.parametrize("half_angle", [0.3, 1.5, 2.5])
-def test_a_cones_rim_leans_by_its_half_angle(half_angle: float) -> None:
-    rim = cone_rim(half_angle, (1.0, 1.0), 0.4, 32)
-    np.testing.assert_allclose(np.arccos(rim[:, 0] / 0.4), half_angle, atol=1e-6)
-    np.testing.assert_allclose(np.linalg.norm(rim, axis=1), 0.4)
 
 
 def test_a_stretched_cones_rim_is_where_the_solver_bounds_it() -> None:

@@ -137,7 +137,7 @@ def holds(span: Frames, frame: float) -> bool:
 
 
 def read_view(context: bpy.types.Context) -> ViewContext | None:
-    """What the viewport that is being drawn shows; None where overlays are off or none is due."""
+    """Reads the viewport that is being drawn; None where overlays are off or none is due."""
     space, scene = view_3d(context), present(context.scene)
     options = scene_settings(scene).view
     if space is None or not (space.overlay.show_overlays and options.show):

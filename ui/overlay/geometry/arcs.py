@@ -33,7 +33,7 @@ def cone(
 def arc(
     lower: float | None, upper: float | None, radius: float, colour: Colour, hole: float = 0.0
 ) -> Iterator[Shape]:
-    """How far something may turn.
+    """An arc from limit to limit.
 
     A limit that is None is open: the arc fades away on that side. hole: share of the radius that
     is left free about the centre.

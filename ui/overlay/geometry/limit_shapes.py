@@ -211,5 +211,5 @@ def _missed(limit: Limit, now: float) -> bool:
 
 
 def _reach(limit: Limit) -> float:
-    """How far a limit's shape reaches."""
+    """Radius of a limit's shape."""
     return {CONE: 1.0, ANGLE: ARC, TWIST: RING}[limit.kind] * limit.length

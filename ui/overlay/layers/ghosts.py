@@ -80,7 +80,7 @@ def now(view: ViewContext, shown: ShownMotion, colour: Colour) -> Layer:
 
 
 def other_now(view: ViewContext) -> Layer | None:
-    """What the armature does not show: the live ghost, the adapted motion or the recording."""
+    """The motion that the armature does not show: live ghost, adapted motion or recording."""
     if view.live is not None:
         return now(view, view.live, faded(palette.LIVE, LIVE_NOW))
     if view.performs_adapted:

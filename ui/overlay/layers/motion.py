@@ -87,7 +87,7 @@ def on_ground(traces: Traces) -> list[tuple[float, float]]:
 
 
 def centre(view: ViewContext, shown: ShownMotion) -> Layer:
-    """Where the centre of mass is at this frame, and the angular momentum about it."""
+    """The centre of mass at this frame, and the angular momentum about it."""
     traces, frame, size = shown.traces, view.frame, view.size
     marks, spin = view.options.path, view.options.momentum
     content = shown.key, frame, size, marks, spin
@@ -123,7 +123,7 @@ def within(traces: Traces, frame: float) -> bool:
 
 
 def interpolated(traces: Traces, values: FloatArray, frame: float) -> FloatArray:
-    """What (T, ...) values are at a frame."""
+    """Linear interpolation of values (T, ...) at a frame."""
     frames = traces.frames
     after = int(np.clip(np.searchsorted(frames, frame), 0, len(frames) - 1))
     before = max(after - 1, 0)

@@ -26,7 +26,7 @@ SHIFTED = 1e-3  # Blender units
 
 
 def contacts(view: ViewContext) -> Layer:
-    """Where the body touches, in the world."""
+    """The contacts, in the world."""
     chosen = view.settings.active_contact
     pins = tuple(_contact(view, r, i == chosen) for i, r in enumerate(view.settings.contacts))
     labels = tuple(_labels(view))
@@ -46,7 +46,7 @@ def _standing_of(row: HangtimeContact, frame: float) -> Standing:
 
 
 def _labels(view: ViewContext) -> Iterator[Label]:
-    """How far each stance has been moved."""
+    """The distance by which each stance has been moved."""
     for stance in view.settings.stances:
         shift = Vector(stance.shifted).length
         if shift <= SHIFTED:
@@ -94,7 +94,7 @@ def _place(row: HangtimeConstraint, recorded: Vector | None) -> Vector | None:
 
 
 def _recorded_place(view: ViewContext, row: HangtimeConstraint, span: Frames) -> Vector | None:
-    """Where the recording has a point: at this frame, or on average where something is there."""
+    """The point's place in the recording: at this frame, or on average where something is there."""
     bone, shown = view.bone(row), view.recorded
     if bone is None:
         return None
