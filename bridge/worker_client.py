@@ -156,7 +156,7 @@ class Worker:
 
     @property
     def busy(self) -> bool:
-        """Whether a request that has not been dropped has not had its answer seen."""
+        """True until polling has consumed the answer of every request that was not dropped."""
         waits = self._pending is not None and self._pending.answer is None
         return waits or self._stream is not None
 
@@ -219,7 +219,7 @@ class Worker:
             process.end()
 
     def _stuck(self) -> bool:
-        """Whether a request that was dropped a while ago still goes on."""
+        """True where a request that was dropped a while ago still goes on."""
         if self._dropped is None:
             return False
         dropped, since = self._dropped
@@ -353,7 +353,7 @@ class _Process:
             self._last_lines.append(line.decode(errors="replace").strip())
 
     def _last_words(self) -> str:
-        """Why it ended: the last line that it wrote to its error stream, and its exit code."""
+        """Cause of its end: the last line of its error stream, and its exit code."""
         code = self._popen.wait()
         self._listener.join(_LAST_WORDS_S)
         said = [line for line in self._last_lines if line]

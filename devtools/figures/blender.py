@@ -1,4 +1,4 @@
-"""How still the pinned points are in Blender: in the written action and after FBX and back."""
+"""Drift of pinned points in Blender: in the written action and after FBX and back."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -16,7 +16,7 @@ class Limit:
     at_least: bool = False
 
     def holds(self, value: float) -> bool:
-        """Whether a value keeps the promise."""
+        """True where a value keeps the promise."""
         if self.must is None:
             return True
         return value >= self.must if self.at_least else value <= self.must

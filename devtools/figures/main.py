@@ -130,7 +130,7 @@ def measure_edit(
 
 
 def closeness(fitted: "Fit") -> Iterator[tuple[str, float]]:
-    """How near the fit is to the recording: joint centres at every frame, and the apex."""
+    """Distance of the fit from the recording: joint centres at every frame, and the apex."""
     import numpy as np
 
     performance, flights = fitted.performance, fitted.schedule.flights
@@ -144,7 +144,7 @@ def closeness(fitted: "Fit") -> Iterator[tuple[str, float]]:
 
 
 def physics(motion: "Motion") -> Iterator[tuple[str, float]]:
-    """What no force explains, by MuJoCo on a dense grid and by the arrays that anybody gets."""
+    """Dynamics residual by MuJoCo on a dense grid and by the arrays that anybody gets."""
     import numpy as np
 
     from ...solver.results.npz_export import save
@@ -168,7 +168,7 @@ def physics(motion: "Motion") -> Iterator[tuple[str, float]]:
 def still(
     armature: "bpy.types.Object", recording: "Recording", motion: "Motion"
 ) -> Iterator[tuple[str, float]]:
-    """How far pinned points wander in Blender."""
+    """Drift of pinned points in Blender."""
     from .blender import drifts
 
     with tempfile.TemporaryDirectory() as folder:

@@ -50,7 +50,7 @@ class PointCheck(Span):
     unit = "mm"
 
     def worst(self, shown: Recording) -> float:
-        """How far the point is outside, mm, at any frame."""
+        """Largest distance of the point from its bounds over all frames, mm."""
         at = self.during(shown.times)
         bone = shown.index(self.bone)
         point = shown.heads[at, bone] + shown.rotations[at, bone] @ self.offset

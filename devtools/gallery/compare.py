@@ -89,7 +89,7 @@ def compare(name: str, before: dict[str, Array], after: dict[str, Array]) -> Com
 
 
 def unlike(before: Array, after: Array) -> str | None:
-    """Why two arrays cannot be subtracted and are not the same words; None where all is well."""
+    """The reason why two arrays cannot be compared, or are other words; None otherwise."""
     if before.shape != after.shape:
         return f"shape {before.shape}, then {after.shape}"
     kinds = [array.dtype.kind in NUMBERS for array in (before, after)]

@@ -120,7 +120,7 @@ def dump(content: object, path: Path) -> None:
 
 
 def undump(path: Path) -> Any:
-    """What `dump` wrote; only ever of our own making."""
+    """Reads what `dump` wrote; only ever of our own making."""
     return pickle.loads(path.read_bytes())
 
 

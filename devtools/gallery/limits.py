@@ -65,7 +65,7 @@ def worst(row: Json) -> Json | None:
 
 
 def faults(row: Json) -> list[str]:
-    """Why a result is not as it should be, in words; empty where it is."""
+    """Faults of a result in words; empty where it has none."""
     found = [row["failed"]] if "failed" in row else []
     first = row.get("methods", {}).get("implicit", {})
     if not first.get("solved", False) and not found:
@@ -87,7 +87,7 @@ def faults(row: Json) -> list[str]:
 
 
 def _ugly(looks: Json) -> Iterator[str]:
-    """What would be seen, in words."""
+    """Visible defects in words."""
     for name, limit in LOOKS.items():
         if name in looks and not looks[name] <= limit.must:
             where = looks.get(f"{name.removesuffix('_cm')}_at", "")

@@ -43,7 +43,7 @@ def looks(adaptation: Adaptation) -> Json:
 
 
 def _overlap(motion: Motion, times: FloatArray) -> tuple[float, str]:
-    """How deep two limbs that are no neighbours are in each other at worst, m; which and when."""
+    """Deepest overlap of two limbs that are no neighbours, m; which and when."""
     character = motion.transcription.character
     heads, tails = _rods(motion, times)
     radius = np.array([SOFT * 0.5 * float(np.min(b.box_size[:2])) for b in character.bodies])
@@ -61,7 +61,7 @@ def _overlap(motion: Motion, times: FloatArray) -> tuple[float, str]:
 
 
 def _below_floor(adaptation: Adaptation, times: FloatArray) -> tuple[float, str]:
-    """How far a joint or a limb's end is under the floor or the lowest contact, m; which, when."""
+    """Deepest place of a joint or limb's end under the floor or lowest contact, m; which, when."""
     motion = adaptation.motion
     heads, tails = _rods(motion, times)
     lowest = motion.com(times)[:, 2:] + np.minimum(heads, tails)[:, :, 2]
@@ -79,7 +79,7 @@ def _rods(motion: Motion, times: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _may_meet(character: Character, i: int, j: int) -> bool:
-    """Whether one is of a limb and they have two joints between them at least."""
+    """True where one is of a limb and at least two joints lie between them."""
     parts = {character.bodies[k].part.value for k in (i, j)}
     apart = set(character.ancestors(i)) ^ set(character.ancestors(j))
     return bool(parts & set(MOVING)) and len(apart) > 2

@@ -62,7 +62,7 @@ def _needed(adaptation: Adaptation, residual: Residual) -> FloatArray:
 
 
 def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) -> list[Json]:
-    """How far each condition is missed at worst: torques and forces by MuJoCo, turns, poses and
+    """Worst violation of each constraint: torques and forces by MuJoCo, turns, poses and
     orientations by the solver's own measure between its rows; the rest is checked in Blender."""
     motion = adaptation.motion
     t = motion.transcription
@@ -95,7 +95,7 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
 
 
 def from_fit(adaptation: Adaptation) -> Json:
-    """How far the motion is from the fit at the instants that correspond, root included."""
+    """Distance of the motion from the fit at corresponding instants, root included."""
     motion, fitted = adaptation.motion, adaptation.fit.motion
     times = np.linspace(0.0, motion.duration, int(motion.duration * 240.0))
     old = adaptation.plan.scene.timeline.to_old(times)
@@ -111,7 +111,7 @@ def from_fit(adaptation: Adaptation) -> Json:
 
 
 def shape(adaptation: Adaptation) -> Json:
-    """What the thesis's claims are about: the crouch, the flight, and where the hands go."""
+    """Measures that the thesis's claims are about: crouch, flight, and places of the hands."""
     motion, phases = adaptation.motion, adaptation.plan.schedule.phases
     flights = [p for p in phases if p.kind is PhaseKind.FLIGHT]
     if not flights:

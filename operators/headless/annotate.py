@@ -1,4 +1,4 @@
-"""What a picture shows of an adaptation's requests (thesis 6): from conditions to marks."""
+"""Annotations of a picture (thesis 6): from an adaptation's constraints to marks."""
 
 from collections.abc import Iterable, Iterator
 

@@ -45,7 +45,7 @@ class Outbox:
         self._remove_made()
 
     def path(self, name: str) -> Path:
-        """Where to write the file that shall be called `name`."""
+        """The path to write the file to that shall be called `name`."""
         if name not in self._names:
             self._names.append(name)
         return self._part(name)

@@ -38,7 +38,7 @@ def draw(
 
 
 def heading(adaptation: Adaptation) -> tuple[float, float] | None:
-    """Where the recording travels, so that a diagonal shows as one; None if it hardly does."""
+    """Direction of travel, so that a diagonal shows as one; None where there is hardly any."""
     com = adaptation.fit.performance.com
     x, y = (com[-1] - com[0])[:2].tolist()
     return (x, y) if np.hypot(x, y) > TRAVELS else None
@@ -88,7 +88,7 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
 
 @dataclass(frozen=True, eq=False)
 class ContactHold:
-    """Where and when a contact holds a part of the body. place: (3,), or (T, 3) if it moves, m."""
+    """Place and interval of a contact of one part of the body. place: (3,), or (T, 3) if it moves, m."""
 
     part: Part
     place: FloatArray

@@ -1,4 +1,4 @@
-"""Wording of an analysis, and the starter recipe that is made from it."""
+"""Text of an analysis, for a person who is about to write a recipe."""
 
 import json
 import os

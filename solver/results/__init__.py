@@ -1,1 +1,1 @@
-"""What is told of a motion: report, violations, traces, torques, exports for checking."""
+"""Results of a motion: report, violations, traces, torque curves, exports for checking."""

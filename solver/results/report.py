@@ -270,7 +270,7 @@ def _reduction(adaptation: Adaptation) -> ReductionReport | None:
 
 
 def _in_play(problem: MotionProblem) -> bool:
-    """Whether torques matter to the problem."""
+    """True where the problem limits or weighs torques."""
     solution = problem.requests.solution
     return (
         bool(problem.requests.torques)

@@ -57,7 +57,10 @@ class TorqueCurve:
 def torque_curve(
     motion: Motion, torques: TorqueFunction, *, longest: float | None = None
 ) -> TorqueCurve:
-    """The splines nearest to a motion's torques. longest: s between knots; None chooses it."""
+    """Least-squares splines of a motion's joint torques, N·m (thesis 4).
+
+    longest: s between knots; None halves it until the rms error is a hundredth of the peak.
+    """
     stretches = [(times, exact_torques(motion, torques, times)) for times in _stretches(motion)]
     peak = max(float(np.abs(values).max()) for _, values in stretches)
     span = COARSEST if longest is None else longest

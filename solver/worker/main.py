@@ -66,7 +66,7 @@ class Inbox:
         return self._requests.get()
 
     def ending(self, request: int) -> Ending | None:
-        """How the request with this id shall end; None if it may go on."""
+        """The ending asked for the request with this id; None if it may go on."""
         return self._endings.get(request)
 
     def listen(self) -> None:

@@ -155,7 +155,7 @@ def fit_subject(subject: Subject, clock: StageClock) -> Fit:
 
 
 def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationResult:
-    """What the subject's problem makes of its fit. Raises what `adapt` does."""
+    """Adapts the subject's fit to its problem. Raises what `adapt` does."""
     if not fitted.solved:
         return AdaptationResult(subject, unadapted(fitted), no_fit(fitted))
     with clock.stage(ADAPTING):
@@ -181,7 +181,7 @@ def solve(
 
 
 def no_fit(fitted: Fit) -> NoSolution:
-    """Why a fit failed."""
+    """The fault of a fit that failed."""
     return _unsolved(NoFit, unadapted(fitted), MotionProblem())
 
 
