@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pinocchio
 from scipy.linalg import cholesky_banded
-from scipy.sparse import csc_matrix
 
-from ..devtools.peers.task import Equations, FloatArray, Task, metric_entries
+from ..devtools.peers.task import Equations, Task, metric_matrix
+from ..solver.arrays import FloatArray
 from ..solver.body.character import Character
 from ..solver.optimisation.kkt_step import Linearised
 from ..solver.results.mjcf import mjcf, motion_state
@@ -101,12 +101,8 @@ def band_matrix(task: Task) -> FloatArray:
     """(half-bandwidth + 1, n) lower bands of W + ρ J'J over the unknowns, in order of time."""
     equations = Equations(task)
     n = equations.size
-    entries, values = metric_entries(task)
-    metric = csc_matrix((values, (entries.row, entries.column)), (n, n))
-    _, slopes = equations.jacobian(task.start[task.transcription.active])
-    where = equations.entries
-    jacobian = csc_matrix((slopes, (where.row, where.column)), (equations.count, n))
-    system = (metric + RIDGE * jacobian.T @ jacobian).tocoo()
+    _, jacobian = equations.jacobian(task.start[task.transcription.active])
+    system = (metric_matrix(task) + RIDGE * jacobian.T @ jacobian).tocoo()
     low = system.row >= system.col
     row, column = system.row[low], system.col[low]
     bands = np.zeros((int((row - column).max()) + 1, n))

@@ -6,8 +6,9 @@ from functools import partial
 
 import numpy as np
 
-from ..devtools.peers.task import IntArray, Task
+from ..devtools.peers.task import Task
 from ..solver.analysis.performance import Performance
+from ..solver.arrays import IntArray
 from ..solver.body.anatomy import Part
 from ..solver.body.character import Character, Joint
 from ..solver.body.dynamics import MomentFunction

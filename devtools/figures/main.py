@@ -24,12 +24,14 @@ from ...solver.transcription.motion import Motion
 from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
 from ..checks.mujoco_check import check_motion, check_npz
 from ..environment.problem import SetUpError
-from ..peers.ipopt_peer import distance, solve_by_ipopt
+from ..peers import ipopt_peer
+from ..peers.task import Task
 from .blender import drifts, open_clip
 from .clips import CLIPS, EDITS, Clip
 from .limits import Figure, figure, table, write
 
 RUNS = 7  # adaptations timed; the median counts
+PEER_LIMIT = 60.0  # s
 RESIDUALS = [
     (f"{where}: root {part} not explained", part, flying)
     for where, flying in (("flight", True), ("ground", False))
@@ -145,13 +147,13 @@ def beside_ipopt(
 ) -> Iterator[tuple[str, float]]:
     """The same problem by IPOPT; a peer that fails or runs out of time has no ratio worth much,
     which its violation tells."""
-    problem = clip.problem(edit)
-    peer = solve_by_ipopt(fitted, problem)
+    task = Task.of(fitted, clip.problem(edit))
+    peer = ipopt_peer.solve(task, PEER_LIMIT)
     _say(clip.name, f"{edit}: IPOPT {peer.status} in {peer.seconds:.1f} s")
     yield "IPOPT peer", peer.seconds
     yield "IPOPT peer: iterations", peer.iterations
     yield "IPOPT peer: worst violation over tolerance", peer.violation
-    ours = distance(fitted, problem, adaptation.outcomes[0].x)
+    ours = task.distance(adaptation.outcomes[0].x)
     yield "IPOPT peer: distance over ours", peer.distance / ours
     yield "times faster than the IPOPT peer", peer.seconds / seconds
 

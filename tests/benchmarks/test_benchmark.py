@@ -13,7 +13,7 @@ from hangtime.benchmarks.solutions import SOLUTIONS, with_solution
 from hangtime.benchmarks.tables import Table, write_json
 from hangtime.benchmarks.timing import in_turns
 from hangtime.devtools.peers import ipopt_peer
-from hangtime.devtools.peers.task import Equations, Task, metric_entries
+from hangtime.devtools.peers.task import Equations, Task, metric_matrix
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.stages.fit import ADAPT_PRICES, motion_metric
@@ -84,16 +84,12 @@ def test_the_sparse_rows_and_metric_are_the_task_s() -> None:
     random = np.random.default_rng(1)
     packed = packed + 0.02 * random.normal(size=packed.shape)  # away from the cones' tips
     step = 1e-6 * random.normal(size=packed.shape)
-    value, entries = equations.jacobian(packed)
-    jacobian = np.zeros((equations.count, equations.size))
-    jacobian[equations.entries.row, equations.entries.column] = entries
+    value, jacobian = equations.jacobian(packed)
     ahead, behind = (equations.values(packed + s * step) for s in (1, -1))
     assert jacobian @ step == pytest.approx(0.5 * (ahead - behind), abs=1e-10)
-    where, values = metric_entries(task)
-    metric = np.zeros((equations.size, equations.size))
-    metric[where.row, where.column] = values
+    metric = metric_matrix(task)
     away = packed - task.start[task.transcription.active]
-    assert np.sqrt(away @ metric @ away) == pytest.approx(task.distance(task.unpack(packed)))
+    assert np.sqrt(away @ (metric @ away)) == pytest.approx(task.distance(task.unpack(packed)))
     assert value == pytest.approx(equations.values(packed))
 
 
