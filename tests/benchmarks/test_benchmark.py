@@ -148,7 +148,11 @@ def test_quick_works_take_turns_and_long_ones_run_once(monkeypatch: pytest.Monke
 
 
 def test_tables_are_told_with_and_without_the_machine_s_seconds(tmp_path: Path) -> None:
-    table = Table("T", "C", ("who", "took (s)", "ok"), (("a", 1.23456, True), ("b", None, False)))
+    rows = [
+        {"who": "a", "took (s)": 1.23456, "ok": True},
+        {"who": "b", "took (s)": None, "ok": False},
+    ]
+    table = Table("T", "C", rows)
     assert "took" not in table.without_seconds().markdown()
     assert "| a | 1.23 | yes |" in table.markdown()
     assert table.text().splitlines()[-1].split() == ["b", "–", "no"]
