@@ -24,14 +24,9 @@ from ..solver.transcription.motion import Motion
 RIDGE = 100.0  # weight of the rows beside the metric, as in our own steps
 
 
-def our_rows(task: Task) -> None:
-    """Every row with its Jacobian."""
-    task.transcription.rows(task.start, task.places)
-
-
 def our_iteration(task: Task) -> FloatArray:
     """The rows, the factor and the step; (K, n_block)."""
-    rows = task.transcription.rows(task.start, task.places)
+    rows = task.rows(task.start)
     return Linearised(task.transcription, rows, task.metric).step(rows.value)[0]
 
 

@@ -65,7 +65,7 @@ class Benchmark:
         caption = (
             "forward_jump_116cm, frames 60 to 330, its landing moved 0.4 m forward and 0.3 m up, "
             f"from the stored fit: {t.n_unknowns} unknowns, "
-            f"{len(t.rows(self.task.start, self.task.places).value)} rows. Every peer gets our "
+            f"{len(self.task.rows(self.task.start).value)} rows. Every peer gets our "
             "rows, start and metric, and as bounds the violations that we let stand; after "
             f"{self.extent.limit_s:g} s it is stopped and judged where it is, by our rows."
         )
@@ -109,11 +109,11 @@ class Benchmark:
         task = self.task
         nodes, bands = floor.Nodes.of(task), floor.band_matrix(task)
         works: dict[str, Callable[[], object]] = {
-            "our rows and Jacobian": lambda: floor.our_rows(task),
-            "our iteration: rows, factor, step": lambda: floor.our_iteration(task),
+            "our rows and Jacobian": partial(task.rows, task.start),
+            "our iteration: rows, factor, step": partial(floor.our_iteration, task),
             "Pinocchio, inverse dynamics' derivatives": nodes.all_derivatives,
             "Pinocchio, centroidal momentum's derivatives": nodes.root_derivatives,
-            "LAPACK, banded Cholesky": lambda: floor.factor(bands),
+            "LAPACK, banded Cholesky": partial(floor.factor, bands),
         }
         found = {name: s for name, (_, s) in in_turns(works, 3 * self.extent.repeats).items()}
         quickest = min(s for name, s in found.items() if name.startswith("Pinocchio"))
@@ -124,7 +124,7 @@ class Benchmark:
             "derivatives at all of them plus one banded Cholesky of the same size and band "
             f"({bands.shape[1]} unknowns, half-bandwidth {len(bands) - 1})."
         )
-        rows = [
+        rows: list[Row] = [
             {"work": name, "time (s)": s, "times the floor": s / least} for name, s in found.items()
         ]
         return Table("One iteration", caption, rows)

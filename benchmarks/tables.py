@@ -42,13 +42,16 @@ class Table:
 def with_ratios(rows: Sequence[Row], ratios: Mapping[str, str]) -> list[Row]:
     """The rows with more columns: after each that `ratios` names, its values over the first row's
     under the new name given there."""
-    found = []
+    found: list[Row] = []
     for row in rows:
         wider: dict[str, Value] = {}
         for column, value in row.items():
             wider[column] = value
             if column in ratios:
-                wider[ratios[column]] = value / rows[0][column]
+                first = rows[0][column]
+                assert isinstance(value, int | float)
+                assert isinstance(first, int | float)
+                wider[ratios[column]] = value / first
         found.append(wider)
     return found
 

@@ -44,10 +44,11 @@ def draw(root: Path) -> str:
     for layer, colour in zip(layers, COLOURS, strict=True):
         rows = orders.get(f"hangtime.{layer}", [])
         lines = wrap(summary(root / layer), 40)
-        height = MARGIN + max(ROW * len(rows), 18 + 13 * len(lines))
-        parts += band(root, layer, lines, rows, top, height, colour)
-        edges.append((top, top + height))
-        top += height + GAP
+        bottom = top + MARGIN + max(ROW * len(rows), 18 + 13 * len(lines))
+        parts += background(layer, lines, top, bottom, colour)
+        parts += boxes(root / layer, rows, top)
+        edges.append((top, bottom))
+        top = bottom + GAP
     x = LEFT / 2
     for (_, end), (start, _) in pairwise(edges):
         parts.append(
@@ -71,28 +72,23 @@ def contract_layers(root: Path) -> dict[str, list[list[str]]]:
     }
 
 
-def band(
-    root: Path,
-    layer: str,
-    lines: list[str],
-    rows: list[list[str]],
-    top: int,
-    height: int,
-    colour: str,
-) -> Iterator[str]:
-    """A layer's rectangle, name, purpose and packages."""
-    width = WIDTH - 2 * MARGIN
-    yield f'<rect x="{MARGIN}" y="{top}" width="{width}" height="{height}" rx="6" fill="{colour}"/>'
+def background(layer: str, lines: list[str], top: int, bottom: int, colour: str) -> Iterator[str]:
+    """A layer's rectangle, name and purpose."""
+    size = f'width="{WIDTH - 2 * MARGIN}" height="{bottom - top}"'
+    yield f'<rect x="{MARGIN}" y="{top}" {size} rx="6" fill="{colour}"/>'
     yield f'<text x="{2 * MARGIN}" y="{top + 20}" class="layer">{layer}</text>'
-    for number, line in enumerate(lines):
-        y = top + 36 + 13 * number
-        yield f'<text x="{2 * MARGIN}" y="{y}" class="what">{escape(line)}</text>'
+    for y, line in enumerate(lines):
+        yield f'<text x="{2 * MARGIN}" y="{top + 36 + 13 * y}" class="what">{escape(line)}</text>'
+
+
+def boxes(layer: Path, rows: list[list[str]], top: int) -> Iterator[str]:
+    """A layer's packages."""
     for number, row in enumerate(rows):
         y = top + MARGIN // 2 + ROW * number + (ROW - BOX) // 2
         step = (WIDTH - 2 * MARGIN - LEFT) / len(row)
         for column, name in enumerate(row):
             x = round(LEFT + MARGIN + step * column)
-            purpose = summary(root / layer / name)
+            purpose = summary(layer / name)
             beside = shorten(purpose, 78, placeholder=" …") if len(row) == 1 else ""
             yield f"<g><title>{escape(purpose)}</title>"
             yield f'<rect x="{x}" y="{y}" width="{step - 8:.0f}" height="{BOX}" class="box"/>'

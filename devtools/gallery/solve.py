@@ -104,7 +104,7 @@ def peak_memory() -> float:
 def write_down(result: Result, adapted: AdaptationResult, found: Json, folder: Path) -> None:
     """Measures and writes what needs no Blender; MuJoCo is loaded now that the memory is known."""
     from ...operators.headless.annotate import marks_of
-    from ...operators.headless.picture import adapted_row
+    from ...operators.headless.picture import adapted_row, heading
     from .checks import checks
     from .measure import measured
 
@@ -114,9 +114,8 @@ def write_down(result: Result, adapted: AdaptationResult, found: Json, folder: P
     write_json(as_json(adapted.report(Origin(result.clip.name))), folder / "report.json")
     save(adaptation.motion, folder / "trajectory.npz")
     marks = marks_of(adaptation, adapted.subject.problem)
-    travel = adaptation.fit.performance.com[[0, -1], :2]
     drawn = {
-        "heading": tuple((travel[1] - travel[0]).tolist()),  # which all results of a clip share
+        "heading": heading(adaptation),  # which all results of a clip share
         "row": adapted_row(adaptation, result.heading, marks),
         "track": adapted.track,
         "recording": adapted.recording,

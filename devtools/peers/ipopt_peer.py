@@ -41,7 +41,7 @@ def solve(task: Task, limit_s: float) -> PeerResult:
     metric = sparse(metric_matrix(task))
     away = x - task.start[task.transcription.active]
     objective = 0.5 * ca.dot(away, ca.mtimes(metric, away))
-    values, jacobian = _Values(equations), _Jacobian(equations)
+    values, jacobian = _Values(equations, "rows"), _Jacobian(equations, "jac_g")
     options = {
         "jac_g": jacobian,
         "hess_lag": _hessian(metric, equations.size, equations.count),
@@ -86,13 +86,13 @@ def _sparsity(matrix: csc_matrix) -> ca.Sparsity:
 class _Values(ca.Callback):
     """x -> the rows."""
 
-    def __init__(self, equations: Equations) -> None:
+    def __init__(self, equations: Equations, name: str) -> None:
         super().__init__()
         self.equations = equations
-        self.construct("rows", {})
+        self.construct(name, {})
 
-    def get_sparsity_in(self, _: int) -> ca.Sparsity:
-        return ca.Sparsity.dense(self.equations.size)
+    def get_sparsity_in(self, i: int) -> ca.Sparsity:
+        return ca.Sparsity.dense(self.equations.size if i == 0 else 0)
 
     def get_sparsity_out(self, _: int) -> ca.Sparsity:
         return ca.Sparsity.dense(self.equations.count)
@@ -105,14 +105,8 @@ class _Values(ca.Callback):
         return 0
 
 
-class _Jacobian(ca.Callback):
+class _Jacobian(_Values):
     """(x, p) -> the rows and their Jacobian."""
-
-    def __init__(self, equations: Equations) -> None:
-        super().__init__()
-        self.equations = equations
-        self.sparsity = _sparsity(equations.pattern)
-        self.construct("jac_g", {})
 
     def get_n_in(self) -> int:
         return 2
@@ -120,14 +114,8 @@ class _Jacobian(ca.Callback):
     def get_n_out(self) -> int:
         return 2
 
-    def get_sparsity_in(self, i: int) -> ca.Sparsity:
-        return ca.Sparsity.dense(self.equations.size if i == 0 else 0)
-
     def get_sparsity_out(self, i: int) -> ca.Sparsity:
-        return ca.Sparsity.dense(self.equations.count) if i == 0 else self.sparsity
-
-    def has_eval_buffer(self) -> bool:
-        return True
+        return super().get_sparsity_out(i) if i == 0 else _sparsity(self.equations.pattern)
 
     def eval_buffer(self, arg: Buffers, res: Buffers) -> int:
         values, jacobian = self.equations.jacobian(_array(arg[0]))

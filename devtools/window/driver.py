@@ -106,7 +106,8 @@ def run_scenarios(driver: Driver, scenarios: Sequence[Scenario]) -> Waits:
             outcome.failure = yield from _run_scenario(scenario, driver)
             outcome.seconds = time.monotonic() - begun
             taking = driver.picture("FAILED_" + scenario.name if outcome.failure else scenario.name)
-            yield from in_steps(taking, driver.input)
+            for wait in taking:
+                yield from wait_in_steps(wait, driver.input)
         driver.keep()
 
 
@@ -127,12 +128,6 @@ def _run_scenario(scenario: Scenario, driver: Driver) -> Generator[float, None, 
         yield driver.input.let_go() + driver.input.key("Escape")
         return f"{type(fault).__name__}: {fault}"
     return None
-
-
-def in_steps(acting: Actions, device: InputDevice) -> Waits:
-    """Run actions, each wait in short steps."""
-    for wait in acting:
-        yield from wait_in_steps(wait, device)
 
 
 def wait_in_steps(wait: float | Until, device: InputDevice) -> Waits:
