@@ -55,7 +55,6 @@ KIND = ConstraintKind(
     description="Cap contact forces, or set how slippery the ground is",
     icon="FORCE_FORCE",
     menu=MenuGroup.CONTACTS,
-    requests="forces",
     record=_record,
     draw=_draw,
     recipe=Kind(

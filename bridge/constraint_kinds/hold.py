@@ -38,7 +38,6 @@ KIND = ConstraintKind(
     description="Repeat a frame for some time",
     icon="PAUSE",
     menu=MenuGroup.TIME,
-    requests="holds",
     record=_record,
     draw=_draw,
     recipe=Kind(

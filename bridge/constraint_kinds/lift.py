@@ -33,7 +33,6 @@ KIND = ConstraintKind(
     description="Let feet or hands that touch in a phase touch no more",
     icon="TRIA_UP_BAR",
     menu=MenuGroup.CONTACTS,
-    requests="lifts",
     record=_record,
     draw=_draw,
     recipe=Kind("lift", Lift, (word("phase"), TOUCHING), needs=(("phase",),)),

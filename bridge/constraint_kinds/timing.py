@@ -53,7 +53,6 @@ KIND = ConstraintKind(
     description="Let a phase last longer or shorter",
     icon="TIME",
     menu=MenuGroup.TIME,
-    requests="timings",
     record=_record,
     draw=_draw,
     recipe=Kind(
