@@ -4,15 +4,7 @@ from __future__ import annotations
 
 from ...solver.data.requests import Lift
 from ..recipe_syntax.items import TOUCHING, Kind, word
-from ..rows.kind import (
-    BoneUse,
-    ConstraintKind,
-    FieldDrawing,
-    MenuGroup,
-    NewRange,
-    Row,
-    phase_text,
-)
+from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row, phase_text
 from ..rows.row_parts import RowContext, bones_of
 from ..rows.times import phase_of
 

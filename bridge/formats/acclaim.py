@@ -13,9 +13,8 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import UnreadableClip
-from .euler import euler_matrices
 from .guess import likely_unit
-from .motion_clip import Joint, MotionClip
+from .motion_clip import Joint, MotionClip, euler_matrices
 from .text import Line, Reader, require_finite
 
 INCH = 0.0254

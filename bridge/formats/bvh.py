@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from .euler import euler_matrices
-from .motion_clip import Joint, MotionClip
+from .motion_clip import Joint, MotionClip, euler_matrices
 from .text import Line, Reader, require_finite
 
 _CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
