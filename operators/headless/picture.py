@@ -88,7 +88,10 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
 
 @dataclass(frozen=True, eq=False)
 class ContactHold:
-    """Place and interval of a contact of a body part. place: (3,), or (T, 3) if it moves, m."""
+    """Place, m, and interval of a contact of one part of the body.
+
+    place: (3,), or (T, 3) where it moves.
+    """
 
     part: Part
     place: FloatArray

@@ -151,19 +151,19 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
 }
 PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
 
-_AT_A_PLACE = "“{name}” stays {amount:millimetres} from its place"
-_OF_AN_ANGLE = "“{name}” is missed by {amount:.3g}°"
-MISSED = {  # by constraint type
+ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"
+AWAY = "“{name}” stays {amount:millimetres} from its place"
+MISSED = {  # of a constraint, by its type
     RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
     RowKind.MOMENT: "in {name}, the body turns without cause ({amount:.3g} BW·m)",
-    RowKind.PIN: _AT_A_PLACE,
+    RowKind.PIN: AWAY,
     RowKind.PIN_SPEED: "“{name}” still slides at {amount:.3g} m/s",
-    RowKind.POINT: _AT_A_PLACE,
-    RowKind.BEND: _OF_AN_ANGLE,
-    RowKind.CONE: _OF_AN_ANGLE,
-    RowKind.TWIST: _OF_AN_ANGLE,
-    RowKind.ORIENTATION: _OF_AN_ANGLE,
-    RowKind.POSE: _OF_AN_ANGLE,
+    RowKind.POINT: AWAY,
+    RowKind.BEND: ANGLE_MISSED,
+    RowKind.CONE: ANGLE_MISSED,
+    RowKind.TWIST: ANGLE_MISSED,
+    RowKind.ORIENTATION: ANGLE_MISSED,
+    RowKind.POSE: ANGLE_MISSED,
     RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} of the body's weight",
     RowKind.FRICTION: "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
     RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} of the body's weight",

@@ -35,7 +35,7 @@ class _RowList(bpy.types.UIList):
         self,
         context: bpy.types.Context,
         layout: bpy.types.UILayout,
-        settings: HangtimeSettings | None,
+        _settings: HangtimeSettings | None,
         row: Row,
         _icon: int | None,
         _active_owner: HangtimeSettings | None,

@@ -86,7 +86,8 @@ def test_templates_are_translated_before_they_are_filled() -> None:
 
 
 def test_what_is_left_is_translated_as_well() -> None:
-    fault = NoSolution(Status.STALLED, (Violation("Landing", RowKind.PIN, 12.3),), reached=0.25)
+    pin = Violation("Landing", RowKind.PIN, 12.3)
+    fault = NoSolution(Status.STALLED, (pin,), reached=0.25)
     seen: list[str] = []
     sentence(fault, lambda template: seen.append(template) or template)
     assert seen[1:] == [OUTCOMES[Status.STALLED], wording.MISSED[RowKind.PIN]]
