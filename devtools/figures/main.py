@@ -69,7 +69,7 @@ def main(argv: list[str]) -> int:
 def _in_one_thread(argv: list[str]) -> int:
     """The same in a process whose linear algebra keeps to one thread: set before numpy loads."""
     launcher = ROOT / "devtools" / "package.py"
-    command = [sys.executable, str(launcher), "devtools.figures", *argv]
+    command = [sys.executable, str(launcher), "devtools.figures.main", *argv]
     return subprocess.call(command, env={**os.environ, **ONE_THREAD})
 
 
