@@ -3,7 +3,7 @@
 from ...solver.data.requests import (
     Dynamics,
     Method,
-    Objective,
+    ObjectiveKind,
     Reduction,
     ReductionKind,
     SolverOptions,
@@ -18,14 +18,14 @@ PART_OF_ALL = Span("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
 CHOSEN_BY_HAND = (ReductionKind.MATRIX, ReductionKind.MIRROR_LEGS)
 
 
-def _objectives(table: Table, key: str) -> tuple[tuple[Objective, float], ...]:
-    weights = table.table(key, [member.value for member in Objective], "objective")
+def _objectives(table: Table, key: str) -> tuple[tuple[ObjectiveKind, float], ...]:
+    weights = table.table(key, [member.value for member in ObjectiveKind], "objective")
     if not weights.values:
         table.refuse(key, f"nothing to weigh; known: {listed(weights.known)}")
-    return tuple((Objective(k), weights.number(k, NOT_NEGATIVE) or 0.0) for k in weights.values)
+    return tuple((ObjectiveKind(k), weights.number(k, NOT_NEGATIVE) or 0.0) for k in weights.values)
 
 
-def _weights(objectives: tuple[tuple[Objective, float], ...]) -> Values:
+def _weights(objectives: tuple[tuple[ObjectiveKind, float], ...]) -> Values:
     return {objective.value: weight for objective, weight in objectives}
 
 

@@ -67,8 +67,8 @@ def _by(problem: MotionProblem, method: Method) -> MotionProblem:
 def _solved(solved: Fit | Adaptation, seconds: float) -> Json:
     transcription = solved.motion.transcription
     unknowns = transcription.n_unknowns
-    if isinstance(solved, Adaptation) and solved.plan.basis is not None:
-        full, reduced = solved.plan.basis.shape
+    if isinstance(solved, Adaptation) and solved.setup.basis is not None:
+        full, reduced = solved.setup.basis.shape
         unknowns -= (full - reduced) * transcription.basis.n_coefficients
     return {
         "status": solved.outcome.status.value,
@@ -108,7 +108,7 @@ def measure(result: Result, adaptation: Adaptation, found: Json, folder: Path) -
         "heading": tuple((travel[1] - travel[0]).tolist()),  # which all results of a clip share
         "row": adapted_row(adaptation, result.heading, marks),
         "track": adaptation.track,
-        "recording": adaptation.plan.recording,
+        "recording": adaptation.setup.recording,
         "checks": checks(adaptation),
     }
     dump(drawn, folder / "drawn.pickle")

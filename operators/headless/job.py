@@ -260,8 +260,8 @@ def _write_actions(
     performance = adaptation.fit.performance
     recorded = loaded.armature.animation_data.action
     armature, track = loaded.armature, adaptation.track
-    if adaptation.plan.requests.body.limbs:
-        armature, track, _ = other_figure(adaptation.plan.recording, track)
+    if adaptation.setup.requests.body.limbs:
+        armature, track, _ = other_figure(adaptation.setup.recording, track)
     adapted = write_action(armature, track, name=f"{recorded.name} {called}")
     x, y = (performance.com[-1] - performance.com[0])[:2]
     far = float(np.hypot(x, y))

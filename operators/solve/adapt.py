@@ -19,7 +19,7 @@ from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import alike, digest
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import Recording
-from ...solver.data.requests import Method, Objective, SolverOptions
+from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, Failed, Kind
 from ..names import OperatorId
@@ -99,7 +99,10 @@ class RefineOperator(_Adapting, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
-        weights = ((Objective[settings.objective], 1.0), (Objective.CLOSENESS, settings.stay_close))
+        weights = (
+            (ObjectiveKind[settings.objective], 1.0),
+            (ObjectiveKind.CLOSENESS, settings.stay_close),
+        )
         if asked.method is Method.EXPLICIT:
             return asked
         return replace(asked, method=Method.EXPLICIT, objectives=weights)

@@ -296,8 +296,8 @@ class Method(Enum):
     EXPLICIT = "explicit"
 
 
-class Objective(Enum):
-    """What the explicit solution may weigh (thesis 4.3)."""
+class ObjectiveKind(Enum):
+    """Objectives that the explicit solution may weigh (thesis 4.3)."""
 
     TORQUE_SMOOTHNESS = "torque smoothness"
     POWER = "power"
@@ -344,9 +344,9 @@ class SolverOptions:
 
     method: Method = Method.IMPLICIT
     dynamics: Dynamics = Dynamics.AUTOMATIC
-    objectives: tuple[tuple[Objective, float], ...] = (
-        (Objective.TORQUE_SMOOTHNESS, 1.0),
-        (Objective.CLOSENESS, 1.0),
+    objectives: tuple[tuple[ObjectiveKind, float], ...] = (
+        (ObjectiveKind.TORQUE_SMOOTHNESS, 1.0),
+        (ObjectiveKind.CLOSENESS, 1.0),
     )
     reduction: Reduction | None = None
     longest_span: float | None = None

@@ -19,7 +19,7 @@ from ..data.requests import ConeShape, Dynamics, Method
 from ..optimisation.sqp import Outcome
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
-from ..transcription.constraint import Missed
+from ..transcription.constraint import DenseViolation
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion, dynamics_residual, pinned_instants
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
@@ -52,7 +52,7 @@ def report(
     origin: Origin,
 ) -> Json:
     """Everything about an adaptation that a JSON file can hold; what is not finite is None."""
-    fit, motion, schedule = adaptation.fit, adaptation.motion, adaptation.plan.schedule
+    fit, motion, schedule = adaptation.fit, adaptation.motion, adaptation.setup.schedule
     pins = pins_of_contacts(fit, problem)
     contacts = motion.transcription.contacts
     content = {
@@ -148,7 +148,7 @@ def _solves(outcomes: Sequence[Outcome], name: str) -> list[Json]:
 # ---------------------------------------------------------------- how well it holds
 
 
-def _condition(missed: Missed, fit: Fit, character: Character) -> Json:
+def _condition(missed: DenseViolation, fit: Fit, character: Character) -> Json:
     amount, unit = shown(missed.amount, missed.kind, character)
     return {
         "name": missed.name,
@@ -179,7 +179,7 @@ def _contact(motion: Motion, adaptation: Adaptation, i: int, pin: str | None) ->
         "end_frame": scene_frame(fit, contact.end),
         "pinned_from_s": at.pin_start,
         "pinned_to_s": at.pin_end,
-        "fitted_place_m": adaptation.plan.start.places[i].tolist(),
+        "fitted_place_m": adaptation.setup.start.places[i].tolist(),
         "place_m": motion.places[i].tolist(),
         "worst_violation_mm": 1000.0 * float(drift.max()),
         "worst_violation_frame": scene_frame(fit, float(pinned[drift.argmax()])),
@@ -232,7 +232,7 @@ def _forces(motion: Motion, adaptation: Adaptation) -> Json:
     carried = np.where(ground[:, 2] > LIGHTEST, ground[:, 2], np.inf)
     grip = np.linalg.norm(ground[:, :2], axis=1) / carried
     peaks = []
-    for phase in adaptation.plan.schedule.phases:
+    for phase in adaptation.setup.schedule.phases:
         inside = (times >= phase.start) & (times <= phase.end)
         if phase.kind is PhaseKind.GROUND and inside.any():
             at = int(np.argmax(np.where(inside, total, -1.0)))
@@ -256,7 +256,7 @@ def closeness(fit: Fit) -> Json:
 
 def _reduction(adaptation: Adaptation) -> Json | None:
     """The reduced figure, with the curve that its size is chosen by."""
-    space = adaptation.plan.space
+    space = adaptation.setup.space
     if space is None:
         return None
     return {
@@ -279,7 +279,7 @@ def _in_play(problem: MotionProblem) -> bool:
 
 def _torques(adaptation: Adaptation, problem: MotionProblem) -> Json:
     """The largest torque at every joint, and the splines that hold them."""
-    motion, torques = adaptation.motion, adaptation.plan.torques
+    motion, torques = adaptation.motion, adaptation.setup.torques
     times = (instants(motion.duration, RATE) + 0.5 / RATE)[:-1]
     sizes = np.abs(exact_torques(motion, torques, times))
     character = motion.transcription.character
@@ -300,7 +300,7 @@ def _torques(adaptation: Adaptation, problem: MotionProblem) -> Json:
 def change(adaptation: Adaptation) -> Json:
     """How far the motion is from the fit, at the recording's frames and on its own time."""
     times = adaptation.fit.performance.times
-    moved = adaptation.plan.scene.timeline.to_new(times)
+    moved = adaptation.setup.context.timeline.to_new(times)
     kept = moved <= adaptation.motion.duration
     was, now = adaptation.fit.motion, adaptation.motion
     places = now.joint_centres(moved[kept]) - was.joint_centres(times[kept])

@@ -13,7 +13,7 @@ from ..data.contacts import Phase
 from ..data.problem import MotionProblem
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
-from ..transcription.constraint import Missed, missed
+from ..transcription.constraint import DenseViolation, dense_violation
 from ..transcription.rows import RowKind
 
 MOST_LISTED = 3  # constraints that a failure names
@@ -31,10 +31,10 @@ def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
     return names
 
 
-def missed_conditions(adaptation: Adaptation) -> list[Missed]:
+def missed_conditions(adaptation: Adaptation) -> list[DenseViolation]:
     """By how much each of the artist's conditions is missed at worst, between the nodes too."""
     x, t = adaptation.motion.x, adaptation.motion.transcription
-    return [missed(c, t.character, t.basis, t.layout, x) for c in t.conditions]
+    return [dense_violation(c, t.character, t.basis, t.layout, x) for c in t.constraints]
 
 
 def worst_constraints(
@@ -55,7 +55,7 @@ def worst_constraints(
     t = motion.transcription
     rows = t.rows(motion.x, adaptation.outcome.places)
     pins = pins_of_contacts(adaptation.fit, problem)
-    phases = adaptation.plan.schedule.phases
+    phases = adaptation.setup.schedule.phases
     owners = [f"{pins[name]}: {name}" if name in pins else name for name in t.owners]
     found: dict[tuple[str, RowKind], float] = {}
     for kind, time, owner, left in zip(

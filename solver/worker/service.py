@@ -146,8 +146,8 @@ class Service:
             self._following = following
         follower = following.follower
         course = follower.follow(problem)
-        seen = _seen(measured, follower.motion, follower.plan.schedule, None)
-        numbers = change(fitted, follower.plan, follower.motion, seen)
+        seen = _seen(measured, follower.motion, follower.setup.schedule, None)
+        numbers = change(fitted, follower.setup, follower.motion, seen)
         return Followed(request, seen, course, numbers)
 
     def _similar(self, fitted: Fit, problem: MotionProblem) -> Adaptation | None:
@@ -247,7 +247,7 @@ def _adapted(
     content["stages"] = [
         {"name": name, "seconds": spent} for name, spent in zip(names, seconds, strict=True)
     ]
-    back, schedule = 1.0 / measured.factor, adaptation.plan.schedule
+    back, schedule = 1.0 / measured.factor, adaptation.setup.schedule
     return Adapted(
         request,
         scaled_track(adaptation.track, back),

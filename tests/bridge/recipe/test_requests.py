@@ -30,7 +30,7 @@ from hangtime.solver.data.requests import (
     LimbChange,
     Method,
     Moment,
-    Objective,
+    ObjectiveKind,
     OrientationRequest,
     Path,
     PhaseTiming,
@@ -237,7 +237,7 @@ REQUESTS = Requests(
     solution=SolverOptions(
         Method.EXPLICIT,
         Dynamics.STANDARD,
-        ((Objective.TORQUE_SMOOTHNESS, 2.0), (Objective.CLOSENESS, 0.5)),
+        ((ObjectiveKind.TORQUE_SMOOTHNESS, 2.0), (ObjectiveKind.CLOSENESS, 0.5)),
         Reduction(
             ReductionKind.MATRIX, matrix=((("Thigh.L", (1.0, 0.0, 0.0)), ("Thigh.R", (1.0,))),)
         ),
@@ -391,7 +391,7 @@ SOLUTIONS = st.builds(
     SolverOptions,
     method=st.sampled_from(Method),
     dynamics=st.sampled_from(Dynamics),
-    objectives=st.dictionaries(st.sampled_from(Objective), NOT_NEGATIVE, min_size=1).map(
+    objectives=st.dictionaries(st.sampled_from(ObjectiveKind), NOT_NEGATIVE, min_size=1).map(
         lambda weights: tuple(weights.items())
     ),
     reduction=st.none() | REDUCTIONS,

@@ -9,7 +9,7 @@ from hangtime.solver.data.requests import (
     Dynamics,
     ForceRequest,
     Method,
-    Objective,
+    ObjectiveKind,
     Requests,
     SolverOptions,
     TorqueLimit,
@@ -102,7 +102,7 @@ def test_reduced_dynamics_have_no_torques_to_weigh(method: Method) -> None:
 
 
 def test_what_needs_no_torques_is_lessened_with_reduced_dynamics() -> None:
-    weights = ((Objective.ANGLE_SMOOTHNESS, 1.0), (Objective.CLOSENESS, 1.0))
+    weights = ((ObjectiveKind.ANGLE_SMOOTHNESS, 1.0), (ObjectiveKind.CLOSENESS, 1.0))
     solution = SolverOptions(Method.EXPLICIT, Dynamics.REDUCED, weights)
     found = adapt(fitted_hop(), MotionProblem(requests=Requests(solution=solution)))
     assert found.solved
