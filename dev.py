@@ -11,7 +11,7 @@
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
   benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
   build [--out DIR]                       make and validate the extension's zips
-  lint                                    ruff and mypy
+  lint                                    ruff, mypy, import contracts, limits of the house
 
 Makes its own environment in .hangtime/ on first use; needs Python alone. Without --blender it takes
 the newest Blender with long-term support that this Python can run.
@@ -65,19 +65,19 @@ def main(argv: list[str]) -> int:
         module, leading, tools = COMMANDS[command]
         blender, python = pythons.choose(wanted)
         if command == PEERS:
-            place = virtual_environment.prepare_peers(blender, python)
+            env = virtual_environment.prepare_peers(blender, python)
         else:
-            place = virtual_environment.prepare(blender, python, tools)
+            env = virtual_environment.prepare(blender, python, tools)
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2
-    return run(place, [module, *leading, *rest])
+    return run(env, [module, *leading, *rest])
 
 
-def run(place: virtual_environment.Place, arguments: list[str]) -> int:
+def run(env: virtual_environment.VirtualEnvironment, arguments: list[str]) -> int:
     """Run a module of the package in the environment; its exit code."""
     launcher = os.path.join(virtual_environment.ROOT, "devtools", "package.py")
-    code = subprocess.call([place.python, launcher, *arguments], env=place.variables())
+    code = subprocess.call([env.python, launcher, *arguments], env=env.variables())
     return code if code >= 0 else 128 - code  # a signal, the way shells count it
 
 

@@ -14,11 +14,11 @@ import pinocchio
 from scipy.linalg import cholesky_banded
 from scipy.sparse import csc_matrix
 
+from ..devtools.peers.task import Equations, FloatArray, Task, metric_entries
 from ..solver.body.character import Character
 from ..solver.optimisation.kkt_step import LinearisedProblem
 from ..solver.results.mjcf import mjcf, motion_state
 from ..solver.transcription.motion import Motion
-from .task import Equations, FloatArray, Task, metric_entries
 
 RIDGE = 100.0  # weight of the rows beside the metric, as in our own steps
 

@@ -4,13 +4,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 
+from ..devtools.peers import ipopt_peer
+from ..devtools.peers.task import PeerResult, Task
 from ..solver.stages.fit import Fit, fit
 from ..solver.stages.implicit import Adaptation, adapt
-from . import floor, ipopt_peer, naive_peer, scaling, snopt_peer
+from . import floor, naive_peer, scaling, snopt_peer
 from .recordings import JUMP, analysed, jump
 from .solutions import IMPLICIT, SOLUTIONS, with_solution
 from .tables import Table, Value
-from .task import PeerResult, Task
 from .timing import REPEATS, in_turns
 
 Peer = Callable[[Task, float], PeerResult]

@@ -13,12 +13,21 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..solver.body.dynamics import GRAVITY, Moving, body_frames, carried, momentum_rate
+from ..devtools.peers.ipopt_peer import sparse
+from ..devtools.peers.task import (
+    Entries,
+    FloatArray,
+    IntArray,
+    PeerResult,
+    Task,
+    judged,
+    metric_entries,
+)
+from ..solver.body.dynamics import BodyMotion, body_frames, momentum_rate, point_motion
+from ..solver.data.constants import STANDARD_GRAVITY
 from ..solver.numerics.splines import ORDER
 from ..solver.transcription.rows import RowKind, Rows
 from ..solver.transcription.transcription import Transcription
-from .ipopt_peer import sparse
-from .task import Entries, FloatArray, IntArray, PeerResult, Task, judged, metric_entries
 
 LEAST = 1e-6  # BW; rounds off the tip of the friction cone, where it has no derivative
 
@@ -107,7 +116,7 @@ class Graph:
         bend = _spline(self.t, when, 2) @ self.com
         pushes = ca.reshape((_linear(self.t, when) @ self.forces).T, 3, -1)
         total = _summed(pushes, self.t.layout.n_points)
-        return ca.vec(bend.T / GRAVITY + ca.DM([0.0, 0.0, 1.0]) - total)
+        return ca.vec(bend.T / STANDARD_GRAVITY + ca.DM([0.0, 0.0, 1.0]) - total)
 
     def _moment(self, when: _When) -> ca.MX:
         state = [(_spline(self.t, when, k) @ self.angles).T for k in range(3)]
@@ -183,7 +192,7 @@ def moment_function(t: Transcription) -> ca.Function:
     """(q, v, a, forces (3 P,) BW) -> what the moment leaves unexplained, (3,) BW m."""
     q, v, a = (ca.SX.sym(name, t.character.n_angles) for name in "qva")
     push = ca.SX.sym("f", 3 * t.layout.n_points)
-    left = momentum_rate(t.character, q, v, a) / (t.character.mass * GRAVITY)
+    left = momentum_rate(t.character, q, v, a) / (t.character.mass * STANDARD_GRAVITY)
     at, _ = _relative(t, q, v)
     for i, arm in enumerate(at):
         left -= ca.cross(arm, push[3 * i : 3 * i + 3])
@@ -199,10 +208,10 @@ def points_function(t: Transcription) -> ca.Function:
 
 
 def _relative(t: Transcription, q: ca.SX, v: ca.SX) -> tuple[list[ca.SX], list[ca.SX]]:
-    frames: list[Moving] = body_frames(t.character, q, v, ca.SX.zeros(t.character.n_angles))
+    frames: list[BodyMotion] = body_frames(t.character, q, v, ca.SX.zeros(t.character.n_angles))
     bodies = t.character.bodies
-    moving = [carried(f, ca.SX(b.com)) for f, b in zip(frames, bodies, strict=True)]
+    moving = [point_motion(f, ca.SX(b.com)) for f, b in zip(frames, bodies, strict=True)]
     shares = [b.mass / t.character.mass for b in bodies]
     com = [sum(s * m[k] for s, m in zip(shares, moving, strict=True)) for k in (0, 1)]
-    found = [carried(frames[p.body], ca.SX(p.place)) for p in t.points]
+    found = [point_motion(frames[p.body], ca.SX(p.place)) for p in t.points]
     return [f[0] - com[0] for f in found], [f[1] - com[1] for f in found]

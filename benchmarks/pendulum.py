@@ -16,11 +16,11 @@ import casadi as ca
 import numpy as np
 
 from ..solver.arrays import FloatArray
-from ..solver.numerics.splines import Basis, gauss_instants
+from ..solver.data.constants import STANDARD_GRAVITY
+from ..solver.numerics.splines import SplineBasis, gauss_instants
 
 MASS = 70.0  # kg
 LENGTH = 1.70  # m, of a uniform rod
-GRAVITY = 9.81
 DURATION = 1.5  # s
 SPANS = 12
 GAUSS = 2
@@ -29,7 +29,7 @@ MOST_ITERATIONS = 2000
 SCALES = {  # of the mass density
     "unscaled": 1.0,
     "mass density x 0.001": 0.001,
-    "body weights": 1.0 / (MASS * GRAVITY),
+    "body weights": 1.0 / (MASS * STANDARD_GRAVITY),
 }
 
 
@@ -49,9 +49,9 @@ def wanted(times: FloatArray) -> FloatArray:
     return np.asarray(0.8 * np.cos(2.0 * np.pi * times / DURATION) + 0.3 * times)
 
 
-def basis() -> Basis:
+def basis() -> SplineBasis:
     """The splines of angle and torque."""
-    return Basis(np.linspace(0.0, DURATION, SPANS + 1), np.zeros(SPANS + 1, dtype=bool))
+    return SplineBasis(np.linspace(0.0, DURATION, SPANS + 1), np.zeros(SPANS + 1, dtype=bool))
 
 
 def solve(scale: float) -> Swing:
@@ -80,7 +80,7 @@ def solve(scale: float) -> Swing:
 def unbalanced(angle: ca.SX, acceleration: ca.SX, torque: ca.SX, scale: float) -> ca.SX:
     """What the rod's equation of motion about its pivot leaves over."""
     mass = scale * MASS
-    inertia, weight = mass * LENGTH**2 / 3.0, 0.5 * mass * GRAVITY * LENGTH
+    inertia, weight = mass * LENGTH**2 / 3.0, 0.5 * mass * STANDARD_GRAVITY * LENGTH
     return inertia * acceleration + weight * ca.sin(angle) - torque
 
 

@@ -5,7 +5,7 @@ from functools import cache
 from ..bridge.formats.acclaim import find_asf, read_acclaim
 from ..bridge.formats.bvh import read_bvh
 from ..bridge.formats.guess import guess_unit, guess_up
-from ..bridge.formats.skeleton import to_recording
+from ..bridge.formats.motion_clip import to_recording
 from ..devtools.recordings import HOPS, JUMP, find
 from ..solver.analysis.analyse import Analysis, analyse
 from ..solver.data.problem import MotionProblem, Pin

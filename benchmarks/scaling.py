@@ -6,18 +6,18 @@ from functools import partial
 
 import numpy as np
 
+from ..devtools.peers.task import IntArray, Task
 from ..solver.analysis.performance import Performance
 from ..solver.body.anatomy import Part
 from ..solver.body.character import Character, Joint
 from ..solver.body.dynamics import MomentFunction
-from ..solver.body.joint_axes import Axes
+from ..solver.body.joint_axes import JointAxes
 from ..solver.numerics.rotations import mean_rotation
 from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
 from ..solver.stages.fit import ADAPT_COST_WEIGHTS, Fit, fit, motion_metric
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
 from .recordings import HOPS, analysed, hops
-from .task import IntArray, Task
 from .timing import in_turns, timed
 
 FIRST = 0.99  # s, where the windows of the hops begin
@@ -72,7 +72,7 @@ def welded(performance: Performance, parts: tuple[Part, ...]) -> tuple[Character
         if body.part in parts:
             parent = performance.rotations[:, joint.parent]
             relative = np.swapaxes(parent, -1, -2) @ performance.rotations[:, i]
-            axes = Axes(0, mean_rotation(relative), np.eye(3))
+            axes = JointAxes(0, mean_rotation(relative), np.eye(3))
         else:
             kept += range(joint.first, joint.dofs.stop)
         first = joints[-1].first + joints[-1].axes.dofs if joints else 0

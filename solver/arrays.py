@@ -1,4 +1,4 @@
-"""The array types of the solver, by the kind of their numbers."""
+"""NumPy array types by element kind; shapes and units are told in docstrings."""
 
 import numpy as np
 from numpy.typing import NDArray

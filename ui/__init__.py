@@ -1,1 +1,1 @@
-"""What the artist sees: panels, overlays, gizmos, plots, bars; and their registration."""
+"""The artist's surface: panels, overlays, gizmos, plots, bars; and their registration."""

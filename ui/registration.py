@@ -10,6 +10,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bridge import worker_client
+from ..bridge.accessors import ATTRIBUTE, present
 from ..bridge.properties import settings, stances
 from ..operators import names
 from ..operators.drag import aim_cone, limit_operator, pin_operator, turn_stance
@@ -17,6 +18,7 @@ from ..operators.export import exports, save_plots
 from ..operators.lists import body_changes, constraints, contacts, place_by_empty, presets, put_back
 from ..operators.solve import adapt, analyze, results, session, show
 from ..operators.timeline import contact_edge_operator
+from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
 from .panels import constraint_lists, constraint_menus, contact_list, display, menu, setup, solve
@@ -66,20 +68,30 @@ def register() -> Callable[[], None]:
     with ExitStack() as undo:
         _add_worker(undo)
         for cls in CLASSES:
-            bpy.utils.register_class(cls)
-            undo.callback(bpy.utils.unregister_class, cls)
+            # the stubs leave out groups of gizmos
+            bpy.utils.register_class(cls)  # type: ignore[arg-type]
+            undo.callback(bpy.utils.unregister_class, cls)  # type: ignore[arg-type]
         for carrier, group in settings.CARRIERS.items():
-            group_of = bpy.props.PointerProperty(type=group, override={"LIBRARY_OVERRIDABLE"})
-            setattr(carrier, names.ATTRIBUTE, group_of)
-            undo.callback(delattr, carrier, names.ATTRIBUTE)
+            # a property until it is assigned; the stubs say nothing
+            group_of = bpy.props.PointerProperty(  # type: ignore[func-returns-value]
+                type=group, override={"LIBRARY_OVERRIDABLE"}
+            )
+            setattr(carrier, ATTRIBUTE, group_of)
+            undo.callback(delattr, carrier, ATTRIBUTE)
         bpy.app.handlers.depsgraph_update_post.append(_follow_empties)
         undo.callback(bpy.app.handlers.depsgraph_update_post.remove, _follow_empties)
         undo.callback(session.session().end)
+        # Keys are pairs, whatever the stubs say.
+        bpy.app.translations.register(__package__, TRANSLATIONS)  # type: ignore[arg-type]
+        undo.callback(bpy.app.translations.unregister, __package__)
         menu.add(undo)
         overlay.add(undo)
         plots.add(undo)
         timeline.add(undo)
-        command = bpy.utils.register_cli_command(names.COMMAND, _run_command)
+        # a handle, of which the stubs do not know
+        command = bpy.utils.register_cli_command(  # type: ignore[func-returns-value]
+            names.COMMAND, _run_command
+        )
         undo.callback(bpy.utils.unregister_cli_command, command)
         return undo.pop_all().close
 
@@ -92,11 +104,11 @@ def _add_worker(undo: ExitStack) -> None:
     undo.callback(end)
 
 
-@persistent
+@persistent  # type: ignore[untyped-decorator]  # any, in the stubs
 def _follow_empties(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     for update in depsgraph.updates:
         if update.is_updated_transform and isinstance(update.id, bpy.types.Object):
-            stances.follow(update.id.original)
+            stances.follow(present(update.id.original))
 
 
 def _run_command(arguments: list[str]) -> int:

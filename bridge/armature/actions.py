@@ -1,4 +1,4 @@
-"""The recording's action and the actions made from it: which is which, reading and writing them."""
+"""Recorded and adapted actions: lookup, reading and writing."""
 
 from __future__ import annotations
 
@@ -10,47 +10,43 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack, Recording
+from ..accessors import current_action, current_scene
+from ..properties.settings import action_settings, settings_of
 from . import fcurves
-from .incremental import Parts, complete, sample_in_parts
+from .incremental import Incremental, complete, sample_incrementally
 from .poses import Poses, sample
-from .read import recorded, whole_frames
-from .write import write_in_parts
-
-
-def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The action that animates the armature now."""
-    data = armature.animation_data
-    return data.action if data is not None else None
+from .read import recording_of, whole_frames
+from .write import write_incrementally
 
 
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The recording's: the armature's action, or the one that this was adapted from."""
+    """Recorded action: the armature's own, or the one that this was adapted from."""
     action = current_action(armature)
     if action is None:
         return None
-    return action.hangtime.recording or action
+    return action_settings(action).recording or action
 
 
-def read_take(
+def read_recorded(
     armature: bpy.types.Object | None, first: float | None, last: float | None
 ) -> Recording:
-    """Reads the recording, whichever of its actions is shown. Raises as `read_recording`."""
-    return complete(read_take_in_parts(armature, first, last))
+    """Read the recording, whichever of its actions is shown. Raises as `read_recording`."""
+    return complete(read_recorded_incrementally(armature, first, last))
 
 
-def read_take_in_parts(
+def read_recorded_incrementally(
     armature: bpy.types.Object | None, first: float | None, last: float | None
-) -> Parts[Recording]:
-    """The same, a few frames a part."""
+) -> Incremental[Recording]:
+    """Read the recording, a few frames a slice."""
     if armature is None or current_action(armature) is None:
         whole_frames(armature, first, last)
     assert armature is not None
     showing = partial(_showing, armature, recorded_action(armature))
     with showing():
         frames = whole_frames(armature, first, last)
-    poses = yield from sample_in_parts(armature, frames, showing)
+    poses = yield from sample_incrementally(armature, frames, showing)
     with showing():
-        return recorded(armature, frames, poses)
+        return recording_of(armature, frames, poses)
 
 
 def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
@@ -59,17 +55,17 @@ def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
         return sample(armature, frames)
 
 
-def write_take(armature: bpy.types.Object, track: PoseTrack) -> bpy.types.Action:
-    """Writes an adapted performance as a new action, which is assigned and knows its recording."""
-    return complete(write_take_in_parts(armature, track))
+def write_adapted_incrementally(
+    armature: bpy.types.Object, track: PoseTrack
+) -> Incremental[bpy.types.Action]:
+    """Write an adapted performance as a new action, which is assigned and knows its recording.
 
-
-def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[bpy.types.Action]:
-    """The same in parts; before the last one the armature is as it was."""
+    Before the last slice the armature is as it was.
+    """
     original = recorded_action(armature)
     assert original is not None
     slot = fcurves.slot_identifier(armature)
-    action = yield from write_in_parts(
+    action = yield from write_incrementally(
         armature,
         track,
         original,
@@ -77,22 +73,24 @@ def write_take_in_parts(armature: bpy.types.Object, track: PoseTrack) -> Parts[b
         name=f"{original.name} adapted",
         showing=partial(_showing, armature, original),
     )
-    action.hangtime.recording = original
+    action_settings(action).recording = original
     show(armature, action, slot)
-    armature.hangtime.adapted = action
+    settings_of(armature).adapted = action
     return action
 
 
-def show(armature: bpy.types.Object, action: bpy.types.Action, slot: str | None = None) -> None:
-    """Lets the armature perform an action; the pose follows."""
+def show(
+    armature: bpy.types.Object, action: bpy.types.Action | None, slot: str | None = None
+) -> None:
+    """Let the armature perform an action; the pose follows."""
     fcurves.assign(armature, action, slot or fcurves.slot_identifier(armature))
-    scene = bpy.context.scene
+    scene = current_scene()
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
 @contextmanager
 def _showing(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
-    """The armature performs `action`; what it performed before comes back."""
+    """Context in which the armature performs `action`; afterwards what it performed before."""
     before, slot = current_action(armature), fcurves.slot_identifier(armature)
     if action == before:
         yield

@@ -1,13 +1,13 @@
-"""Rotation matrices over time, as the channels of Blender's rotation modes.
+"""Rotation matrices over time to the channels of Blender's rotation modes.
 
 Every function takes proper rotations (T, 3, 3) and returns channels (T, n) that vary continuously,
 so that interpolating between two frames never takes the long way round. Angles in rad.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ...solver.arrays import FloatArray
+from ...solver.numerics.rotations import axis_rotation
 
 EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 _LOCKED = 1e-6  # cosine of the middle angle under which the outer two are told apart by noise only
@@ -15,11 +15,13 @@ _SHEARED = 1e-5  # above this a matrix is further from a rotation than by roundi
 
 
 def proper(matrices: FloatArray) -> FloatArray:
-    """The proper rotation nearest to each matrix (..., 3, 3): no scale, shear or mirroring."""
+    """Nearest proper rotation of each matrix (..., 3, 3): no scale, shear or mirroring."""
     size = np.linalg.norm(matrices, axis=(-2, -1), keepdims=True) / np.sqrt(3.0)
     unit = matrices / np.where(size > 0.0, size, 1.0)
     gram = np.swapaxes(unit, -1, -2) @ unit
-    result = 1.5 * unit - 0.5 * unit @ gram  # one step towards the nearest orthogonal matrix
+    result: FloatArray = (
+        1.5 * unit - 0.5 * unit @ gram
+    )  # one step towards the nearest orthogonal matrix
     odd = (np.abs(gram - np.eye(3)).max((-1, -2)) > _SHEARED) | (np.linalg.det(unit) <= 0.0)
     if odd.any():
         u, _, vt = np.linalg.svd(unit[odd])
@@ -89,7 +91,7 @@ def eulers(rotations: FloatArray, order: str, near: FloatArray | None = None) ->
     wanted = None if near is None else near[[i, j, k]]
     innermost = _innermost(outer[:, 0], middle, outer[:, 1], wanted)
     # With the innermost angle given the other two follow without loss, locked or not.
-    rest = rotations @ np.swapaxes(_about(i, innermost), 1, 2)
+    rest = rotations @ np.swapaxes(axis_rotation(i, innermost), 1, 2)
     angles = np.empty((len(rotations), 3))
     angles[:, i] = innermost
     angles[:, j] = np.unwrap(np.arctan2(-sign * rest[:, k, i], rest[:, k, k]))
@@ -117,7 +119,7 @@ def _innermost(
 
 
 def _distance(angles: FloatArray, others: FloatArray) -> FloatArray:
-    return np.abs((angles - others + np.pi) % (2.0 * np.pi) - np.pi).sum(axis=1)
+    return np.asarray(np.abs((angles - others + np.pi) % (2.0 * np.pi) - np.pi).sum(axis=1))
 
 
 def _turns(angle: FloatArray, near: FloatArray | None) -> FloatArray | float:
@@ -131,16 +133,6 @@ def _running_sign(vectors: FloatArray, near: FloatArray | None) -> FloatArray:
     return np.cumprod(np.where(np.einsum("ti,ti->t", vectors, before) < 0.0, -1.0, 1.0))
 
 
-def _about(axis: int, angles: FloatArray) -> FloatArray:
-    """Rotations (T, 3, 3) about a coordinate axis."""
-    j, k = (axis + 1) % 3, (axis + 2) % 3
-    result = np.tile(np.eye(3), (len(angles), 1, 1))
-    result[:, j, j] = result[:, k, k] = np.cos(angles)
-    result[:, k, j] = np.sin(angles)
-    result[:, j, k] = -np.sin(angles)
-    return result
-
-
 def _unit(vectors: FloatArray) -> FloatArray:
     norms = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(norms > 0.0, norms, 1.0)
+    return np.asarray(vectors / np.where(norms > 0.0, norms, 1.0))

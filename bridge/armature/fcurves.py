@@ -1,4 +1,4 @@
-"""F-curves of an action, whichever way this Blender stores them.
+"""F-curves of an action, legacy or layered (4.4): access, keys, cropping.
 
 4.2 and 4.3 keep them in the action. From 4.4 an action has one slot per thing that it animates, and
 the curves are in that slot's channelbag; 5.0 has no other way. Nothing else knows the difference.
@@ -7,13 +7,17 @@ the curves are in that slot's channelbag; 5.0 has no other way. Nothing else kno
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from typing import TypeAlias
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-CurveHolder = bpy.types.bpy_struct  # an Action or an ActionChannelbag: .fcurves and .groups
+from ...solver.arrays import FloatArray
+from ..accessors import current_action, present
+
+CurveHolder: TypeAlias = "bpy.types.Action | bpy.types.ActionChannelbag"  # 4.2 has no channelbags
 
 _LINEAR = 1  # values of the enums in foreach_get and foreach_set
 _FREE_HANDLE = 0
@@ -22,37 +26,61 @@ _ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "t
 _EPSILON = 1e-4  # frames
 
 
-def holder(owner: bpy.types.ID) -> CurveHolder | None:
-    """What holds the F-curves of the action that animates `owner`; None where nothing does."""
-    data = owner.animation_data
-    action = data.action if data is not None else None
+def holder(owner: bpy.types.Object) -> CurveHolder | None:
+    """Container of the F-curves of the action that animates `owner`; None where nothing does."""
+    action = current_action(owner)
     if action is None or not hasattr(action, "slots"):
         return action
-    return _bag(action, data.action_slot)
+    return _bag(action, present(owner.animation_data).action_slot)
+
+
+def curves_of(owner: bpy.types.Object) -> list[bpy.types.FCurve]:
+    """F-curves of the action that animates `owner`; none where nothing does."""
+    curves = holder(owner)
+    return list(curves.fcurves) if curves is not None else []
 
 
 def holder_in(action: bpy.types.Action, slot: str | None) -> CurveHolder | None:
-    """What holds the F-curves of an action's slot of that identifier, whomever it animates."""
+    """Container of the F-curves of an action's slot of that identifier, whomever it animates."""
     if not hasattr(action, "slots"):
         return action
     return _bag(action, next((s for s in action.slots if s.identifier == slot), None))
 
 
-def _bag(action: bpy.types.Action, slot: bpy.types.bpy_struct | None) -> CurveHolder | None:
+def _bag(action: bpy.types.Action, slot: bpy.types.ActionSlot | None) -> CurveHolder | None:
     if slot is None:
         return None
     strips = (strip for layer in action.layers for strip in layer.strips)
-    bags = (strip.channelbag(slot) for strip in strips)
+    bags = (_keyframe_strip(strip).channelbag(slot) for strip in strips)
     return next((bag for bag in bags if bag is not None), None)
 
 
-def slot_identifier(owner: bpy.types.ID) -> str | None:
+def _keyframe_strip(strip: bpy.types.ActionStrip) -> bpy.types.ActionKeyframeStrip:
+    """The only type of strip that there is."""
+    assert isinstance(strip, bpy.types.ActionKeyframeStrip)
+    return strip
+
+
+def new_holder(owner: bpy.types.Object, name: str) -> CurveHolder:
+    """Container of the curves of a new action, which animates `owner`."""
+    data = owner.animation_data_create()
+    data.action = action = bpy.data.actions.new(name)
+    if not hasattr(action, "slots"):
+        return action
+    data.action_slot = slot = action.slots.new(owner.id_type, owner.name)
+    strip = _keyframe_strip(action.layers.new("Layer").strips.new(type="KEYFRAME"))
+    return strip.channelbag(slot, ensure=True)
+
+
+def slot_identifier(owner: bpy.types.Object) -> str | None:
     """Identifier of the slot that `owner` uses; None without one and before Blender 4.4."""
     slot = getattr(owner.animation_data, "action_slot", None)
     return slot.identifier if slot is not None else None
 
 
-def assign(owner: bpy.types.ID, action: bpy.types.Action | None, slot: str | None = None) -> None:
+def assign(
+    owner: bpy.types.Object, action: bpy.types.Action | None, slot: str | None = None
+) -> None:
     """Let `action` animate `owner`, through the slot of that identifier where there are slots.
 
     Without such a slot the first that fits the kind of `owner` is taken.
@@ -80,7 +108,46 @@ def keys(curve: bpy.types.FCurve) -> FloatArray:
     return points.reshape(-1, 2).astype(np.float64)
 
 
-def write_channel(
+def scale_keys(curve: bpy.types.FCurve, frames: float, values: float) -> None:
+    """Multiply the keys and handles of a curve, in time and value."""
+    factors = np.array([frames, values], dtype=np.float32)
+    for attribute in ("co", "handle_left", "handle_right"):
+        table = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
+        curve.keyframe_points.foreach_get(attribute, table)
+        scaled = table.reshape(-1, 2) * factors
+        curve.keyframe_points.foreach_set(attribute, scaled.ravel())
+    curve.update()
+
+
+def align_quaternions(curves: Iterable[bpy.types.FCurve]) -> None:
+    """Flip quaternion keys so that none points away from the one before.
+
+    q and -q are the same rotation, but what lies half way between them is none.
+    """
+    by_path: dict[str, list[bpy.types.FCurve]] = {}
+    for curve in curves:
+        if curve.data_path.endswith("rotation_quaternion"):
+            by_path.setdefault(curve.data_path, []).append(curve)
+    for components in by_path.values():
+        tables = np.array([keys(curve) for curve in components])
+        values = tables[:, :, 1]
+        flips = np.cumsum(np.sum(values[:, 1:] * values[:, :-1], axis=0) < 0.0) % 2 == 1
+        if flips.any():
+            tables[:, 1:, 1] = np.where(flips, -values[:, 1:], values[:, 1:])
+            for curve, table in zip(components, tables, strict=True):
+                curve.keyframe_points.foreach_set("co", table.astype(np.float32).ravel())
+                curve.update()
+
+
+def write_channels(
+    curves: CurveHolder, path: str, frames: FloatArray, values: FloatArray, group: str
+) -> None:
+    """Write the curves of `path`, a column of values (T, n) each, as `_write_channel` does."""
+    for index, column in enumerate(values.T):
+        _write_channel(curves, path, index, frames, column, group)
+
+
+def _write_channel(
     curves: CurveHolder, path: str, index: int, frames: FloatArray, values: FloatArray, group: str
 ) -> None:
     """Make the curve of `path` and `index` these keys (T,) alone, linear in between.
@@ -128,8 +195,8 @@ def _cut_frames(at: FloatArray, inside: NDArray[np.bool_], first: float, last: f
     if inside.any():
         left = before & (whole < at[inside].min() - _EPSILON)
         right = after & (whole > at[inside].max() + _EPSILON)
-        return whole[left | right]
-    return whole if before and after else whole[[0, -1]]
+        return np.asarray(whole[left | right])
+    return whole if before and after else np.asarray(whole[[0, -1]])
 
 
 def _table(curve: bpy.types.FCurve) -> dict[str, NDArray[np.generic]]:

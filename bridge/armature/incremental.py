@@ -1,6 +1,7 @@
-"""Long work on the artist's scene in parts, between which Blender does what else it has to.
+"""Cooperative time slicing: long work on the scene as a generator that yields every 20 ms.
 
-A part leaves the scene as the artist had it. Whoever has no interface to keep alive completes them.
+Between two slices Blender does what else it has to; each leaves the scene as the artist had it.
+Whoever has no interface to keep alive completes them at once.
 """
 
 from __future__ import annotations
@@ -13,41 +14,42 @@ from typing import TypeVar
 import bpy
 import numpy as np
 
-from .poses import FloatArray, Poses, sample
+from ...solver.arrays import FloatArray
+from .poses import Poses, sample
 
 T = TypeVar("T")
-Parts = Generator[None, None, T]
+Incremental = Generator[None, None, T]
 
-PART_S = 0.02
-FEWEST = 4  # frames a part; each part costs one frame more, to go back
+SLICE_S = 0.02
+FEWEST_FRAMES = 4  # a slice; each costs one frame more, to go back
 
 
-def complete(parts: Parts[T]) -> T:
-    """All parts at once: what they return."""
+def complete(slices: Incremental[T]) -> T:
+    """Run all slices at once: their result."""
     while True:
         try:
-            next(parts)
+            next(slices)
         except StopIteration as end:
             result: T = end.value
             return result
 
 
-def sample_in_parts(
+def sample_incrementally(
     armature: bpy.types.Object,
     frames: FloatArray,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
-) -> Parts[Poses]:
-    """`poses.sample`, a few frames a part. showing: entered for each part, such as to let the
+) -> Incremental[Poses]:
+    """Sample poses, a few frames a slice. showing: entered for each slice, such as to let the
     armature perform another action meanwhile."""
     found: list[Poses] = []
-    at, count = 0, FEWEST
+    at, count = 0, FEWEST_FRAMES
     while at < len(frames):
         began = perf_counter()
         with showing():
             found.append(sample(armature, frames[at : at + count]))
         at += count
         spent = perf_counter() - began
-        count = max(FEWEST, int(count * min(PART_S / spent, 8.0)))
+        count = max(FEWEST_FRAMES, int(count * min(SLICE_S / spent, 8.0)))
         yield
     return Poses(
         found[0].bones,

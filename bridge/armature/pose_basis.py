@@ -1,4 +1,4 @@
-"""The channels that bring bones into wanted poses: armature space to each bone's own."""
+"""Pose basis: wanted poses in armature space to the channels of each bone."""
 
 from __future__ import annotations
 
@@ -8,24 +8,25 @@ from mathutils import Matrix
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
+from ..accessors import armature_data, current_scene
 from .channels import proper
 from .poses import Poses, metres_per_unit
 
 
-def bases(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> dict[str, FloatArray]:
-    """What each bone's channels must make, (T, 4, 4), for the track's bones and all above them.
+def pose_bases(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> dict[str, FloatArray]:
+    """Basis matrices (T, 4, 4) by bone, for the track's bones and all their ancestors.
 
     Walks down from the roots: a bone of the track turns to the wanted rotation, any other keeps
     what it had relative to its parent, which may have moved.
     """
     pelvis = track.bones[0]
-    carrier = carrier_of(armature.data.bones[pelvis]).name
+    carrier = carrier_of(armature_data(armature).bones[pelvis]).name
     shift = _wanted_head(poses, track) - poses.matrices[:, poses.bones.index(pelvis), :3, 3]
     wanted = dict(zip(track.bones, _wanted_rotations(poses, track), strict=True))
     result: dict[str, FloatArray] = {}
     new: dict[str, FloatArray] = {}
     for name in _chain(armature, track.bones):
-        bone = armature.data.bones[name]
+        bone = armature_data(armature).bones[name]
         old = poses.matrices[:, poses.bones.index(name)]
         old_parent = poses.matrices[:, poses.bones.index(bone.parent.name)] if bone.parent else None
         parent = new[bone.parent.name] if bone.parent else None
@@ -51,13 +52,13 @@ def _wanted_rotations(poses: Poses, track: PoseTrack) -> FloatArray:
 
 def _wanted_head(poses: Poses, track: PoseTrack) -> FloatArray:
     """The pelvis's head (T, 3) in the armature's space and units."""
-    units = track.root_head / metres_per_unit(bpy.context.scene)
+    units = track.root_head / metres_per_unit(current_scene())
     world = poses.object_to_world
     return np.linalg.solve(world[:, :3, :3], (units - world[:, :3, 3])[..., None])[..., 0]
 
 
 def carrier_of(bone: bpy.types.Bone) -> bpy.types.Bone:
-    """The bone whose location moves `bone`: Blender ignores that of connected bones."""
+    """Bone whose location moves `bone`: Blender ignores the location of connected bones."""
     while bone.use_connect and bone.parent is not None:
         bone = bone.parent
     return bone
@@ -65,7 +66,7 @@ def carrier_of(bone: bpy.types.Bone) -> bpy.types.Bone:
 
 def _chain(armature: bpy.types.Object, bones: tuple[str, ...]) -> list[str]:
     """These bones and all their ancestors, parents first."""
-    rest = [armature.data.bones[name] for name in bones]
+    rest = [armature_data(armature).bones[name] for name in bones]
     found = {b.name: b for bone in rest for b in (bone, *bone.parent_recursive)}
     return sorted(found, key=lambda name: len(found[name].parent_recursive))
 
@@ -84,19 +85,17 @@ def _convert(
     bone: bpy.types.Bone, parent: FloatArray | None, matrices: FloatArray, *, invert: bool
 ) -> FloatArray:
     rest = np.array(bone.matrix_local)
+    above = bone.parent.matrix_local if bone.parent is not None else None
     if _inherits_all(bone):
         frame = rest
         if parent is not None:
-            frame = parent @ np.linalg.solve(np.array(bone.parent.matrix_local), rest)
+            frame = parent @ np.linalg.solve(np.array(above), rest)
         return np.linalg.solve(frame, matrices) if invert else frame @ matrices
     # The rules for bones that inherit only in part are many: Blender knows them.
     parents = (
         [{}] * len(matrices)
         if parent is None
-        else [
-            {"parent_matrix": Matrix(p), "parent_matrix_local": bone.parent.matrix_local}
-            for p in parent
-        ]
+        else [{"parent_matrix": Matrix(p), "parent_matrix_local": above} for p in parent]
     )
     return np.array(
         [
@@ -107,6 +106,7 @@ def _convert(
 
 
 def _inherits_all(bone: bpy.types.Bone) -> bool:
+    """True where a parent passes rotation, location and scale on in full."""
     if not bone.use_local_location:
         return False
     return bone.parent is None or (bone.use_inherit_rotation and bone.inherit_scale == "FULL")

@@ -1,4 +1,4 @@
-"""The evaluated pose of an armature over time, in Blender's own units and spaces."""
+"""Sampling of an armature's evaluated pose over time, in Blender's own units and spaces."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ...solver.arrays import FloatArray
+from ..accessors import armature_data, current_scene, pose_of
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
 
     The scene's frame, and whether the armature is seen, are afterwards what they were.
     """
-    scene = bpy.context.scene
+    scene = current_scene()
     bones = _parents_first(armature)
-    columns = [armature.pose.bones.find(bone.name) for bone in bones]
+    columns = [pose_of(armature).bones.find(bone.name) for bone in bones]
     names = tuple(bone.name for bone in bones)
     parents = tuple(names.index(b.parent.name) if b.parent else -1 for b in bones)
     world = np.empty((len(frames), 4, 4))
@@ -57,7 +57,7 @@ def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
             scene.frame_set(whole, subframe=frame - whole)
             posed = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
             world[t] = posed.matrix_world
-            posed.pose.bones.foreach_get("matrix", flat)
+            pose_of(posed).bones.foreach_get("matrix", flat)
             # Blender stores columns, numpy rows.
             matrices[t] = flat.reshape(-1, 4, 4).transpose(0, 2, 1)[columns]
     return Poses(names, parents, world, matrices)
@@ -65,16 +65,17 @@ def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
 
 @contextmanager
 def evaluated(armature: bpy.types.Object) -> Iterator[None]:
-    """Have Blender evaluate the armature's pose: it skips what is hidden, excluded or at rest.
+    """Context in which Blender evaluates the armature's pose.
 
-    On exit these and the scene's frame are what they were.
+    It skips what is hidden, excluded or at rest. On exit these and the scene's frame are what
+    they were.
     """
-    scene = bpy.context.scene
+    scene, data = current_scene(), armature_data(armature)
     frame, subframe = scene.frame_current, scene.frame_subframe
-    hidden, position = armature.hide_viewport, armature.data.pose_position
+    hidden, position = armature.hide_viewport, data.pose_position
     linked = armature.name in scene.collection.objects
     armature.hide_viewport = False
-    armature.data.pose_position = "POSE"
+    data.pose_position = "POSE"
     if not linked:
         scene.collection.objects.link(armature)
     try:
@@ -82,10 +83,10 @@ def evaluated(armature: bpy.types.Object) -> Iterator[None]:
     finally:
         if not linked:
             scene.collection.objects.unlink(armature)
-        armature.data.pose_position = position
+        data.pose_position = position
         armature.hide_viewport = hidden
         scene.frame_set(frame, subframe=subframe)
 
 
 def _parents_first(armature: bpy.types.Object) -> list[bpy.types.Bone]:
-    return sorted(armature.data.bones, key=lambda bone: len(bone.parent_recursive))
+    return sorted(armature_data(armature).bones, key=lambda bone: len(bone.parent_recursive))

@@ -1,4 +1,4 @@
-"""An armature and its action, read as a Recording."""
+"""Recording from an armature and its action."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from mathutils import Vector
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import BadScale, NoAction, NoArmature, NoBones, NonFiniteKey
 from ...solver.data.recording import Bone, Recording
+from ..accessors import armature_data, current_action, current_scene, present
 from . import fcurves
 from .channels import proper
 from .poses import Poses, frames_per_second, metres_per_unit, sample
@@ -20,7 +21,7 @@ _EPSILON = 1e-4  # frames
 def read_recording(
     armature: bpy.types.Object | None, *, first: float | None = None, last: float | None = None
 ) -> Recording:
-    """The evaluated pose of every bone at every whole scene frame in [first, last].
+    """Sample the evaluated pose of every bone at every whole scene frame in [first, last].
 
     The range defaults to the action's. World space, m, s; the rotations carry no scale. The scene
     is left as it was. The recording is called what the action is called.
@@ -28,38 +29,49 @@ def read_recording(
     Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
     this armature), NonFiniteKey, BadScale.
     """
-    return record(armature, whole_frames(armature, first, last))
+    frames = whole_frames(armature, first, last)
+    return record(present(armature), frames)
 
 
 def whole_frames(
     armature: bpy.types.Object | None, first: float | None, last: float | None
 ) -> FloatArray:
-    """The frames of a recording, (T,). Raises as `read_recording`, but for what poses show."""
+    """Whole frames of a recording (T,), at least one.
+
+    Raises as `read_recording`, but for what poses show.
+    """
     armature, curves = _require_animated(armature)
-    for curve in curves.fcurves:
+    for curve in curves:
         _require_finite(armature, curve)
-    return _whole_frames(armature, curves, first, last)
+    action = present(current_action(armature))
+    if action.use_frame_range:
+        spans = np.array([action.frame_range])
+    else:
+        spans = np.array([curve.range() for curve in curves])
+    start = np.ceil((spans.min() if first is None else first) - _EPSILON)
+    end = np.floor((spans.max() if last is None else last) + _EPSILON)
+    return np.arange(start, max(start, end) + 1.0)
 
 
 def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:
-    """The same at any frames (T,), whole or not, of an armature that has an action.
+    """Record an armature that has an action at any frames (T,), whole or not.
 
     Raises NonFiniteKey, BadScale.
     """
-    return recorded(armature, frames, sample(armature, frames))
+    return recording_of(armature, frames, sample(armature, frames))
 
 
-def recorded(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -> Recording:
-    """Poses sampled at frames (T,) as a Recording. Raises NonFiniteKey, BadScale."""
+def recording_of(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -> Recording:
+    """Convert poses sampled at frames (T,) to a Recording. Raises NonFiniteKey, BadScale."""
     _require_uniform_scale(armature, poses.object_to_world)
-    metres = metres_per_unit(bpy.context.scene)
+    metres = metres_per_unit(current_scene())
     world = poses.object_to_world[:, None] @ poses.matrices
     _require_finite_poses(poses, frames, world)
     return Recording(
-        name=armature.animation_data.action.name,
+        name=present(current_action(armature)).name,
         bones=_rest(armature, poses, metres),
         frames=frames,
-        times=(frames - frames[0]) / frames_per_second(bpy.context.scene),
+        times=(frames - frames[0]) / frames_per_second(current_scene()),
         heads=world[..., :3, 3] * metres,
         rotations=proper(world[..., :3, :3]),
     )
@@ -70,10 +82,10 @@ def _rest(armature: bpy.types.Object, poses: Poses, metres: float) -> tuple[Bone
     world = poses.object_to_world[0]
 
     def place(point: Vector) -> FloatArray:
-        return (world[:3, :3] @ np.array(point) + world[:3, 3]) * metres
+        return np.asarray((world[:3, :3] @ np.array(point) + world[:3, 3]) * metres)
 
     def bone(name: str, parent: int) -> Bone:
-        rest = armature.data.bones[name]
+        rest = armature_data(armature).bones[name]
         rotation = proper(world[:3, :3] @ np.array(rest.matrix_local)[:3, :3])
         return Bone(name, parent, place(rest.head_local), place(rest.tail_local), rotation)
 
@@ -82,33 +94,16 @@ def _rest(armature: bpy.types.Object, poses: Poses, metres: float) -> tuple[Bone
 
 def _require_animated(
     armature: bpy.types.Object | None,
-) -> tuple[bpy.types.Object, fcurves.CurveHolder]:
-    """The armature and what holds its action's curves."""
+) -> tuple[bpy.types.Object, list[bpy.types.FCurve]]:
+    """The armature and its action's curves."""
     if armature is None or armature.type != "ARMATURE":
         raise NoArmature(armature.name if armature is not None else None)
-    if len(armature.data.bones) == 0:
+    if len(armature_data(armature).bones) == 0:
         raise NoBones(armature.name)
-    curves = fcurves.holder(armature)
-    if curves is None or len(curves.fcurves) == 0:
+    curves = fcurves.curves_of(armature)
+    if not curves:
         raise NoAction(armature.name)
     return armature, curves
-
-
-def _whole_frames(
-    armature: bpy.types.Object,
-    curves: fcurves.CurveHolder,
-    first: float | None,
-    last: float | None,
-) -> FloatArray:
-    """Every whole frame of the range, at least one."""
-    action = armature.animation_data.action
-    if action.use_frame_range:
-        spans = np.array([action.frame_range])
-    else:
-        spans = np.array([curve.range() for curve in curves.fcurves])
-    start = np.ceil((spans.min() if first is None else first) - _EPSILON)
-    end = np.floor((spans.max() if last is None else last) + _EPSILON)
-    return np.arange(start, max(start, end) + 1.0)
 
 
 def _require_finite(armature: bpy.types.Object, curve: bpy.types.FCurve) -> None:
@@ -137,6 +132,6 @@ def _require_uniform_scale(armature: bpy.types.Object, object_to_world: FloatArr
     bad = uneven | (np.linalg.det(linear) <= 0.0)
     if bad.any():
         x, y, z = np.linalg.norm(linear[bad][0], axis=0)
-        own = tuple(armature.scale)
+        own = armature.scale.x, armature.scale.y, armature.scale.z
         alone = armature.parent is None and np.allclose(np.abs(own), (x, y, z), rtol=1e-4)
         raise BadScale(armature.name, own if alone else (float(x), float(y), float(z)))

@@ -9,12 +9,12 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack, Recording
-from ..formats.clip_of import clip_of
+from ..formats.motion_clip import from_recording
 from .build_armature import build_armature
 from .read import read_recording
 
 
-def other_figure(
+def build_reproportioned(
     recording: Recording, track: PoseTrack
 ) -> tuple[bpy.types.Object, PoseTrack, dict[str, FloatArray]]:
     """A new armature with a recording's bones, and a track of it in the new bones' axes.
@@ -23,7 +23,7 @@ def other_figure(
     about themselves against the recording's: the third value has by bone the (3, 3) rotation from
     the new axes to the old ones.
     """
-    armature = build_armature(clip_of(recording), 1.0, "Z")
+    armature = build_armature(from_recording(recording), 1.0, "Z")
     built = read_recording(armature)
     turn = {
         bone.name: bone.rotation.T @ built.bones[built.index(bone.name)].rotation

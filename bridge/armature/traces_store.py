@@ -1,8 +1,9 @@
-"""Traces of motions, kept in the artist's file: a recording's with its armature, an adapted one's
+"""Persistence of motion traces in the .blend: a recording's with its armature, an adapted one's
 with its action. What is drawn follows the armature wherever the artist moves it."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from io import BytesIO
@@ -12,8 +13,9 @@ from zlib import crc32
 import bpy
 import numpy as np
 from mathutils import Matrix
+from numpy.typing import NDArray
 
-from ...solver.data.traces import Flight, Traces
+from ...solver.data.traces import FlightParabola, Traces
 
 _CONTENT, _KEY = "hangtime_traces", "hangtime_traces_key"
 _ARRAYS = tuple(f.name for f in fields(Traces) if f.type == "FloatArray")
@@ -23,7 +25,7 @@ _REMEMBERED = 8
 
 
 @dataclass(frozen=True)
-class Kept:
+class StoredTraces:
     """Traces as stored. stood: the armature's world matrix then; key: another for other traces."""
 
     traces: Traces
@@ -36,7 +38,7 @@ class Kept:
 
 
 def keep(owner: bpy.types.ID, traces: Traces, stood: Matrix) -> None:
-    """Stores traces with an armature or an action, in place of earlier ones."""
+    """Store traces with an armature or an action, in place of earlier ones."""
     packed: dict[str, Any] = {n: np.asarray(getattr(traces, n), np.float32) for n in _ARRAYS}
     packed |= {n: np.array(getattr(traces, n), dtype=np.str_) for n in _NAMES}
     packed |= {_WEIGHT: traces.weight, _STOOD: np.array(stood)}
@@ -52,35 +54,42 @@ def keep(owner: bpy.types.ID, traces: Traces, stood: Matrix) -> None:
 
 
 def forget(owner: bpy.types.ID) -> None:
-    """Removes what `keep` stored."""
+    """Remove what `keep` stored."""
     for name in (_CONTENT, _KEY):
-        if name in owner:
+        if owner.get(name) is not None:
             del owner[name]
 
 
-def kept(owner: bpy.types.ID | None) -> Kept | None:
-    """What `keep` stored with an owner; cheap when asked again and again."""
-    key = owner.get(_KEY) if owner is not None else None
+def kept(owner: bpy.types.ID | None) -> StoredTraces | None:
+    """Traces that `keep` stored with an owner; cheap when asked again and again."""
+    if owner is None:
+        return None
+    key = owner.get(_KEY)
     return _unpacked(_Stored(key, owner)) if key is not None else None
 
 
 @dataclass(frozen=True)
 class _Stored:
-    """Where stored traces are; equal where the traces are."""
+    """Location of stored traces; equal where the traces are."""
 
     key: str
     owner: bpy.types.ID = field(compare=False)
 
 
+def _flight(packed: Mapping[str, NDArray[Any]], i: int, name: str) -> FlightParabola:
+    start, end = packed[f"span {i}"].tolist()
+    return FlightParabola(name, start, end, packed[f"parabola {i}"].astype(float))
+
+
 @lru_cache(maxsize=_REMEMBERED)
-def _unpacked(stored: _Stored) -> Kept:
+def _unpacked(stored: _Stored) -> StoredTraces:
     with np.load(BytesIO(stored.owner[_CONTENT]), allow_pickle=False) as packed:
         arrays = {n: packed[n].astype(float) for n in _ARRAYS}
-        names = {n: tuple(packed[n].tolist()) for n in _NAMES}
-        flights = tuple(
-            Flight(name, *packed[f"span {i}"].tolist(), packed[f"parabola {i}"].astype(float))
-            for i, name in enumerate(packed[_FLIGHTS].tolist())
-        )
+        names = [tuple(packed[n].tolist()) for n in _NAMES]
+        flights = tuple(_flight(packed, i, n) for i, n in enumerate(packed[_FLIGHTS].tolist()))
         weight, stood = float(packed[_WEIGHT]), Matrix(packed[_STOOD].tolist())
-    traces = Traces(**arrays, **names, weight=weight, flights=flights)
-    return Kept(traces, stood, stored.key)
+    bones, contacts, joints = names
+    traces = Traces(
+        **arrays, bones=bones, contacts=contacts, joints=joints, weight=weight, flights=flights
+    )
+    return StoredTraces(traces, stood, stored.key)

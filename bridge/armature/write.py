@@ -1,4 +1,4 @@
-"""An adapted performance, written as a new action that leaves the recording's alone."""
+"""Action from an adapted performance; the recording's is left alone."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from mathutils import Matrix, Vector
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
+from ..accessors import armature_data, current_action, current_scene, pose_of, present
 from . import fcurves
 from .channels import channels, proper
-from .incremental import Parts, complete, sample_in_parts
-from .pose_basis import bases, carrier_of
+from .incremental import Incremental, complete, sample_incrementally
+from .pose_basis import carrier_of, pose_bases
 from .poses import metres_per_unit
 
 _ROTATION_CHANNELS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
@@ -30,13 +31,13 @@ def write_action(armature: bpy.types.Object, track: PoseTrack, *, name: str) -> 
     the track's frames. The recording's action gets a fake user and is not changed otherwise.
     Raises KeyError where the armature lacks a bone of the track.
     """
-    recorded, slot = armature.animation_data.action, fcurves.slot_identifier(armature)
-    action = complete(write_in_parts(armature, track, recorded, slot, name=name))
+    recorded, slot = present(current_action(armature)), fcurves.slot_identifier(armature)
+    action = complete(write_incrementally(armature, track, recorded, slot, name=name))
     fcurves.assign(armature, action, slot)
     return action
 
 
-def write_in_parts(
+def write_incrementally(
     armature: bpy.types.Object,
     track: PoseTrack,
     recorded: bpy.types.Action,
@@ -44,20 +45,20 @@ def write_in_parts(
     *,
     name: str,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
-) -> Parts[bpy.types.Action]:
-    """The same for a recording in that slot of an action, without assigning the copy.
+) -> Incremental[bpy.types.Action]:
+    """Write, in slices, for a recording in that slot of an action, without assigning the copy.
 
     showing: lets the armature perform the recording.
     """
-    poses = yield from sample_in_parts(armature, track.frames, showing)
-    made = bases(armature, poses, track)
+    poses = yield from sample_incrementally(armature, track.frames, showing)
+    made = pose_bases(armature, poses, track)
     yield
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False
     whole = False
     try:
-        yield from _write_in_parts(armature, track, made, fcurves.holder_in(action, slot))
+        yield from _write_bases(armature, track, made, fcurves.holder_in(action, slot))
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
@@ -66,20 +67,20 @@ def write_in_parts(
     return action
 
 
-def _write_in_parts(
+def _write_bases(
     armature: bpy.types.Object,
     track: PoseTrack,
     made: dict[str, FloatArray],
     curves: fcurves.CurveHolder | None,
-) -> Parts[None]:
-    """Puts the channels (T, 4, 4) by bone into curves, a bone a part."""
+) -> Incremental[None]:
+    """Write the pose bases (T, 4, 4) by bone into curves, a bone a slice."""
     assert curves is not None
-    carrier = carrier_of(armature.data.bones[track.bones[0]]).name
+    carrier = carrier_of(armature_data(armature).bones[track.bones[0]]).name
     for bone in track.bones:
-        _write_rotation(curves, armature.pose.bones[bone], track.frames, made[bone])
+        _write_rotation(curves, pose_of(armature).bones[bone], track.frames, made[bone])
         yield
-    path = armature.pose.bones[carrier].path_from_id("location")
-    _write_channels(curves, path, carrier, track.frames, made[carrier][:, :3, 3])
+    path = pose_of(armature).bones[carrier].path_from_id("location")
+    fcurves.write_channels(curves, path, track.frames, made[carrier][:, :3, 3], carrier)
     for curve in curves.fcurves:
         fcurves.crop(curve, float(track.frames[0]), float(track.frames[-1]))
 
@@ -98,14 +99,7 @@ def _write_rotation(
         if curve is not None:
             near[index] = curve.evaluate(frames[0])
     values = channels(proper(basis[:, :3, :3]), bone.rotation_mode, near)
-    _write_channels(curves, path, bone.name, frames, values)
-
-
-def _write_channels(
-    curves: fcurves.CurveHolder, path: str, bone: str, frames: FloatArray, values: FloatArray
-) -> None:
-    for index, column in enumerate(values.T):
-        fcurves.write_channel(curves, path, index, frames, column, bone)
+    fcurves.write_channels(curves, path, frames, values, bone.name)
 
 
 def _remove(curves: fcurves.CurveHolder, path: str) -> None:
@@ -133,7 +127,7 @@ def side_by_side(
     for collection in armature.users_collection:
         collection.objects.link(copy)
     fcurves.assign(copy, recording, slot)
-    units = Vector(offset) / metres_per_unit(bpy.context.scene)
+    units = Vector(offset) / metres_per_unit(current_scene())
     # A delta, because the location itself may be animated; it counts in the parent's space.
     to_parent = _parent_space(armature).inverted()
     copy.delta_location = copy.delta_location + to_parent @ units

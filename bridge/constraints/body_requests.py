@@ -3,48 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from ...solver.data.requests import AddedMass, BodyChange, LimbChange
-from ..properties.kinds import BodyKind
-from .row_parts import RowContext, bone_of, offset_of, some_bones
-
-if TYPE_CHECKING:
-    from ..properties.body_change import HangtimeBodyChange
-    from ..properties.settings import HangtimeSettings
+from ..properties.body_change import HangtimeBodyChange
+from ..properties.settings import HangtimeSettings
+from ..rows.choices import BodyKind
+from ..rows.row_parts import RowContext, bone_of, offset_of, some_bones
 
 GRAVITY_DIGITS = 4  # what single precision keeps of 9.81
 
 
 def body_change(
-    settings: HangtimeSettings, changes: Sequence[HangtimeBodyChange], scene: RowContext
+    settings: HangtimeSettings, changes: Sequence[HangtimeBodyChange], context: RowContext
 ) -> BodyChange:
     """What of the body and of gravity shall be another. Raises NoBoneChosen, UnknownBone."""
     loads = [row for row in changes if row.kind == BodyKind.LOAD.name]
     # A limb that stays as it is would have the result written on an armature of its own.
-    limbs = [row for row in changes if row.kind == BodyKind.LIMB.name and changes_limb(row)]
+    limbs = [row for row in changes if row.kind == BodyKind.LIMB.name and not leaves_limb(row)]
     return BodyChange(
         mass=settings.new_mass if settings.use_new_mass else None,
         gravity=round(settings.gravity, GRAVITY_DIGITS),
-        added=tuple(_load(row, scene) for row in loads),
-        limbs=tuple(_limb(row, scene) for row in limbs),
+        added=tuple(_load(row, context) for row in loads),
+        limbs=tuple(_limb(row, context) for row in limbs),
     )
 
 
-def changes_limb(row: HangtimeBodyChange) -> bool:
-    """Whether a limb becomes any longer, shorter, heavier or lighter."""
-    return bool(row.length != 1.0 or row.mass_factor != 1.0)
+def leaves_limb(row: HangtimeBodyChange) -> bool:
+    """Whether a row is about a limb that becomes no longer, shorter, heavier or lighter."""
+    return bool(row.kind == BodyKind.LIMB.name and row.length == row.mass_factor == 1.0)
 
 
-def _load(row: HangtimeBodyChange, scene: RowContext) -> AddedMass:
+def _load(row: HangtimeBodyChange, context: RowContext) -> AddedMass:
     return AddedMass(
         row.name,
-        bone_of(row, scene),
+        bone_of(row, context),
         mass=None if row.by_share else row.mass,
         share=row.share if row.by_share else None,
-        offset=offset_of(row, scene),
+        offset=offset_of(row, context),
     )
 
 
-def _limb(row: HangtimeBodyChange, scene: RowContext) -> LimbChange:
-    return LimbChange(row.name, some_bones(row, scene), row.length, row.mass_factor)
+def _limb(row: HangtimeBodyChange, context: RowContext) -> LimbChange:
+    return LimbChange(row.name, some_bones(row, context), row.length, row.mass_factor)

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import bpy
 import numpy as np
 
 from ...solver.body.anatomy import guess_anatomy
 from ...solver.data.recording import Bone
-
-if TYPE_CHECKING:
-    from ..properties.settings import HangtimeSettings
+from ..accessors import armature_data
+from ..properties.settings import HangtimeSettings, settings_of
 
 _NEEDED = ("head", "upper arm", "forearm", "thigh", "shank", "foot")
 
 
 def find_parts(armature: bpy.types.Object) -> None:
     """Fills the settings' parts from the bones' names; what the artist chose stays."""
-    settings: HangtimeSettings = armature.hangtime
+    settings = settings_of(armature)
     chosen = chosen_parts(settings)
     settings.parts.clear()
     for label, bone in guess_anatomy(named_bones(armature)).items():
@@ -40,7 +37,7 @@ def missing_parts(settings: HangtimeSettings) -> list[str]:
 
 def named_bones(armature: bpy.types.Object) -> list[Bone]:
     """The bones by name and parent alone, parents first."""
-    bones = sorted(armature.data.bones, key=lambda bone: len(bone.parent_recursive))
+    bones = sorted(armature_data(armature).bones, key=lambda bone: len(bone.parent_recursive))
     names = [bone.name for bone in bones]
     nowhere = np.zeros(3)
     return [

@@ -9,8 +9,15 @@ from math import degrees, radians
 import bpy
 import numpy as np
 
-from ...solver.body.human_limits import ConeRange, Range, beyond, human_ranges, missing_joints
-from ..properties.kinds import ConstraintKind
+from ...solver.body.human_limits import (
+    ConeRange,
+    JointRange,
+    human_ranges,
+    limit_violation,
+    missing_joints,
+)
+from ..constraint_kinds import cone, joint_limit
+from ..properties.settings import settings_of
 from .rest_figure import directions, parts_of, recorded_looks, rest_figure, rest_rotations
 from .rows import add_constraint, free_name, hold_throughout
 
@@ -42,21 +49,20 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
     made: dict[str, float] = {}
     for limit in human_ranges(figure):
         name = _add(armature, limit)
-        by = beyond(limit, seen[limit.bone], figure) if limit.bone in seen else 0.0
+        by = limit_violation(limit, seen[limit.bone], figure) if limit.bone in seen else 0.0
         made[name] = by
         if by > NOTICED:
-            row = armature.hangtime.constraints[-1]
+            row = settings_of(armature).constraints[-1]
             row.status = f"The recording goes {degrees(by):.0f}° beyond"
     return JointLimits(tuple(made), missing_joints(figure), made, checked=looks is not None)
 
 
-def _add(armature: bpy.types.Object, limit: Range) -> str:
-    cone = isinstance(limit, ConeRange)
-    kind = ConstraintKind.CONE if cone else ConstraintKind.ANGLE
+def _add(armature: bpy.types.Object, limit: JointRange) -> str:
+    kind = (cone if isinstance(limit, ConeRange) else joint_limit).KIND
     row = add_constraint(armature, kind, [limit.bone], 0.0)
-    row.name = free_name(armature.hangtime, limit.name)
+    row.name = free_name(settings_of(armature), limit.name)
     hold_throughout(row)
-    if cone:
+    if isinstance(limit, ConeRange):
         row.half_angle = limit.half_angle
         row.use_axis, row.axis = True, limit.axis.tolist()
         row.stretch = limit.stretch

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import bpy
 
+from ..accessors import attached
+
 
 def linked_count(armature: bpy.types.Object, rows: str) -> int:
     """How many of a list, the first ones, are linked; rows: the name of the settings' property."""
     override = armature.override_library
     if override is None or override.reference is None:
         return 0
-    return len(getattr(override.reference.hangtime, rows))
+    return len(getattr(attached(override.reference), rows))

@@ -6,7 +6,7 @@ The solver's metres and seconds become Blender's units and scene frames here, an
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import bpy
 import numpy as np
@@ -18,14 +18,13 @@ from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionP
 from ...solver.data.recording import Recording
 from ...solver.data.requests import Requests
 from ...solver.worker.protocol import Analysed
+from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
+from ..properties.settings import HangtimeContact, HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
-
-if TYPE_CHECKING:
-    from ..properties.settings import HangtimeContact, HangtimeSettings
 
 _KEPT = (
     *("name", "point", "bone", "phase", "added", "used", "empty"),
@@ -72,7 +71,8 @@ def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests
 
     span: first and last scene frame. Raises BadRecipe, NamedTwice and as `requests_of`.
     """
-    listed = requests_of(settings, settings.id_data, span)
+    armature: Any = settings.id_data
+    listed = requests_of(settings, armature, span)
     if settings.requests is None:
         return listed
     text = settings.requests
@@ -114,8 +114,8 @@ def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, .
 
     Corrections renumber contacts and phases, so pins name both as they are called afterwards.
     """
-    metres = metres_per_unit(bpy.context.scene)
-    rate = frames_per_second(bpy.context.scene)
+    metres = metres_per_unit(current_scene())
+    rate = frames_per_second(current_scene())
     duration = (span[1] - span[0]) / rate
     used = [row for row in settings.contacts if row.used]
     bare = [_bare_contact(row, span[0], rate, duration) for row in used]
@@ -173,7 +173,7 @@ class _Edit:
         """Whether the row is the contact that was edited."""
         apart = max(abs(a - b) for a, b in zip(row.found_at, self.found_at, strict=True))
         near = abs(row.found_start - self.found_start) < _SAME_START and apart < _SAME_PLACE
-        return row.point == self.point and near
+        return bool(row.point == self.point and near)
 
 
 @dataclass(frozen=True)
@@ -200,8 +200,8 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     """Fills the settings' contacts and stances; contacts that are found again keep their edits."""
     edits = [_Edit.of(row) for row in settings.contacts if not row.added]
     added = [_Added.of(row) for row in settings.contacts if row.added]
-    metres = metres_per_unit(bpy.context.scene)
-    first, rate = float(recording.frames[0]), frames_per_second(bpy.context.scene)
+    metres = metres_per_unit(current_scene())
+    first, rate = float(recording.frames[0]), frames_per_second(current_scene())
     settings.measured_height = found.height
     settings.analysed = digest(recording)
     for stance, (name, axes) in zip(
@@ -225,7 +225,7 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     _restore(settings, edits)
 
 
-def _resized(rows: bpy.types.bpy_prop_collection, count: int) -> list[bpy.types.PropertyGroup]:
+def _resized(rows: Any, count: int) -> list[Any]:
     """That many rows of a list, the old ones first.
 
     An override cannot drop rows of the linked file: those left over are switched off.

@@ -12,10 +12,12 @@ from ...solver.body.anatomy import Part, Segment, Side, guess_anatomy, map_anato
 from ...solver.body.human_limits import RestFigure
 from ...solver.data.faults import MissingPart
 from ...solver.numerics.rotations import unit
+from ..accessors import armature_data
 from ..armature.actions import recorded_action, recorded_poses
 from ..armature.channels import proper
 from ..armature.poses import Poses
-from ..properties.phases import clip_ends, recorded_span
+from ..properties.settings import settings_of
+from ..rows.phases import clip_ends, recorded_span
 from .bone_mapping import chosen_parts, named_bones
 
 LOOKS = 48  # instants of a recording that are looked at, at most
@@ -32,7 +34,7 @@ Parts = dict[tuple[Part, Side], tuple[str, ...]]
 
 def parts_of(armature: bpy.types.Object) -> Parts:
     """The bones of each part of the body, parents first: the artist's choice, else by name."""
-    bones, chosen = named_bones(armature), chosen_parts(armature.hangtime)
+    bones, chosen = named_bones(armature), chosen_parts(settings_of(armature))
     try:
         segments = map_anatomy(bones, chosen)
     except MissingPart:
@@ -57,7 +59,7 @@ def jointed_bones(armature: bpy.types.Object) -> set[str]:
     """
     parts = parts_of(armature)
     if not parts:
-        return {bone.name for bone in armature.data.bones if bone.parent is not None}
+        return {bone.name for bone in armature_data(armature).bones if bone.parent is not None}
     return {b for (part, _), bones in parts.items() if part is not Part.PELVIS for b in bones}
 
 
@@ -69,7 +71,7 @@ def rest_figure(armature: bpy.types.Object, parts: Parts, world: FloatArray) -> 
     sides = [parts.get((Part.THIGH, side), ()) for side in (Side.LEFT, Side.RIGHT)]
     if not all(sides):
         return None
-    bones = armature.data.bones
+    bones = armature_data(armature).bones
     mapped = {bone for several in parts.values() for bone in several}
     turn = proper(world[:3, :3])
     left, right = (np.array(bones[side[0]].head_local) for side in sides)
@@ -100,7 +102,7 @@ def directions(
 
 def recorded_looks(armature: bpy.types.Object) -> Poses | None:
     """The recording's poses at some of its frames; None where there is none."""
-    settings = armature.hangtime
+    settings = settings_of(armature)
     ends = clip_ends(settings) or recorded_span(settings)
     if ends is None or recorded_action(armature) is None:
         return None
@@ -110,7 +112,7 @@ def recorded_looks(armature: bpy.types.Object) -> Poses | None:
 
 def rest_rotations(armature: bpy.types.Object) -> dict[str, FloatArray]:
     """(3, 3) of each bone at rest, to the armature."""
-    return {b.name: np.array(b.matrix_local.to_3x3()) for b in armature.data.bones}
+    return {b.name: np.array(b.matrix_local.to_3x3()) for b in armature_data(armature).bones}
 
 
 def _mapped_above(bone: bpy.types.Bone, mapped: set[str]) -> str | None:
@@ -122,7 +124,8 @@ def _following(name: str, parts: Parts) -> str | None:
     for (part, side), bones in parts.items():
         if name in bones:
             later = bones[bones.index(name) + 1 :]
-            return later[0] if later else next(iter(parts.get((NEXT.get(part), side), ())), None)
+            beyond = parts.get((NEXT[part], side), ()) if part in NEXT else ()
+            return next(iter(later or beyond), None)
     return None
 
 

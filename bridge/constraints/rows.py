@@ -6,46 +6,18 @@ Works on the property groups of bridge/properties/constraint.py; frames are the 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import radians
-from typing import TYPE_CHECKING
 
 import bpy
-from mathutils import Vector
 
 from ...solver.body.anatomy import Side, split_side
-from ..properties.kinds import BodyKind, ConstraintKind, Span
-from ..properties.phases import PhaseSpan, phases_of
-
-if TYPE_CHECKING:
-    from ..properties.body_change import HangtimeBodyChange
-    from ..properties.constraint import HangtimeConstraint
-    from ..properties.settings import HangtimeSettings
+from ..properties.body_change import HangtimeBodyChange
+from ..properties.constraint import HangtimeConstraint
+from ..properties.settings import HangtimeSettings, settings_of
+from ..rows.choices import BodyKind, Span
+from ..rows.kind import BoneUse, ConstraintKind, NewRange
+from ..rows.phases import PhaseSpan, phases_of
 
 AROUND = 5  # frames to either side of the playhead, where no phase is known
-USUAL_TWIST = radians(45.0)
-SHORT = {  # in names, which lists have little room for
-    ConstraintKind.ANGLE: "Bend",
-    ConstraintKind.TWIST: "Twist",
-    ConstraintKind.TORQUE: "Torque",
-    ConstraintKind.ORIENTATION: "Turn",
-}
-SINGLE_BONE = (
-    ConstraintKind.POINT,
-    ConstraintKind.ANGLE,
-    ConstraintKind.CONE,
-    ConstraintKind.TWIST,
-    ConstraintKind.ORIENTATION,
-)
-WITHOUT_BONES = (ConstraintKind.TIMING, ConstraintKind.HOLD)
-OF_TOUCHING = (ConstraintKind.LIFT, ConstraintKind.FORCE)  # their bones are of contacts
-ON_GROUND = OF_TOUCHING
-IN_A_PHASE = (ConstraintKind.LIFT, ConstraintKind.TIMING)  # must have one
-AT_A_FRAME = (  # a single frame is what is meant more often than not
-    ConstraintKind.POINT,
-    ConstraintKind.POSE,
-    ConstraintKind.ORIENTATION,
-    ConstraintKind.HOLD,
-)
 
 
 def add_constraint(
@@ -55,21 +27,18 @@ def add_constraint(
 
     A point is to be where it is shown now. Bones that cannot count for the kind are left out.
     """
-    settings: HangtimeSettings = armature.hangtime
-    row = settings.constraints.add()
+    settings = settings_of(armature)
+    row: HangtimeConstraint = settings.constraints.add()
     row.kind = kind.name
-    if kind in OF_TOUCHING:
+    if kind.bones is BoneUse.TOUCHING:
         touching = {contact.bone for contact in settings.contacts}
         bones = [bone for bone in bones if bone in touching]
-    set_bones(row, () if kind in WITHOUT_BONES else bones)
-    if kind in SINGLE_BONE and not bones:
+    set_bones(row, () if kind.bones is BoneUse.NONE else bones)
+    if kind.bones is BoneUse.ONE and not bones:
         row.bones.add()  # to be chosen
     aim_at(settings, row, kind, frame)
-    row.name = free_name(settings, _called(row, kind, bones))
-    if kind is ConstraintKind.POINT and bones:
-        put_where_shown(armature, row)
-    if kind is ConstraintKind.TWIST:
-        row.lower, row.upper = -USUAL_TWIST, USUAL_TWIST
+    row.name = free_name(settings, kind.row_name(row, bones, title))
+    kind.added(armature, row, bones)
     settings.active_constraint = len(settings.constraints) - 1
     return row
 
@@ -78,7 +47,7 @@ def add_body_change(
     settings: HangtimeSettings, kind: BodyKind, bones: Sequence[str]
 ) -> HangtimeBodyChange:
     """A new row at the end of the list, chosen."""
-    row = settings.body_changes.add()
+    row: HangtimeBodyChange = settings.body_changes.add()
     row.kind = kind.name
     set_bones(row, bones)
     if not bones:
@@ -116,14 +85,6 @@ def title(bone: str) -> str:
     return f"{side.value} {word}".title()
 
 
-def _called(row: HangtimeConstraint, kind: ConstraintKind, bones: Sequence[str]) -> str:
-    if kind in SINGLE_BONE or len(bones) == 1:
-        return f"{title(bones[0])} {SHORT.get(kind, kind.value)}" if bones else kind.value
-    if kind is ConstraintKind.TIMING and row.phase:
-        return f"{row.phase.title()} {kind.value}"
-    return kind.value
-
-
 # ---------------------------------------------------------------- when
 
 
@@ -132,13 +93,13 @@ def aim_at(
 ) -> None:
     """Lets a row hold about when `frame` is: then alone, in its phase, or some frames around."""
     phases = phases_of(settings)
-    phase = _ground_near(phases, frame) if kind in ON_GROUND else phase_at(phases, frame)
+    phase = _ground_near(phases, frame) if kind.on_ground else phase_at(phases, frame)
     row.first_frame, row.last_frame = frame - AROUND, frame + AROUND
     row.pose_frame = frame
     row.phase = phase.name if phase is not None else ""
-    if kind in AT_A_FRAME:
+    if kind.range is NewRange.FRAME:
         row.span, row.first_frame = Span.FRAME.name, frame
-    elif phase is not None or kind in IN_A_PHASE:
+    elif phase is not None or kind.range is NewRange.PHASE_ALWAYS:
         row.span = Span.PHASE.name
     else:
         row.span = Span.FRAMES.name
@@ -168,26 +129,6 @@ def hold_in(row: HangtimeConstraint, phase: str) -> None:
 def hold_throughout(row: HangtimeConstraint) -> None:
     """Lets a row hold during the whole clip."""
     row.span = Span.ALWAYS.name
-
-
-# ---------------------------------------------------------------- where
-
-
-def put_where_shown(
-    armature: bpy.types.Object, row: HangtimeConstraint, *, keep_offset: bool = False
-) -> None:
-    """Lets a point be at the place where it is shown now: the middle of its bone.
-
-    keep_offset: where the artist chose the point in the bone, that one.
-    """
-    graph = bpy.context.evaluated_depsgraph_get()
-    posed = armature.evaluated_get(graph)
-    bone = posed.pose.bones[row.bones[0].name]
-    if not (keep_offset and row.use_offset):
-        # Said as an offset, because the solver's own middle is that of the body, not of the bone.
-        row.use_offset, row.offset = True, (0.0, 0.5 * bone.bone.length, 0.0)
-    row.use_place = True
-    row.place = posed.matrix_world @ bone.matrix @ Vector(row.offset)
 
 
 # ---------------------------------------------------------------- copies

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ..properties.kinds import BodyKind, Met
-from .body_requests import changes_limb
-
-if TYPE_CHECKING:
-    from ..properties.body_change import HangtimeBodyChange
-    from ..properties.constraint import HangtimeConstraint
-    from ..properties.settings import HangtimeSettings
+from ..properties.body_change import HangtimeBodyChange
+from ..properties.constraint import HangtimeConstraint
+from ..properties.settings import HangtimeSettings
+from ..rows.choices import Met
+from .body_requests import leaves_limb
 
 PINNED = 1.0  # mm; a point that something holds from outside and that is nearer is held
 WORDS = {  # of the report's units
@@ -45,7 +43,7 @@ def _status(
 ) -> tuple[str, str]:
     if not row.used:
         return Met.UNKNOWN.name, ""
-    if row.kind == BodyKind.LIMB.name and not changes_limb(row):
+    if isinstance(row, HangtimeBodyChange) and leaves_limb(row):
         return Met.UNKNOWN.name, "Changes nothing yet"
     # What has no condition of its own shapes the problem, so it holds in every solution.
     met, status = found.get(row.name, (True, "Applied"))

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ...solver.data.requests import Path
+from ..accessors import current_scene
 from ..armature import fcurves
-from ..properties.kinds import ConstraintKind
-from .times import Clip, frames_of
-
-if TYPE_CHECKING:
-    from ..properties.constraint import HangtimeConstraint
+from ..constraint_kinds import point
+from ..properties.constraint import HangtimeConstraint
+from ..rows.times import Clip, followed_frames
 
 FloatArray = NDArray[np.float64]
 
@@ -27,8 +25,8 @@ def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> d
     metres: per Blender unit. The scene's frame, and what is seen, are afterwards what they were.
     Raises as `when_of`.
     """
-    following = [r for r in rows if r.kind == ConstraintKind.POINT.name and r.target is not None]
-    frames = {row.name: _whole_frames(*frames_of(row, clip)) for row in following}
+    following = [r for r in rows if r.kind == point.KIND.name and r.target is not None]
+    frames = {row.name: _whole_frames(*followed_frames(row, clip)) for row in following}
     targets = {row.target for row in following}
     moving = [target for target in targets if not _moves_by_keys_alone(target)]
     needed = sorted({f for r in following if r.target in moving for f in frames[r.name].tolist()})
@@ -47,7 +45,7 @@ def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> d
 def _whole_frames(first: float, last: float) -> FloatArray:
     """The whole frames within, and both ends."""
     inside = np.arange(np.ceil(first), np.floor(last) + 1.0)
-    return np.unique([first, *inside, max(first, last)])
+    return np.asarray(np.unique([first, *inside, max(first, last)]))
 
 
 def _moves_by_keys_alone(target: bpy.types.Object) -> bool:
@@ -61,11 +59,9 @@ def _moves_by_keys_alone(target: bpy.types.Object) -> bool:
 def _keyed(target: bpy.types.Object, frames: FloatArray) -> FloatArray:
     """(T, 3) places of an object that is moved by keys alone, Blender units."""
     places = np.tile(np.array(target.location), (len(frames), 1))
-    curves = fcurves.holder(target)
-    for index in range(3) if curves is not None else ():
-        curve = curves.fcurves.find("location", index=index)
-        if curve is not None and not curve.mute:
-            places[:, index] = [curve.evaluate(frame) for frame in frames]
+    for curve in fcurves.curves_of(target):
+        if curve.data_path == "location" and not curve.mute:
+            places[:, curve.array_index] = [curve.evaluate(frame) for frame in frames]
     return np.asarray(places + np.array(target.delta_location))
 
 
@@ -76,7 +72,7 @@ def _sampled(
     places = {target: np.empty((len(frames), 3)) for target in targets}
     if not targets:
         return places
-    scene = bpy.context.scene
+    scene = current_scene()
     with _evaluated(targets):
         for t, frame in enumerate(frames):
             whole = int(np.floor(frame))
@@ -90,7 +86,7 @@ def _sampled(
 @contextmanager
 def _evaluated(targets: Iterable[bpy.types.Object]) -> Iterator[None]:
     """Have Blender evaluate objects: it skips what is hidden or excluded. Then as before."""
-    scene = bpy.context.scene
+    scene = current_scene()
     frame, subframe = scene.frame_current, scene.frame_subframe
     with ExitStack() as undo:
         undo.callback(lambda: scene.frame_set(frame, subframe=subframe))

@@ -1,4 +1,4 @@
-"""An action as FBX, and back for checking."""
+"""Export of an action as FBX or glTF; re-import of an FBX for checking."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ import bpy
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import OutputNotWritable
 from ...solver.data.recording import Recording
+from ..accessors import current_scene, present
 from ..armature import fcurves, read
 from ..armature.poses import evaluated, frames_per_second
+from .data_blocks import data_blocks, remove_added
 
 
 def export_fbx(armature: bpy.types.Object, action: bpy.types.Action, path: str | Path) -> None:
@@ -77,8 +79,8 @@ def _deliver(made: Path, target: Path) -> None:
 
 @contextmanager
 def _selected_alone(armature: bpy.types.Object) -> Iterator[None]:
-    """Only the armature is selected and active, which the exporter looks at; then as before."""
-    layer = bpy.context.view_layer
+    """Context in which only the armature is selected and active, as the exporter wants."""
+    layer = present(bpy.context.view_layer)
     active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
     for thing in selected:
         thing.select_set(False)
@@ -94,12 +96,13 @@ def _selected_alone(armature: bpy.types.Object) -> Iterator[None]:
 
 
 def reimport_fbx(path: str | Path, frames: FloatArray) -> Recording:
-    """What an FBX file holds at the seconds at which the scene shows `frames` (T,), as a Recording.
+    """Record an FBX file at the seconds at which the scene shows `frames` (T,).
 
     Read by Blender's own importer; nothing of it stays. `frames` of the result are as given.
     """
-    render = bpy.context.scene.render
-    seconds = frames / frames_per_second(bpy.context.scene)
+    scene = current_scene()
+    render = scene.render
+    seconds = frames / frames_per_second(scene)
     rate = render.fps, render.fps_base
     with _removed_afterwards():
         before = set(bpy.data.objects)
@@ -114,15 +117,16 @@ def reimport_fbx(path: str | Path, frames: FloatArray) -> Recording:
 
 @contextmanager
 def _alone(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[None]:
-    """The armature evaluated under `action` only, the scene's range that of the action."""
-    scene = bpy.context.scene
+    """Context in which the armature performs `action` alone, in the scene's whole range."""
+    scene = current_scene()
     data = armature.animation_data or armature.animation_data_create()
     was, slot, nla = data.action, fcurves.slot_identifier(armature), data.use_nla
     start, end = scene.frame_start, scene.frame_end
     try:
         fcurves.assign(armature, action, slot)
         data.use_nla = False
-        scene.frame_start, scene.frame_end = map(round, action.frame_range)
+        first, last = action.frame_range[0], action.frame_range[1]
+        scene.frame_start, scene.frame_end = round(first), round(last)
         with evaluated(armature):
             yield
     finally:
@@ -134,17 +138,14 @@ def _alone(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[Non
 
 @contextmanager
 def _removed_afterwards() -> Iterator[None]:
-    """Remove the objects, armatures and actions made inside; the selection comes back."""
-    kinds = bpy.data.objects, bpy.data.armatures, bpy.data.actions
-    before = [set(kind) for kind in kinds]
-    layer = bpy.context.view_layer
+    """Context that removes the data-blocks made inside; the selection comes back."""
+    before = data_blocks()
+    layer = present(bpy.context.view_layer)
     active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
     try:
         yield
     finally:
-        for kind, known in zip(kinds, before, strict=True):
-            for block in set(kind) - known:
-                kind.remove(block)
+        remove_added(before)
         layer.objects.active = active
         for thing in selected:
             thing.select_set(True)

@@ -1,38 +1,36 @@
-"""A motion file into the scene: BVH and FBX by Blender's importers, Acclaim by our own."""
+"""Import of a motion file into the scene: BVH and FBX by Blender's importers, Acclaim by ours."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from functools import partial
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING
 from warnings import catch_warnings, simplefilter
 
+import bpy
 import numpy as np
 
 from ...solver.data.faults import NoAction, NoArmature, UnreadableClip
+from ..accessors import armature_data, current_action, current_scene, pose_of, present
+from ..armature import fcurves
 from ..armature.build_armature import FIRST_FRAME, build_armature
+from ..armature.poses import metres_per_unit
 from ..formats.acclaim import USUAL_RATE, find_asf, read_acclaim
 from ..formats.bvh import read_bvh
 from ..formats.guess import guess_unit, guess_up, likely_unit
-from ..formats.skeleton import MotionClip, UpAxis
-
-if TYPE_CHECKING:
-    import bpy
+from ..formats.motion_clip import MotionClip, UpAxis
+from .data_blocks import data_blocks, remove_added
 
 _PLAUSIBLE_HEIGHT = (0.5, 3.0)  # m
 _HEIGHT_SAMPLES = 5
-_AXES = {
-    "Y": {"axis_forward": "-Z", "axis_up": "Y"},
-    "Z": {"axis_forward": "Y", "axis_up": "Z"},
-}
 
 
 @dataclass(frozen=True)
 class ImportedClip:
-    """What came in, and how it was read.
+    """Imported armature, and how its file was read.
 
     unit_m: m per unit of the file; of an FBX, whose units Blender converts itself, the factor
     applied after that. up: the file's axis that points up, None for an FBX, which tells it.
@@ -66,10 +64,10 @@ def import_clip(
     with _nothing_left_on_failure():
         match path.suffix.lower():
             case ".bvh":
-                return _import_bvh(path, read_bvh(path), unit, up)
+                return _placed(read_bvh(path), unit, up, partial(_import_bvh, path))
             case ".amc":
                 skeleton = find_asf(path) if asf is None else asf
-                return _import_acclaim(read_acclaim(skeleton, path, rate), unit, up)
+                return _placed(read_acclaim(skeleton, path, rate), unit, up, build_armature)
             case ".fbx":
                 return _import_fbx(path, unit)
             case ".asf":
@@ -79,36 +77,37 @@ def import_clip(
                 raise UnreadableClip(str(path), None, "is no BVH, FBX or AMC file")
 
 
-def _import_bvh(
-    path: Path, clip: MotionClip, unit: float | None, up: UpAxis | None
+def _placed(
+    clip: MotionClip,
+    unit: float | None,
+    up: UpAxis | None,
+    make: Callable[[MotionClip, float, UpAxis], bpy.types.Object],
 ) -> ImportedClip:
-    import bpy
+    """Settle unit and up axis of a clip; `make` gets it, its scale to Blender units, the axis."""
+    axis = up or guess_up(clip)
+    metres = unit or clip.unit or guess_unit(clip, axis)
+    armature = make(clip, metres / metres_per_unit(current_scene()), axis)
+    _set_scene(clip)
+    return ImportedClip(armature, metres, unit is None and clip.unit is None, axis, up is None)
 
-    metres, axis = _settle(clip, unit, up)
+
+def _import_bvh(path: Path, _: MotionClip, scale: float, up: UpAxis) -> bpy.types.Object:
     with _importer("io_anim_bvh", path):
         bpy.ops.import_anim.bvh(
             filepath=str(path),
-            global_scale=metres / _metres_per_scene_unit(),
+            global_scale=scale,
             rotate_mode="QUATERNION",
             frame_start=FIRST_FRAME,
-            **_AXES[axis],
+            axis_forward="-Z" if up == "Y" else "Y",
+            axis_up=up,
         )
-    armature = bpy.context.view_layer.objects.active
-    _join_quaternions(armature)
-    _set_scene(clip)
-    return ImportedClip(armature, metres, unit is None and clip.unit is None, axis, up is None)
-
-
-def _import_acclaim(clip: MotionClip, unit: float | None, up: UpAxis | None) -> ImportedClip:
-    metres, axis = _settle(clip, unit, up)
-    armature = build_armature(clip, metres / _metres_per_scene_unit(), axis)
-    _set_scene(clip)
-    return ImportedClip(armature, metres, unit is None and clip.unit is None, axis, up is None)
+    armature = present(present(bpy.context.view_layer).objects.active)
+    # Blender's importer takes each quaternion from its matrix alone: half frames would be wrong.
+    fcurves.align_quaternions(fcurves.curves_of(armature))
+    return armature
 
 
 def _import_fbx(path: Path, unit: float | None) -> ImportedClip:
-    import bpy
-
     if not path.is_file():
         raise UnreadableClip(str(path), None, "cannot be opened")
     before = set(bpy.data.objects)
@@ -116,45 +115,33 @@ def _import_fbx(path: Path, unit: float | None) -> ImportedClip:
         bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)
     created = [o for o in bpy.data.objects if o not in before]
     armature = _animated_armature(path, created)
-    _undo_rounded_rate(armature)
-    _set_range(*_key_range(armature))
+    # The importer placed the keys by the rounded rate.
+    base = current_scene().render.fps_base
+    if base != 1.0:
+        for curve in fcurves.curves_of(armature):
+            fcurves.scale_keys(curve, 1.0 / base, 1.0)
+    frame_range = present(current_action(armature)).frame_range
+    _set_range(round(frame_range[0]), round(frame_range[1]))
     height = _height(armature)
     low, high = _PLAUSIBLE_HEIGHT
     guessed = unit is None and not low <= height <= high
     factor = likely_unit(height) if guessed else unit or 1.0
     if factor != 1.0:
-        _scale_all(created, factor)
+        scale_about_origin(created, factor)
     return ImportedClip(armature, factor, guessed, None, False)
-
-
-def _settle(clip: MotionClip, unit: float | None, up: UpAxis | None) -> tuple[float, UpAxis]:
-    axis = up or guess_up(clip)
-    return unit or clip.unit or guess_unit(clip, axis), axis
 
 
 # ---------------------------------------------------------------- the scene
 
 
 def _leave_other_modes() -> None:
-    import bpy
-
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def _metres_per_scene_unit() -> float:
-    import bpy
-
-    from ..armature.poses import metres_per_unit
-
-    return metres_per_unit(bpy.context.scene)
-
-
 def _set_scene(clip: MotionClip) -> None:
-    """The clip's rate and range, one file frame on one scene frame."""
-    import bpy
-
-    render = bpy.context.scene.render
+    """Set the clip's rate and range, one file frame on one scene frame."""
+    render = current_scene().render
     rate = 1.0 / clip.frame_time
     render.fps = max(1, round(rate))
     render.fps_base = render.fps / rate
@@ -162,21 +149,19 @@ def _set_scene(clip: MotionClip) -> None:
 
 
 def _set_range(first: int, last: int) -> None:
-    """Also shows the first frame: the importers leave the pose of another one behind."""
-    import bpy
-
-    scene = bpy.context.scene
+    """Set the range and show its first frame: importers leave the pose of another one behind."""
+    scene = current_scene()
     scene.frame_start, scene.frame_end = first, last
     scene.frame_set(first)
 
 
 @contextmanager
 def _importer(addon: str, path: Path) -> Iterator[None]:
-    """Blender's importer, enabled where the artist has not; its chatter stays unprinted.
+    """Context of one of Blender's importers, enabled where the artist has not.
 
-    Its complaint about the file becomes UnreadableClip.
+    Its chatter stays unprinted; its complaint about the file becomes UnreadableClip.
     """
-    import addon_utils
+    import addon_utils  # on the path once bpy has been imported
 
     if not addon_utils.check(addon)[1]:
         addon_utils.enable(addon)
@@ -189,124 +174,58 @@ def _importer(addon: str, path: Path) -> Iterator[None]:
 
 
 def _complaint(error: RuntimeError, path: Path) -> str:
-    """What Blender says, without its traceback and without the path, which the fault carries."""
+    """Blender's message without its traceback and without the path, which the fault carries."""
     lines = [s for s in str(error).splitlines() if s and not s.startswith((" ", "Location:"))]
     return lines[-1].removeprefix("Error: ").replace(f" {str(path)!r}", "")
 
 
 @contextmanager
 def _nothing_left_on_failure() -> Iterator[None]:
-    """Removes what a failed import has put into the file, and resets the scene's rate."""
-    import bpy
-
-    data, render = bpy.data, bpy.context.scene.render
-    kinds = (data.objects, data.armatures, data.actions, data.meshes, data.materials, data.images)
-    before = [set(kind) for kind in kinds]
+    """Roll back a failed import: remove what it has put into the file, reset the scene's rate."""
+    before, render = data_blocks(), current_scene().render
     rate = render.fps, render.fps_base
     try:
         yield
     except Exception:
-        added = [set(kind) - old for kind, old in zip(kinds, before, strict=True)]
-        data.batch_remove(set().union(*added))
+        remove_added(before)
         render.fps, render.fps_base = rate
         raise
-
-
-# ---------------------------------------------------------------- keys
-
-
-def _join_quaternions(armature: bpy.types.Object) -> None:
-    """Make neighbouring quaternions lie on one side, so that half frames are what they should be.
-
-    Blender's importer takes each from its matrix alone.
-    """
-    from ..armature.fcurves import holder, keys
-
-    by_path: dict[str, list[bpy.types.FCurve]] = {}
-    for curve in holder(armature).fcurves:
-        if curve.data_path.endswith("rotation_quaternion"):
-            by_path.setdefault(curve.data_path, []).append(curve)
-    for curves in by_path.values():
-        tables = np.array([keys(curve) for curve in curves])
-        values = tables[:, :, 1]
-        flips = np.cumsum(np.sum(values[:, 1:] * values[:, :-1], axis=0) < 0.0) % 2 == 1
-        if flips.any():
-            tables[:, 1:, 1] = np.where(flips, -values[:, 1:], values[:, 1:])
-            for curve, table in zip(curves, tables, strict=True):
-                curve.keyframe_points.foreach_set("co", table.astype(np.float32).ravel())
-                curve.update()
-
-
-def _undo_rounded_rate(armature: bpy.types.Object) -> None:
-    """Put an FBX's keys on whole frames: the importer placed them by the rounded rate."""
-    import bpy
-
-    base = bpy.context.scene.render.fps_base
-    if base != 1.0:
-        _multiply_keys(armature, ("",), 1.0 / base, 1.0)
-
-
-def _multiply_keys(
-    owner: bpy.types.Object, paths: tuple[str, ...], time: float, value: float
-) -> None:
-    """Multiply keys and handles of the owner's curves whose data path starts with one of these."""
-    from ..armature.fcurves import holder
-
-    curves = holder(owner)
-    for curve in curves.fcurves if curves is not None else ():
-        if curve.data_path.startswith(paths):
-            for attribute in ("co", "handle_left", "handle_right"):
-                table = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
-                curve.keyframe_points.foreach_get(attribute, table)
-                scaled = table.reshape(-1, 2) * np.array([time, value], dtype=np.float32)
-                curve.keyframe_points.foreach_set(attribute, scaled.ravel())
-            curve.update()
-
-
-def _key_range(armature: bpy.types.Object) -> tuple[int, int]:
-    first, last = armature.animation_data.action.frame_range
-    return round(first), round(last)
 
 
 # ---------------------------------------------------------------- FBX
 
 
 def _animated_armature(path: Path, created: list[bpy.types.Object]) -> bpy.types.Object:
-    """The armature with the most bones among those that move."""
-    from ..armature.fcurves import holder
-
+    """Armature with the most bones among those that move."""
     armatures = [o for o in created if o.type == "ARMATURE"]
     if not armatures:
         raise NoArmature(path.name)
-    armatures.sort(key=lambda armature: len(armature.data.bones), reverse=True)
+    armatures.sort(key=lambda armature: len(armature_data(armature).bones), reverse=True)
     for armature in armatures:
-        curves = holder(armature)
-        if curves is not None and len(curves.fcurves) > 0:
+        if fcurves.curves_of(armature):
             return armature
     raise NoAction(armatures[0].name)
 
 
 def _height(armature: bpy.types.Object) -> float:
     """Median over the clip of the figure's vertical extent in the world, m."""
-    import bpy
-
-    scene = bpy.context.scene
+    scene = current_scene()
     extents = []
     for frame in np.linspace(scene.frame_start, scene.frame_end, _HEIGHT_SAMPLES):
         scene.frame_set(round(frame))
-        ends = [end for bone in armature.pose.bones for end in (bone.head, bone.tail)]
+        ends = [end for bone in pose_of(armature).bones for end in (bone.head, bone.tail)]
         extents.append(np.ptp([(armature.matrix_world @ end).z for end in ends]))
     scene.frame_set(scene.frame_start)
-    return float(np.median(extents)) * _metres_per_scene_unit()
+    return float(np.median(extents)) * metres_per_unit(scene)
 
 
-def _scale_all(created: list[bpy.types.Object], factor: float) -> None:
-    """Scale everything that came in about the world's origin."""
-    import bpy
-
-    for item in created:
+def scale_about_origin(objects: Iterable[bpy.types.Object], factor: float) -> None:
+    """Scale objects and their animated places about the world's origin; children follow."""
+    for item in objects:
         if item.parent is None:
             item.location *= factor
             item.scale *= factor
-            _multiply_keys(item, ("location", "scale"), 1.0, factor)
-    bpy.context.view_layer.update()
+            for curve in fcurves.curves_of(item):
+                if curve.data_path.startswith(("location", "scale")):
+                    fcurves.scale_keys(curve, 1.0, factor)
+    present(bpy.context.view_layer).update()

@@ -1,4 +1,4 @@
-"""Acclaim files: a skeleton (.asf) and its motion (.amc).
+"""Reader of Acclaim files: a skeleton (.asf) and its motion (.amc).
 
 An ASF bone reaches from its parent's end to its own; its degrees of freedom turn it about its
 start, measured in a frame that the file calls its axis.
@@ -13,9 +13,9 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import UnreadableClip
-from . import turns
+from .euler import euler_matrices
 from .guess import likely_unit
-from .skeleton import Joint, MotionClip
+from .motion_clip import Joint, MotionClip
 from .text import Line, Reader, require_finite
 
 INCH = 0.0254
@@ -25,7 +25,7 @@ ROOT = "root"
 
 @dataclass
 class _Part:
-    """One ASF bone, or the root; axes are counted 0 to 2, angles in degrees or as the file says."""
+    """ASF bone, or the root; axes are counted 0 to 2, angles in degrees or as the file says."""
 
     name: str
     line: int
@@ -47,8 +47,10 @@ class _Skeleton:
 
 
 def find_asf(amc: str | Path) -> Path:
-    """The skeleton beside a motion: of the same stem, else of the stem's part before the last _,
-    else the folder's only one. Raises UnreadableClip (of the AMC, no line) where there is none.
+    """Find the skeleton beside a motion.
+
+    Of the same stem, else of the stem's part before the last _, else the folder's only one. Raises
+    UnreadableClip (of the AMC, no line) where there is none.
     """
     amc = Path(amc)
     folder = amc.parent
@@ -66,7 +68,7 @@ def find_asf(amc: str | Path) -> Path:
 def read_acclaim(
     asf_path: str | Path, amc_path: str | Path, frame_rate: float = USUAL_RATE
 ) -> MotionClip:
-    """The clip of a skeleton and a motion; frame_rate in Hz, which neither file tells.
+    """Read a skeleton and a motion; frame_rate in Hz, which neither file tells.
 
     Raises UnreadableClip (with the file and line) and NonFiniteKey (frames counted from 1).
     """
@@ -111,7 +113,7 @@ def _poses(skeleton: _Skeleton, tables: dict[str, FloatArray]) -> tuple[FloatArr
         angles = table[:, spins] * skeleton.degree
         axes = ["xyz".index(part.dof[c][1]) for c in spins]
         # The first of the order turns first: it stands last in the product.
-        turn = turns.product(axes[::-1], angles[:, ::-1])
+        turn = euler_matrices(axes[::-1], angles[:, ::-1])
         matrices[:, j] = part.axis @ turn @ part.axis.T
         for c, name in enumerate(part.dof):
             if name[0] == "t":
@@ -265,7 +267,7 @@ def _axis_order(reader: Reader, line: Line, words: list[str]) -> str:
 def _axis_frame(order: str, turn: FloatArray) -> FloatArray:
     """(3, 3) the frame that turn (3,), rad, about x, y and z in this order reaches."""
     axes = ["XYZ".index(letter) for letter in reversed(order)]
-    return np.asarray(turns.product(axes, turn[None, axes])[0])
+    return np.asarray(euler_matrices(axes, turn[None, axes])[0])
 
 
 def _hierarchy(

@@ -1,4 +1,4 @@
-"""Biovision files (.bvh), laid out line by line as Blender's importer wants them."""
+"""Reader of Biovision files (.bvh), laid out line by line as Blender's importer wants them."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from . import turns
-from .skeleton import Joint, MotionClip
+from .euler import euler_matrices
+from .motion_clip import Joint, MotionClip
 from .text import Line, Reader, require_finite
 
 _CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
@@ -25,7 +25,7 @@ class _Draft:
 
 
 def read_bvh(path: str | Path) -> MotionClip:
-    """The clip in a BVH file.
+    """Read a BVH file.
 
     A position channel replaces the joint's offset, as in Blender. Rotations are multiplied in the
     order of the channels. The frame time is the rate's that the printed digits stand for.
@@ -75,7 +75,7 @@ def _joint(reader: Reader, title: Line, parent: int, drafts: list[_Draft]) -> No
 
 
 def _unique_name(reader: Reader, title: Line, drafts: list[_Draft]) -> str:
-    """The name as Blender spells it: words joined by underscores, doubles numbered."""
+    """Joint name as Blender spells it: words joined by underscores, doubles numbered."""
     if len(title.words) < 2:
         reader.fail(title.number, f"{title.words[0]} without a name")
     taken = {draft.name for draft in drafts}
@@ -157,7 +157,7 @@ def _frame_time(reader: Reader) -> float:
 
 
 def _unrounded(printed: str, seconds: float) -> float:
-    """The time of the whole or television (x/1.001) rate that rounds to what is printed."""
+    """Frame time of the whole or television (x/1.001) rate that rounds to what is printed."""
     digits = printed.lower().partition("e")[0].partition(".")[2]
     slack = 0.5001 * 10.0 ** -len(digits) if "e" not in printed.lower() else 0.0
     for second in (1.0, 1.001):
@@ -179,7 +179,7 @@ def _poses(drafts: list[_Draft], table: FloatArray) -> tuple[FloatArray, FloatAr
         spins = [c for c, name in enumerate(draft.channels) if name.endswith("rotation")]
         moves = [c for c, name in enumerate(draft.channels) if name.endswith("position")]
         axes = ["xyz".index(name[0]) for name in draft.channels]
-        matrices[:, j] = turns.product([axes[c] for c in spins], np.radians(values[:, spins]))
+        matrices[:, j] = euler_matrices([axes[c] for c in spins], np.radians(values[:, spins]))
         positions[:, j] = 0.0 if moves else draft.offset
         for c in moves:
             positions[:, j, axes[c]] = values[:, c]

@@ -1,9 +1,9 @@
-"""What a motion file leaves unsaid: which way is up, and how long its unit is."""
+"""Estimation of the up axis and of the unit of length, where a motion file tells neither."""
 
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from .skeleton import MotionClip, UpAxis, forward_kinematics, rest_axes
+from .motion_clip import MotionClip, UpAxis, forward_kinematics, rest_axes
 
 ACCLAIM_UNIT = 0.0254 / 0.45  # an inch over the scale that the CMU recordings carry
 LIKELY_UNITS = (1.0, 0.1, ACCLAIM_UNIT, 0.0254, 0.01, 0.001)  # m
@@ -12,7 +12,7 @@ SAMPLES = 32
 
 
 def guess_up(clip: MotionClip) -> UpAxis:
-    """The axis along which the head is above the feet; without their names, the tall one."""
+    """Up axis: along which the head is above the feet; without their names, the tall one."""
     points = _sampled_points(clip)
     names = [joint.name.lower() for joint in clip.joints] * 2
     head = [i for i, name in enumerate(names) if "head" in name]

@@ -1,4 +1,4 @@
-"""Reading text so that every complaint can name its line."""
+"""Line-based text reader: every complaint names its line."""
 
 from math import isfinite
 from pathlib import Path
@@ -17,7 +17,7 @@ class Line(NamedTuple):
     words: list[str]
 
     def starts(self, *keyword: str) -> bool:
-        """Whether the line's first words are these, in any case."""
+        """True where the line's first words are these, in any case."""
         return tuple(w.lower() for w in self.words[: len(keyword)]) == keyword
 
 

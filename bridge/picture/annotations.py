@@ -1,4 +1,4 @@
-"""What a picture shows of the constraints beside the body (thesis 6): pure data, no Blender.
+"""Annotations of a picture: constraints beside the body (thesis 6). Pure data, no Blender.
 
 World frame, m, Z up. Every array is either constant or has one axis more in front: a value for each
 instant of the row that the mark belongs to (`SheetRow.times`). So a trajectory of a joint can be
@@ -6,21 +6,21 @@ given as it is, and a fixed place as one vector. `span`: the first and last inst
 mark is shown; it is drawn with every figure in it, or alone where no figure is.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import Annotated, TypeVar, get_type_hints
+from typing import Annotated, Any, TypeVar, get_type_hints
 
 import numpy as np
 
 from ...solver.arrays import FloatArray
 
-Span = tuple[float, float]
-ALWAYS: Span = (-float("inf"), float("inf"))
+TimeSpan = tuple[float, float]
+ALWAYS: TimeSpan = (-float("inf"), float("inf"))
 
 
 class Follows(Enum):
-    """How a vector follows when the world is turned and moved."""
+    """Transformation rule of an array: as points, directions or rotations."""
 
     POINT = "point"
     DIRECTION = "direction"
@@ -47,7 +47,7 @@ class Sphere:
     """A point constraint. place: (3,) m. hollow: the point is only held, no force acts there."""
 
     place: Point
-    span: Span = ALWAYS
+    span: TimeSpan = ALWAYS
     hollow: bool = False
 
 
@@ -66,12 +66,12 @@ class Cone:
     half_angle: float
     length: float
     stretch: tuple[float, float] = (1.0, 1.0)
-    span: Span = ALWAYS
+    span: TimeSpan = ALWAYS
 
 
 @dataclass(frozen=True)
 class LimitArc:
-    """How far a hinge may turn, as a line about its joint.
+    """Angle limits of a hinge, as an arc about its joint.
 
     centre: (3,) m. zero: (3,) unit vector, where the limb points at angle 0. normal: (3,) unit
     vector across it, about which angles count. lower, upper: rad; equal ones give one line.
@@ -84,7 +84,7 @@ class LimitArc:
     lower: float
     upper: float
     radius: float
-    span: Span = ALWAYS
+    span: TimeSpan = ALWAYS
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Ghost:
     centre: Points
     rotation: Rotations
     size: FloatArray
-    span: Span = ALWAYS
+    span: TimeSpan = ALWAYS
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Box:
     centre: Point
     rotation: Rotation
     size: FloatArray
-    span: Span = ALWAYS
+    span: TimeSpan = ALWAYS
 
 
 @dataclass(frozen=True)
@@ -117,11 +117,11 @@ class Bar:
     start: Point
     end: Point
     radius: float = 0.02
-    span: Span = ALWAYS
+    span: TimeSpan = ALWAYS
 
 
 class Tone(Enum):
-    """Why a limb is coloured."""
+    """Reason for which a limb is coloured."""
 
     FIXED = "fixed"  # its joint keeps its angle
     LIMP = "limp"  # the torque at its joint is limited
@@ -133,7 +133,7 @@ class Tint:
 
     limbs: tuple[str, ...]
     tone: Tone
-    span: Span = ALWAYS
+    span: TimeSpan = ALWAYS
 
 
 Mark = Sphere | Cone | LimitArc | Ghost | Box | Bar | Tint
@@ -142,7 +142,7 @@ M = TypeVar("M", Sphere, Cone, LimitArc, Ghost, Box, Bar, Tint, Mark)
 
 def at(mark: M, instant: int) -> M:
     """The mark at one instant (index) of its row: every array without its time axis."""
-    return replace(mark, **{n: a[instant] for n, how, a in _varying(mark) if a.ndim > how.ndim})
+    return _with(mark, {n: a[instant] for n, how, a in _varying(mark) if a.ndim > how.ndim})
 
 
 def moved(mark: M, rotation: FloatArray, shift: FloatArray) -> M:
@@ -153,7 +153,11 @@ def moved(mark: M, rotation: FloatArray, shift: FloatArray) -> M:
             return np.asarray(rotation @ a)
         return np.asarray(a @ rotation.T + (shift if how is Follows.POINT else 0.0))
 
-    return replace(mark, **{name: follow(how.follows, a) for name, how, a in _varying(mark)})
+    return _with(mark, {name: follow(how.follows, a) for name, how, a in _varying(mark)})
+
+
+def _with(mark: M, arrays: Mapping[str, Any]) -> M:
+    return replace(mark, **arrays)
 
 
 def _varying(mark: Mark) -> Iterator[tuple[str, Varying, FloatArray]]:

@@ -1,4 +1,4 @@
-"""Which instants the picture shows, and how the figures slide apart as time passes: no Blender.
+"""Selection of the instants shown, and sideways spread of the figures over time: no Blender.
 
 A jump stays on one spot while it crouches and recovers; drawn in place, those figures would hide
 each other. So a row is spread: figures slide to the right as time passes, the faster the more the
@@ -41,7 +41,7 @@ def spread(row: SheetRow, span: float) -> FloatArray:
         k = (low + high) / 2
         low, high = (k, high) if np.ptp(row.com[:, 0] + slid(k)) < span else (low, k)
     slide = slid(low)
-    return slide - slide[np.argmax(travel)]
+    return np.asarray(slide - slide[np.argmax(travel)])
 
 
 def _smooth(x: FloatArray, samples: float) -> FloatArray:
@@ -91,7 +91,7 @@ def nearest(times: FloatArray, t: float) -> int:
 
 
 def during(span: tuple[float, float], times: FloatArray, shown: Sequence[int]) -> list[int]:
-    """Which of the shown instants (indices) lie in a span; its own middle if none does.
+    """Those of the shown instants (indices) that lie in a span; its own middle if none does.
 
     A span that the row does not reach has none. Ends count to the nearest of the row's instants.
     """

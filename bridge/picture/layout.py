@@ -1,4 +1,4 @@
-"""Where everything goes in the picture: pure geometry, no Blender.
+"""Layout of the picture: pure geometry, no Blender.
 
 Canvas frame: x right along the direction of travel, y away from the viewer, z up.
 """
@@ -7,9 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import BoolArray, FloatArray
 from .annotations import Mark, Sphere, Tint, Tone, at, moved
 from .instants import during, instants, nearest, spread, with_keys
 from .mark_meshes import Solid, merged, solids
@@ -60,7 +59,7 @@ class Tier:
     names: tuple[str, ...]
     sizes: FloatArray
     proximal: FloatArray
-    far: NDArray[np.bool_]
+    far: BoolArray
     path: FloatArray
     pins: FloatArray
     steps: tuple[Step, ...]
@@ -71,7 +70,9 @@ class Tier:
         half = [np.abs(figure.rotation) @ self.sizes[:, :, None] / 2 for figure in self.figures]
         reach = np.concatenate(half)[..., 0]
         centre = np.concatenate([figure.centre for figure in self.figures])
-        points = np.concatenate([centre - reach, centre + reach, *(m.vertices for m in self.marks)])
+        points = np.concatenate(
+            [centre - reach, centre + reach, *(m.mesh.points for m in self.marks)]
+        )
         return np.array([points.min(axis=0), points.max(axis=0)])
 
 
@@ -217,7 +218,7 @@ def _distances(
     """(T, P) m from each pin to the nearest limb's box."""
     away = pins[:, None, :] - centre[:, None, :, :]  # (T, P, L, 3)
     local = np.abs(np.einsum("tlij,tpli->tplj", rotation, away)) - sizes / 2
-    return np.linalg.norm(local.clip(min=0.0), axis=3).min(axis=2)
+    return np.asarray(np.linalg.norm(local.clip(min=0.0), axis=3).min(axis=2))
 
 
 def _pins(pins: FloatArray, held: Sequence[Sequence[int]], slide: FloatArray) -> FloatArray:

@@ -1,15 +1,16 @@
-"""How the marks' surfaces look; imports Blender inside its functions only."""
+"""Materials and colours of the marks."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+
+import bpy
 
 from . import materials
 from .annotations import Tone
 from .mark_meshes import Look
 from .materials import Colour, srgb
 
-Maker = Callable[[], Any]
+Maker = Callable[[], bpy.types.Material]
 
 RED = srgb("d8202a")
 TONES: Mapping[Tone, Colour] = {Tone.FIXED: srgb("9a48d6"), Tone.LIMP: srgb("f0a02c")}

@@ -1,8 +1,11 @@
-"""Colours, materials and light of the picture; imports Blender inside its functions only."""
+"""Colours, materials and light of the picture."""
 
 from typing import Any
 
+import bpy
 import numpy as np
+
+from ..accessors import present
 
 Colour = tuple[float, float, float]  # linear
 
@@ -19,7 +22,7 @@ def mix(a: Colour, b: Colour, amount: float) -> Colour:
     return r, g, b_
 
 
-def matt() -> Any:
+def matt() -> bpy.types.Material:
     """Evenly scattering, in the object's colour."""
     material, nodes, links = _material("matt")
     surface = nodes.new("ShaderNodeBsdfDiffuse")
@@ -28,24 +31,24 @@ def matt() -> Any:
     return material
 
 
-def plain() -> Any:
+def plain() -> bpy.types.Material:
     """Exactly the object's colour, unlit."""
     material, nodes, links = _material("plain")
-    material.cycles.emission_sampling = "NONE"  # letters are no lamps
+    present(material.cycles).emission_sampling = "NONE"  # letters are no lamps
     surface = nodes.new("ShaderNodeEmission")
     links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Color"])
     links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
     return material
 
 
-def glass(*, thin: float, edge: float, rim: float) -> Any:
+def glass(*, thin: float, edge: float, rim: float) -> bpy.types.Material:
     """See-through and unlit, in the object's colour, without noise.
 
     thin, edge: opacity where the surface faces the viewer, and where it turns away. rim: 0 to 1,
     how far the edge's reaches in.
     """
     material, nodes, links = _material("glass")
-    material.cycles.emission_sampling = "NONE"
+    present(material.cycles).emission_sampling = "NONE"
     facing = nodes.new("ShaderNodeLayerWeight")
     facing.inputs["Blend"].default_value = rim
     opacity = nodes.new("ShaderNodeMapRange")
@@ -60,28 +63,24 @@ def glass(*, thin: float, edge: float, rim: float) -> Any:
     return material
 
 
-def _material(name: str) -> tuple[Any, Any, Any]:
-    import bpy
-
+def _material(name: str) -> tuple[bpy.types.Material, Any, Any]:
     material = bpy.data.materials.new(name)
     return material, *_empty_tree(material)
 
 
-def _empty_tree(owner: Any) -> tuple[Any, Any]:
-    import bpy
-
+def _empty_tree(owner: bpy.types.Material | bpy.types.World) -> tuple[Any, Any]:
+    """Its nodes and links; any, for sockets have the types of their nodes."""
     if bpy.app.version < (5, 0):
         owner.use_nodes = True  # always on, and its setter deprecated, from 5.0
-    owner.node_tree.nodes.clear()
-    return owner.node_tree.nodes, owner.node_tree.links
+    tree = present(owner.node_tree)
+    tree.nodes.clear()
+    return tree.nodes, tree.links
 
 
-def soft_light(paper: Colour) -> Any:
+def soft_light(paper: Colour) -> bpy.types.World:
     """A world of even, slightly cool light; the viewer sees paper instead of it."""
-    import bpy
-
     world = bpy.data.worlds.new("sheet")
-    world.cycles.sampling_method = "NONE"  # even light needs no aim
+    present(world.cycles).sampling_method = "NONE"  # even light needs no aim
     nodes, links = _empty_tree(world)
     glow, seen = (nodes.new("ShaderNodeBackground") for _ in range(2))
     glow.inputs["Color"].default_value = (0.93, 0.96, 1.0, 1.0)

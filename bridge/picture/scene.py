@@ -1,15 +1,18 @@
-"""Puts a sheet's layout into a Blender scene: solids, letters, lines, lamp and camera."""
+"""A Blender scene of a sheet's layout: solids, letters, lines, lamp and camera."""
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin
-from typing import Any
 
+import bpy
 import numpy as np
-from numpy.typing import NDArray
+from mathutils import Matrix, Quaternion
 
-from ...solver.arrays import FloatArray
-from . import materials, meshes
+from ...solver.arrays import BoolArray, FloatArray
+from ..shapes.mesh import Mesh
+from ..shapes.solids import box
+from . import materials
 from .layout import Figure, Layout, Tier
+from .limb_meshes import ball, limb
 from .mark_materials import FINISHES, TONES
 from .mark_meshes import Solid
 from .materials import Colour, mix, srgb
@@ -48,7 +51,7 @@ class Painter:
     elevation: rad, of the viewer above the horizon.
     """
 
-    scene: Any
+    scene: bpy.types.Scene
     elevation: float
 
     def __post_init__(self) -> None:
@@ -88,13 +91,13 @@ class Painter:
         self.camera(middle, wide, crown - bottom + 2 * EDGE, width)
 
     def head(self, tier: Tier, floor: float) -> float:
-        """How far the tier reaches above the middle of its floor in the picture, m."""
+        """Height of the tier above the middle of its floor in the picture, m."""
         _, back, top = tier.corners()[1]
         return float(np.array([0.0, min(back, 0.2), top - floor]) @ self.up)
 
     def stage(self, floor: Floor) -> None:
         down = np.array([0.0, 0.0, THICKNESS])
-        self.mesh(meshes.block(floor.low - down, floor.high), FLOOR)
+        self.mesh(box(floor.low - down, floor.high), FLOOR)
         (left, near, z), (right, far, _) = floor.low, floor.high
         for x in np.arange(np.ceil(left / GRID_STEP), right / GRID_STEP) * GRID_STEP:
             # clear of the front of a step
@@ -105,15 +108,15 @@ class Painter:
     def line(self, start: FloatArray, end: FloatArray, half_width: float) -> None:
         """A line on the floor; those across the view are drawn wider, as they are foreshortened."""
         reach = half_width * np.sign(end - start)[[1, 0, 2]] + [0.0, 0.0, 0.0015]
-        self.mesh(meshes.block(start - reach, end + reach), GRID)
+        self.mesh(box(start - reach, end + reach), GRID)
 
     def tier(self, tier: Tier, k: int, floor: Floor, label: float) -> None:
         for step in tier.steps:
             low = np.array([step.left, floor.low[1], floor.low[2]])
             high = np.array([step.right, floor.high[1], step.top])
-            self.mesh(meshes.block(low, high), FLOOR)
+            self.mesh(box(low, high), FLOOR)
         solids = [
-            self.shape(meshes.limb(size, end, head="head" in name.lower()), self.matt)
+            self.shape(limb(size, end, head="head" in name.lower()), self.matt)
             for size, end, name in zip(tier.sizes, tier.proximal, tier.names, strict=True)
         ]
         colour = BODIES[k % len(BODIES)]
@@ -126,14 +129,13 @@ class Painter:
 
     def mark(self, solid: Solid) -> None:
         finish = FINISHES[solid.look]
-        mesh = (solid.vertices, solid.faces)
-        shape = self.shape(mesh, finish.material(), smooth=solid.smooth)
+        shape = self.shape(solid.mesh, finish.material(), smooth=solid.smooth)
         made = self.object(shape, finish.colour, self.before if finish.front else np.zeros(3))
         if not finish.shadow:
             _casts_nothing(made)
 
     def figure(
-        self, figure: Figure, solids: list[Any], far: NDArray[np.bool_], colour: Colour
+        self, figure: Figure, solids: list[bpy.types.Mesh], far: BoolArray, colour: Colour
     ) -> None:
         for i, solid in enumerate(solids):
             tone = figure.tones.get(i)
@@ -155,9 +157,7 @@ class Painter:
 
     def path(self, tier: Tier, colour: Colour) -> None:
         """A tube along the centre of mass with a bead at each figure."""
-        import bpy
-
-        bead = self.shape(meshes.ball(BEAD), self.plain)
+        bead = self.shape(ball(BEAD), self.plain)
         for figure in tier.figures:
             _casts_nothing(self.object(bead, colour, figure.com + self.before))
         curve = bpy.data.curves.new("path", "CURVE")
@@ -172,9 +172,8 @@ class Painter:
         _casts_nothing(self.object(curve, colour, self.before))
 
     def text(self, body: str, place: FloatArray, height: float, *, centred: bool = False) -> None:
-        import bpy
-
         curve = bpy.data.curves.new("text", "FONT")
+        assert isinstance(curve, bpy.types.TextCurve)
         curve.body = body
         curve.size = height * 1.35  # the font's capitals fill three quarters of its size
         curve.align_x = "CENTER" if centred else "LEFT"
@@ -183,40 +182,34 @@ class Painter:
         _casts_nothing(made)
         made.rotation_euler = (pi / 2 - self.elevation, 0.0, 0.0)
 
-    def mesh(self, solid: meshes.Mesh, colour: Colour) -> None:
+    def mesh(self, solid: Mesh, colour: Colour) -> None:
         self.object(self.shape(solid, self.matt, smooth=False), colour, np.zeros(3))
 
-    def shape(self, solid: meshes.Mesh, material: Any, *, smooth: bool = True) -> Any:
-        import bpy
-
-        vertices, faces = solid
+    def shape(
+        self, solid: Mesh, material: bpy.types.Material, *, smooth: bool = True
+    ) -> bpy.types.Mesh:
         mesh = bpy.data.meshes.new("solid")
-        mesh.from_pydata(vertices.tolist(), [], faces.tolist())
-        mesh.polygons.foreach_set("use_smooth", np.full(len(faces), smooth))
+        mesh.from_pydata(solid.points.tolist(), [], solid.faces.tolist())
+        mesh.polygons.foreach_set("use_smooth", np.full(len(solid.faces), smooth))
         mesh.materials.append(material)
         return mesh
 
-    def object(self, data: Any, colour: Colour, place: FloatArray) -> Any:
-        import bpy
-
+    def object(self, data: bpy.types.ID, colour: Colour, place: FloatArray) -> bpy.types.Object:
         made = bpy.data.objects.new(data.name, data)
         made.color = (*colour, 1.0)
-        made.location = self.origin + place
+        made.location = (self.origin + place).tolist()
         self.scene.collection.objects.link(made)
         return made
 
     def light(self) -> None:
-        import bpy
-
         sun = bpy.data.lights.new("sun", "SUN")
+        assert isinstance(sun, bpy.types.SunLight)
         sun.energy, sun.angle = 2.0, radians(25.0)
         lamp = self.object(sun, PAPER, np.zeros(3))
         lamp.rotation_euler = (radians(32), radians(-22), 0.0)
         self.scene.world = materials.soft_light(PAPER)
 
     def camera(self, centre: FloatArray, wide: float, high: float, width: int) -> None:
-        import bpy
-
         camera = bpy.data.cameras.new("camera")
         camera.type, camera.sensor_fit, camera.ortho_scale = "ORTHO", "HORIZONTAL", wide
         camera.clip_end = 1000.0
@@ -227,12 +220,10 @@ class Painter:
         self.scene.render.resolution_y = max(round(width * high / wide), 4)
 
 
-def _quaternion(rotation: FloatArray) -> Any:
-    from mathutils import Matrix
-
+def _quaternion(rotation: FloatArray) -> Quaternion:
     return Matrix(rotation.tolist()).to_quaternion()
 
 
-def _casts_nothing(thing: Any) -> None:
+def _casts_nothing(thing: bpy.types.Object) -> None:
     """Neither a shadow nor its colour on others."""
     thing.visible_shadow = thing.visible_diffuse = thing.visible_glossy = False

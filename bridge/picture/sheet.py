@@ -1,4 +1,4 @@
-"""What a picture of motions shows: strobe figures of each, one row above the other."""
+"""Contents of a picture of motions: strobe figures of each, one row above the other."""
 
 from dataclasses import dataclass
 from math import radians
@@ -48,7 +48,7 @@ class SheetRow:
 
 @dataclass(frozen=True)
 class View:
-    """How the rows are seen.
+    """Camera and density of the rows.
 
     figures: about how many in a row. elevation: rad, of the viewer above the horizon. heading:
     (x, y) world direction drawn to the right; where left out, that of the travel.

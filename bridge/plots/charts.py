@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf
-from typing import TYPE_CHECKING
 
-from ..properties.kinds import ConstraintKind, Instant, Span, TorqueBy
-from ..properties.phases import PhaseSpan, carried, clip_ends, phases
+import bpy
+
+from ...solver.data.traces import Traces
+from ..accessors import armature_data
+from ..armature.traces_store import StoredTraces, kept
+from ..constraint_kinds import contact_force, torque_limit
+from ..properties.constraint import HangtimeConstraint
+from ..properties.settings import HangtimeSettings, settings_of
+from ..properties.view import HangtimeView
+from ..rows.phases import PhaseSpan, carried, clip_ends, phases
+from ..rows.times import Spans, interval_of
 from .curves import Cap, Chart, Take, force_chart, height_chart, speed_chart, torque_chart
 
-if TYPE_CHECKING:
-    import bpy
-
-    from ...solver.data.traces import Traces
-    from ..armature.traces_store import Kept
-    from ..properties.constraint import HangtimeConstraint
-    from ..properties.settings import HangtimeSettings
-    from ..properties.view import HangtimeView
-
-AROUND = 0.5  # frames to either side of an instant, so that its bound is seen
+INSTANT_MARGIN = 0.5  # frames to either side of an instant, so that its bound is seen
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is plotted; equal as long as the plots are. motions: as they are stored, by key."""
+class PlotContent:
+    """Key of the plots: equal as long as they are. motions: as they are stored, by key."""
 
     motions: tuple[tuple[Take, str], ...]
     bone: str
@@ -37,35 +36,48 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Plotted:
+class PlottedMotions:
     """The motions to be plotted, and what of them."""
 
-    asked: Asked
+    content: PlotContent
     takes: dict[Take, Traces]
 
     def charts(self) -> tuple[Chart, ...]:
         """The charts that are switched on, from left to right."""
-        takes, asked = self.takes, self.asked
+        takes, content = self.takes, self.content
         charts = []
-        if asked.forces:
-            charts.append(force_chart(takes, asked.force_caps))
-        if asked.torque:
-            charts.append(torque_chart(takes, asked.bone, asked.torque_caps))
-        if asked.com:
+        if content.forces:
+            charts.append(force_chart(takes, content.force_caps))
+        if content.torque:
+            charts.append(torque_chart(takes, content.bone, content.torque_caps))
+        if content.com:
             charts += [height_chart(takes), speed_chart(takes)]
         return tuple(charts)
 
 
-def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
-    """What is plotted of an armature; None where no motion of it is stored."""
+@dataclass(frozen=True)
+class _Times:
+    """The phases by name, and the motion whose apexes they have."""
+
+    phases: Spans
+    motion: Traces | None
+
+
+def plotted(armature: bpy.types.Object, view: HangtimeView) -> PlottedMotions | None:
+    """Motions and charts of an armature; None where no motion of it is stored."""
     motions = kept_takes(armature)
     if not motions:
         return None
     takes = {take: kept.traces for take, kept in motions.items()}
     bone = view.plot_bone or _active_bone(armature)
-    spans = _phases(armature.hangtime, takes)
-    rows = [row for row in armature.hangtime.constraints if row.used]
-    asked = Asked(
+    settings = settings_of(armature)
+    spans = _phases(settings, takes)
+    times = _Times(
+        {phase.name: (phase.start, phase.end) for phase in spans},
+        takes.get(Take.ADAPTED, takes.get(Take.RECORDING)),
+    )
+    rows = [row for row in settings.constraints if row.used]
+    content = PlotContent(
         motions=tuple((take, kept.key) for take, kept in motions.items()),
         bone=bone,
         forces=view.plot_forces,
@@ -73,22 +85,21 @@ def plotted(armature: bpy.types.Object, view: HangtimeView) -> Plotted | None:
         com=view.plot_com,
         phases=spans,
         force_caps=tuple(
-            Cap(row.name, *_span(row, spans), row.peak) for row in rows if _caps_forces(row)
+            cap for row in rows if _caps_forces(row) for cap in _caps(row, row.peak, times)
         ),
         torque_caps=tuple(
-            Cap(row.name, *_span(row, spans), row.torque + abs(row.torque_value))
+            cap
             for row in rows
             if _caps_torque(row, bone)
+            for cap in _caps(row, row.torque + abs(row.torque_value), times)
         ),
     )
-    return Plotted(asked, takes)
+    return PlottedMotions(content, takes)
 
 
-def kept_takes(armature: bpy.types.Object) -> dict[Take, Kept]:
+def kept_takes(armature: bpy.types.Object) -> dict[Take, StoredTraces]:
     """The motions of an armature of which traces are stored."""
-    from ..armature.traces_store import kept  # loads half of the solver
-
-    owners = {Take.RECORDING: armature, Take.ADAPTED: armature.hangtime.adapted}
+    owners = {Take.RECORDING: armature, Take.ADAPTED: settings_of(armature).adapted}
     found = {take: kept(owner) for take, owner in owners.items()}
     return {take: traces for take, traces in found.items() if traces is not None}
 
@@ -105,35 +116,24 @@ def _phases(settings: HangtimeSettings, takes: dict[Take, Traces]) -> tuple[Phas
 
 
 def _active_bone(armature: bpy.types.Object) -> str:
-    bone = armature.data.bones.active
+    bone = armature_data(armature).bones.active
     return bone.name if bone is not None else ""
 
 
 def _caps_forces(row: HangtimeConstraint) -> bool:
-    return row.kind == ConstraintKind.FORCE.name and row.use_peak
+    return bool(row.kind == contact_force.KIND.name and row.use_peak)
 
 
 def _caps_torque(row: HangtimeConstraint, bone: str) -> bool:
     """Whether it bounds the bone's torque by a number; shares are of a torque not stored."""
-    mine = row.kind == ConstraintKind.TORQUE.name and any(b.name == bone for b in row.bones)
-    return mine and row.torque_by == TorqueBy.NEWTON_METRES.name
+    mine = row.kind == torque_limit.KIND.name and any(b.name == bone for b in row.bones)
+    return mine and row.torque_by == torque_limit.TorqueBy.NEWTON_METRES.name
 
 
-def _span(row: HangtimeConstraint, spans: tuple[PhaseSpan, ...]) -> tuple[float, float]:
-    """From when to when, scene frames, a constraint holds; as drawn, without the solver's care."""
-    when = Span[row.span]
-    if when is Span.FRAMES:
-        return row.first_frame, row.last_frame
-    if when is Span.FRAME:
-        return row.first_frame - AROUND, row.first_frame + AROUND
-    phase = next((p for p in spans if p.name == row.phase), None)
-    if when is Span.ALWAYS or phase is None:
-        return -inf, inf
-    instants = {
-        Instant.START: phase.start,
-        Instant.MIDDLE: 0.5 * (phase.start + phase.end),
-        Instant.APEX: 0.5 * (phase.start + phase.end),  # of a flight, about
-        Instant.END: phase.end,
-    }
-    at = instants.get(Instant[row.instant])
-    return (phase.start, phase.end) if at is None else (at - AROUND, at + AROUND)
+def _caps(row: HangtimeConstraint, level: float, times: _Times) -> Iterator[Cap]:
+    """A row's bound as it is drawn: an instant's a frame wide, so that it is seen."""
+    first, last = interval_of(row, times.phases, times.motion)
+    if first == last:
+        first, last = first - INSTANT_MARGIN, last + INSTANT_MARGIN
+    if first <= last:  # its phase is there
+        yield Cap(row.name, first, last, level)

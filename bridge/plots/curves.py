@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from ...solver.arrays import FloatArray
-    from ...solver.data.traces import Traces
+from ...solver.arrays import FloatArray
+from ...solver.data.traces import Traces
 
 
 class Take(Enum):
-    """Whose curve it is."""
+    """The motion that a curve is of."""
 
     RECORDING = "Recording"
     ADAPTED = "Adapted"
@@ -67,7 +65,7 @@ class Chart:
     missing: str = ""
 
 
-Takes = Mapping[Take, "Traces"]
+Takes = Mapping[Take, Traces]
 
 
 def force_chart(takes: Takes, caps: tuple[Cap, ...]) -> Chart:

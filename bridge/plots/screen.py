@@ -1,4 +1,4 @@
-"""Where things are on the screen: rectangles, and axes along which values lie."""
+"""Rectangles on the screen, and linear axes from values to pixels."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import ceil, floor, log10
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float32]
 
@@ -31,7 +31,7 @@ class Rect:
         return self.top - self.bottom
 
     def holds(self, x: float, y: float) -> bool:
-        """Whether a point is inside."""
+        """Point-in-rectangle test."""
         return self.left <= x <= self.right and self.bottom <= y <= self.top
 
 
@@ -53,9 +53,10 @@ class Axis:
         """px at which a value is."""
         return self.start + (value - self.first) * self.per_unit
 
-    def all_at(self, values: Array) -> Array:
+    def all_at(self, values: ArrayLike) -> Array:
         """px of many values, (N,)."""
-        return np.asarray(self.start + (values - self.first) * self.per_unit, np.float32)
+        away = np.asarray(values, dtype=float) - self.first
+        return np.asarray(self.start + away * self.per_unit, np.float32)
 
     def value(self, px: float) -> float:
         """The value at px."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import bpy
 
-from .kinds import BodyKind, Met
-from .row import ASKED, HIDDEN, OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBone, items
+from ..rows.choices import BodyKind, Met
+from ..rows.row import ASKED, HIDDEN, OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBone, items
 
 
 class HangtimeBodyChange(bpy.types.PropertyGroup):

@@ -9,14 +9,16 @@ from collections.abc import Sequence
 
 import bpy
 
+from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
+from ..accessors import attached
+from ..rows.row import CLASSES as ROW_CLASSES
+from ..rows.row import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
 from . import stances
 from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
 from .constraint import CLASSES as CONSTRAINT_CLASSES
 from .constraint import HangtimeConstraint
-from .row import CLASSES as ROW_CLASSES
-from .row import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
 from .view import CLASSES as VIEW_CLASSES
 from .view import HangtimeView
 
@@ -40,11 +42,11 @@ def _is_empty(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> b
 
 
 def _get_place(row: HangtimeContact) -> Sequence[float]:
-    return row.at
+    return tuple(row.at)
 
 
 def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
-    stances.place(row.id_data.hangtime, row, to)
+    stances.place(attached(row.id_data), row, to)
 
 
 class HangtimeContact(bpy.types.PropertyGroup):
@@ -59,7 +61,6 @@ class HangtimeContact(bpy.types.PropertyGroup):
     at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
 
     added: bpy.props.BoolProperty(options=_HIDDEN, override=OVERRIDABLE)  # by the artist
-    # m, 0 before an analysis
     used: bpy.props.BoolProperty(
         name="Touches",
         description="Whether this contact counts; off removes it",
@@ -109,7 +110,7 @@ def _shift(axis: int) -> dict[str, object]:
     def put(stance: HangtimeStance, to: float) -> None:
         shifted = list(stance.shifted)
         shifted[axis] = to
-        stances.shift_stance(stance.id_data.hangtime, stance, shifted)
+        stances.shift_stance(attached(stance.id_data), stance, shifted)
 
     return {
         "get": get,
@@ -126,7 +127,7 @@ def _get_turn(stance: HangtimeStance) -> float:
 
 
 def _set_turn(stance: HangtimeStance, to: float) -> None:
-    stances.turn_stance(stance.id_data.hangtime, stance, to)
+    stances.turn_stance(attached(stance.id_data), stance, to)
 
 
 class HangtimeStance(bpy.types.PropertyGroup):
@@ -189,7 +190,6 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         override=OVERRIDABLE,
     )
     measured_height: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
-    # lines, ready to be drawn
     use_height: bpy.props.BoolProperty(
         name="Own Height",
         description="State the performer's height instead of the measured one",
@@ -218,12 +218,10 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     parts: bpy.props.CollectionProperty(type=HangtimePart, override=OVERRIDABLE_LIST)
 
     fit_quality: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
-    # digest of the recording
-    analysed: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
+    analysed: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)  # digest
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
     active_contact: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
-    # lines, ready to be drawn
     whole_stance: bpy.props.BoolProperty(
         name="Move Whole Stance",
         description="Moving a contact moves every contact of its phase, so that heels and toes "
@@ -252,7 +250,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     gravity: bpy.props.FloatProperty(
         name="Gravity (m/s²)",
         description="Of the place where the motion is performed; 1.62 m/s² on the Moon",
-        default=9.81,
+        default=STANDARD_GRAVITY,
         min=0.1,
         max=50.0,
         precision=3,
@@ -327,6 +325,24 @@ class HangtimeAction(bpy.types.PropertyGroup):
     performer: bpy.props.PointerProperty(type=bpy.types.Object, options=_HIDDEN)
     accepted: bpy.props.BoolProperty(options=_HIDDEN)
     report: bpy.props.StringProperty(options=_HIDDEN)  # the report's text
+
+
+def settings_of(armature: bpy.types.Object) -> HangtimeSettings:
+    """The edit that an armature carries, or what an empty marks."""
+    settings: HangtimeSettings = attached(armature)
+    return settings
+
+
+def scene_settings(scene: bpy.types.Scene | None) -> HangtimeScene:
+    """Of `context.scene`, which the stubs leave optional."""
+    settings: HangtimeScene = attached(scene)
+    return settings
+
+
+def action_settings(action: bpy.types.Action) -> HangtimeAction:
+    """Of an adapted action; empty for others."""
+    settings: HangtimeAction = attached(action)
+    return settings
 
 
 CLASSES = (

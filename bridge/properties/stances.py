@@ -12,7 +12,8 @@ from math import atan2, tau
 import bpy
 from mathutils import Matrix, Vector
 
-from .protocols import ContactRow, Settings, StanceRow
+from ..accessors import attached
+from ..rows.protocols import ContactRow, Settings, StanceRow
 
 _SAME = 1e-6  # Blender units
 _DIGITS = 6  # of a turn
@@ -90,14 +91,14 @@ def active_stance(settings: Settings) -> StanceRow | None:
 
 def follow(empty: bpy.types.Object) -> None:
     """Takes over where an empty that marks a contact has been moved to."""
-    armature = getattr(empty.hangtime, "marks", None)
+    armature = getattr(attached(empty), "marks", None)
     if armature is None:
         return
-    settings = armature.hangtime
+    settings: Settings = attached(armature)
     for row in settings.contacts:
         to = empty.matrix_world.translation
         if row.empty == empty and (to - Vector(row.at)).length > _SAME:
-            place(settings, row, to)
+            place(settings, row, to.to_tuple())
 
 
 def _put(row: ContactRow, to: Vector) -> None:
@@ -132,4 +133,5 @@ def _middle(points: Sequence[Sequence[float]]) -> Vector:
 def _axes(stance: StanceRow) -> Matrix:
     """Columns forward, left and up, world."""
     forward, up = Vector(stance.forward_axis), Vector((0.0, 0.0, 1.0))
-    return Matrix((forward, up.cross(forward), up)).transposed()
+    left = Vector(up.cross(forward))  # type: ignore[arg-type]  # of 3D vectors it is one
+    return Matrix((forward[:], left[:], up[:])).transposed()

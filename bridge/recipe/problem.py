@@ -18,16 +18,16 @@ turn = 90                       # degrees, counter-clockwise from above
 name = "Left toe 2"
 start_frame = 183.5             # and / or end_frame; or remove = true
 
-What may be asked for beside is in recipe_requests.py.
+What may be asked for beside is in requests.py.
 """
 
 import json
 import tomllib
 from dataclasses import dataclass, fields
-from pathlib import Path as FilePath
+from pathlib import Path
 from typing import Any
 
-from ...solver.body.anatomy import SIDED
+from ...solver.body.anatomy import SIDED_PARTS
 from ...solver.data.faults import (
     BadDimensions,
     BadRecipe,
@@ -38,34 +38,38 @@ from ...solver.data.faults import (
     UnknownReductionBone,
     WrongWeights,
 )
-from ...solver.data.problem import Axes3, ContactEdit, MassTable, MotionProblem, Pin
-from .items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
+from ...solver.data.problem import ContactEdit, MassTable, MotionProblem, OffsetAxes, Pin
+from ..recipe_syntax.items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
+from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
+from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
+from ..recipe_syntax.toml_text import entries
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
-from .source_lines import Path, json_lines, toml_lines
-from .table import ABOVE_ZERO, Source, Table
-from .toml_text import entries
 
 OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact")
 TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
-PARTS = ("pelvis", "head", *(f"{side} {p.value}" for p in SIDED for side in ("left", "right")))
+PARTS = (
+    "pelvis",
+    "head",
+    *(f"{side} {p.value}" for p in SIDED_PARTS for side in ("left", "right")),
+)
 
 _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 brackets
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a recipe says. clip: a path as written, relative to the recipe; None where not given."""
+    """Parsed recipe. clip: a path as written, relative to the recipe; None where not given."""
 
     problem: MotionProblem
     clip: str | None = None
 
 
-def read_recipe_text(path: str | FilePath) -> str:
+def read_recipe_text(path: str | Path) -> str:
     """The text of a recipe's file. Raises BadRecipe."""
     try:
-        return FilePath(path).read_text(encoding="utf-8-sig")
+        return Path(path).read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
         raise BadRecipe(str(path), None, "not a text; save it as UTF-8") from error
     except OSError as error:
@@ -103,8 +107,8 @@ def locate(text: str, fault: Fault) -> int | None:
     return next((lines[place] for place in _places(values, fault) if place in lines), None)
 
 
-def _places(values: dict[str, Any], fault: Fault) -> list[Path]:
-    """Where in a recipe a fault may come from, best first."""
+def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
+    """Candidate origins of a fault in a recipe, best first."""
     match fault:
         case UnknownContactName():
             contacts = enumerate(values.get("contact", ()))
@@ -122,8 +126,8 @@ def _places(values: dict[str, Any], fault: Fault) -> list[Path]:
     return [inner for place in places for inner in _inside(values, place, fault)]
 
 
-def _names(values: dict[str, Any]) -> list[tuple[Path, str]]:
-    """Where each pin and each request is, and what it is called."""
+def _names(values: dict[str, Any]) -> list[tuple[tuple[str, int], str]]:
+    """Key path and name of each pin and each request."""
     return [
         ((kind.header, i), entry.get("name", kind.default_name(i)))
         for kind in (PIN, *NAMED)
@@ -131,12 +135,12 @@ def _names(values: dict[str, Any]) -> list[tuple[Path, str]]:
     ]
 
 
-def _inside(values: dict[str, Any], place: Path, fault: Fault) -> list[Path]:
+def _inside(values: dict[str, Any], place: tuple[str, int], fault: Fault) -> list[KeyPath]:
     """The keys and elements of a record that a fault quotes, then the record itself."""
     header, i = place
     texts = [getattr(fault, field.name) for field in fields(fault) if field.name not in CULPRITS]
     quoted = [text for text in texts if isinstance(text, str)]
-    found: list[Path] = []
+    found: list[KeyPath] = []
     for key, held in values[header][i].items():
         if isinstance(held, list):
             found += [(*place, key, j) for j, element in enumerate(held) if element in quoted]
@@ -148,7 +152,7 @@ def _inside(values: dict[str, Any], place: Path, fault: Fault) -> list[Path]:
 # ---------------------------------------------------------------- reading
 
 
-def _parse(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
+def _parse(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
     """A recipe's values, and the line of each key and element."""
     if text.lstrip().startswith("{"):
         return _parse_json(text, path)
@@ -164,14 +168,14 @@ def _parse(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
     return values, dict(toml_lines(text))
 
 
-def _parse_json(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
+def _parse_json(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
     try:
         values = json.loads(text)
     except json.JSONDecodeError as error:
         raise BadRecipe(path, error.lineno, f"not JSON ({error.msg}); correct the line") from error
     except _ABSURD as error:
         raise BadRecipe(path, None, "not JSON that can be read; see the examples") from error
-    lines: dict[Path, int] = {}
+    lines: dict[KeyPath, int] = {}
     for place, line in json_lines(text):
         if place in lines:
             raise BadRecipe(path, line, f'"{place[-1]}" is there twice; keep one')
@@ -180,7 +184,7 @@ def _parse_json(text: str, path: str) -> tuple[dict[str, Any], dict[Path, int]]:
 
 
 def _frames(table: Table) -> tuple[float, float] | None:
-    frames = table.numbers("frames", "[first, last]")
+    frames = table.pair("frames", "[first, last]")
     if frames is None:
         return None
     first, last = frames
@@ -212,14 +216,14 @@ def _refuse_same_names(top: Table) -> None:
 
 def _read_offset(table: Table) -> Values:
     table.not_both("offset", TRAVEL_KEYS)
-    offset = table.numbers("offset", "[x, y, z]")
+    offset = table.vector("offset")
     if offset is not None:
-        return {"offset": offset, "axes": Axes3.WORLD}
+        return {"offset": offset, "axes": OffsetAxes.WORLD}
     return {"offset": tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)}
 
 
 def _write_offset(pin: Pin) -> Values:
-    if pin.axes is Axes3.WORLD:
+    if pin.axes is OffsetAxes.WORLD:
         return {"offset": pin.offset}
     return {key: amount or None for key, amount in zip(TRAVEL_KEYS, pin.offset, strict=True)}
 

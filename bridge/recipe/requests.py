@@ -99,155 +99,13 @@ matrix = [[{ bone = "Thigh.L", weights = [1, 0, 0] }, { bone = "Thigh.R", weight
 
 from typing import Any
 
-from ...solver.data.requests import (
-    AddedMass,
-    AngleLimit,
-    BodyChange,
-    ConeLimit,
-    ConeShape,
-    ForceRequest,
-    Hold,
-    Lift,
-    LimbChange,
-    OrientationRequest,
-    PhaseTiming,
-    PointRequest,
-    PoseRequest,
-    Reference,
-    Requests,
-    TorqueLimit,
-    TwistLimit,
-)
-from .items import (
-    BONES,
-    LIMIT_KEYS,
-    LIMITS,
-    TOUCHING,
-    WHEN,
-    Kind,
-    angle,
-    choice,
-    direction,
-    flag,
-    number,
-    one,
-    vector,
-    whole,
-    word,
-)
-from .points import ENVIRONMENT, PATH, POINT_AXES
+from ...solver.data.requests import AddedMass, BodyChange, LimbChange, Requests
+from ..constraint_kinds import KINDS
+from ..recipe_syntax.items import BONE, BONES, Kind, number, vector
+from ..recipe_syntax.table import ABOVE_ZERO, Table
+from ..recipe_syntax.toml_text import sections
 from .solution import SOLUTION
-from .table import ABOVE_ZERO, NOT_NEGATIVE, Span, Table
-from .toml_text import sections
 
-HALF_ANGLE = Span("between 0 and 180 degrees", lambda value: 0.0 < value < 180.0)
-DOF = Span("0, 1 or 2", lambda value: value in (0.0, 1.0, 2.0))
-
-
-def read_requests(top: Table) -> Requests:
-    """What a recipe asks for. top: its outermost table. Raises BadRecipe."""
-    body = BODY.read(top)
-    records = {field: kind.read_all(top) for field, kind in RECORDS.items()}
-    parts = {field: kind.read_all(top) for field, kind in BODY_RECORDS.items()}
-    body = BodyChange(body.mass, body.gravity, **parts)
-    return Requests(**records, body=body, solution=SOLUTION.read(top))
-
-
-def request_texts(requests: Requests) -> list[str]:
-    """TOML tables that `read_requests` reads as these requests."""
-    texts = sections(BODY.header, BODY.write(requests.body))
-    texts += sections(SOLUTION.header, SOLUTION.write(requests.solution))
-    for field, kind in RECORDS.items():
-        texts += kind.text(getattr(requests, field))
-    for field, kind in BODY_RECORDS.items():
-        texts += kind.text(getattr(requests.body, field))
-    return texts
-
-
-def _stretch(table: Table, key: str) -> tuple[float, ...] | None:
-    values = table.numbers(key, "[sideways, forwards]")
-    if values is not None and min(values) <= 0.0:
-        table.refuse(key, f'"{key}" must be above zero in both directions')
-    return values
-
-
-BONE = word("bone")
-SLACK = angle("slack", NOT_NEGATIVE)
-POINT = Kind(
-    "point",
-    PointRequest,
-    (BONE, WHEN, vector("offset"), vector("place"), PATH, POINT_AXES, ENVIRONMENT),
-    needs=(("bone",),),
-    excludes=(("place", "path"),),
-)
-LIFT = Kind("lift", Lift, (word("phase"), TOUCHING), needs=(("phase",),))
-ANGLE = Kind("angle", AngleLimit, (BONE, LIMITS, WHEN), needs=(("bone",), LIMIT_KEYS))
-TWIST = Kind("twist", TwistLimit, (BONE, LIMITS, WHEN), needs=(("bone",), LIMIT_KEYS))
-CONE = Kind(
-    "cone",
-    ConeLimit,
-    (BONE, angle("half_angle", HALF_ANGLE), one("axis", direction), one("stretch", _stretch), WHEN),
-    needs=(("bone",), ("half_angle",)),
-)
-TORQUE = Kind(
-    "torque",
-    TorqueLimit,
-    (
-        BONES,
-        number("bound", NOT_NEGATIVE),
-        number("share", NOT_NEGATIVE),
-        number("value"),
-        whole("dof", DOF),
-        WHEN,
-    ),
-    needs=(("bones",), ("bound", "share")),
-    excludes=(("bound", "share"),),
-)
-POSE = Kind(
-    "pose",
-    PoseRequest,
-    (
-        BONES,
-        choice("reference", Reference),
-        number("pose_frame", attribute="frame"),
-        number("weight", ABOVE_ZERO),
-        SLACK,
-        WHEN,
-    ),
-    excludes=(("weight", "slack"),),
-)
-ORIENTATION = Kind(
-    "orientation",
-    OrientationRequest,
-    (BONE, angle("turn"), angle("tilt"), SLACK, WHEN),
-    needs=(("bone",),),
-)
-FORCE = Kind(
-    "force",
-    ForceRequest,
-    (
-        TOUCHING,
-        number("friction", NOT_NEGATIVE),
-        choice("shape", ConeShape),
-        number("peak", ABOVE_ZERO),
-        number("match", NOT_NEGATIVE),
-        WHEN,
-    ),
-    needs=(("friction", "shape", "peak", "match"),),
-)
-TIMING = Kind(
-    "timing",
-    PhaseTiming,
-    (word("phase"), number("factor", ABOVE_ZERO), number("seconds", ABOVE_ZERO)),
-    needs=(("phase",), ("factor", "seconds")),
-    excludes=(("factor", "seconds"),),
-)
-HOLD = Kind(
-    "hold",
-    Hold,
-    (number("frame"), number("seconds", ABOVE_ZERO), flag("ends")),
-    needs=(("frame",), ("seconds",)),
-)
 BODY = Kind(
     "body",
     BodyChange,
@@ -268,19 +126,27 @@ LIMB = Kind(
     needs=(("bones",),),
 )
 
-RECORDS: dict[str, Kind[Any]] = {  # by field of Requests
-    "points": POINT,
-    "lifts": LIFT,
-    "angles": ANGLE,
-    "cones": CONE,
-    "twists": TWIST,
-    "torques": TORQUE,
-    "poses": POSE,
-    "orientations": ORIENTATION,
-    "forces": FORCE,
-    "timings": TIMING,
-    "holds": HOLD,
-}
+RECORDS: dict[str, Kind[Any]] = {kind.requests: kind.recipe for kind in KINDS.values()}
 BODY_RECORDS: dict[str, Kind[Any]] = {"added": LOAD, "limbs": LIMB}  # by field of BodyChange
 NAMED = (*RECORDS.values(), *BODY_RECORDS.values())
 REQUEST_KEYS = (*(kind.header for kind in NAMED), BODY.header, SOLUTION.header)
+
+
+def read_requests(top: Table) -> Requests:
+    """Read the requests of a recipe. top: its outermost table. Raises BadRecipe."""
+    body = BODY.read(top)
+    records = {field: kind.read_all(top) for field, kind in RECORDS.items()}
+    parts = {field: kind.read_all(top) for field, kind in BODY_RECORDS.items()}
+    body = BodyChange(body.mass, body.gravity, **parts)
+    return Requests(**records, body=body, solution=SOLUTION.read(top))
+
+
+def request_texts(requests: Requests) -> list[str]:
+    """TOML tables that `read_requests` reads as these requests."""
+    texts = sections(BODY.header, BODY.write(requests.body))
+    texts += sections(SOLUTION.header, SOLUTION.write(requests.solution))
+    for field, kind in RECORDS.items():
+        texts += kind.text(getattr(requests, field))
+    for field, kind in BODY_RECORDS.items():
+        texts += kind.text(getattr(requests.body, field))
+    return texts

@@ -1,4 +1,4 @@
-"""How to solve, in a recipe: method, objectives and reduction. Keys: see recipe_requests.py."""
+"""Solver options of a recipe: method, objectives and reduction. Keys: see requests.py."""
 
 from ...solver.data.requests import (
     Dynamics,
@@ -8,13 +8,13 @@ from ...solver.data.requests import (
     ReductionKind,
     SolverOptions,
 )
-from .items import Kind, Values, choice, number, one, whole
-from .table import ABOVE_ZERO, NOT_NEGATIVE, Span, Table, listed
+from ..recipe_syntax.items import Kind, Values, choice, number, one, whole
+from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table, listed
 
 Rows = tuple[tuple[tuple[str, tuple[float, ...]], ...], ...]
 
-COUNT = Span("a whole number above zero", lambda value: value > 0.0 and value.is_integer())
-PART_OF_ALL = Span("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
+COUNT = NumberRange("a whole number above zero", lambda value: value > 0.0 and value.is_integer())
+PART_OF_ALL = NumberRange("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
 CHOSEN_BY_HAND = (ReductionKind.MATRIX, ReductionKind.MIRROR_LEGS)
 
 

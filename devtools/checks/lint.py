@@ -1,11 +1,14 @@
-"""ruff's rules, ruff's layout, and mypy."""
+"""Static checks: ruff's rules and format, mypy, the import contracts, the limits of the house."""
 
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+from importlinter.cli import lint_imports
+
 from ..environment.virtual_environment import CACHE, ROOT
+from . import house
 
 TYPED = ("solver", "bridge", "operators", "ui", "devtools")
 
@@ -22,6 +25,10 @@ def main(argv: list[str]) -> int:
     for check in checks:
         print("$", *check, flush=True)
         codes.append(subprocess.call([sys.executable, "-m", *check], cwd=ROOT, env=variables))
+    print("$ lint-imports", flush=True)
+    codes.append(check_contracts())
+    print("$ house", flush=True)
+    codes.append(check_house())
     return int(any(codes))
 
 
@@ -33,3 +40,15 @@ def named_folder() -> Path:
     if not link.exists():
         link.symlink_to(ROOT, target_is_directory=True)
     return folder
+
+
+def check_contracts() -> int:
+    """import-linter over the contracts of pyproject.toml, on the package as it is loaded here."""
+    return lint_imports(str(ROOT / "pyproject.toml"), no_cache=True, no_logo=True)
+
+
+def check_house() -> int:
+    """The limits of house.py."""
+    found = list(house.problems(ROOT))
+    print(*found or ["Every folder, chain and class name is within its limit."], sep="\n")
+    return int(bool(found))

@@ -1,4 +1,4 @@
-"""The physics of a motion checked by others: MuJoCo, and plain Newton and Euler on the npz file."""
+"""Independent checks of a motion's dynamics: MuJoCo, and Newton and Euler on the npz file."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solver.body.dynamics import GRAVITY
+from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.results.mjcf import ROOT_SIZE, mjcf, motion_state
 from ...solver.transcription.motion import Motion
 
@@ -17,7 +17,7 @@ RATE = 960.0  # Hz
 
 @dataclass(frozen=True)
 class Residual:
-    """What nothing explains at (T,) instants: force (T, 3) in body weights, moment (T, 3) in body
+    """Dynamics residual at (T,) instants: root force (T, 3) in body weights, moment (T, 3) in body
     weights x m about the centre of mass of the whole body. flying: (T,) bool. A body weight is
     the mass's on the Earth, on the Moon too."""
 
@@ -98,7 +98,7 @@ def check_motion(motion: Motion, rate: float = RATE) -> tuple[Residual, FloatArr
     state = motion_state(motion, times)
     generalised, com = inverse_dynamics(model, state, motion.forces(times))
     force, moment = root_wrench(state[0], generalised, com)
-    weight = GRAVITY * float(model.body_mass.sum())
+    weight = STANDARD_GRAVITY * float(model.body_mass.sum())
     touching = np.zeros(count, dtype=bool)
     for contact in t.contacts:
         touching |= (times >= contact.contact.start) & (times <= contact.contact.end)
@@ -133,7 +133,7 @@ def check_npz(path: str | Path) -> Residual:
     arms = com[inner] - centre[inner, None]
     moment = np.cross(arms, mass[:, None] * acceleration).sum(axis=1) + spin_rate.sum(axis=1)
     moment -= np.cross(at - centre[inner, None], push).sum(axis=1)
-    weight = GRAVITY * float(mass.sum())
+    weight = STANDARD_GRAVITY * float(mass.sum())
     touch = np.abs(data["contact_force"]).max(axis=2) > 0.0
     reach = np.stack([touch[k : len(touch) - 4 + k] for k in range(5)])
     whole = (reach == reach[2]).all(axis=(0, 2))

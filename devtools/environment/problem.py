@@ -1,4 +1,4 @@
-"""The one way in which setting up fails. Standard library only."""
+"""The error of a failed set-up. Standard library only."""
 
 
 class SetUpError(Exception):

@@ -1,4 +1,4 @@
-"""Which Blender to use and a Python that can run it. Standard library only."""
+"""Choice of a Blender, and search for a Python that can run it. Standard library only."""
 
 from __future__ import annotations
 
@@ -21,6 +21,18 @@ class Blender:
 
 
 BLENDERS = (Blender("5.2.3", "3.13"), Blender("4.5.15", "3.11"), Blender("4.2.23", "3.11"))
+
+# Where pyenv, uv and the installers of macOS and Windows put a Python without telling PATH.
+INSTALLED = (
+    "$PYENV_ROOT/versions/{minor}*/bin/python",
+    "~/.pyenv/versions/{minor}*/bin/python",
+    "~/.pyenv/pyenv-win/versions/{minor}*/python.exe",
+    "~/.local/share/uv/python/cpython-{minor}*/bin/python{minor}",
+    "/opt/homebrew/bin/python{minor}",
+    "/Library/Frameworks/Python.framework/Versions/{minor}/bin/python{minor}",
+    "$LOCALAPPDATA/Programs/Python/Python{digits}/python.exe",
+    "$ProgramFiles/Python{digits}/python.exe",
+)
 
 
 def choose(wanted: str | None) -> tuple[Blender, str]:
@@ -61,31 +73,15 @@ def candidates(minor: str) -> Iterator[str]:
     """Paths where a Python of that minor may lie, the running one first; they may not exist."""
     if minor == running():
         yield sys.executable
-    name = f"python{minor}"
-    for folder in os.environ.get("PATH", "").split(os.pathsep):
-        yield os.path.join(folder, name)
-    home = os.path.expanduser("~")
-    digits = minor.replace(".", "")
-    patterns = [
-        os.path.join(os.environ.get("PYENV_ROOT", os.path.join(home, ".pyenv")), "versions"),
-        os.path.join(home, ".pyenv", "pyenv-win", "versions"),
-    ]
-    for folder in patterns:
-        yield from sorted(glob.glob(os.path.join(folder, f"{minor}*", "bin", "python")))
-        yield from sorted(glob.glob(os.path.join(folder, f"{minor}*", "python.exe")))
-    uv = os.path.join(home, ".local", "share", "uv", "python", f"cpython-{minor}*")
-    yield from sorted(glob.glob(os.path.join(uv, "bin", name)))
-    yield f"/usr/local/bin/{name}"
-    yield f"/opt/homebrew/bin/{name}"
-    yield f"/Library/Frameworks/Python.framework/Versions/{minor}/bin/{name}"
-    for variable in ("LOCALAPPDATA", "ProgramFiles"):
-        folder = os.environ.get(variable, "")
-        yield os.path.join(folder, "Programs", "Python", f"Python{digits}", "python.exe")
-        yield os.path.join(folder, f"Python{digits}", "python.exe")
+    for folder in os.get_exec_path():
+        yield os.path.join(folder, f"python{minor}")
+    for pattern in INSTALLED:
+        path = pattern.format(minor=minor, digits=minor.replace(".", ""))
+        yield from sorted(glob.glob(os.path.expandvars(os.path.expanduser(path))))
 
 
 def minor_of(path: str) -> str | None:
-    """What `path` says its version is; None where it does not run (a shim may exist and fail)."""
+    """Minor version of the Python at `path`; None where it does not run, as a shim."""
     if not os.path.isfile(path):
         return None
     question = "import sys; print('%d.%d' % sys.version_info[:2])"

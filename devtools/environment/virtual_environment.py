@@ -1,4 +1,4 @@
-"""The environment that dev.py works in: one folder per Python minor and Blender version.
+"""Virtual environments of dev.py: a folder per Python minor and Blender version.
 
 Standard library only. A stamp holds the hash of every requirements file that was installed, so that
 a second run starts at once and a changed pin is noticed.
@@ -22,28 +22,26 @@ ROOT = Path(__file__).resolve().parents[2]
 CACHE = ROOT / ".hangtime"
 REQUIREMENTS = ROOT / "requirements"
 
-__all__ = ["CACHE", "REQUIREMENTS", "ROOT", "Place", "SetUpError", "prepare", "prepare_peers"]
-
 
 @dataclass(frozen=True)
-class Layer:
-    """One requirements file: what is being installed, in words, and how pip should read it.
+class Requirements:
+    """A requirements file, its label while it is being installed, and options for pip.
 
     blender: whether Blender's module is in it, which needs libraries of the system's.
     """
 
     file: str
-    words: str
+    label: str
     options: tuple[str, ...] = ()
     blender: bool = False
 
 
-CASADI = Layer("casadi.txt", "CasADi (90 MB)", ("--no-deps", "--require-hashes"))
+CASADI = Requirements("casadi.txt", "CasADi (90 MB)", ("--no-deps", "--require-hashes"))
 
 
 @dataclass(frozen=True)
-class Place:
-    """A virtual environment's folder."""
+class VirtualEnvironment:
+    """A folder with a Python of its own, made by venv."""
 
     folder: Path
 
@@ -69,74 +67,74 @@ class Place:
         return {**kept, "PYTHONNOUSERSITE": "1", "BLENDER_USER_RESOURCES": str(settings)}
 
 
-def prepare(blender: Blender, python: str, tools: bool) -> Place:
+def prepare(blender: Blender, python: str, tools: bool) -> VirtualEnvironment:
     """Make or complete the environment. Raises SetUpError with what the machine lacks.
 
     tools: also install what tests, lint and figures need.
     """
-    place = Place(CACHE / f"python{blender.python}-blender{blender.version}")
-    return complete(place, layers(blender, tools), python)
+    env = VirtualEnvironment(CACHE / f"python{blender.python}-blender{blender.version}")
+    complete(env, requirements_of(blender, tools), python)
+    return env
 
 
-def prepare_peers(blender: Blender, python: str) -> Place:
+def prepare_peers(blender: Blender, python: str) -> VirtualEnvironment:
     """The benchmark's environment: the solvers that we are compared with, and no Blender, whose
     numpy is not theirs. Raises SetUpError."""
-    place = Place(CACHE / f"python{blender.python}-benchmark")
-    peers = Layer("benchmark.txt", "the benchmark's peers (400 MB to fetch, 1.3 GB on disk)")
-    return complete(place, [peers, CASADI], python)
+    env = VirtualEnvironment(CACHE / f"python{blender.python}-benchmark")
+    peers = Requirements("benchmark.txt", "the benchmark's peers (400 MB to fetch, 1.3 GB on disk)")
+    complete(env, [peers, CASADI], python)
+    return env
 
 
-def complete(place: Place, wanted: list[Layer], python: str) -> Place:
+def complete(env: VirtualEnvironment, wanted: list[Requirements], python: str) -> None:
     """Make the environment where it is missing, and install what it lacks."""
-    installed = read_stamp(place)
-    pending = [layer for layer in wanted if installed.get(layer.file) != fingerprint(layer)]
-    if not pending:
-        return place
-    if not installed:
-        make(place, python)
-    for layer in pending:
-        command = [place.python, "-m", "pip", "install", "--no-input", *layer.options]
-        command += ["--disable-pip-version-check", "-r", str(REQUIREMENTS / layer.file)]
-        run_quietly(f"Installing {layer.words}", command, place.log)
-        if layer.blender:
-            libraries.ensure(place.python, place.log)
-        installed[layer.file] = fingerprint(layer)
-        place.stamp.write_text(json.dumps(installed, indent=1))
-    return place
+    installed = read_stamp(env)
+    pending = [each for each in wanted if installed.get(each.file) != fingerprint(each)]
+    if pending and not installed:
+        make(env, python)
+    for each in pending:
+        command = [env.python, "-m", "pip", "install", "--no-input", *each.options]
+        command += ["--disable-pip-version-check", "-r", str(REQUIREMENTS / each.file)]
+        run_quietly(f"Installing {each.label}", command, env.log)
+        if each.blender:
+            libraries.ensure(env.python, env.log)
+        installed[each.file] = fingerprint(each)
+        env.stamp.write_text(json.dumps(installed, indent=1))
 
 
-def layers(blender: Blender, tools: bool) -> list[Layer]:
+def requirements_of(blender: Blender, tools: bool) -> list[Requirements]:
+    """Blender's module, CasADi, and with `tools` what tests and checks need."""
     own = f"blender-{blender.version}.txt"
-    words = f"Blender {blender.version} as a Python module (about 400 MB to fetch, 1 GB on disk)"
-    found = [Layer(own, words, blender=True), CASADI]
+    label = f"Blender {blender.version} as a Python module (about 400 MB to fetch, 1 GB on disk)"
+    found = [Requirements(own, label, blender=True), CASADI]
     if tools:
         keep = ("--constraint", str(REQUIREMENTS / own))
-        found.append(Layer("dev.txt", "the tools of tests and checks (90 MB)", keep))
+        found.append(Requirements("dev.txt", "the tools of tests and checks (90 MB)", keep))
     return found
 
 
-def fingerprint(layer: Layer) -> str:
-    return hashlib.sha256((REQUIREMENTS / layer.file).read_bytes()).hexdigest()
+def fingerprint(each: Requirements) -> str:
+    return hashlib.sha256((REQUIREMENTS / each.file).read_bytes()).hexdigest()
 
 
-def read_stamp(place: Place) -> dict[str, str]:
+def read_stamp(env: VirtualEnvironment) -> dict[str, str]:
     """Hash by requirements file; empty where the environment is missing or was left half made."""
     try:
-        stamp = json.loads(place.stamp.read_text())
+        stamp = json.loads(env.stamp.read_text())
     except (OSError, ValueError):
         return {}
-    return stamp if isinstance(stamp, dict) and os.path.exists(place.python) else {}
+    return stamp if isinstance(stamp, dict) and os.path.exists(env.python) else {}
 
 
-def make(place: Place, python: str) -> None:
+def make(env: VirtualEnvironment, python: str) -> None:
     """A new virtual environment in place of whatever lies there."""
     probe = subprocess.run([python, "-c", "import ensurepip, venv"], capture_output=True)
     CACHE.mkdir(exist_ok=True)
     if probe.returncode != 0:
         libraries.install_venv(python, CACHE / "apt.log")
-    print(f"Making the environment {place.folder.relative_to(ROOT)} ...", flush=True)
+    print(f"Making the environment {env.folder.relative_to(ROOT)} ...", flush=True)
     made = subprocess.run(
-        [python, "-m", "venv", "--clear", str(place.folder)], capture_output=True, text=True
+        [python, "-m", "venv", "--clear", str(env.folder)], capture_output=True, text=True
     )
     if made.returncode != 0:
         lines = (made.stderr or made.stdout).strip().splitlines() or ["no word why"]

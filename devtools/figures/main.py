@@ -190,7 +190,7 @@ def beside_ipopt(
 ) -> Iterator[tuple[str, float]]:
     """The same problem by IPOPT; a peer that fails or runs out of time has no ratio worth much,
     which its violation tells."""
-    from ...benchmarks.ipopt_peer import distance, solve_by_ipopt
+    from ..peers.ipopt_peer import distance, solve_by_ipopt
 
     problem = clip.problem(edit)
     peer = solve_by_ipopt(fitted, problem)

@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 
 from ...bridge.armature.read import read_recording, record
-from ...bridge.armature.reproportioned import other_figure
+from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.write import write_action
 from ...bridge.files.export import export_fbx
 from ...bridge.files.import_clip import import_clip
@@ -49,7 +49,7 @@ def _write(armature: bpy.types.Object, result: Result, folder: Path, *, picture:
     drawn: dict[str, Any] = undump(folder / "drawn.pickle")
     track, found = drawn["track"], drawn["checks"]
     if result.problem.requests.body.limbs:
-        armature, track, turns = other_figure(drawn["recording"], track)
+        armature, track, turns = build_reproportioned(drawn["recording"], track)
         found = _turned(found, turns)
     action = write_action(armature, track, name=result.name)
     shown = record(armature, track.frames)

@@ -81,7 +81,7 @@ def _rods(motion: Motion, times: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _may_meet(character: Character, i: int, j: int) -> bool:
     """Whether one is of a limb and they have two joints between them at least."""
     parts = {character.bodies[k].part.value for k in (i, j)}
-    apart = set(character.lineage(i)) ^ set(character.lineage(j))
+    apart = set(character.ancestors(i)) ^ set(character.ancestors(j))
     return bool(parts & set(MOVING)) and len(apart) > 2
 
 

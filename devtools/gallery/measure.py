@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ...solver.body.dynamics import GRAVITY
+from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.results.mjcf import hinge_order
 from ...solver.results.violations import shown
@@ -57,7 +57,7 @@ def _loads(adaptation: Adaptation, residual: Residual, torques: FloatArray) -> J
 
 def _needed(adaptation: Adaptation, residual: Residual) -> FloatArray:
     """(T, 3) BW: the contact force that MuJoCo finds the movement to need."""
-    weight = adaptation.motion.transcription.character.mass * GRAVITY
+    weight = adaptation.motion.transcription.character.mass * STANDARD_GRAVITY
     applied = adaptation.motion.forces(residual.times).sum(axis=1) / weight
     return np.asarray(residual.force + applied)
 
@@ -67,7 +67,7 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
     orientations by the solver's own measure between its rows; the rest is checked in Blender."""
     motion = adaptation.motion
     t = motion.transcription
-    weight = t.character.mass * GRAVITY
+    weight = t.character.mass * STANDARD_GRAVITY
     order = hinge_order(t.character)
     found = []
     for c in t.constraints:

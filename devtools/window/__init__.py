@@ -1,1 +1,1 @@
-"""A real Blender's window driven by mouse and keys, and measured."""
+"""End-to-end tests of the built extension: a real Blender's window, driven and measured."""

@@ -1,4 +1,4 @@
-"""Reads where this machine's apt takes Debian from. Standard library only."""
+"""Parser of apt's sources, for the mirror of this machine's Debian. Standard library only."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Source:
 
 
 def mirror(apt: Path = APT, release: Path = RELEASE) -> str | None:
-    """Where this machine's own release of Debian comes from; None where its sources do not say."""
+    """The mirror of this machine's own release of Debian; None where its sources do not say."""
     own = variables(release).get("VERSION_CODENAME")
     for source in sources(apt):
         if own in source.suites and "main" in source.components:

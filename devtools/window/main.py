@@ -18,11 +18,11 @@ from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
 from ..figures.limits import table, write
 from ..recordings import HELD
-from .results import LIMITS, Played, figure_verdicts, figures_of, junit, scene_verdicts
-from .room import SUITE, Room, View, prepare
+from .results import LIMITS, RunRecord, figure_verdicts, figures_of, junit, scenario_verdicts
+from .sandbox import SUITE, Mount, Sandbox, prepare
 
 SIZE = (1280, 800)
-LIMIT = 540.0  # s for the whole play
+LIMIT = 540.0  # s for the whole run
 # What is left of the extension after Blender is told in lines that begin with LEFT.
 SCRIPT = """
 Xvfb :84 -screen 0 {width}x{height}x24 +extension GLX -nolisten tcp 2>/dev/null &
@@ -30,12 +30,14 @@ blender --command extension install-file -r user_default -e /mnt/zip/{zip}
 until [ -S /tmp/.X11-unix/X84 ]; do sleep 0.1; done
 before=$(ls /tmp)
 blender --window-geometry 0 0 {width} {height} --python-exit-code 3 --python-expr \
-    "import sys; sys.path.insert(0, '/mnt/play'); from devtools.window.play import start; start()" \
+    "import sys; sys.path.insert(0, '/mnt/checkout')
+from devtools.window.run_in_blender import start; start()" \
     && code=0 || code=$?
 cat /tmp/*.crash.txt 2>/dev/null || true
 sleep 1
 for process in /proc/[0-9]*; do
-    ! grep -sq 'solver/worker\\.py' $process/cmdline || echo "LEFT a worker: ${{process#/proc/}}"
+    ! grep -sq 'solver/worker/main\\.py' $process/cmdline ||
+        echo "LEFT a worker: ${{process#/proc/}}"
 done
 for file in $(ls /tmp); do
     case "$file" in artist.*|accepted.*|quit.blend|blender|pulse-*) ;; *)
@@ -55,7 +57,7 @@ VARIABLES = {
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="dev.py window", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
-    parser.add_argument("--zip", type=Path, metavar="FILE", help="play this one; build none")
+    parser.add_argument("--zip", type=Path, metavar="FILE", help="run this one; build none")
     parser.add_argument("--reports", type=Path, metavar="DIR", help="also put the report there")
     parser.add_argument(
         "--tell", action="store_true", help="only tell the figures; fail for none of them"
@@ -65,14 +67,14 @@ def main(argv: list[str]) -> int:
     options = parser.parse_args(argv)
     options.out.mkdir(parents=True, exist_ok=True)
     try:
-        room = prepare(options.suite)
+        sandbox = prepare(options.suite)
         with tempfile.TemporaryDirectory() as folder:
             zipped = options.zip or own_zip(Path(folder))
-            played = play(room, zipped.resolve(), options.out.resolve(), options.scenes or [])
+            record = run(sandbox, zipped.resolve(), options.out.resolve(), options.scenes or [])
     except (SetUpError, BuildError) as problem:
         print(problem, file=sys.stderr)
         return 2
-    return report(played, options.out, options.reports, judged=not options.tell)
+    return report(record, options.out, options.reports, judged=not options.tell)
 
 
 def own_zip(folder: Path) -> Path:
@@ -82,32 +84,32 @@ def own_zip(folder: Path) -> Path:
     return next(zipped for zipped in build(folder) if zipped.name.endswith(ending))
 
 
-def play(room: Room, zipped: Path, out: Path, scenes: list[str]) -> Played:
-    """Play the scenes in the room; pictures and Blender's log go to `out`."""
-    for stale in (*out.glob("*.png"), out / "play.json"):
+def run(sandbox: Sandbox, zipped: Path, out: Path, scenarios: list[str]) -> RunRecord:
+    """Run the scenarios in the sandbox; pictures and Blender's log go to `out`."""
+    for stale in (*out.glob("*.png"), out / "run.json"):
         stale.unlink(missing_ok=True)
-    views = [
-        View(zipped.parent, "/mnt/zip"),
-        View(ROOT / "devtools", "/mnt/play/devtools"),
-        View(HELD, "/mnt/recordings"),
-        View(out, "/mnt/out", writable=True),
+    mounts = [
+        Mount(zipped.parent, "/mnt/zip"),
+        Mount(ROOT / "devtools", "/mnt/checkout/devtools"),
+        Mount(HELD, "/mnt/recordings"),
+        Mount(out, "/mnt/out", writable=True),
     ]
     script = SCRIPT.format(width=SIZE[0], height=SIZE[1], zip=zipped.name)
-    variables = {**VARIABLES, "SCENES": " ".join(scenes)}
+    variables = {**VARIABLES, "SCENARIOS": " ".join(scenarios)}
     log = out / "blender.log"
-    print(f"Playing in Blender's window; its words go to {log}", flush=True)
-    code = room.run(script, views=views, variables=variables, limit=LIMIT, log=log)
-    return Played.read(out, code, log.read_text(errors="replace"))
+    print(f"Running in Blender's window; its output goes to {log}", flush=True)
+    code = sandbox.run(script, mounts=mounts, variables=variables, limit=LIMIT, log=log)
+    return RunRecord.read(out, code, log.read_text(errors="replace"))
 
 
-def report(played: Played, out: Path, reports: Path | None, *, judged: bool) -> int:
+def report(record: RunRecord, out: Path, reports: Path | None, *, judged: bool) -> int:
     """Tell, write figures.json and the JUnit report; 1 where something failed.
 
     judged: whether a figure that misses its promise is a failure.
     """
-    figures = figures_of(played)
+    figures = figures_of(record)
     write(figures, out / "figures.json")
-    found = scene_verdicts(played) + (figure_verdicts(figures) if judged else [])
+    found = scenario_verdicts(record) + (figure_verdicts(figures) if judged else [])
     (out / "junit.xml").write_text(junit(found), encoding="utf-8")
     if reports is not None:
         reports.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""What a play in the window brought: its scenes, its figures beside promises, a JUnit report."""
+"""Results of a run in the window: scenarios, figures beside their limits, a JUnit report."""
 
 from __future__ import annotations
 
@@ -29,35 +29,35 @@ LIMITS = {
     **{BETWEEN + stage: Limit("ms") for stage in (REST, *STAGES)},
 }
 QUICKEST = ("opens_sidebar", "analyses", "chooses_landing", "drags_landing")
-# How lines of Blender's log begin that a sound extension does not cause.
+# Beginnings of log lines that a sound extension does not cause.
 FAULTS = ("Traceback (most recent call last)", "rna_", "Exception in", "Python: ", "LEFT ")
 Record = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Played:
-    """What the stage wrote; code: how Blender ended; log: its words."""
+class RunRecord:
+    """Scenarios, figures, profiles and clicks of a run; Blender's exit code and log."""
 
     code: int
     log: str
-    scenes: list[Record] = field(default_factory=list)
+    scenarios: list[Record] = field(default_factory=list)
     figures: dict[str, float] = field(default_factory=dict)
-    stretches: dict[str, Record] = field(default_factory=dict)
+    profiles: dict[str, Record] = field(default_factory=dict)
     clicks: list[Record] = field(default_factory=list)
 
     @staticmethod
-    def read(out: Path, code: int, log: str) -> Played:
-        """What the stage left in `out`, after Blender ended with that code."""
-        file = out / "play.json"
-        return Played(code, log, **(json.loads(file.read_text()) if file.is_file() else {}))
+    def read(out: Path, code: int, log: str) -> RunRecord:
+        """Read the record that a run left in `out`."""
+        file = out / "run.json"
+        return RunRecord(code, log, **(json.loads(file.read_text()) if file.is_file() else {}))
 
     @property
     def ending(self) -> str | None:
-        """What was wrong with the play as a whole; None where nothing was."""
-        if not self.scenes:
-            return f"the play did not begin; Blender ended with code {self.code}"
+        """Failure of the run as a whole; None where there was none."""
+        if not self.scenarios:
+            return f"the run did not begin; Blender ended with code {self.code}"
         if self.code == 124:
-            return "the play took too long and was ended"
+            return "the run took too long and was ended"
         if self.code != 0:
             return f"Blender ended with code {self.code}"
         wrong = [line for line in self.log.splitlines() if line.startswith(FAULTS)]
@@ -79,22 +79,22 @@ class Verdict:
         return f"  {self.name:58} {word:8} {self.seconds:5.1f} s{why}"
 
 
-def figures_of(played: Played) -> list[Figure]:
+def figures_of(run: RunRecord) -> list[Figure]:
     """The measured numbers beside what they must reach."""
-    values = {**played.figures, **blocking(played.stretches), **clicks(played)}
+    values = {**run.figures, **blocking(run.profiles), **clicks(run)}
     return [figure(name, value, CLIP, "window", LIMITS) for name, value in values.items()]
 
 
-def blocking(stretches: dict[str, Record]) -> dict[str, float]:
-    """How long the interface was held up at most, ms: in a call into our code by the clock, drawing
+def blocking(profiles: dict[str, Record]) -> dict[str, float]:
+    """Longest blocking of the interface by stage, ms: in a call into our code by the clock, drawing
     left out, or between two free moments by what Blender's thread computed, whichever is longer.
 
     The rest of the time between free moments is waiting for software to draw the window.
     """
     values = {}
     for stage in (REST, *STAGES):
-        if stage in stretches:
-            gaps, calls = stretches[stage]["gaps"], stretches[stage]["calls"]
+        if stage in profiles:
+            gaps, calls = profiles[stage]["gaps"], profiles[stage]["calls"]
             acting = [spans["longest"] for name, spans in calls.items() if not draws(name)]
             values[BETWEEN + stage] = 1000 * gaps["longest"]
             if stage != REST:
@@ -107,23 +107,23 @@ def draws(function: str) -> bool:
     return function.rpartition(".")[2].startswith("draw")
 
 
-def clicks(played: Played) -> dict[str, float]:
-    """How many clicks the way to the adapted landing took, if it was gone to its end."""
-    done = {scene["name"] for scene in played.scenes if scene["failure"] is None}
+def clicks(run: RunRecord) -> dict[str, float]:
+    """Number of clicks to the adapted landing, if it was reached."""
+    done = {scenario["name"] for scenario in run.scenarios if scenario["failure"] is None}
     if not done.issuperset(QUICKEST):
         return {}
-    return {CLICKS: sum(click["task"] in QUICKEST for click in played.clicks)}
+    return {CLICKS: sum(click["task"] in QUICKEST for click in run.clicks)}
 
 
-def scene_verdicts(played: Played) -> list[Verdict]:
-    """Each scene, and how the play ended."""
+def scenario_verdicts(run: RunRecord) -> list[Verdict]:
+    """Each scenario, and the end of the run."""
     found = []
-    for scene in played.scenes:
-        failure = scene["failure"]
-        if failure is not None and scene["pictures"]:
-            failure = f"{failure} (see {scene['pictures'][-1]})"
-        found.append(Verdict(scene["name"], failure, scene["seconds"], scene["skipped"]))
-    return [*found, Verdict("the play's end", played.ending)]
+    for scenario in run.scenarios:
+        failure = scenario["failure"]
+        if failure is not None and scenario["pictures"]:
+            failure = f"{failure} (see {scenario['pictures'][-1]})"
+        found.append(Verdict(scenario["name"], failure, scenario["seconds"], scenario["skipped"]))
+    return [*found, Verdict("the run's end", run.ending)]
 
 
 def figure_verdicts(figures: list[Figure]) -> list[Verdict]:
@@ -134,7 +134,7 @@ def figure_verdicts(figures: list[Figure]) -> list[Verdict]:
 
 
 def missed(figure: Figure | None) -> str | None:
-    """What is wrong with a promised figure; None where it is kept."""
+    """Failure of a promised figure; None where it is kept."""
     if figure is None:
         return "was not measured"
     return None if figure.ok else f"{figure.value:.4g} {figure.unit}, must {figure.must:g}"

@@ -1,1 +1,1 @@
-"""What the mouse drags in the 3D viewport: pins, limits, cones, stances."""
+"""Modal drags in the 3D viewport: pins, limits, cones, stances."""

@@ -6,13 +6,17 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ...bridge.properties.kinds import ConstraintKind
+from ...bridge.accessors import present
+from ...bridge.constraint_kinds import cone
+from ...bridge.properties.constraint import HangtimeConstraint
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
 from . import rays
-from .limit_mixin import NO_LIMIT, STEP, LimitDrag
+from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import Pixel, pixel, ray_at
 from .pin_state import PinDrag
+from .value_state import ANGLE_STEP
 
 
 class AimConeOperator(LimitDrag, bpy.types.Operator):
@@ -32,11 +36,11 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
     )
     axis: bpy.props.FloatVectorProperty(name="Axis", subtype="DIRECTION", default=(0.0, 0.0, -1.0))
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """In scripts and for redo."""
-        self._armature = chosen_armature(context)
-        row = self.row
-        if row is None or row.kind != ConstraintKind.CONE.name:
+        self._armature = required_armature(context)
+        row = self.find_row()
+        if row is None or row.kind != cone.KIND.name:
             self.report({"ERROR"}, NO_LIMIT)
             return {"CANCELLED"}
         row.use_axis, row.axis = True, self.axis
@@ -44,7 +48,9 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
 
     def take(self, context: bpy.types.Context) -> bool:
         self._was = (self.row.use_axis, Vector(self.row.axis))
-        self._sight = np.array(context.region_data.view_rotation @ Vector((0.0, 0.0, 1.0)))
+        self._sight = np.array(
+            (present(context.region_data).view_rotation @ Vector((0.0, 0.0, 1.0))).to_tuple()
+        )
         self._drag = PinDrag(tuple(self.tip))
         return self._aim(context, self._press.at) is not None
 
@@ -56,9 +62,9 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
         arm = np.array(self._drag.move((x, y, z), precise=event.shift)) - np.array(self.centre)
         axis = rays.unit(np.array(Matrix(self.turn)) @ arm)
         self.row.use_axis = True
-        self.row.axis = rays.rounded(axis, STEP) if event.ctrl else axis
+        self.row.axis = rays.rounded(axis, ANGLE_STEP) if event.ctrl else axis
 
-    def put_back(self, row: bpy.types.PropertyGroup) -> None:
+    def put_back(self, row: HangtimeConstraint) -> None:
         self._drag.put_back()
         row.use_axis, row.axis = self._was
 

@@ -1,4 +1,4 @@
-"""What dragging contacts shares: the motion follows as a ghost, and letting go adapts."""
+"""Modal drag of contacts and points: the motion follows as a ghost; letting go adapts."""
 
 from __future__ import annotations
 
@@ -6,14 +6,17 @@ from functools import partial
 
 import bpy
 
-from ...bridge.armature.incremental import Parts
+from ...bridge.accessors import present
+from ...bridge.armature.incremental import Incremental
 from ...bridge.constraints.motion_problem import problem_of
+from ...bridge.properties.settings import settings_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
+from ..operator_types import OperatorMixin, OperatorResult
 from ..solve.adapt import NOT_ANALYSED, ask_for
-from ..solve.common import chosen_armature, hindrance, said
+from ..solve.common import hindrance, required_armature, said
 from ..solve.live import live, redraw_viewports
 from ..solve.session import session
 from ..solve.task import LOOK_EVERY
@@ -25,19 +28,19 @@ LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 
 
-class FollowedDrag:
+class FollowedDrag(OperatorMixin):
     """Mixin of modal operators that drag contacts or points in a 3D viewport."""
 
     release_confirm: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
     adapt: bpy.props.BoolProperty(
         name="Adapt", description="Adapt the motion once the mouse lets go", default=True
     )
-    keys = ""  # what the header says of keys
+    key_hints = ""  # what the header says of keys
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         why = hindrance(context)
-        if why is None and not chosen_armature(context).hangtime.contacts:
+        if why is None and not settings_of(required_armature(context)).contacts:
             why = NOT_ANALYSED
         if why is not None:
             cls.poll_message_set(why)
@@ -70,13 +73,13 @@ class FollowedDrag:
         return False
 
     def text(self) -> str:
-        """How far it is dragged, for the header."""
+        """The displacement, for the header."""
         raise NotImplementedError
 
     # -- Blender's way -------------------------------------------------------------------------
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        self._armature = chosen_armature(context)
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        self._armature = required_armature(context)
         self._press = Press.of(context, event, click=self.release_confirm)
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
@@ -85,14 +88,15 @@ class FollowedDrag:
         self._moved, self._share = True, 0.0
         self._fault = self._shown = ""
         self._task = self._follow(context)
-        self._window, self._area = context.window, context.area
-        self._timer = context.window_manager.event_timer_add(LOOK_EVERY, window=context.window)
+        self._area = present(context.area)
+        manager = present(context.window_manager)
+        self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
         session().running.append(self)
-        context.window_manager.modal_handler_add(self)
+        manager.modal_handler_add(self)
         self._show()
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if self not in session().running:
             return {"CANCELLED"}
         pressed = event.value == "PRESS"
@@ -122,7 +126,7 @@ class FollowedDrag:
             running.remove(self)
             shared().drop()
             self._task.close()
-            bpy.context.window_manager.event_timer_remove(self._timer)
+            present(bpy.context.window_manager).event_timer_remove(self._timer)
             self._area.header_text_set(None)
             redraw_viewports()
 
@@ -130,13 +134,13 @@ class FollowedDrag:
     def _confirming(self) -> str:
         return "RELEASE" if self.release_confirm else "PRESS"
 
-    def _back(self) -> set[str]:
+    def _back(self) -> OperatorResult:
         self.put_back()
         self.leave()
         live().clear()
         return {"CANCELLED"}
 
-    def _end(self) -> set[str]:
+    def _end(self) -> OperatorResult:
         moved = self.let_go()
         self.leave()
         if moved and self.adapt:
@@ -148,14 +152,14 @@ class FollowedDrag:
 
     # -- the motion that follows ---------------------------------------------------------------
 
-    def _follow(self, context: bpy.types.Context) -> Parts[None]:
+    def _follow(self, context: bpy.types.Context) -> Incremental[None]:
         """Reads the recording in parts, then has the worker chase what is dragged."""
         asked = yield from ask_for(context)
         chase = shared().chase(asked.recording)
         while True:
             if self._moved:
                 self._moved = False
-                chase.want(problem_of(self._armature.hangtime, asked.recording))
+                chase.want(problem_of(settings_of(self._armature), asked.recording))
             for message in chase.news():
                 self._hear(message)
             yield
@@ -167,7 +171,7 @@ class FollowedDrag:
             self._fault = said(message.fault)
             live().clear()
         elif isinstance(message, Followed):
-            self._fault = LOST if message.course is DragStatus.LOST else ""
+            self._fault = LOST if message.course is DragStatus.DIVERGED else ""
             live().show(self._armature.name, message)
 
     def _look(self) -> None:
@@ -184,7 +188,7 @@ class FollowedDrag:
         text = self.text() + self._found()
         if text != self._shown:  # drawing the header again costs more than a look
             self._shown = text
-            self._area.header_text_set(f"{text}   {self.keys}")
+            self._area.header_text_set(f"{text}   {self.key_hints}")
 
     def _found(self) -> str:
         seen = live().seen
@@ -203,12 +207,13 @@ class FollowedDrag:
 
 def _adapt(pointer: int) -> None:
     """Letting go finishes the solve. pointer: of the area where the mouse was."""
-    for window in bpy.context.window_manager.windows:
+    for window in present(bpy.context.window_manager).windows:
         areas = [a for a in window.screen.areas if a.type == "VIEW_3D"]
         for area in sorted(areas, key=lambda a: a.as_pointer() != pointer):
             region = next(r for r in area.regions if r.type == "WINDOW")
             with bpy.context.temp_override(window=window, area=area, region=region):
-                if bpy.ops.hangtime.adapt.poll():
-                    bpy.ops.hangtime.adapt("INVOKE_DEFAULT")
+                adapt = bpy.ops.hangtime.adapt  # type: ignore[attr-defined]  # our own
+                if adapt.poll():
+                    adapt("INVOKE_DEFAULT")
                     return
     live().clear()

@@ -1,26 +1,27 @@
-"""What dragging a limit's handle in the viewport shares.
+"""Modal drag of a joint limit's handle in the viewport.
 
 The handles (ui/gizmos) say where a limit is drawn; what the mouse does there is the same for all.
 """
 
 from __future__ import annotations
 
-from math import radians
-
 import bpy
 
-from ..solve.common import EDIT_MODE, chosen_armature
+from ...bridge.accessors import present
+from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.settings import settings_of
+from ..operator_types import OperatorMixin, OperatorResult
+from ..solve.common import EDIT_MODE, chosen_armature, required_armature
 from ..solve.live import redraw_viewports
 from .mouse import Press
 
-STEP = radians(5.0)
 KEYS = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
 NO_LIMIT = "There is no such joint limit or cone"
 BY_HANDLES = "Drag the limit's handles in a 3D viewport"
 CONFIRM, BACK = {"RET", "NUMPAD_ENTER"}, {"ESC", "RIGHTMOUSE"}
 
 
-class LimitDrag:
+class LimitDrag(OperatorMixin):
     """Mixin of modal operators that change a limit of a joint."""
 
     constraint: bpy.props.IntProperty(
@@ -34,7 +35,7 @@ class LimitDrag:
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
         why = None
-        if armature is None or not len(armature.hangtime.constraints):
+        if armature is None or not len(settings_of(armature).constraints):
             why = NO_LIMIT
         elif armature.mode == "EDIT":
             why = EDIT_MODE
@@ -52,7 +53,7 @@ class LimitDrag:
         """The mouse is elsewhere."""
         raise NotImplementedError
 
-    def put_back(self, row: bpy.types.PropertyGroup) -> None:
+    def put_back(self, row: HangtimeConstraint) -> None:
         """All is as it was."""
         raise NotImplementedError
 
@@ -61,24 +62,25 @@ class LimitDrag:
         raise NotImplementedError
 
     def text(self) -> str:
-        """What it is now, for the header."""
+        """The present value, for the header."""
         raise NotImplementedError
 
     # -- Blender's way -------------------------------------------------------------------------
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        self._armature = chosen_armature(context)
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        self._armature = required_armature(context)
         self._press = Press.of(context, event, click=True)
-        if self.row is None or context.region_data is None or not self.take(context):
-            self.report({"ERROR"}, NO_LIMIT if self.row is None else BY_HANDLES)
+        row = self.find_row()
+        if row is None or context.region_data is None or not self.take(context):
+            self.report({"ERROR"}, NO_LIMIT if row is None else BY_HANDLES)
             return {"CANCELLED"}
-        self._found = (self.row.met, self.row.status)
-        self._area = context.area
-        context.window_manager.modal_handler_add(self)
+        self._found = (row.met, row.status)
+        self._area = present(context.area)
+        present(context.window_manager).modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if self.row is None:  # a script removed it
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        if self.find_row() is None:  # a script removed it
             self._leave()
             return {"CANCELLED"}
         pressed = event.value == "PRESS"
@@ -97,7 +99,7 @@ class LimitDrag:
 
     def cancel(self, _context: bpy.types.Context) -> None:
         """Also called by Blender when it opens another file or quits meanwhile."""
-        row = self.row
+        row = self.find_row()
         if row is not None:
             self.put_back(row)
             row.met, row.status = self._found
@@ -108,7 +110,11 @@ class LimitDrag:
         redraw_viewports()
 
     @property
-    def row(self) -> bpy.types.PropertyGroup | None:
-        """The constraint."""
-        rows = self._armature.hangtime.constraints
+    def row(self) -> HangtimeConstraint:
+        """The constraint, while it is there."""
+        return present(self.find_row())
+
+    def find_row(self) -> HangtimeConstraint | None:
+        """The constraint; None where a script removed it."""
+        rows = settings_of(self._armature).constraints
         return rows[self.constraint] if 0 <= self.constraint < len(rows) else None

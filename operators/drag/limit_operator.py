@@ -7,14 +7,16 @@ from math import degrees, radians
 import bpy
 import numpy as np
 
+from ...bridge.properties.constraint import HangtimeConstraint
 from ..names import OperatorId
-from ..solve.common import chosen_armature
-from .limit_mixin import NO_LIMIT, STEP, LimitDrag
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
+from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about, scaled
-from .value_state import ValueDrag
+from .value_state import ANGLE_STEP, ValueDrag
 
-WORDS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
+END_LABELS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
 
 
 class DragLimitOperator(LimitDrag, bpy.types.Operator):
@@ -42,10 +44,10 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
     )
     angle: bpy.props.FloatProperty(name="Angle", subtype="ANGLE")
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """In scripts and for redo: sets the angle, within its bounds."""
-        self._armature = chosen_armature(context)
-        row = self.row
+        self._armature = required_armature(context)
+        row = self.find_row()
         if row is None:
             self.report({"ERROR"}, NO_LIMIT)
             return {"CANCELLED"}
@@ -54,12 +56,12 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
         return {"FINISHED"}
 
     def take(self, context: bpy.types.Context) -> bool:
-        vectors = (np.array(each) for each in (self.centre, self.zero, self.ahead))
-        self._circle = Circle(*vectors, self.radius)
+        centre, zero, ahead = (np.array(each) for each in (self.centre, self.zero, self.ahead))
+        self._circle = Circle(centre, zero, ahead, self.radius)
         if not self._circle.normal.any():
             return False
         value = getattr(self.row, self.end)
-        self._drag = ValueDrag(value, *bounds(self.row, self.end), STEP)
+        self._drag = ValueDrag(value, *bounds(self.row, self.end), ANGLE_STEP)
         ray = ray_at(context, self._press.at)
         self._seen = scaled(value, 1.0 / self.narrow)
         self._began = self._angle = angle_about(ray, self._circle, self._seen)
@@ -71,7 +73,7 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
         value = self._drag.move(now - self._drag.start, precise=event.shift, snap=event.ctrl)
         setattr(self.row, self.end, value)
 
-    def put_back(self, row: bpy.types.PropertyGroup) -> None:
+    def put_back(self, row: HangtimeConstraint) -> None:
         setattr(row, self.end, self._drag.put_back())
 
     def let_go(self) -> bool:
@@ -80,11 +82,11 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
 
     def text(self) -> str:
         change = degrees(self._drag.value - self._drag.start)
-        return f"{WORDS[self.end]} {degrees(self._drag.value):.1f}° ({change:+.1f}°)"
+        return f"{END_LABELS[self.end]} {degrees(self._drag.value):.1f}° ({change:+.1f}°)"
 
 
-def bounds(row: bpy.types.PropertyGroup, end: str) -> tuple[float, float]:
-    """How far an end of a limit goes, rad: its own bounds, and not past the other end."""
+def bounds(row: HangtimeConstraint, end: str) -> tuple[float, float]:
+    """Range of an end of a limit, rad: its own bounds, and not past the other end."""
     if end == "half_angle":
         return radians(1.0), radians(179.0)
     low, high = radians(-180.0), radians(180.0)

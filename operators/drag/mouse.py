@@ -1,4 +1,4 @@
-"""The mouse in a 3D viewport: what it points at, and whether it drags or clicks."""
+"""Mouse in a 3D viewport: view rays, projection, and telling a drag from a click."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import bpy
 from bpy_extras import view3d_utils
 
+from ...bridge.accessors import present
 from .rays import Ray
 
 SLACK = 3.0  # px, at an interface scale of 1, until a click becomes a drag
@@ -17,25 +18,27 @@ Pixel = tuple[float, float]
 
 def ray_at(context: bpy.types.Context, at: Pixel) -> Ray:
     """Through a pixel of the 3D viewport's region; Blender units, world."""
-    region, view = context.region, context.region_data
+    region, view = present(context.region), present(context.region_data)
     origin = view3d_utils.region_2d_to_origin_3d(region, view, at)
-    return Ray.of(origin, view3d_utils.region_2d_to_vector_3d(region, view, at))
+    along = view3d_utils.region_2d_to_vector_3d(region, view, at)
+    return Ray.of(origin.to_tuple(), along.to_tuple())
 
 
 def pixel_of(context: bpy.types.Context, place: Sequence[float]) -> Pixel | None:
-    """Where a place is seen, Blender units, world; None for what is behind the viewer."""
-    at = view3d_utils.location_3d_to_region_2d(context.region, context.region_data, place)
-    return tuple(at) if at is not None else None
+    """Projection of a place (Blender units, world) to a pixel; None behind the viewer."""
+    region, view = present(context.region), present(context.region_data)
+    at = view3d_utils.location_3d_to_region_2d(region, view, place)
+    return (at.x, at.y) if at is not None else None
 
 
 def pixel(event: bpy.types.Event) -> Pixel:
-    """Where the mouse is in the region."""
+    """Mouse position in the region."""
     return event.mouse_region_x, event.mouse_region_y
 
 
 @dataclass
 class Press:
-    """Where the mouse took hold. A click moves nothing, however it trembles."""
+    """Press of a mouse button. A click moves nothing, however it trembles."""
 
     at: Pixel
     slack: float
@@ -44,11 +47,11 @@ class Press:
     @staticmethod
     def of(context: bpy.types.Context, event: bpy.types.Event, *, click: bool) -> Press:
         """click: whether it may still be one, as the button is down."""
-        slack = SLACK * context.preferences.system.ui_scale
+        slack = SLACK * present(context.preferences).system.ui_scale
         return Press(pixel(event), slack, dragging=not click)
 
     def drags(self, event: bpy.types.Event) -> bool:
-        """Whether it has become a drag."""
+        """True once it has become a drag."""
         x, y = pixel(event)
         self.dragging = self.dragging or max(abs(x - self.at[0]), abs(y - self.at[1])) > self.slack
         return self.dragging

@@ -6,10 +6,14 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
+from ...bridge.accessors import present
 from ...bridge.armature.poses import metres_per_unit
+from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.settings import HangtimeContact, settings_of
 from ...bridge.properties.stances import place, stance_contacts
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
 from . import rays
 from .follow_mixin import FollowedDrag
 from .mouse import Pixel, pixel, pixel_of, ray_at
@@ -30,7 +34,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         "motion follows as a ghost; letting go adapts. A click chooses it in its list"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
-    keys = "X Y Z: along an axis · Shift: finer · Ctrl: in steps · Esc: back"
+    key_hints = "X Y Z: along an axis · Shift: finer · Ctrl: in steps · Esc: back"
 
     contact: bpy.props.IntProperty(
         name="Contact",
@@ -59,27 +63,28 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         name="Shift", description="How far, in the world", subtype="TRANSLATION", unit="LENGTH"
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """In scripts and for redo: the pin moves by `shift`."""
-        self._armature = chosen_armature(context)
-        if self._row is None:
+        self._armature = required_armature(context)
+        if self._find_row() is None:
             self.report({"ERROR"}, NO_PIN)
             return {"CANCELLED"}
         self._put(Vector(self._place) + Vector(self.shift))
         return {"FINISHED"}
 
     def take(self, context: bpy.types.Context) -> str | None:
-        if self._row is None:
+        if self._find_row() is None:
             return NO_PIN
-        self._metres = metres_per_unit(context.scene)
+        self._metres = metres_per_unit(present(context.scene))
         x, y, z = (self._metres * each for each in self._place)
         self._drag = PinDrag((x, y, z), Axis.__members__.get(self.axis))
-        sight = context.region_data.view_rotation @ UP
+        sight = present(context.region_data).view_rotation @ UP
         self._ground = abs(sight.z) > FLAT
         self._normal = UP if self._ground else sight
-        self._pixel = pixel_of(context, self._place)
-        if self._pixel is None:
+        seen_at = pixel_of(context, self._place)
+        if seen_at is None:
             return BEHIND
+        self._pixel = seen_at
         self._was = self._remembered()
         self._choose()
         return None
@@ -93,7 +98,8 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         # As if the mouse had taken hold of the pin itself, wherever it did.
         ways = zip(self._pixel, pixel(event), self._press.at, strict=True)
-        now = self._aim(context, tuple(pin + to - began for pin, to, began in ways))
+        across, up = (pin + to - began for pin, to, began in ways)
+        now = self._aim(context, (across, up))
         if now is None:
             return  # above the horizon: it stays where it is
         x, y, z = (float(each) for each in self._metres * now - np.array(self._drag.start))
@@ -107,15 +113,16 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
 
     def put_back(self) -> None:
         self._drag.put_back()
-        settings = self._armature.hangtime
-        settings.active_contact, settings.active_constraint, places, use_place = self._was
+        settings = settings_of(self._armature)
+        settings.active_contact, settings.active_constraint, places, point = self._was
         for index, at in places.items():
-            place(settings, settings.contacts[index], at, whole=False)
-        if self.constraint >= 0:
-            self._row.use_place, self._row.place = use_place
+            place(settings, settings.contacts[index], at.to_tuple(), whole=False)
+        row = self._row
+        if isinstance(row, HangtimeConstraint):
+            row.use_place, row.place = point
 
     def chosen(self) -> bool:
-        settings = self._armature.hangtime
+        settings = settings_of(self._armature)
         return (settings.active_contact, settings.active_constraint) != self._was[:2]
 
     def text(self) -> str:
@@ -128,8 +135,13 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     # -- where ---------------------------------------------------------------------------------
 
     @property
-    def _row(self) -> bpy.types.PropertyGroup | None:
-        settings = self._armature.hangtime
+    def _row(self) -> HangtimeContact | HangtimeConstraint:
+        row = self._find_row()
+        assert row is not None
+        return row
+
+    def _find_row(self) -> HangtimeContact | HangtimeConstraint | None:
+        settings = settings_of(self._armature)
         if self.constraint >= 0:
             rows, index = settings.constraints, self.constraint
         else:
@@ -140,20 +152,21 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     @property
     def _place(self) -> tuple[float, ...]:
         """Blender units, world."""
-        return tuple(self._row.place if self.constraint >= 0 else self._row.at)
+        row = self._row
+        return tuple(row.place if isinstance(row, HangtimeConstraint) else row.at)
 
     def _put(self, to: Vector) -> None:
         row = self._row
-        if self.constraint >= 0:
+        if isinstance(row, HangtimeConstraint):
             row.use_place, row.place = True, to
         else:
-            place(self._armature.hangtime, row, to, whole=self.whole or None)
+            place(settings_of(self._armature), row, to.to_tuple(), whole=self.whole or None)
 
-    def _remembered(self) -> tuple[int, int, dict[int, Vector], tuple[bool, Vector] | None]:
-        """What the drag may change: what is chosen, contacts' places, the point's."""
-        settings, row = self._armature.hangtime, self._row
-        places, point = {}, None
-        if self.constraint >= 0:
+    def _remembered(self) -> tuple[int, int, dict[int, Vector], tuple[bool, Vector]]:
+        """State to restore: what is chosen, contacts' places, the point's."""
+        settings, row = settings_of(self._armature), self._row
+        places, point = {}, (False, Vector())
+        if isinstance(row, HangtimeConstraint):
             point = (row.use_place, Vector(row.place))
         else:
             contacts = stance_contacts(settings, row.phase)
@@ -161,14 +174,14 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         return settings.active_contact, settings.active_constraint, places, point
 
     def _choose(self) -> None:
-        settings = self._armature.hangtime
+        settings = settings_of(self._armature)
         if self.constraint >= 0:
             settings.active_constraint = self.constraint
         elif self.contact >= 0:
             settings.active_contact = self.contact
 
     def _aim(self, context: bpy.types.Context, at: Pixel) -> rays.Vector | None:
-        """What a pixel points at on the ground, the plane that faces the viewer, or the axis
+        """The place under a pixel on the ground, the plane that faces the viewer, or the axis
         through the pin; Blender units, world. None where it points at none of that."""
         ray = ray_at(context, at)
         start = np.array(self._drag.start) / self._metres
@@ -176,7 +189,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             axis = rays.unit([float(i == self._drag.axis.value) for i in range(3)])
             distance = rays.along_line(ray, start, axis)
             return start + distance * axis if distance is not None else None
-        return rays.on_plane(ray, start, self._normal, FARTHEST)
+        return rays.on_plane(ray, start, self._normal.to_tuple(), FARTHEST)
 
 
 CLASSES = (DragPinOperator,)

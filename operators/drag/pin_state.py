@@ -1,4 +1,4 @@
-"""Dragging a pin, without Blender: where the pin goes as the mouse moves."""
+"""State machine of dragging a pin, without Blender."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ FURTHEST = 10.0  # m
 
 
 class Axis(Enum):
-    """What a drag is held to."""
+    """Axis constraint of a drag."""
 
     X = 0
     Y = 1
     Z = 2
 
 
-class State(Enum):
-    """Where a drag is."""
+class DragState(Enum):
+    """States of a drag."""
 
     DRAGGING = "dragging"
     LET_GO = "let go"
@@ -36,7 +36,7 @@ class PinDrag:
 
     start: Vector
     axis: Axis | None = None
-    state: State = State.DRAGGING
+    state: DragState = DragState.DRAGGING
     _shift: Vector = (0.0, 0.0, 0.0)
     _loose: Vector = (0.0, 0.0, 0.0)  # how far it is pulled, before steps and axes
     _mouse: Vector = (0.0, 0.0, 0.0)
@@ -44,7 +44,7 @@ class PinDrag:
     def key(self, axis: Axis) -> None:
         """An axis's key: holds to it, or lets go of it again. The mouse's next move counts from
         where the drag began, on that axis."""
-        self._require(State.DRAGGING)
+        self._require(DragState.DRAGGING)
         self.axis = None if self.axis is axis else axis
         self._shift = self._loose = self._mouse = (0.0, 0.0, 0.0)
 
@@ -52,7 +52,7 @@ class PinDrag:
         """The mouse is `shift` (m) from where it began, on the plane or axis of the drag. Returns
         where the pin is now. precise: goes a tenth of the mouse's way, from here on and without
         a jump at either end; snap: to whole steps."""
-        self._require(State.DRAGGING)
+        self._require(DragState.DRAGGING)
         share = PRECISE if precise else 1.0
         x, y, z = (
             was + share * (now - before)
@@ -68,27 +68,27 @@ class PinDrag:
 
     @property
     def shift(self) -> Vector:
-        """How far the pin is from where it began, m."""
+        """Displacement of the pin, m."""
         return self._shift
 
     @property
     def place(self) -> Vector:
-        """Where the pin is, m, world."""
+        """Position of the pin, m, world."""
         x, y, z = (a + b for a, b in zip(self.start, self._shift, strict=True))
         return x, y, z
 
     def let_go(self) -> bool:
         """The artist lets go. Returns whether the pin has moved at all."""
-        self._require(State.DRAGGING)
-        self.state = State.LET_GO
+        self._require(DragState.DRAGGING)
+        self.state = DragState.LET_GO
         return any(self._shift)
 
     def put_back(self) -> Vector:
         """The artist thinks better of it. Returns where the pin was."""
-        self._require(State.DRAGGING)
-        self.state, self._shift = State.PUT_BACK, (0.0, 0.0, 0.0)
+        self._require(DragState.DRAGGING)
+        self.state, self._shift = DragState.PUT_BACK, (0.0, 0.0, 0.0)
         return self.start
 
-    def _require(self, state: State) -> None:
+    def _require(self, state: DragState) -> None:
         if self.state is not state:
             raise ValueError(f"the drag is {self.state.value}")

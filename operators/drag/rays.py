@@ -1,4 +1,4 @@
-"""What the mouse points at: on planes, along lines, about circles. Numpy only; (3,) vectors.
+"""Ray casting: intersections with planes, lines and circles. Numpy only; (3,) vectors.
 
 Lengths in whatever unit the rays are in, angles in rad.
 """
@@ -54,7 +54,7 @@ class Circle:
 
 
 def on_plane(ray: Ray, point: ArrayLike, normal: ArrayLike, farthest: float = inf) -> Vector | None:
-    """Where a ray meets a plane through a point.
+    """Intersection of a ray with a plane through a point.
 
     None where it only grazes it, or not in front of the viewer, or more than `farthest` times as
     far away as the point is: towards the horizon a pixel is metres.
@@ -71,7 +71,8 @@ def on_plane(ray: Ray, point: ArrayLike, normal: ArrayLike, farthest: float = in
 
 
 def along_line(ray: Ray, point: ArrayLike, axis: ArrayLike) -> float | None:
-    """How far from a point along an axis (unit vector) a ray passes nearest; None if parallel."""
+    """Distance from a point along an axis (unit vector) to the ray's closest approach; None if
+    parallel."""
     a, p = np.asarray(axis, dtype=float), np.asarray(point, dtype=float)
     dot = float(a @ ray.along)
     if 1.0 - dot * dot < PARALLEL:

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from math import degrees, inf, radians
+from math import degrees, inf
 
 import bpy
 import numpy as np
 from mathutils import Vector
 
+from ...bridge.properties.settings import HangtimeStance, settings_of
 from ...bridge.properties.stances import active_stance, stance_contacts, stance_middle
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
 from .follow_mixin import FollowedDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about
-from .value_state import ValueDrag
+from .value_state import ANGLE_STEP, ValueDrag
 
-STEP = radians(5.0)
 NO_STANCE = "Choose a contact of the stance first"
 
 
@@ -28,15 +29,15 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         "letting go adapts"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}
-    keys = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
+    key_hints = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
 
     by: bpy.props.FloatProperty(
         name="By", description="Counter-clockwise seen from above", subtype="ANGLE"
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         """In scripts and for redo."""
-        stance = active_stance(chosen_armature(context).hangtime)
+        stance = active_stance(settings_of(required_armature(context)))
         if stance is None:
             self.report({"ERROR"}, NO_STANCE)
             return {"CANCELLED"}
@@ -44,18 +45,17 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         return {"FINISHED"}
 
     def take(self, context: bpy.types.Context) -> str | None:
-        settings = self._armature.hangtime
+        settings = settings_of(self._armature)
         stance = active_stance(settings)
-        middle = stance_middle(settings, stance.name) if stance is not None else None
-        if middle is None:
+        if stance is None or (middle := stance_middle(settings, stance.name)) is None:
             return NO_STANCE
         self._name = stance.name
         contacts = stance_contacts(settings, stance.name)
         radius = max((Vector(c.at) - middle).xy.length for c in contacts)
         x, y = np.eye(3)[:2]
-        self._circle = Circle(np.array(middle), x, y, max(radius, 1e-6))
+        self._circle = Circle(np.array(middle.to_tuple()), x, y, max(radius, 1e-6))
         self._began = self._angle = angle_about(ray_at(context, self._press.at), self._circle, 0.0)
-        self._drag = ValueDrag(stance.turn, -inf, inf, STEP)
+        self._drag = ValueDrag(stance.turn, -inf, inf, ANGLE_STEP)
         return None
 
     def pull(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
@@ -76,8 +76,9 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         return f"{self._name} turned by {turned:+.1f}° to {degrees(self._drag.value):.1f}°"
 
     @property
-    def _stance(self) -> bpy.types.PropertyGroup:
-        return self._armature.hangtime.stances[self._name]
+    def _stance(self) -> HangtimeStance:
+        stance: HangtimeStance = settings_of(self._armature).stances[self._name]
+        return stance
 
 
 CLASSES = (TurnStanceOperator,)

@@ -1,10 +1,13 @@
-"""Dragging one number, such as an angle, without Blender."""
+"""State machine of dragging one number, such as an angle, without Blender."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import radians
 
-from .pin_state import PRECISE, State
+from .pin_state import PRECISE, DragState
+
+ANGLE_STEP = radians(5.0)
 
 
 @dataclass
@@ -18,7 +21,7 @@ class ValueDrag:
     low: float
     high: float
     step: float
-    state: State = State.DRAGGING
+    state: DragState = DragState.DRAGGING
     _value: float | None = None
     _loose: float = 0.0  # how far it is pulled, before bounds and steps
     _mouse: float = 0.0
@@ -41,15 +44,15 @@ class ValueDrag:
     def let_go(self) -> bool:
         """Returns whether the value has changed."""
         self._require()
-        self.state = State.LET_GO
+        self.state = DragState.LET_GO
         return self.value != self.start
 
     def put_back(self) -> float:
         """Returns the value that it had."""
         self._require()
-        self.state, self._value = State.PUT_BACK, None
+        self.state, self._value = DragState.PUT_BACK, None
         return self.start
 
     def _require(self) -> None:
-        if self.state is not State.DRAGGING:
+        if self.state is not DragState.DRAGGING:
             raise ValueError(f"the drag is {self.state.value}")

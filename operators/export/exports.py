@@ -6,11 +6,14 @@ from pathlib import Path
 
 import bpy
 
+from ...bridge.accessors import present
 from ...bridge.files.export import export_fbx, export_gltf
+from ...bridge.properties.settings import action_settings
 from ...solver.data.faults import OutputNotWritable
 from ..names import OperatorId
-from ..solve.common import FaultyOperator, chosen_armature
-from ..solve.results import performer_of, result_of
+from ..operator_types import OperatorResult
+from ..solve.common import FaultyOperator, chosen_armature, required_armature
+from ..solve.results import performer_of, required_result, result_of
 
 NO_NAME = "no file name is given"
 NOT_ACCEPTED = "Accept a result first; what is exported is the accepted action"
@@ -21,32 +24,30 @@ class _Export(FaultyOperator):
 
     extension = ""
 
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH")  # type: ignore[valid-type]
-    check_existing: bpy.props.BoolProperty(  # type: ignore[valid-type]
-        default=True, options={"HIDDEN"}
-    )
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH")
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         result = result_of(chosen_armature(context))
-        if result is None or not result.hangtime.accepted:
+        if result is None or not action_settings(result).accepted:
             cls.poll_message_set(NOT_ACCEPTED)
             return False
         return True
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
-        name = bpy.path.clean_name(result_of(chosen_armature(context)).name)
+        name = bpy.path.clean_name(required_result(context).name)
         self.filepath = str((folder / name).with_suffix(self.extension))
-        context.window_manager.fileselect_add(self)
+        present(context.window_manager).fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def run(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
+    def run(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
         if not bpy.path.basename(self.filepath):
             raise OutputNotWritable(self.filepath, NO_NAME)
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), self.extension)
-        self.write(performer_of(armature), result_of(armature), path)
+        self.write(performer_of(armature), required_result(context), path)
         self.report({"INFO"}, f"Exported {Path(path).name}")
         return {"FINISHED"}
 

@@ -13,13 +13,15 @@ from ...bridge.plots.charts import kept_takes
 from ...bridge.plots.curves import table
 from ..headless.outbox import Outbox
 from ..names import OperatorId
-from ..solve.common import FaultyOperator, chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import FaultyOperator, chosen_armature, required_armature
 
-NOTHING = "Press Analyze first: there is no motion to plot"
+NOTHING_TO_PLOT = "Press Analyze first: there is no motion to plot"
 DIGITS = 6
 
 
-class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):
+# The stubs take `check` and `invoke` of the mixin for functions that return nothing.
+class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  # type: ignore[misc]
     bl_idname = OperatorId.SAVE_PLOTS
     bl_label = "Save Plots"
     bl_description = (
@@ -35,17 +37,17 @@ class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):
         armature = chosen_armature(context)
         possible = armature is not None and bool(kept_takes(armature))
         if not possible:
-            cls.poll_message_set(NOTHING)
+            cls.poll_message_set(NOTHING_TO_PLOT)
         return possible
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if not self.filepath:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:  # type: ignore[override]
+        if not self.filepath:  # type: ignore[has-type]
             folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path()
-            self.filepath = str(folder / f"{chosen_armature(context).name} plots.csv")
-        return ExportHelper.invoke(self, context, event)
+            self.filepath = str(folder / f"{required_armature(context).name} plots.csv")
+        return ExportHelper.invoke(self, context, event)  # type: ignore[func-returns-value, return-value]
 
-    def run(self, context: bpy.types.Context) -> set[str]:
-        takes = {take: kept.traces for take, kept in kept_takes(chosen_armature(context)).items()}
+    def run(self, context: bpy.types.Context) -> OperatorResult:
+        takes = {take: kept.traces for take, kept in kept_takes(required_armature(context)).items()}
         path = Path(bpy.path.abspath(self.filepath))
         with Outbox(path.parent) as outbox:
             outbox.write_text(path.name, _csv(*table(takes)))

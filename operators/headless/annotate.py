@@ -4,9 +4,19 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from ...bridge.picture.annotations import Box, Cone, Ghost, LimitArc, Mark, Span, Sphere, Tint, Tone
+from ...bridge.picture.annotations import (
+    Box,
+    Cone,
+    Ghost,
+    LimitArc,
+    Mark,
+    Sphere,
+    TimeSpan,
+    Tint,
+    Tone,
+)
 from ...solver.arrays import FloatArray
-from ...solver.body.kinematics import Pose, pose
+from ...solver.body.kinematics import Pose, forward_kinematics
 from ...solver.data.problem import MotionProblem
 from ...solver.data.requests import AddedMass, TorqueLimit
 from ...solver.stages.implicit import Adaptation
@@ -43,7 +53,7 @@ class _Posed:
         self.com = motion.com(times)
         self.character = motion.transcription.character
         self.context = adaptation.setup.context
-        self.pose: Pose = pose(self.character, self.angles)
+        self.pose: Pose = forward_kinematics(self.character, self.angles)
         self.centres = self.pose.centres + self.com[:, None]
 
     def body_of(self, first_angle: int) -> int:
@@ -80,7 +90,7 @@ def _of_condition(condition: Constraint, figure: _Posed) -> Iterator[Mark]:
 
 
 def _limit(
-    bend: constraint_functions.BendAngle, condition: Constraint, figure: _Posed, span: Span
+    bend: constraint_functions.BendAngle, condition: Constraint, figure: _Posed, span: TimeSpan
 ) -> Iterator[Mark]:
     body = figure.body_of(bend.joint.first)
     lower, upper = float(condition.bounds.lower[0]), float(condition.bounds.upper[0])
@@ -97,11 +107,11 @@ def _limit(
     )
 
 
-def _ghost(wanted: constraint_functions.JointAngles, figure: _Posed, span: Span) -> Ghost:
+def _ghost(wanted: constraint_functions.JointAngles, figure: _Posed, span: TimeSpan) -> Ghost:
     """The boxes of the bodies whose angles are asked for, hung on the figure as it is."""
     angles = figure.angles.copy()
     angles[:, wanted.which] = wanted.wanted(figure.times)
-    posed = pose(figure.character, angles)
+    posed = forward_kinematics(figure.character, angles)
     asked = set(wanted.which.tolist())
     joints = figure.character.joints
     which = [i for i, j in enumerate(joints) if i > 0 and asked & set(range(j.first, j.dofs.stop))]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...solver.analysis.analyse import Analysis, analyse, figure
+from ...solver.analysis.analyse import Analysis, analyse, build_figure
 from ...solver.analysis.pinned_places import pinned_places
 from ...solver.data.faults import NoArmature, NoFit, NoSolution, OutputNotWritable, UnreadableClip
 from ...solver.data.problem import MotionProblem
@@ -25,7 +25,7 @@ from .stages import Stages
 if TYPE_CHECKING:
     import bpy
 
-    from ...bridge.formats.skeleton import UpAxis
+    from ...bridge.formats.motion_clip import UpAxis
 
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
@@ -101,7 +101,7 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> Loaded:
         armature, origin = _import(clip)
     with stages.stage("Finding contacts"):
         if problem.height is not None:
-            measured = figure(_read(armature, problem), problem)[1].height
+            measured = build_figure(_read(armature, problem), problem)[1].height
             _scale(armature, problem.height / measured)
         analysis = _analyse(armature, problem)
         # Wrong pins are said before the fit takes its seconds.
@@ -197,11 +197,11 @@ def _recorded_frames(
 
 def _scale(armature: "bpy.types.Object", factor: float) -> None:
     """Makes the figure larger, and how far it travels with it."""
-    from ...bridge.files.import_clip import _scale_all
+    from ...bridge.files.import_clip import scale_about_origin
 
     while armature.parent is not None:
         armature = armature.parent
-    _scale_all([armature], factor)
+    scale_about_origin([armature], factor)
 
 
 # ---------------------------------------------------------------- out
@@ -254,14 +254,14 @@ def _write_actions(
     recording's on a copy beside it."""
     import bpy
 
-    from ...bridge.armature.reproportioned import other_figure
+    from ...bridge.armature.reproportioned import build_reproportioned
     from ...bridge.armature.write import side_by_side, write_action
 
     performance = adaptation.fit.performance
     recorded = loaded.armature.animation_data.action
     armature, track = loaded.armature, adaptation.track
     if adaptation.setup.requests.body.limbs:
-        armature, track, _ = other_figure(adaptation.setup.recording, track)
+        armature, track, _ = build_reproportioned(adaptation.setup.recording, track)
     adapted = write_action(armature, track, name=f"{recorded.name} {called}")
     x, y = (performance.com[-1] - performance.com[0])[:2]
     far = float(np.hypot(x, y))

@@ -7,20 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
-from ...bridge.picture.annotations import Bar, Mark, Span, Sphere
+from ...bridge.picture.annotations import Bar, Mark, Sphere, TimeSpan
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.body.character import Body
 from ...solver.data.contacts import Phase, PhaseKind
-from ...solver.data.problem import Axes3, MotionProblem, Pin
+from ...solver.data.problem import MotionProblem, OffsetAxes, Pin
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
 
 FEET = (Part.FOOT, Part.TOE)
 BESIDE_HANDS = 0.3  # m, how far a bar reaches beyond the hands that hold it
-FIGURES = 9  # of a motion alone
 TRAVELS = 0.3  # m, less is no direction
 
 
@@ -36,12 +35,6 @@ def draw(
     edit = "; ".join(asked) or "made to obey physics"
     rows = [recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)]
     draw_sheet(rows, path, View(heading=heading(adaptation)))
-
-
-def draw_result(adaptation: Adaptation, title: str, path: Path, marks: Sequence[Mark] = ()) -> None:
-    """The adapted motion alone, as in the thesis's gallery; otherwise as `draw`."""
-    view = View(figures=FIGURES, heading=heading(adaptation))
-    draw_sheet([adapted_row(adaptation, title, marks)], path, view)
 
 
 def heading(adaptation: Adaptation) -> tuple[float, float] | None:
@@ -99,7 +92,7 @@ class ContactHold:
 
     part: Part
     place: FloatArray
-    span: Span
+    span: TimeSpan
 
 
 def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
@@ -151,9 +144,9 @@ def caption(pin: Pin) -> str:
     words = []
     if pin.place is not None:
         words.append(f"to ({', '.join(f'{x:g}' for x in pin.place)}) m")
-    if pin.axes is Axes3.WORLD and any(pin.offset):
+    if pin.axes is OffsetAxes.WORLD and any(pin.offset):
         words.append(f"by ({', '.join(f'{x:g}' for x in pin.offset)}) m")
-    elif pin.axes is Axes3.TRAVEL:
+    elif pin.axes is OffsetAxes.TRAVEL:
         ways = (("forward", "back"), ("left", "right"), ("up", "down"))
         for amount, (ahead, behind) in zip(pin.offset, ways, strict=True):
             if amount:

@@ -4,15 +4,24 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.constraints.rows import SINGLE_BONE, add_body_change, set_bones
-from ...bridge.properties.kinds import BodyKind
+from ...bridge.constraint_kinds import KINDS
+from ...bridge.constraints.rows import add_body_change, set_bones
+from ...bridge.properties.body_change import HangtimeBodyChange
+from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.settings import settings_of
+from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.kind import BoneUse
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
 from .chosen_bones import chosen_bones
 from .row_lists import FROM_LIBRARY, AddingOperator, RowList, RowOperator, list_items
 
 NONE_SELECTED = "Select bones in pose mode first"
-_OF_ONE_BONE = {kind.name for kind in (*SINGLE_BONE, BodyKind.LOAD)}
+_OF_ONE_BONE = {
+    BodyKind.LOAD.name,
+    *(kind.name for kind in KINDS.values() if kind.bones is BoneUse.ONE),
+}
 DESCRIPTIONS = {
     BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
     BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",
@@ -37,12 +46,12 @@ class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
     ) -> str:
         return DESCRIPTIONS[BodyKind[properties.kind]]
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature, kind = chosen_armature(context), BodyKind[self.kind]
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, kind = required_armature(context), BodyKind[self.kind]
         bones = chosen_bones(armature)
         groups = [[bone] for bone in bones] if kind is BodyKind.LOAD and bones else [bones]
         for group in groups:
-            add_body_change(armature.hangtime, kind, group)
+            add_body_change(settings_of(armature), kind, group)
         return {"FINISHED"}
 
 
@@ -54,8 +63,8 @@ class RemoveBodyChangeOperator(RowOperator, bpy.types.Operator):
     of = RowList.BODY_CHANGES
     own = True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
         index = self.of.chosen(settings)
         settings.body_changes.remove(index)
         self.of.choose(settings, index)
@@ -65,12 +74,15 @@ class RemoveBodyChangeOperator(RowOperator, bpy.types.Operator):
 class _BonesOperator(AddingOperator):
     """Mixin: changes the bones of the chosen row of either list."""
 
-    def _row(self, context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
+    of: bpy.props.EnumProperty(name="List", items=list_items())
+
+    def _row(self, context: bpy.types.Context) -> HangtimeConstraint | HangtimeBodyChange | None:
         """None, reported, where there is none that can be changed."""
-        armature, of = chosen_armature(context), RowList[self.of]
-        index = of.chosen(armature.hangtime)
+        armature, of = required_armature(context), RowList[self.of]
+        index = of.chosen(settings_of(armature))
         if index >= of.linked(armature):
-            return of.rows(armature.hangtime)[index]
+            row: HangtimeConstraint | HangtimeBodyChange = of.rows(settings_of(armature))[index]
+            return row
         self.report({"WARNING"}, of.nothing_chosen if index < 0 else FROM_LIBRARY)
         return None
 
@@ -81,22 +93,20 @@ class AssignBonesOperator(_BonesOperator, bpy.types.Operator):
     bl_description = "Let the chosen row be about the bones that are selected in pose mode"
     bl_options = {"REGISTER", "UNDO"}
 
-    of: bpy.props.EnumProperty(name="List", items=list_items())
-
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not super().poll(context):
             return False
-        if not chosen_bones(chosen_armature(context)):
+        if not chosen_bones(required_armature(context)):
             cls.poll_message_set(NONE_SELECTED)
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         row = self._row(context)
         if row is None:
             return {"CANCELLED"}
-        bones = chosen_bones(chosen_armature(context))
+        bones = chosen_bones(required_armature(context))
         set_bones(row, bones[:1] if row.kind in _OF_ONE_BONE else bones)
         return {"FINISHED"}
 
@@ -107,9 +117,7 @@ class AddBoneOperator(_BonesOperator, bpy.types.Operator):
     bl_description = "Add a field to choose one more bone in"
     bl_options = {"REGISTER", "UNDO"}
 
-    of: bpy.props.EnumProperty(name="List", items=list_items())
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         row = self._row(context)
         if row is None:
             return {"CANCELLED"}
@@ -123,10 +131,9 @@ class RemoveBoneOperator(_BonesOperator, bpy.types.Operator):
     bl_description = "Take this bone off the chosen row"
     bl_options = {"REGISTER", "UNDO"}
 
-    of: bpy.props.EnumProperty(name="List", items=list_items())
     index: bpy.props.IntProperty(name="Index", min=0)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         row = self._row(context)
         if row is None or self.index >= len(row.bones):
             return {"CANCELLED"}

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import pose_of, present
+from ...bridge.constraint_kinds import KINDS, point
 from ...bridge.constraints.rows import (
-    IN_A_PHASE,
-    SINGLE_BONE,
     add_constraint,
     copy_row,
     free_name,
     hold_during,
     hold_in,
     phase_at,
-    put_where_shown,
 )
-from ...bridge.properties.kinds import ConstraintKind
-from ...bridge.properties.phases import phases_of
+from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.settings import settings_of
+from ...bridge.rows.kind import BoneUse, NewRange
+from ...bridge.rows.phases import phases_of
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import required_armature
 from .chosen_bones import chosen_bones
 from .row_lists import AddingOperator, RowOperator
 
@@ -26,23 +28,6 @@ NOT_A_POINT = "Only a Point has a place"
 NO_BONE = "Choose the point's bone first"
 NO_PREVIEW = "Set a preview range in the timeline first"
 NO_PHASE = "No phase is known at this frame; press Analyze first"
-DESCRIPTIONS = {
-    ConstraintKind.POINT: "Hold a point of a bone at a place, or within bounds of one",
-    ConstraintKind.LIFT: "Let feet or hands that touch in a phase touch no more",
-    ConstraintKind.ANGLE: "Keep how far a joint is bent between two angles",
-    ConstraintKind.CONE: "Keep a bone's direction within a cone",
-    ConstraintKind.TWIST: "Keep how far a bone is turned about itself between two angles",
-    ConstraintKind.TORQUE: "Cap how strong joints are; zero makes them limp",
-    ConstraintKind.POSE: "Hold or prefer the recording's pose or the rest pose",
-    ConstraintKind.ORIENTATION: "Turn or tilt a bone, such as the hips, in the world",
-    ConstraintKind.FORCE: "Cap contact forces, or set how slippery the ground is",
-    ConstraintKind.TIMING: "Let a phase last longer or shorter",
-    ConstraintKind.HOLD: "Repeat a frame for some time",
-}
-
-
-def _items() -> list[tuple[str, str, str]]:
-    return [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in ConstraintKind]
 
 
 class AddConstraintOperator(AddingOperator, bpy.types.Operator):
@@ -51,19 +36,21 @@ class AddConstraintOperator(AddingOperator, bpy.types.Operator):
     bl_description = "Add a constraint about the selected pose bones and the current frame"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: bpy.props.EnumProperty(name="Kind", items=_items())
+    kind: bpy.props.EnumProperty(
+        name="Kind", items=[(kind.name, kind.label, kind.description) for kind in KINDS.values()]
+    )
 
     @classmethod
     def description(
         cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties
     ) -> str:
-        return DESCRIPTIONS[ConstraintKind[properties.kind]]
+        return KINDS[properties.kind].description
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature, kind = chosen_armature(context), ConstraintKind[self.kind]
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, kind = required_armature(context), KINDS[self.kind]
         bones = chosen_bones(armature)
-        frame = context.scene.frame_current_final
-        groups = [[bone] for bone in bones] if kind in SINGLE_BONE and bones else [bones]
+        frame = present(context.scene).frame_current_final
+        groups = [[bone] for bone in bones] if kind.bones is BoneUse.ONE and bones else [bones]
         for group in groups:
             add_constraint(armature, kind, group, frame)
         return {"FINISHED"}
@@ -76,8 +63,8 @@ class RemoveConstraintOperator(RowOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     own = True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
         index = self.of.chosen(settings)
         self.of.rows(settings).remove(index)
         self.of.choose(settings, index)
@@ -90,8 +77,8 @@ class CopyConstraintOperator(RowOperator, bpy.types.Operator):
     bl_description = "Add a copy of the chosen constraint"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
         source = self.of.chosen(settings)
         copy = settings.constraints.add()  # may move the others in memory: look rows up after it
         row = settings.constraints[source]
@@ -112,9 +99,9 @@ class MoveConstraintOperator(RowOperator, bpy.types.Operator):
         name="Direction", items=[("UP", "Up", ""), ("DOWN", "Down", "")]
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        settings = armature.hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        settings = settings_of(armature)
         index = self.of.chosen(settings)
         to = index + (-1 if self.direction == "UP" else 1)
         if not self.of.linked(armature) <= to < len(settings.constraints):
@@ -139,13 +126,13 @@ class SetRangeOperator(RowOperator, bpy.types.Operator):
         ],
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        scene, row = context.scene, self.row(context)
-        why = None
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        scene, row = present(context.scene), self.row(context)
+        kind, why = KINDS[row.kind], None
         if self.to == "PHASE":
             why = self._set_phase(context, row)
-        elif ConstraintKind[row.kind] in IN_A_PHASE:
-            why = f"A {ConstraintKind[row.kind].value} holds in a phase; choose one"
+        elif kind.range is NewRange.PHASE_ALWAYS:
+            why = f"A {kind.label} holds in a phase; choose one"
         elif self.to == "PREVIEW" and not scene.use_preview_range:
             why = NO_PREVIEW
         elif self.to == "PREVIEW":
@@ -156,10 +143,10 @@ class SetRangeOperator(RowOperator, bpy.types.Operator):
             self.report({"WARNING"}, why)
         return {"FINISHED"} if why is None else {"CANCELLED"}
 
-    def _set_phase(self, context: bpy.types.Context, row: bpy.types.PropertyGroup) -> str | None:
+    def _set_phase(self, context: bpy.types.Context, row: HangtimeConstraint) -> str | None:
         """Why not; None where done."""
-        settings = chosen_armature(context).hangtime
-        phase = phase_at(phases_of(settings), context.scene.frame_current_final)
+        settings = settings_of(required_armature(context))
+        phase = phase_at(phases_of(settings), present(context.scene).frame_current_final)
         if phase is None:
             return NO_PHASE
         hold_in(row, phase.name)
@@ -172,17 +159,17 @@ class PlaceConstraintOperator(RowOperator, bpy.types.Operator):
     bl_description = "Put the point where its bone is shown at the current frame"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature, row = chosen_armature(context), self.row(context)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, row = required_armature(context), self.row(context)
         why = None
-        if row.kind != ConstraintKind.POINT.name:
+        if row.kind != point.KIND.name:
             why = NOT_A_POINT
-        elif not row.bones or row.bones[0].name not in armature.pose.bones:
+        elif not row.bones or row.bones[0].name not in pose_of(armature).bones:
             why = NO_BONE
         if why is not None:
             self.report({"WARNING"}, why)
             return {"CANCELLED"}
-        put_where_shown(armature, row, keep_offset=True)
+        point.put_where_shown(armature, row, keep_offset=True)
         return {"FINISHED"}
 
 

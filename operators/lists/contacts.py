@@ -5,15 +5,18 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
+from ...bridge.accessors import present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.armature.traces_store import kept
+from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import active_contact
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import chosen_armature, required_armature
 from .place_by_empty import NO_CONTACT
 
 USUAL_FRAMES = 10
-NOT_ANALYSED = "Press Analyze first, to know what may touch"
+NO_POINTS_KNOWN = "Press Analyze first, to know what may touch"
 
 
 def _points(
@@ -36,19 +39,19 @@ class AddContactOperator(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
         if armature is None or kept(armature) is None:
-            cls.poll_message_set(NOT_ANALYSED)
+            cls.poll_message_set(NO_POINTS_KNOWN)
             return False
         return True
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        context.window_manager.invoke_search_popup(self)
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+        present(context.window_manager).invoke_search_popup(self)
         return {"RUNNING_MODAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        settings, traces = armature.hangtime, kept(armature).traces
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, scene = required_armature(context), present(context.scene)
+        settings, traces = settings_of(armature), present(kept(armature)).traces
         column = traces.contacts.index(self.point)
-        first = float(np.clip(context.scene.frame_current, *traces.frames[[0, -1]]))
+        first = float(np.clip(scene.frame_current, *traces.frames[[0, -1]]))
         last = min(first + USUAL_FRAMES, float(traces.frames[-1]))
         during = (traces.frames >= first) & (traces.frames <= last)
         row = settings.contacts.add()
@@ -57,7 +60,7 @@ class AddContactOperator(bpy.types.Operator):
         row.bone = alike[0].bone if alike else ""
         row.found_start = row.start_frame = first
         row.found_end = row.end_frame = last
-        place = traces.points[during, column].mean(axis=0) / metres_per_unit(context.scene)
+        place = traces.points[during, column].mean(axis=0) / metres_per_unit(scene)
         row.found_at = row.at = place
         near = [c for c in settings.contacts if c.start_frame <= last and c.end_frame >= first]
         row.phase = next((c.phase for c in near if c.phase), "")
@@ -77,14 +80,14 @@ class RemoveContactOperator(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        possible = armature is not None and active_contact(armature.hangtime) is not None
+        possible = armature is not None and active_contact(settings_of(armature)) is not None
         if not possible:
             cls.poll_message_set(NO_CONTACT)
         return possible
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
-        row = active_contact(settings)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
+        row = present(active_contact(settings))
         if row.added:
             settings.contacts.remove(settings.active_contact)
             settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)

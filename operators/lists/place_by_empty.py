@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import present
 from ...bridge.armature.poses import metres_per_unit
+from ...bridge.properties.settings import scene_settings, settings_of
 from ...bridge.properties.stances import active_contact
+from ...bridge.rows.protocols import ContactRow
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import chosen_armature, required_armature
 
 SIZE = 0.05  # m
 NO_CONTACT = "Choose a contact in the list first"
@@ -22,33 +26,33 @@ class PlaceByEmptyOperator(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        possible = armature is not None and active_contact(armature.hangtime) is not None
+        possible = armature is not None and active_contact(settings_of(armature)) is not None
         if not possible:
             cls.poll_message_set(NO_CONTACT)
         return possible
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        row = active_contact(armature.hangtime)
-        if row.empty is None or row.empty.name not in context.view_layer.objects:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, layer = required_armature(context), present(context.view_layer)
+        row = present(active_contact(settings_of(armature)))
+        if row.empty is None or row.empty.name not in layer.objects:
             row.empty = _new_empty(context, row)
-            row.empty.hangtime.marks = armature
+            settings_of(row.empty).marks = armature
         if context.mode == "OBJECT":
             bpy.ops.object.select_all(action="DESELECT")
             row.empty.select_set(True)
-            context.view_layer.objects.active = row.empty
+            layer.objects.active = row.empty
         # The choice in the sidebar outlives that the empty is active now.
-        context.scene.hangtime.armature = armature
+        scene_settings(context.scene).armature = armature
         return {"FINISHED"}
 
 
-def _new_empty(context: bpy.types.Context, row: bpy.types.PropertyGroup) -> bpy.types.Object:
+def _new_empty(context: bpy.types.Context, row: ContactRow) -> bpy.types.Object:
     empty = bpy.data.objects.new(row.name, None)
     empty.empty_display_type = "SPHERE"
-    empty.empty_display_size = SIZE / metres_per_unit(context.scene)
+    empty.empty_display_size = SIZE / metres_per_unit(present(context.scene))
     empty.location = row.at
-    context.collection.objects.link(empty)
-    context.view_layer.update()  # so that its world matrix is where it is
+    present(context.collection).objects.link(empty)
+    present(context.view_layer).update()  # so that its world matrix is where it is
     return empty
 
 

@@ -12,7 +12,9 @@ from math import degrees
 import bpy
 import numpy as np
 
+from ...bridge.accessors import armature_data, present
 from ...bridge.armature.traces_store import kept
+from ...bridge.constraint_kinds import contact_force, torque_limit
 from ...bridge.constraints.rows import (
     add_body_change,
     add_constraint,
@@ -21,22 +23,24 @@ from ...bridge.constraints.rows import (
     hold_throughout,
     title,
 )
-from ...bridge.properties.kinds import BodyKind, ConstraintKind
-from ...bridge.properties.phases import PhaseSpan, phases_of
+from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.phases import PhaseSpan, phases_of
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.analyze import USUAL_HEIGHT
+from ..solve.common import required_armature
 from .chosen_bones import chosen_bones
 from .row_lists import AddingOperator, cannot_change
 
 NO_BONES_SELECTED = "Select bones in pose mode first"
 NO_LANDING = "Press Analyze first: no landing is known"
 NO_FIGURE = "No bones of joints were found; choose them in the panel Bones"
-USUAL_HEIGHT = 1.75  # m
 SOFTER = 0.8  # of the peak that was needed
 USUAL_PEAK = 3.0  # BW
 WEIGHT = 10.0  # kg
 MOST_NAMED = 4  # in a message
-SAME = np.radians(1.0)
+LIMIT_SLACK = np.radians(1.0)
 
 
 class JointLimitsOperator(AddingOperator, bpy.types.Operator):
@@ -48,17 +52,19 @@ class JointLimitsOperator(AddingOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         from ...bridge.constraints.joint_limits import joint_limits  # loads parts of the solver
 
-        armature = chosen_armature(context)
+        armature = required_armature(context)
         found = joint_limits(armature)
         if not found.made:
             self.report({"WARNING"}, NO_FIGURE)
             return {"CANCELLED"}
         told = [f"Added {len(found.made)} joint limits"]
         told += [f"no bone for {_listed(found.missing)}"] if found.missing else []
-        beyond = sorted(((by, row) for row, by in found.beyond.items() if by > SAME), reverse=True)
+        beyond = sorted(
+            ((by, row) for row, by in found.beyond.items() if by > LIMIT_SLACK), reverse=True
+        )
         named = [f"{row} by {degrees(by):.0f}°" for by, row in beyond]
         told += [f"the recording itself goes beyond {_listed(named)}"] if beyond else []
         told += ["the recording could not be checked"] if not found.checked else []
@@ -76,23 +82,23 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         from ...bridge.constraints.rest_figure import parts_of  # loads parts of the solver
         from ...solver.body.anatomy import Side
-        from ...solver.body.human_strength import JOINTS, strongest
+        from ...solver.body.human_strength import LEG_JOINTS, peak_torque
 
-        armature = chosen_armature(context)
-        settings, parts = armature.hangtime, parts_of(armature)
+        armature = required_armature(context)
+        settings, parts = settings_of(armature), parts_of(armature)
         mass = settings.new_mass if settings.use_new_mass else settings.mass
         told, lost = [], []
-        for part, joint in JOINTS.items():
+        for part, joint in LEG_JOINTS.items():
             bones = [b for side in Side for b in parts.get((part, side), ())]
             if not bones:
                 lost.append(joint.lower())
                 continue
-            row = add_constraint(armature, ConstraintKind.TORQUE, bones, 0.0)
+            row = add_constraint(armature, torque_limit.KIND, bones, 0.0)
             row.name = free_name(settings, f"{joint} Strength")
-            row.torque = strongest(part, mass, _height(settings))
+            row.torque = peak_torque(part, mass, _height(settings))
             hold_throughout(row)
             told.append(f"{joint.lower()} {row.torque:.0f} N·m{_needed(settings, bones)}")
         if not told:
@@ -112,18 +118,18 @@ class SoftLandingOperator(AddingOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         why = cannot_change(context)
-        if why is None and _landing(chosen_armature(context)) is None:
+        if why is None and _landing(required_armature(context)) is None:
             why = NO_LANDING
         if why is not None:
             cls.poll_message_set(why)
         return why is None
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        landing = _landing(armature)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        landing = present(_landing(armature))
         peak = _peak(armature, landing)
-        row = add_constraint(armature, ConstraintKind.FORCE, (), landing.start)
-        row.name = free_name(armature.hangtime, "Softer Landing")
+        row = add_constraint(armature, contact_force.KIND, (), landing.start)
+        row.name = free_name(settings_of(armature), "Softer Landing")
         hold_in(row, landing.name)
         row.use_peak, row.peak = True, USUAL_PEAK if peak is None else SOFTER * peak
         was = "its peak is not known before Adapt" if peak is None else f"it was {peak:.1f}"
@@ -138,7 +144,7 @@ class _SelectedBonesOperator(AddingOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         if not super().poll(context):
             return False
-        if not chosen_bones(chosen_armature(context)):
+        if not chosen_bones(required_armature(context)):
             cls.poll_message_set(NO_BONES_SELECTED)
             return False
         return True
@@ -150,10 +156,10 @@ class LimpLimbOperator(_SelectedBonesOperator, bpy.types.Operator):
     bl_description = "Let the selected bones and those below them hang without any strength"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         from ...bridge.constraints.rest_figure import jointed_bones  # loads parts of the solver
 
-        armature = chosen_armature(context)
+        armature = required_armature(context)
         chosen = chosen_bones(armature)
         limb = _with_those_below(armature, chosen)
         jointed = jointed_bones(armature)
@@ -161,9 +167,9 @@ class LimpLimbOperator(_SelectedBonesOperator, bpy.types.Operator):
         if not bones:
             self.report({"WARNING"}, "None of the selected bones has a joint that physics moves")
             return {"CANCELLED"}
-        frame = context.scene.frame_current_final
-        row = add_constraint(armature, ConstraintKind.TORQUE, bones, frame)
-        row.name = free_name(armature.hangtime, f"Limp {title(chosen[0])}")
+        frame = present(context.scene).frame_current_final
+        row = add_constraint(armature, torque_limit.KIND, bones, frame)
+        row.name = free_name(settings_of(armature), f"Limp {title(chosen[0])}")
         row.torque = 0.0
         others = len(limb) - len(bones)
         left_out = f"; {others} below have no joint in the physics" if others else ""
@@ -177,24 +183,24 @@ class CarryWeightOperator(_SelectedBonesOperator, bpy.types.Operator):
     bl_description = "Let the selected bones carry 10 kg each"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
         bones = chosen_bones(armature)
         for bone in bones:
-            add_body_change(armature.hangtime, BodyKind.LOAD, [bone]).mass = WEIGHT
+            add_body_change(settings_of(armature), BodyKind.LOAD, [bone]).mass = WEIGHT
         self.report({"INFO"}, f"{WEIGHT:.0f} kg each at {_listed(bones)}; see Body Changes.")
         return {"FINISHED"}
 
 
 def _landing(armature: bpy.types.Object) -> PhaseSpan | None:
     """The last phase on the ground."""
-    ground = [phase for phase in phases_of(armature.hangtime) if phase.is_ground]
+    ground = [phase for phase in phases_of(settings_of(armature)) if phase.is_ground]
     return ground[-1] if ground else None
 
 
 def _peak(armature: bpy.types.Object, phase: PhaseSpan) -> float | None:
     """The largest force, body weights, of the recording's motion or else of the last result."""
-    for owner in (armature, armature.hangtime.adapted):
+    for owner in (armature, settings_of(armature).adapted):
         found = kept(owner)
         if found is not None and found.traces.forces.size:
             traces = found.traces
@@ -204,17 +210,19 @@ def _peak(armature: bpy.types.Object, phase: PhaseSpan) -> float | None:
     return None
 
 
-def _needed(settings: bpy.types.PropertyGroup, bones: Sequence[str]) -> str:
+def _needed(settings: HangtimeSettings, bones: Sequence[str]) -> str:
     """Of the last result, where its torques are known."""
     found = kept(settings.adapted)
-    known = [b for b in bones if found is not None and b in found.traces.joints]
+    if found is None:
+        return ""
+    known = [b for b in bones if b in found.traces.joints]
     if not known:
         return ""
     columns = [found.traces.joints.index(bone) for bone in known]
     return f" (was {np.abs(found.traces.torques[:, columns]).max():.0f})"
 
 
-def _height(settings: bpy.types.PropertyGroup) -> float:
+def _height(settings: HangtimeSettings) -> float:
     """m."""
     if settings.use_height:
         return float(settings.height)
@@ -222,7 +230,7 @@ def _height(settings: bpy.types.PropertyGroup) -> float:
 
 
 def _with_those_below(armature: bpy.types.Object, names: Iterable[str]) -> list[str]:
-    bones = armature.data.bones
+    bones = armature_data(armature).bones
     below = {b.name for name in names for b in (bones[name], *bones[name].children_recursive)}
     return [bone.name for bone in bones if bone.name in below]
 

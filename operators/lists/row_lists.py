@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import Any
 
 import bpy
 
 from ...bridge.constraints.linked_rows import linked_count
-from ..solve.common import chosen_armature
+from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ..operator_types import OperatorMixin
+from ..solve.common import chosen_armature, required_armature
 
 NO_ARMATURE = "Select the armature that carries the recording"
 LINKED = "The armature is linked; make a library override of it first"
@@ -22,15 +26,16 @@ class RowList(Enum):
     CONSTRAINTS = ("constraints", "active_constraint", NO_CONSTRAINT)
     BODY_CHANGES = ("body_changes", "active_body_change", NO_BODY_CHANGE)
 
-    def rows(self, settings: bpy.types.PropertyGroup) -> bpy.types.bpy_prop_collection:
-        return getattr(settings, self.value[0])
+    def rows(self, settings: HangtimeSettings) -> bpy.types.bpy_prop_collection_idprop[Any]:
+        rows: bpy.types.bpy_prop_collection_idprop[Any] = getattr(settings, self.value[0])
+        return rows
 
-    def chosen(self, settings: bpy.types.PropertyGroup) -> int:
+    def chosen(self, settings: HangtimeSettings) -> int:
         """The index of the chosen row, -1 where there is none."""
-        index = getattr(settings, self.value[1])
+        index = int(getattr(settings, self.value[1]))
         return index if 0 <= index < len(self.rows(settings)) else -1
 
-    def choose(self, settings: bpy.types.PropertyGroup, index: int) -> None:
+    def choose(self, settings: HangtimeSettings, index: int) -> None:
         setattr(settings, self.value[1], max(min(index, len(self.rows(settings)) - 1), 0))
 
     def linked(self, armature: bpy.types.Object) -> int:
@@ -55,7 +60,7 @@ def cannot_change(context: bpy.types.Context) -> str | None:
     return None if armature.is_editable else LINKED
 
 
-class AddingOperator:
+class AddingOperator(OperatorMixin):
     """Mixin: an operator that may run wherever an armature is chosen that can be changed."""
 
     @classmethod
@@ -66,7 +71,7 @@ class AddingOperator:
         return why is None
 
 
-class RowOperator:
+class RowOperator(OperatorMixin):
     """Mixin: an operator on the chosen row of `of`. own: whether rows of a library are refused."""
 
     of = RowList.CONSTRAINTS
@@ -76,8 +81,8 @@ class RowOperator:
     def poll(cls, context: bpy.types.Context) -> bool:
         why = cannot_change(context)
         if why is None:
-            armature = chosen_armature(context)
-            index = cls.of.chosen(armature.hangtime)
+            armature = required_armature(context)
+            index = cls.of.chosen(settings_of(armature))
             if index < 0:
                 why = cls.of.nothing_chosen
             elif cls.own and index < cls.of.linked(armature):
@@ -86,7 +91,8 @@ class RowOperator:
             cls.poll_message_set(why)
         return why is None
 
-    def row(self, context: bpy.types.Context) -> bpy.types.PropertyGroup:
+    def row(self, context: bpy.types.Context) -> HangtimeConstraint:
         """The chosen row."""
-        settings = chosen_armature(context).hangtime
-        return self.of.rows(settings)[self.of.chosen(settings)]
+        settings = settings_of(required_armature(context))
+        row: HangtimeConstraint = self.of.rows(settings)[self.of.chosen(settings)]
+        return row

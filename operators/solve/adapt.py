@@ -8,48 +8,57 @@ from typing import Any
 
 import bpy
 
-from ...bridge.armature.actions import read_take_in_parts, recorded_action, write_take_in_parts
-from ...bridge.armature.incremental import Parts
-from ...bridge.armature.reproportioned import other_figure
+from ...bridge.accessors import present
+from ...bridge.armature.actions import (
+    read_recorded_incrementally,
+    recorded_action,
+    write_adapted_incrementally,
+)
+from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import problem_of, wanted_range
+from ...bridge.constraints.status import write_status
+from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
-from ...solver.data.digest import alike, digest
+from ...solver.data.digest import digest, same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import Recording
 from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, Failed, Kind
 from ..names import OperatorId
-from .common import chosen_armature, hindrance, required_armature
+from ..operator_types import OperatorResult
+from ..words.report_text import as_text
+from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, Best, session
-from .solving import State
+from .solving import SolveState
 from .task import Task, TaskOperator, answered, take_best
 
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
 
 class _Adapting(TaskOperator):
-    """What Adapt and Refine share."""
+    """Base of Adapt and Refine."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         why = hindrance(context)
-        if why is None and not chosen_armature(context).hangtime.contacts:
+        if why is None and not settings_of(required_armature(context)).contacts:
             why = NOT_ANALYSED
         if why is not None:
             cls.poll_message_set(why)
         return why is None
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
-        """How to solve; asked: what a recipe says of it."""
+    def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+        """Solver options; asked: those of a recipe."""
         raise NotImplementedError
 
     def task(self, context: bpy.types.Context) -> Task:
-        context.view_layer.update()  # empties that a script moved
+        present(context.view_layer).update()  # empties that a script moved
         try:
             asked = yield from self._asked(context)
             answer = yield from answered(shared().ask(Kind.ADAPT, asked.recording, asked.problem))
@@ -64,12 +73,12 @@ class _Adapting(TaskOperator):
             raise answer.fault
         return (yield from write_answer(asked, answer))
 
-    def _asked(self, context: bpy.types.Context) -> Parts[Asked]:
+    def _asked(self, context: bpy.types.Context) -> Incremental[Asked]:
         asked = yield from ask_for(context)
         solving = session().solving
         assert solving is not None
-        solving.advance(State.SOLVING)
-        settings, requests = required_armature(context).hangtime, asked.problem.requests
+        solving.advance(SolveState.SOLVING)
+        settings, requests = settings_of(required_armature(context)), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
         return replace(asked, problem=replace(asked.problem, requests=requests))
 
@@ -83,7 +92,7 @@ class AdaptOperator(_Adapting, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
+    def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         if asked.method is not Method.IMPLICIT:  # a recipe's own choice
             return asked
         return replace(asked, method=Method[settings.method])
@@ -98,7 +107,7 @@ class RefineOperator(_Adapting, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    def solution(self, settings: bpy.types.PropertyGroup, asked: SolverOptions) -> SolverOptions:
+    def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         weights = (
             (ObjectiveKind[settings.objective], 1.0),
             (ObjectiveKind.CLOSENESS, settings.stay_close),
@@ -125,7 +134,7 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
             return False
         return True
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         return {"FINISHED"} if take_best() else super().invoke(context, event)
 
     def task(self, _context: bpy.types.Context) -> Task:
@@ -137,30 +146,32 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
         return done
 
 
-def ask_for(context: bpy.types.Context) -> Parts[Asked]:
-    """What the settings ask, of the recording as it is. Raises any Fault of reading, and
-    ChangedMeanwhile where it is not what was analysed."""
+def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
+    """The motion problem that the settings state, with the recording as it is.
+
+    Raises any Fault of reading, and ChangedMeanwhile where it is not what was analysed.
+    """
     armature = required_armature(context)
-    settings = armature.hangtime
-    recording = yield from read_take_in_parts(armature, *wanted_range(settings))
+    settings = settings_of(armature)
+    recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
     if digest(recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     problem = problem_of(settings, recording)
     return Asked(armature.name, armature.session_uid, recording, problem)
 
 
-def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
+def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
     solving = session().solving
     assert solving is not None
-    solving.advance(State.CHECKING)
+    solving.advance(SolveState.CHECKING)
     armature = yield from _unchanged(asked)
-    solving.advance(State.WRITING)
+    solving.advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
         return _write_other(changed_recording(asked.recording, limbs), answer, armature)
     stood = armature.matrix_world.copy()
-    action = yield from write_take_in_parts(armature, answer.track)
+    action = yield from write_adapted_incrementally(armature, answer.track)
     keep(action, answer.traces, stood)
     _note(armature, armature, action, answer)
     return f"Wrote the action {action.name}"
@@ -168,11 +179,11 @@ def write_answer(asked: Asked, answer: Adapted) -> Parts[str]:
 
 def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Object) -> str:
     """The answer on an armature of its own, for the artist's keeps its proportions."""
-    other, track, _ = other_figure(recording, answer.track)
+    other, track, _ = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
     action = write_action(other, track, name=f"{recording.name} adapted")
-    action.hangtime.recording = recorded_action(armature)
-    armature.hangtime.adapted = action
+    action_settings(action).recording = recorded_action(armature)
+    settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
     _note(armature, other, action, answer)
     return f"Made the armature {other.name}, which performs the adapted motion"
@@ -185,14 +196,11 @@ def _note(
     answer: Adapted,
 ) -> None:
     """Keeps what was found beside the action, and how each constraint came out."""
-    from ...bridge.constraints.status import write_status
-    from ..words.report_text import as_text
-
-    settings = armature.hangtime
+    settings = settings_of(armature)
     settings.status = summary(answer)
     write_status(settings, answer.report)
-    action.hangtime.report = as_text(answer.report)
-    action.hangtime.performer = performer
+    action_settings(action).report = as_text(answer.report)
+    action_settings(action).performer = performer
 
 
 def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
@@ -201,10 +209,10 @@ def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
     if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
         frames = asked.recording.frames
         try:
-            now = yield from read_take_in_parts(armature, frames[0], frames[-1])
+            now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
         except Fault as fault:  # another action, a scale: whatever it is, it is new
             raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
-        if alike(now, asked.recording):
+        if same_motion(now, asked.recording):
             return armature
     raise ChangedMeanwhile(asked.armature, while_solving=True)
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.armature.actions import read_take_in_parts, recorded_action
+from ...bridge.accessors import present
+from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import find_parts, missing_parts
 from ...bridge.constraints.motion_problem import problem_of, wanted_range, write_analysis
+from ...bridge.properties.settings import scene_settings, settings_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import (
     Fault,
@@ -21,14 +23,15 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.worker.protocol import Analysed, Failed, Fitted, Kind
 from ..names import OperatorId
+from ..operator_types import OperatorResult
 from .adapt import ask_for
 from .common import FaultyOperator, chosen_armature, hindrance, required_armature, said
 from .session import session
-from .solving import State
+from .solving import SolveState
 from .task import Task, TaskOperator, answered
 
 # rms of the joint centres' distance, cm
-WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
+CLOSENESS_WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
 HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was imported at a wrong scale
 USUAL_HEIGHT = 1.75  # m
 LOOSE = "only roughly like the recording: check the contacts' frames, and the scale"
@@ -47,10 +50,10 @@ class FindBonesOperator(FaultyOperator, bpy.types.Operator):
             cls.poll_message_set("Choose or select an armature first")
         return armature is not None
 
-    def run(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
+    def run(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
         find_parts(armature)
-        missing = missing_parts(armature.hangtime)
+        missing = missing_parts(settings_of(armature))
         if missing:
             self.report({"WARNING"}, f"No bone was found for the {', '.join(missing)}")
         return {"FINISHED"}
@@ -76,22 +79,22 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
 
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
-        settings = armature.hangtime
-        recording = yield from read_take_in_parts(armature, *wanted_range(settings))
+        settings = settings_of(armature)
+        recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
         find_parts(armature)
         for missing in missing_parts(settings):
             raise MissingPart(missing)
         problem = problem_of(settings, recording, with_contacts=False)
         solving = session().solving
         assert solving is not None
-        solving.advance(State.SOLVING)
+        solving.advance(SolveState.SOLVING)
         answer = yield from answered(shared().ask(Kind.ANALYSE, recording, problem))
         if isinstance(answer, Failed):
             raise _telling(answer.fault, armature, recording, problem)
         assert isinstance(answer, Analysed)
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
-        context.scene.hangtime.armature = armature
+        scene_settings(context.scene).armature = armature
         contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
         found = f"Found {contacts} contacts and {flights} flight{'s' if flights > 1 else ''}"
         if problem.height is None and (odd := _odd_height(armature.name, answer.height)):
@@ -102,11 +105,11 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
 def _telling(
     fault: Fault, armature: bpy.types.Object, recording: Recording, problem: MotionProblem
 ) -> Fault:
-    """Why an analysis failed: beside the keys nothing moves, and at a wrong scale feet seem to
-    slide and bodies to float."""
+    """Diagnosis of a failed analysis: beside the keys nothing moves, and at a wrong scale feet
+    seem to slide and bodies to float."""
     if not isinstance(fault, NoFlight | UnseenSupport):
         return fault
-    first, last = recorded_action(armature).frame_range
+    first, last = present(recorded_action(armature)).frame_range.to_tuple()
     if recording.frames[0] >= last or recording.frames[-1] <= first:
         return OutsideKeys(armature.name, first, last)
     from ...solver.body.character import build_character  # numpy's, but half of the solver
@@ -135,19 +138,19 @@ class FitOperator(_OnRecording, bpy.types.Operator):
         solving = session().solving
         assert solving is not None
         asked = yield from ask_for(context)
-        solving.advance(State.SOLVING)
+        solving.advance(SolveState.SOLVING)
         answer = yield from answered(shared().ask(Kind.FIT, asked.recording, asked.problem))
         if isinstance(answer, Failed):
             raise answer.fault
         assert isinstance(answer, Fitted)
-        armature.hangtime.fit_quality = quality(answer.closeness)
+        settings_of(armature).fit_quality = quality(answer.closeness)
         return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.closeness)}"
 
 
 def in_words(closeness: dict[str, float]) -> str:
-    """How near a fit is (report.closeness)."""
+    """Quality of a fit in words (report.closeness)."""
     off = closeness["joint_centres_rms_cm"]
-    return next((words for limit, words in WORDS if off < limit), LOOSE)
+    return next((words for limit, words in CLOSENESS_WORDS if off < limit), LOOSE)
 
 
 def quality(closeness: dict[str, float]) -> str:

@@ -1,12 +1,15 @@
-"""What the operators share: the armature that they work on, and how they say what is wrong."""
+"""The operators' common base: target armature, preconditions, fault reporting."""
 
 from __future__ import annotations
 
 import bpy
 
-from ...bridge.armature.actions import current_action
+from ...bridge.accessors import current_action, present
+from ...bridge.properties.settings import scene_settings
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
+from ..operator_types import OperatorMixin, OperatorResult
+from ..words.wording import sentence
 from .session import session
 
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
@@ -14,16 +17,17 @@ EDIT_MODE = "Leave edit mode first"
 
 
 def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The one chosen in the sidebar, else the active object if that is one."""
-    chosen = context.scene.hangtime.armature
-    if chosen is not None and chosen.name in context.scene.objects:
+    """The target armature: the one chosen in the sidebar, else the active object if that is one."""
+    scene = present(context.scene)
+    chosen: bpy.types.Object | None = scene_settings(scene).armature
+    if chosen is not None and chosen.name in scene.objects:
         return chosen
-    active = context.view_layer.objects.active
+    active = present(context.view_layer).objects.active
     return active if active is not None and active.type == "ARMATURE" else None
 
 
 def required_armature(context: bpy.types.Context) -> bpy.types.Object:
-    """The same; raises NoArmature, for it may have been deleted since the button was pressed."""
+    """The same. Raises NoArmature, for it may have been deleted since the button was pressed."""
     armature = chosen_armature(context)
     if armature is None:
         raise NoArmature(None)
@@ -31,12 +35,12 @@ def required_armature(context: bpy.types.Context) -> bpy.types.Object:
 
 
 def hindrance(context: bpy.types.Context) -> str | None:
-    """Why the armature cannot be read now, in a sentence; None where it can."""
+    """Precondition: a sentence why the armature cannot be read now; None where it can."""
     armature = chosen_armature(context)
     if shared().busy or session().solving is not None:
         return BUSY
     if armature is None or armature.type != "ARMATURE":
-        active = context.view_layer.objects.active
+        active = present(context.view_layer).objects.active
         return said(NoArmature(active.name if active is not None else None))
     if armature.mode == "EDIT":
         return EDIT_MODE
@@ -46,24 +50,21 @@ def hindrance(context: bpy.types.Context) -> str | None:
 
 
 def said(fault: Fault) -> str:
-    """The fault's sentence."""
-    from ..words.wording import (
-        sentence,
-    )  # loads half of the solver, which a mere start-up does not need
-
-    return sentence(fault)
+    """The fault's sentence, in the language of Blender's reports."""
+    # The stubs do not know what it returns.
+    return sentence(fault, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
 
 
-class FaultyOperator:
+class FaultyOperator(OperatorMixin):
     """Mixin: `run` may raise what an artist can mend; that is reported, and nothing finished."""
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             return self.run(context)
         except Fault as fault:
             self.report({"ERROR"}, said(fault))
             return {"CANCELLED"}
 
-    def run(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> OperatorResult:
         """Does the work. Raises any Fault, having changed nothing."""
         raise NotImplementedError

@@ -1,4 +1,4 @@
-"""The motion that follows a pin while it is dragged: shown as a ghost, never written."""
+"""Live preview: the motion that follows a dragged pin, shown as a ghost, never written."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from functools import cache
 
 import bpy
 
+from ...bridge.accessors import present
 from ...solver.data.traces import Traces
 from ...solver.worker.protocol import Followed
 
@@ -33,7 +34,7 @@ class Live:
             redraw_viewports()
 
     def ghost(self, armature: bpy.types.Object) -> Traces | None:
-        """What is to be drawn beside an armature; m, world."""
+        """The preview of an armature's motion; m, world."""
         mine = self.seen is not None and armature.name == self.armature
         return self.seen.traces if mine and self.seen is not None else None
 
@@ -46,7 +47,7 @@ def live() -> Live:
 
 def redraw_viewports() -> None:
     """Every 3D viewport is drawn again."""
-    for window in bpy.context.window_manager.windows:
+    for window in present(bpy.context.window_manager).windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()

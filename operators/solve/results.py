@@ -1,38 +1,47 @@
-"""What becomes of an adapted motion: compare, accept, discard, read the report."""
+"""Operators on the result: Compare, Accept, Discard, Show Report, Cancel."""
 
 from __future__ import annotations
 
 import bpy
 
-from ...bridge.armature.actions import current_action, recorded_action, show
+from ...bridge.accessors import current_action, present
+from ...bridge.armature.actions import recorded_action, show
+from ...bridge.properties.settings import action_settings, settings_of
 from ..names import OperatorId
-from .common import chosen_armature
+from ..operator_types import OperatorMixin, OperatorResult
+from .common import chosen_armature, required_armature
 from .session import session
 from .task import CANCELLED
 
-NOTHING = "Nothing has been adapted yet"
+NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
 ACCEPTED = "The result is accepted already"
 
 
 def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
     """The action that was adapted last."""
-    return armature.hangtime.adapted if armature is not None else None
+    adapted: bpy.types.Action | None = settings_of(armature).adapted if armature else None
+    return adapted
+
+
+def required_result(context: bpy.types.Context) -> bpy.types.Action:
+    """The same of the chosen armature, where `poll` has seen to it that there is one."""
+    return present(result_of(required_armature(context)))
 
 
 def performer_of(armature: bpy.types.Object) -> bpy.types.Object:
     """Who performs the result: the armature, or one of other proportions."""
-    performer = result_of(armature).hangtime.performer
+    performer: bpy.types.Object | None = action_settings(present(result_of(armature))).performer
     return performer if performer is not None else armature
 
 
-class _OfResult:
+class _OfResult(OperatorMixin):
     """Mixin: needs a result."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if result_of(chosen_armature(context)) is None:
-            cls.poll_message_set(NOTHING)
+            cls.poll_message_set(NOTHING_ADAPTED)
             return False
         return True
 
@@ -47,15 +56,15 @@ class CompareOperator(_OfResult, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         if not super().poll(context):
             return False
-        armature = chosen_armature(context)
+        armature = required_armature(context)
         if performer_of(armature) != armature:
             cls.poll_message_set(BESIDE.format(performer_of(armature).name))
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        recorded, adapted = recorded_action(armature), result_of(armature)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        recorded, adapted = present(recorded_action(armature)), required_result(context)
         show(armature, recorded if current_action(armature) == adapted else adapted)
         return {"FINISHED"}
 
@@ -72,15 +81,14 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         result = result_of(chosen_armature(context))
-        if result is None or result.hangtime.accepted:
-            cls.poll_message_set(NOTHING if result is None else ACCEPTED)
+        if result is None or action_settings(result).accepted:
+            cls.poll_message_set(NOTHING_ADAPTED if result is None else ACCEPTED)
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        result = result_of(armature)
-        result.hangtime.accepted = result.use_fake_user = True
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, result = required_armature(context), required_result(context)
+        action_settings(result).accepted = result.use_fake_user = True
         if performer_of(armature) == armature and current_action(armature) != result:
             show(armature, result)
         self.report({"INFO"}, f"Accepted {result.name}")
@@ -93,18 +101,17 @@ class DiscardOperator(_OfResult, bpy.types.Operator):
     bl_description = "Delete the adapted action and show the recording; what you asked for stays"
     bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        result = result_of(armature)
-        recorded, name = result.hangtime.recording, result.name
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, result = required_armature(context), required_result(context)
+        recorded, name = action_settings(result).recording, result.name
         if current_action(armature) == result:
             show(armature, recorded)
         if performer_of(armature) != armature:
             bpy.data.objects.remove(performer_of(armature))
         bpy.data.actions.remove(result)
-        left = [a for a in bpy.data.actions if a.hangtime.recording == recorded]
-        armature.hangtime.adapted = left[-1] if left else None
-        armature.hangtime.status = ""
+        left = [a for a in bpy.data.actions if action_settings(a).recording == recorded]
+        settings_of(armature).adapted = left[-1] if left else None
+        settings_of(armature).status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
 
@@ -116,22 +123,22 @@ class ShowReportOperator(_OfResult, bpy.types.Operator):
         "What changed, and how well physics and everything asked for hold; also kept as a text"
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        result = result_of(chosen_armature(context))
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        result = required_result(context)
         name = f"{result.name} report"
         text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
-        text.from_string(result.hangtime.report)
+        text.from_string(action_settings(result).report)
         self.report({"INFO"}, f"The report is the text {name}")
         return {"FINISHED"}
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         self.execute(context)
-        return context.window_manager.invoke_popup(self, width=760)
+        return present(context.window_manager).invoke_popup(self, width=760)
 
     def draw(self, context: bpy.types.Context) -> None:
-        column = self.layout.column(align=True)
+        column = present(self.layout).column(align=True)
         column.scale_y = 0.7
-        for line in result_of(chosen_armature(context)).hangtime.report.splitlines():
+        for line in action_settings(required_result(context)).report.splitlines():
             column.label(text=line)
 
 
@@ -147,7 +154,7 @@ class CancelOperator(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, _context: bpy.types.Context) -> set[str]:
+    def execute(self, _context: bpy.types.Context) -> OperatorResult:
         for operator in list(session().running):
             operator.leave()
         self.report({"INFO"}, CANCELLED)

@@ -1,4 +1,4 @@
-"""What goes on in this Blender beside what is in its file."""
+"""Unsaved run-time state: running solve, last failure, best result."""
 
 from __future__ import annotations
 

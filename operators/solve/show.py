@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.armature.actions import current_action, recorded_action, show
+from ...bridge.accessors import current_action, present
+from ...bridge.armature.actions import recorded_action, show
+from ...bridge.properties.settings import settings_of
 from ..names import OperatorId
-from .common import chosen_armature
+from ..operator_types import OperatorResult
+from .common import chosen_armature, required_armature
+from .results import NOTHING_ADAPTED
 
 
 class ShowRecordingOperator(bpy.types.Operator):
@@ -23,9 +27,9 @@ class ShowRecordingOperator(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        show(armature, recorded_action(armature))
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        show(armature, present(recorded_action(armature)))
         return {"FINISHED"}
 
 
@@ -38,17 +42,17 @@ class ShowAdaptedOperator(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        if armature is None or armature.hangtime.adapted is None:
-            cls.poll_message_set("Nothing has been adapted yet")
+        if armature is None or settings_of(armature).adapted is None:
+            cls.poll_message_set(NOTHING_ADAPTED)
             return False
-        if current_action(armature) == armature.hangtime.adapted:
+        if current_action(armature) == settings_of(armature).adapted:
             cls.poll_message_set("The adapted motion is what is shown")
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        armature = chosen_armature(context)
-        show(armature, armature.hangtime.adapted)
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        show(armature, settings_of(armature).adapted)
         return {"FINISHED"}
 
 

@@ -1,5 +1,4 @@
-"""The states of a solve that the artist waits for, without Blender: what may happen when, and
-what the status bar says."""
+"""State machine of a solve that the artist waits for, with its progress text; without Blender."""
 
 from __future__ import annotations
 
@@ -17,8 +16,8 @@ STAGES = {
 }
 
 
-class State(Enum):
-    """Where a solve is."""
+class SolveState(Enum):
+    """States of a solve."""
 
     READING = "reading the recording"
     SOLVING = "starting"
@@ -28,57 +27,60 @@ class State(Enum):
     ENDED = "done"
 
 
+SHARES = {SolveState.READING: 0.0, SolveState.CHECKING: 0.9, SolveState.WRITING: 0.95}
+
+
 @dataclass
 class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
     ValueError, for it would be a mistake of ours."""
 
-    state: State = State.READING
+    state: SolveState = SolveState.READING
     progress: Progress | None = None
 
-    def advance(self, to: State) -> None:
+    def advance(self, to: SolveState) -> None:
         """The next part begins."""
-        order = list(State)
+        order = list(SolveState)
         if order.index(to) <= order.index(self.state):
             raise ValueError(f"{to.name} after {self.state.name}")
         self.state = to
 
     def heard(self, progress: Progress) -> None:
         """The worker told of a step."""
-        if self.state not in (State.SOLVING, State.STOPPING):
+        if self.state not in (SolveState.SOLVING, SolveState.STOPPING):
             raise ValueError(f"a step while {self.state.value}")
         self.progress = progress
 
     @property
     def can_stop(self) -> bool:
-        """Whether the motion as it stands can be asked for."""
-        return self.state is State.SOLVING
+        """True while the motion as it stands can be asked for."""
+        return self.state is SolveState.SOLVING
 
     def stop(self) -> None:
         """The artist takes the motion as it stands."""
         if not self.can_stop:
             raise ValueError(f"stopped while {self.state.value}")
-        self.state = State.STOPPING
+        self.state = SolveState.STOPPING
 
     @property
     def share(self) -> float:
         """Of the whole, 0 to 1."""
-        if self.state in (State.SOLVING, State.STOPPING):
+        if self.state in (SolveState.SOLVING, SolveState.STOPPING):
             return 0.05 + 0.85 * (self.progress.share if self.progress is not None else 0.0)
-        return {State.READING: 0.0, State.CHECKING: 0.9, State.WRITING: 0.95}.get(self.state, 1.0)
+        return SHARES.get(self.state, 1.0)
 
     def passes(self, event: str) -> bool:
-        """Whether an event of Blender's ("Z", "LEFTMOUSE") goes on to Blender.
+        """True for events ("Z", "LEFTMOUSE") that go on to Blender.
 
         Nearly all do, so that playback, selection and saving go on; while keys are being written
         an undo would pull the action away from under them.
         """
-        return self.state is not State.WRITING or event.startswith(("MOUSEMOVE", "WINDOW"))
+        return self.state is not SolveState.WRITING or event.startswith(("MOUSEMOVE", "WINDOW"))
 
     @property
     def doing(self) -> str:
-        """What is being done."""
-        if self.state is State.SOLVING and self.progress is not None:
+        """The current activity."""
+        if self.state is SolveState.SOLVING and self.progress is not None:
             return STAGES.get(self.progress.stage, self.progress.stage)
         return self.state.value
 
@@ -86,7 +88,7 @@ class Solving:
     def text(self) -> str:
         """Stage, percent and the worst constraint."""
         parts = [f"{self.doing}, {100.0 * self.share:.0f} %"]
-        if self.progress is not None and self.state is State.SOLVING:
+        if self.progress is not None and self.state is SolveState.SOLVING:
             violation = self.progress.violation
             parts.append(f"furthest off: {self.progress.worst} ({violation:.3g} × allowed)")
         return ", ".join(parts)

@@ -1,4 +1,4 @@
-"""Operators whose work is long: in parts and with a worker, so that Blender is never frozen."""
+"""Cooperative multitasking of long operators: parts and a worker, so that Blender never freezes."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from time import perf_counter
 
 import bpy
 
+from ...bridge.accessors import present
 from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import Fault
 from ...solver.worker.protocol import Answer, Progress
+from ..operator_types import OperatorResult
 from .common import FaultyOperator, said
 from .session import session
-from .solving import Solving, State
+from .solving import SolveState, Solving
 
 LOOK_EVERY = 0.02  # s
 BUDGET = 0.012  # s of work at each look
@@ -38,7 +40,7 @@ class TaskOperator(FaultyOperator):
         """The work. Raises any Fault, having changed nothing."""
         raise NotImplementedError
 
-    def run(self, context: bpy.types.Context) -> set[str]:
+    def run(self, context: bpy.types.Context) -> OperatorResult:
         solving = session().solving = Solving()
         task = self.task(context)
         finished = False
@@ -55,24 +57,25 @@ class TaskOperator(FaultyOperator):
             session().solving = None
             if not finished:
                 task.close()
-                if solving.state is State.SOLVING and shared().busy:  # interrupted
+                if solving.state is SolveState.SOLVING and shared().busy:  # interrupted
                     shared().close()
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         if bpy.app.background or context.window is None:
             return self.execute(context)
         self._solving = session().solving = Solving()
         session().failure = ""
         self._task = self.task(context)
-        self._timer = context.window_manager.event_timer_add(LOOK_EVERY, window=context.window)
-        self._workspace = context.workspace
+        manager = present(context.window_manager)
+        self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
+        self._workspace = present(context.workspace)
         self._shown = ""
         session().running.append(self)
         self._show()
-        context.window_manager.modal_handler_add(self)
+        manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, _context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, _context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if self not in session().running:  # ended from outside
             return {"CANCELLED"}
         if event.value == "PRESS" and event.type == "ESC":
@@ -83,7 +86,7 @@ class TaskOperator(FaultyOperator):
             return {"PASS_THROUGH"} if self._solving.passes(event.type) else {"RUNNING_MODAL"}
         return self._work()
 
-    def _work(self) -> set[str]:
+    def _work(self) -> OperatorResult:
         """As many parts as fit into a look."""
         until = perf_counter() + BUDGET
         goes_on = False
@@ -129,7 +132,7 @@ class TaskOperator(FaultyOperator):
         session().solving = None
         shared().drop()
         self._task.close()
-        bpy.context.window_manager.event_timer_remove(self._timer)
+        present(bpy.context.window_manager).event_timer_remove(self._timer)
         self._workspace.status_text_set(None)
         _redraw()
 
@@ -154,7 +157,7 @@ def take_best() -> bool:
 
 def _redraw() -> None:
     """The sidebar shows how far a solve is."""
-    for window in bpy.context.window_manager.windows:
+    for window in present(bpy.context.window_manager).windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 for region in area.regions:

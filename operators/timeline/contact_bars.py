@@ -87,7 +87,7 @@ class Bars:
     def grip_at(self, x: float, y: float) -> Grip | None:
         """The edge nearest to the mouse within reach, in its row."""
         reach = REACH * self.scale
-        near = []
+        near: list[tuple[float, bool, int, Grip]] = []
         for bar, rect in self.placed():
             if bar.firm or not bar.used or not rect.bottom <= y <= rect.top:
                 continue

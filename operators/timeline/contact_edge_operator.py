@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.properties.phases import carried, clip_ends, phases
+from ...bridge.accessors import present
+from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ...bridge.rows.phases import carried, clip_ends, phases
 from ..names import OperatorId
-from ..solve.common import chosen_armature
+from ..operator_types import OperatorResult
+from ..solve.common import chosen_armature, required_armature
 from .contact_bars import Grip
 from .contact_edge_state import Edge, EdgeDrag, Touch, contact_drag, phase_drag
 from .timeline_bars import bars_in, frames_axis
 
-NOT_ANALYSED = "Press Analyze first: there are no contacts to retime"
+NOTHING_TO_RETIME = "Press Analyze first: there are no contacts to retime"
 FOLLOW_AFTER = 3.0  # px, at an interface scale of 1, until a click becomes a drag
 FIELDS = {Edge.START: "start_frame", Edge.END: "end_frame"}
 VERBS = {Edge.START: "starts", Edge.END: "ends"}
@@ -40,8 +43,8 @@ class DragContactEdgeOperator(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return contacts_known(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
         drag = drag_of(settings, self.contact, Edge[self.edge])
         if drag is None:
             self.report({"ERROR"}, f"There is no contact or ground phase called “{self.contact}”")
@@ -53,29 +56,29 @@ class DragContactEdgeOperator(bpy.types.Operator):
         write(settings, drag.edge, drag.edges)
         return {"FINISHED"} if drag.release() else {"CANCELLED"}
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         """Passes the event on where the mouse is at no edge, so that keys can be edited there."""
         if context.area is None or context.area.type != "DOPESHEET_EDITOR":
             return self.execute(context)
         bars = bars_in(context)
         x, y = event.mouse_region_x, event.mouse_region_y
         grip = bars.grip_at(x, y) if bars is not None else None
-        settings = chosen_armature(context).hangtime
+        settings = settings_of(required_armature(context))
         drag = drag_of(settings, grip.bar.name, grip.edge) if grip is not None else None
         if bars is None or grip is None or drag is None:
             return {"PASS_THROUGH"}
         drag.slack = FOLLOW_AFTER * bars.scale / bars.axis.per_unit
         drag.begin(bars.axis.value(x))
         self._drag, self._axis = drag, bars.axis
-        self._armature, self._selected = chosen_armature(context).name, settings.active_contact
+        self._armature, self._selected = required_armature(context).name, settings.active_contact
         self._choose(settings, grip)
         self.contact, self.edge = grip.bar.name, grip.edge.name
-        context.window.cursor_modal_set("MOVE_X")
+        present(context.window).cursor_modal_set("MOVE_X")
         self._show(context)
-        context.window_manager.modal_handler_add(self)
+        present(context.window_manager).modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if event.type.startswith("TIMER"):
             return {"PASS_THROUGH"}  # playback goes on
         if event.type in GIVES_UP and event.value == "PRESS":
@@ -88,7 +91,7 @@ class DragContactEdgeOperator(bpy.types.Operator):
         if event.type == "LEFTMOUSE" and event.value == "RELEASE":
             return self._finished(context, settings)
         if event.type in MOVES:
-            axis = frames_axis(context.region) or self._axis
+            axis = frames_axis(present(context.region)) or self._axis
             mouse, fine = axis.value(event.mouse_region_x), event.ctrl or event.shift
             write(settings, self._drag.edge, self._drag.move(mouse, fine=fine))
             self._show(context)
@@ -102,26 +105,26 @@ class DragContactEdgeOperator(bpy.types.Operator):
             settings.active_contact = self._selected
         self._end(context)
 
-    def _finished(self, context: bpy.types.Context, settings: bpy.types.PropertyGroup) -> set[str]:
+    def _finished(self, context: bpy.types.Context, settings: HangtimeSettings) -> OperatorResult:
         moved = self._drag.release()
         self.frame = self._drag.frame
         self._end(context)
         chosen = settings.active_contact != self._selected
         return {"FINISHED"} if moved or chosen else {"CANCELLED"}
 
-    def _choose(self, settings: bpy.types.PropertyGroup, grip: Grip) -> None:
+    def _choose(self, settings: HangtimeSettings, grip: Grip) -> None:
         index = settings.contacts.find(grip.bar.name)
         if index >= 0 and not grip.bar.is_phase:
             settings.active_contact = index
 
-    def _settings(self) -> bpy.types.PropertyGroup | None:
+    def _settings(self) -> HangtimeSettings | None:
         armature = bpy.data.objects.get(self._armature)
-        return armature.hangtime if armature is not None else None
+        return settings_of(armature) if armature is not None else None
 
     def _show(self, context: bpy.types.Context) -> None:
         drag = self._drag
         text = f"{self.contact} {VERBS[drag.edge]} at frame {drag.frame:g} ({drag.change:+.3g})"
-        context.area.header_text_set(f"{text}    Ctrl: tenths of a frame    Esc: cancel")
+        present(context.area).header_text_set(f"{text}    Ctrl: tenths of a frame    Esc: cancel")
         redraw(context)
 
     def _end(self, context: bpy.types.Context) -> None:
@@ -144,8 +147,8 @@ class PickContactOperator(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return contacts_known(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        settings = chosen_armature(context).hangtime
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
         index = settings.contacts.find(self.contact)
         if index < 0:
             self.report({"ERROR"}, f"There is no contact called “{self.contact}”")
@@ -154,7 +157,7 @@ class PickContactOperator(bpy.types.Operator):
         redraw(context)
         return {"FINISHED"}
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         """The click goes on to what is below: keys can be selected there."""
         bars = bars_in(context)
         x, y = event.mouse_region_x, event.mouse_region_y
@@ -166,15 +169,15 @@ class PickContactOperator(bpy.types.Operator):
 
 
 def contacts_known(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Whether an armature has contacts; else says what to do."""
+    """Poll: true if the armature has contacts; else says what to do."""
     armature = chosen_armature(context)
-    known = armature is not None and len(armature.hangtime.contacts) > 0
+    known = armature is not None and len(settings_of(armature).contacts) > 0
     if not known:
-        operator.poll_message_set(NOT_ANALYSED)
+        operator.poll_message_set(NOTHING_TO_RETIME)
     return known
 
 
-def drag_of(settings: bpy.types.PropertyGroup, name: str, edge: Edge) -> EdgeDrag | None:
+def drag_of(settings: HangtimeSettings, name: str, edge: Edge) -> EdgeDrag | None:
     """Of the edge of a contact that counts or of a ground phase; None where there is none such."""
     clip = clip_ends(settings)
     assert clip is not None
@@ -190,7 +193,7 @@ def drag_of(settings: bpy.types.PropertyGroup, name: str, edge: Edge) -> EdgeDra
     return phase_drag(touches, (stance.start, stance.end), edge, clip) if stance else None
 
 
-def write(settings: bpy.types.PropertyGroup, edge: Edge, frames: dict[str, float]) -> None:
+def write(settings: HangtimeSettings, edge: Edge, frames: dict[str, float]) -> None:
     """Puts contacts' edges at frames, by the contacts' names."""
     for name, frame in frames.items():
         row = settings.contacts.get(name)
@@ -200,7 +203,7 @@ def write(settings: bpy.types.PropertyGroup, edge: Edge, frames: dict[str, float
 
 def redraw(context: bpy.types.Context) -> None:
     """Everywhere contacts are seen."""
-    for window in context.window_manager.windows:
+    for window in present(context.window_manager).windows:
         for area in window.screen.areas:
             if area.type in EDITORS:
                 area.tag_redraw()

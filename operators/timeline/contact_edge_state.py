@@ -1,4 +1,4 @@
-"""Retiming a contact or a phase by pulling its edge: how far it goes, and what goes along.
+"""State machine of retiming a contact or a phase by its edge: its range, and what goes along.
 
 Knows nothing of Blender; frames are the scene's.
 """
@@ -11,11 +11,11 @@ from enum import Enum
 
 SHORTEST = 1.0  # frames between the edges of a contact
 FINE = 0.1  # frames; steps without snapping
-SAME = 1e-3  # frames; edges that are closer are one
+SAME_EDGE = 1e-3  # frames; edges that are closer are one
 
 
 class Edge(Enum):
-    """Which end of a bar."""
+    """An end of a bar."""
 
     START = "Start"
     END = "End"
@@ -34,8 +34,8 @@ class Touch:
         return self.start if edge is Edge.START else self.end
 
 
-class Stage(Enum):
-    """Where a drag is."""
+class EdgeDragState(Enum):
+    """States of a drag."""
 
     READY = "ready"
     PULLED = "pulled"
@@ -59,7 +59,7 @@ class EdgeDrag:
     leaders: dict[str, float]
     others: dict[str, float]
     slack: float = 0.0
-    stage: Stage = Stage.READY
+    stage: EdgeDragState = EdgeDragState.READY
     frame: float = 0.0
     _grabbed: float = 0.0
     _loose: bool = False
@@ -71,12 +71,12 @@ class EdgeDrag:
 
     def begin(self, mouse: float) -> None:
         """The button went down with the mouse over frame `mouse`."""
-        self.stage, self.frame = Stage.PULLED, self.origin
+        self.stage, self.frame = EdgeDragState.PULLED, self.origin
         self._grabbed, self._loose = mouse, False
 
     def move(self, mouse: float, *, fine: bool = False) -> dict[str, float]:
         """The mouse is over another frame; where the edges are now. fine: not on whole frames."""
-        assert self.stage is Stage.PULLED
+        assert self.stage is EdgeDragState.PULLED
         pulled = mouse - self._grabbed
         self._loose = self._loose or abs(pulled) > self.slack
         if self._loose:
@@ -104,12 +104,12 @@ class EdgeDrag:
 
     def release(self) -> bool:
         """The button went up. Whether anything has been moved."""
-        self.stage = Stage.DONE
+        self.stage = EdgeDragState.DONE
         return self.change != 0.0
 
     def cancel(self) -> dict[str, float]:
         """Gives up; where the edges were."""
-        self.stage, self.frame = Stage.CANCELLED, self.origin
+        self.stage, self.frame = EdgeDragState.CANCELLED, self.origin
         return self.restored
 
 
@@ -124,11 +124,11 @@ def contact_drag(
     touch = every[name]
     fellows = [t for t in every.values() if t.point == touch.point and t is not touch]
     if edge is Edge.START:
-        lowest = max([clip[0], *(t.end for t in fellows if t.end <= touch.start + SAME)])
+        lowest = max([clip[0], *(t.end for t in fellows if t.end <= touch.start + SAME_EDGE)])
         highest = touch.end - SHORTEST
     else:
         lowest = touch.start + SHORTEST
-        highest = min([clip[1], *(t.start for t in fellows if t.start >= touch.end - SAME)])
+        highest = min([clip[1], *(t.start for t in fellows if t.start >= touch.end - SAME_EDGE)])
     origin = touch.frame(edge)
     return EdgeDrag(edge, origin, min(lowest, origin), max(highest, origin), {name: origin}, {})
 
@@ -145,12 +145,12 @@ def phase_drag(
     mine = [t for t in every if t.start < stance[1] and t.end > stance[0]]
     origin = stance[0] if edge is Edge.START else stance[1]
     if edge is Edge.START:
-        before = [t.end + SHORTEST for t in every if t.end <= origin + SAME]
+        before = [t.end + SHORTEST for t in every if t.end <= origin + SAME_EDGE]
         lowest, highest = max([clip[0], *before]), min(t.end for t in mine) - SHORTEST
     else:
-        after = [t.start - SHORTEST for t in every if t.start >= origin - SAME]
+        after = [t.start - SHORTEST for t in every if t.start >= origin - SAME_EDGE]
         lowest, highest = max(t.start for t in mine) + SHORTEST, min([clip[1], *after])
     frames = {t.name: t.frame(edge) for t in mine}
-    leaders = {name: frame for name, frame in frames.items() if abs(frame - origin) <= SAME}
+    leaders = {name: frame for name, frame in frames.items() if abs(frame - origin) <= SAME_EDGE}
     others = {name: frame for name, frame in frames.items() if name not in leaders}
     return EdgeDrag(edge, origin, min(lowest, origin), max(highest, origin), leaders, others)

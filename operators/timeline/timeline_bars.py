@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import bpy
 
+from ...bridge.accessors import present
 from ...bridge.plots.screen import Axis
-from ...bridge.properties.phases import carried, clip_ends, phases
+from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ...bridge.rows.phases import carried, clip_ends, phases
 from ...solver.data.contacts import PhaseKind
 from ..solve.common import chosen_armature
 from .contact_bars import Bar, Bars, Row, lay_out
-
-if TYPE_CHECKING:
-    from ...bridge.properties.settings import HangtimeSettings
 
 SIDES = ("Left", "Right")
 PHASES = "Phases"
@@ -24,11 +21,11 @@ def bars_in(context: bpy.types.Context) -> Bars | None:
     armature, region = chosen_armature(context), context.region
     if armature is None or region is None or not _wanted(context):
         return None
-    rows = rows_of(armature.hangtime)
+    rows = rows_of(settings_of(armature))
     axis = frames_axis(region)
     if not rows or axis is None:
         return None
-    scale = context.preferences.system.ui_scale
+    scale = present(context.preferences).system.ui_scale
     return lay_out(rows, axis, region.height, scale, markers=_markers(context))
 
 
@@ -65,9 +62,10 @@ def _order(item: tuple[str, list[Bar]]) -> tuple[int, str]:
 def _wanted(context: bpy.types.Context) -> bool:
     overlays = getattr(context.space_data, "overlays", None)  # since Blender 4.4
     shown = overlays is None or overlays.show_overlays
-    return bool(shown and context.scene.hangtime.view.timeline)
+    return bool(shown and scene_settings(context.scene).view.timeline)
 
 
 def _markers(context: bpy.types.Context) -> bool:
-    """Whether the editor shows markers, which have a strip of their own at its foot."""
-    return bool(context.space_data.show_markers and context.scene.timeline_markers)
+    """True where the editor shows markers, which have a strip of their own at its foot."""
+    shown = getattr(context.space_data, "show_markers", False)
+    return bool(shown and present(context.scene).timeline_markers)

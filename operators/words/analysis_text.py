@@ -1,4 +1,4 @@
-"""What an analysis found, for a person who is about to write a recipe."""
+"""Text of an analysis, for a person who is about to write a recipe."""
 
 import json
 import os

@@ -1,13 +1,18 @@
-"""Every fault and outcome in the artist's words: what is wrong, where, and what to do."""
+"""Messages to the artist: every fault and solver status in words, as templates to be translated.
 
-from collections.abc import Sequence
-from difflib import get_close_matches
-from functools import singledispatch
+A template names attributes of its fault in braces; formats with names are those of `_Formatter`.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from string import Formatter
+from typing import Any, NamedTuple
 
 from ...solver.data import faults
-from ...solver.data.faults import UnknownContact, UnknownPhase
+from ...solver.data.faults import Fault
 from ...solver.data.status import Status
+
+Translate = Callable[[str], str]
 
 OUTCOMES = {
     Status.SOLVED: "Solved: the motion obeys physics and everything asked for holds.",
@@ -20,426 +25,229 @@ OUTCOMES = {
     Status.STOPPED: "Stopped before everything was met; the motion is as the solver left it.",
 }
 
-
-@singledispatch
-def sentence(fault: faults.Fault) -> str:
-    """One or two sentences about a fault. Raises TypeError for a fault without words."""
-    raise TypeError(f"no words for {type(fault).__name__}")
-
-
-@sentence.register
-def _(fault: faults.NoArmature) -> str:
-    if fault.object_name is None:
-        return "No armature is chosen; select the armature that carries the recording."
-    return f"{_quoted(fault.object_name)} is or holds no armature; choose one with a recording."
-
-
-@sentence.register
-def _(fault: faults.NoAction) -> str:
-    return (
-        f"The armature {_quoted(fault.armature)} has no keyframes; "
-        "assign it the action that holds the recording."
-    )
-
-
-@sentence.register
-def _(fault: faults.NoBones) -> str:
-    return f"The armature {_quoted(fault.armature)} has no bones; choose the recorded figure's."
-
-
-@sentence.register
-def _(fault: faults.ClipTooShort) -> str:
-    return (
-        f"Only {fault.seconds:.2f} s of the recording lie in the chosen frames, and a jump needs "
-        f"{fault.minimum_s:g} s at least; choose more frames."
-    )
-
-
-@sentence.register
-def _(fault: faults.NoFlight) -> str:
-    return (
-        "No flight was found: in the chosen frames the feet are never off the ground together "
-        f"(the lower foot comes {max(fault.lowest_cm, 0.0):.1f} cm up at most). "
-        "Choose frames that hold a jump; if they do, check the scale and the up axis."
-    )
-
-
-@sentence.register
-def _(fault: faults.ZeroLengthBone) -> str:
-    return (
-        f"The bone {_quoted(fault.bone)} has no length, so it cannot carry mass; "
-        "give it one in edit mode, or choose another bone for that part of the body."
-    )
-
-
-@sentence.register
-def _(fault: faults.MissingPart) -> str:
-    if len(fault.tried) == 1:
-        tried = f" (no bone {_quoted(fault.tried[0])} is there)"
-    else:
-        tried = f" (looked for {', '.join(fault.tried)})" if fault.tried else ""
-    return f"No bone was found for the {fault.part}{tried}; say which bone it is."
-
-
-@sentence.register
-def _(fault: faults.NonFiniteKey) -> str:
-    return (
-        f"The bone {_quoted(fault.bone)} has a value at frame {fault.frame:g} that is no number; "
-        "delete or mend that key."
-    )
-
-
-@sentence.register
-def _(fault: faults.BadScale) -> str:
-    scale = ", ".join(f"{s:g}" for s in fault.scale)
-    return (
-        f"The scale of {_quoted(fault.object_name)} is ({scale}), but it must be the same, and "
-        "above zero, along all three axes; apply the scale or make it even."
-    )
-
-
-@sentence.register
-def _(fault: faults.UnreadableClip) -> str:
-    line = "" if fault.line is None else f", line {fault.line}"
-    return (
-        f"The recording {fault.path}{line}: {fault.problem}; "
-        "mend the file or export it again from where it came."
-    )
-
-
-@sentence.register
-def _(fault: faults.BadRecipe) -> str:
-    end = "" if fault.problem.endswith("?") else "."
-    return f"{recipe_place(fault.path, fault.line)}: {fault.problem}{end}"
-
-
-@sentence.register
-def _(fault: faults.OutputNotWritable) -> str:
-    return (
-        f"Nothing can be written to {fault.path} ({fault.problem}); "
-        "choose another folder or allow writing there."
-    )
-
-
-@sentence.register
-def _(fault: faults.ContradictoryPins) -> str:
-    return (
-        f"{_quoted(fault.first)} and {_quoted(fault.second)} contradict each other by "
-        f"{_length(fault.metres)}; no pose holds both, so move one of them or move them together."
-    )
-
-
-@sentence.register
-def _(fault: faults.NoSolution) -> str:
-    return outcome(Status(fault.reason)) + _furthest_off(fault)
-
-
-@sentence.register
-def _(fault: faults.NoFit) -> str:
-    return (
-        "The recording's own contacts cannot be held by a motion that obeys physics. "
-        "Choose frames that begin earlier and end later, or correct the contacts' frames."
-    ) + _furthest_off(fault)
-
-
-def _furthest_off(fault: faults.NoSolution) -> str:
-    worst = "; ".join(_missed(*each) for each in fault.worst)
-    if not worst:
-        return ""
-    way = f"The best found goes {100.0 * fault.reached:.0f} % of the way; furthest off"
-    return f" {way if fault.reached else 'Furthest off'}: {worst}."
-
-
-@sentence.register
-def _(fault: faults.UnseenSupport) -> str:
-    return (
-        f"From frame {fault.first:g} to {fault.last:g} neither foot touches the ground, yet the "
-        "body does not fall, so something unseen carries it (a box, a rail, a hand); "
-        "choose frames without it. If nothing does, give the scene the recording's frame rate."
-    )
-
-
-@sentence.register
-def _(fault: faults.OddHeight) -> str:
-    factor = float(f"{fault.factor:.2g}")  # 100, not 1e+02
-    return (
-        f"{_quoted(fault.armature)} is {fault.metres:.3g} m tall, so gravity does not fit its "
-        f"motion; import it again at {factor:g} times the scale, or scale its object so."
-    )
-
-
-@sentence.register
-def _(fault: faults.OutsideKeys) -> str:
-    return (
-        f"In the chosen frames {_quoted(fault.armature)} has no keys; they lie from frame "
-        f"{fault.first:g} to {fault.last:g}, so choose frames there."
-    )
-
-
-@sentence.register
-def _(fault: faults.UnknownContactName) -> str:
-    return (
-        f"There is no contact {_quoted(fault.name)} in these frames; "
-        f"there are {_names(fault.known)}."
-    )
-
-
-@sentence.register
-def _(fault: faults.UnknownBone) -> str:
-    return (
-        f"{_quoted(fault.request)} names the bone {_quoted(fault.bone)}, which the armature does "
-        "not have; choose one of its bones."
-    )
-
-
-@sentence.register
-def _(fault: faults.NotAboveZero) -> str:
-    return (
-        f"{_quoted(fault.request)} asks for a mass or a factor of {fault.amount:g}; "
-        "give it one above zero."
-    )
-
-
-@sentence.register
-def _(fault: faults.UnknownPhaseIn) -> str:
-    return (
-        f"{_quoted(fault.request)} is about the phase {_quoted(fault.phase)}, which the clip does "
-        f"not have; it has {_names(fault.known)}."
-    )
-
-
-@sentence.register
-def _(fault: faults.StillBone) -> str:
-    # All of them would run off the screen.
-    near = get_close_matches(fault.bone, fault.known, n=4, cutoff=0.0)
-    return (
-        f"{_quoted(fault.request)} names the bone {_quoted(fault.bone)}, which is none of those "
-        f"that physics moves; those most like it are {_names(tuple(near))}."
-    )
-
-
-@sentence.register
-def _(fault: faults.BadTiming) -> str:
-    return (
-        f"{_quoted(fault.request)} would last {fault.seconds:.3f} s, or lies outside the clip; "
-        "change its frames, phase or duration."
-    )
-
-
-@sentence.register
-def _(fault: faults.RootHasNoJoint) -> str:
-    return (
-        f"{_quoted(fault.request)} limits the joint of {_quoted(fault.bone)}, but that is the "
-        "root, which has no joint; choose a bone that hangs on another."
-    )
-
-
-@sentence.register
-def _(fault: faults.NeedsTorques) -> str:
-    return (
-        f"{_quoted(fault.request)} is about torques, but the reduced dynamics have none; "
-        'choose "automatic" or "standard" dynamics.'
-    )
-
-
-@sentence.register
-def _(fault: faults.NothingTouches) -> str:
-    who = _names(fault.touching) if fault.touching else "nothing"
-    return (
-        f"{_quoted(fault.request)} is about {who}, which does not touch then; "
-        "name contacts, points or bones that the analysis lists."
-    )
-
-
-@sentence.register
-def _(fault: faults.WrongAngle) -> str:
-    return (
-        f"{_quoted(fault.request)} names an angle that the joint of {_quoted(fault.bone)} does "
-        f"not have; it has {fault.count}, counted from 0."
-    )
-
-
-@sentence.register
-def _(fault: faults.FreePoint) -> str:
-    return (
-        f"{_quoted(fault.request)} is pushed by the world but held in no direction; "
-        "hold it in one at least, or let it be no part of the environment."
-    )
-
-
-@sentence.register
-def _(fault: faults.TakenName) -> str:
-    return (
-        f"{_quoted(fault.request)} is called like a contact that was found; "
-        "give it a name of its own."
-    )
-
-
-@sentence.register
-def _(fault: faults.TimedTwice) -> str:
-    return (
-        f"{_quoted(fault.request)} is the second to say how long {_quoted(fault.phase)} takes; "
-        "keep one."
-    )
-
-
-@sentence.register
-def _(fault: faults.NoBoneChosen) -> str:
-    return f"{_quoted(fault.request)} is about no bone yet; choose one, or switch it off."
-
-
-@sentence.register
-def _(fault: faults.NoPhaseChosen) -> str:
-    return (
-        f"{_quoted(fault.request)} holds in a phase, but none is chosen; "
-        f"there are {_names(fault.known)}."
-    )
-
-
-@sentence.register
-def _(fault: faults.EmptyRange) -> str:
-    return (
-        f"{_quoted(fault.request)} ends at frame {fault.last:g}, before it begins at frame "
-        f"{fault.first:g}; swap them."
-    )
-
-
-@sentence.register
-def _(fault: faults.CrossedBounds) -> str:
-    return (
-        f"{_quoted(fault.request)} asks for at least {fault.at_least:.4g} {fault.unit} and at most "
-        f"{fault.at_most:.4g} {fault.unit}, which nothing is; raise the one or lower the other."
-    )
-
-
-@sentence.register
-def _(fault: faults.AsksNothing) -> str:
-    return f"{_quoted(fault.request)} asks for nothing; switch on one of its options, or it off."
-
-
-@sentence.register
-def _(fault: faults.NoDirection) -> str:
-    return f"{_quoted(fault.request)} has an axis that points nowhere; give it a direction."
-
-
-@sentence.register
-def _(fault: faults.NamedTwice) -> str:
-    return (
-        f"{_quoted(fault.request)} is the name of two constraints, body changes or contacts; "
-        "rename one, so that the report can tell them apart."
-    )
-
-
-@sentence.register
-def _(fault: faults.NameMissing) -> str:
-    return f"A constraint ({fault.kind}) has no name; give it one in the list."
-
-
-@sentence.register
-def _(fault: faults.WorkerDied) -> str:
-    return (
-        f"The solver stopped without an answer ({fault.detail}); "
-        "nothing was changed. Try again, and report it if it happens twice."
-    )
-
-
-@sentence.register
-def _(fault: faults.ChangedMeanwhile) -> str:
-    what = "The result was thrown away" if fault.while_solving else "Nothing was done"
-    return (
-        f"{what}, because the armature {_quoted(fault.armature)} or its keys changed since the "
-        "analysis; press Analyze again."
-    )
-
-
-@sentence.register
-def _(fault: faults.BadDimensions) -> str:
-    return (
-        f"The figure cannot be reduced to {fault.given} dimensions; "
-        f"choose from 1 to {fault.most}, or leave them out to have them chosen."
-    )
-
-
-@sentence.register
-def _(fault: faults.UnknownReductionBone) -> str:
-    return (
-        f"Row {fault.row} of the reduction's matrix names {_quoted(fault.bone)}, whose joint "
-        f"cannot be tied to others; those that can are {_names(fault.known)}."
-    )
-
-
-@sentence.register
-def _(fault: faults.WrongWeights) -> str:
-    return (
-        f"Row {fault.row} of the reduction's matrix gives {_quoted(fault.bone)} a list of "
-        f"{fault.given} weights, but its joint has {fault.needed} angles; give one weight each."
-    )
-
-
-@sentence.register
-def _(fault: faults.DependentRows) -> str:
-    return (
-        f"Of the {fault.rows} rows of the reduction's matrix only {fault.rank} say something that "
-        "the others do not; leave out the empty and the repeated ones."
-    )
-
-
-@sentence.register
-def _(fault: UnknownPhase) -> str:
-    return (
-        f"The pin {_quoted(fault.pin)} names the phase {_quoted(fault.phase)}, on which nothing "
-        f"touches the ground; there are {_names(fault.known)}."
-    )
-
-
-@sentence.register
-def _(fault: UnknownContact) -> str:
-    return (
-        f"The pin {_quoted(fault.pin)} names {_quoted(fault.what)}, which does not touch in its "
-        f"phase; what touches is {_names(fault.known)}."
-    )
-
-
-def outcome(status: Status) -> str:
-    """How a solve ended, and what to do about it."""
-    return OUTCOMES[status]
+# Of several, `_variant` says which.
+TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
+    faults.NoArmature: (
+        "No armature is chosen; select the armature that carries the recording.",
+        "“{object_name}” is or holds no armature; choose one with a recording.",
+    ),
+    faults.NoAction: "The armature “{armature}” has no keyframes; assign it the action that holds "
+    "the recording.",
+    faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
+    faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
+    "jump needs {minimum_s:g} s at least; choose more frames.",
+    faults.NoFlight: "No flight was found: in the chosen frames the feet are never off the ground "
+    "together (the lower foot comes {lowest_cm:.1f} cm up at most). Choose frames that hold a "
+    "jump; if they do, check the scale and the up axis.",
+    faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
+    "in edit mode, or choose another bone for that part of the body.",
+    faults.MissingPart: (
+        "No bone was found for the {part}; say which bone it is.",
+        "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is.",
+        "No bone was found for the {part} (looked for {tried:names}); say which bone it is.",
+    ),
+    faults.NonFiniteKey: "The bone “{bone}” has a value at frame {frame:g} that is no number; "
+    "delete or mend that key.",
+    faults.BadScale: "The scale of “{object_name}” is ({scale:numbers}), but it must be the same, "
+    "and above zero, along all three axes; apply the scale or make it even.",
+    faults.UnreadableClip: (
+        "The recording {path}: {problem}; mend the file or export it again from where it came.",
+        "The recording {path}, line {line}: {problem}; mend the file or export it again from where "
+        "it came.",
+    ),
+    faults.BadRecipe: (
+        "Recipe {path}: {problem:ended}",
+        "Recipe {path}, line {line}: {problem:ended}",
+    ),
+    faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another folder "
+    "or allow writing there.",
+    faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
+    "no pose holds both, so move one of them or move them together.",
+    faults.NoSolution: (
+        "{reason:outcome}",
+        "{reason:outcome} Furthest off: {worst:missed}.",
+        "{reason:outcome} The best found goes {reached:percent} of the way; furthest off: "
+        "{worst:missed}.",
+    ),
+    faults.NoFit: (
+        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
+        "that begin earlier and end later, or correct the contacts' frames.",
+        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
+        "that begin earlier and end later, or correct the contacts' frames. Furthest off: "
+        "{worst:missed}.",
+        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
+        "that begin earlier and end later, or correct the contacts' frames. The best found goes "
+        "{reached:percent} of the way; furthest off: {worst:missed}.",
+    ),
+    faults.UnseenSupport: "From frame {first:g} to {last:g} neither foot touches the ground, yet "
+    "the body does not fall, so something unseen carries it (a box, a rail, a hand); choose frames "
+    "without it. If nothing does, give the scene the recording's frame rate.",
+    faults.OddHeight: "“{armature}” is {metres:.3g} m tall, so gravity does not fit its motion; "
+    "import it again at {factor:plain} times the scale, or scale its object so.",
+    faults.OutsideKeys: "In the chosen frames “{armature}” has no keys; they lie from frame "
+    "{first:g} to {last:g}, so choose frames there.",
+    faults.UnknownContactName: "There is no contact “{name}” in these frames; there are "
+    "{known:names}.",
+    faults.UnknownBone: "“{request}” names the bone “{bone}”, which the armature does not have; "
+    "choose one of its bones.",
+    faults.NotAboveZero: "“{request}” asks for a mass or a factor of {amount:g}; give it one above "
+    "zero.",
+    faults.UnknownPhaseIn: "“{request}” is about the phase “{phase}”, which the clip does not "
+    "have; it has {known:names}.",
+    faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "
+    "moves; those most like it are {likeliest:names}.",
+    faults.BadTiming: "“{request}” would last {seconds:.3f} s, or lies outside the clip; change "
+    "its frames, phase or duration.",
+    faults.RootHasNoJoint: "“{request}” limits the joint of “{bone}”, but that is the root, which "
+    "has no joint; choose a bone that hangs on another.",
+    faults.NeedsTorques: "“{request}” is about torques, but the reduced dynamics have none; choose "
+    '"automatic" or "standard" dynamics.',
+    faults.NothingTouches: (
+        "“{request}” is about nothing, which does not touch then; name contacts, points or bones "
+        "that the analysis lists.",
+        "“{request}” is about {touching:names}, which does not touch then; name contacts, points "
+        "or bones that the analysis lists.",
+    ),
+    faults.WrongAngle: "“{request}” names an angle that the joint of “{bone}” does not have; it "
+    "has {count}, counted from 0.",
+    faults.FreePoint: "“{request}” is pushed by the world but held in no direction; hold it in one "
+    "at least, or let it be no part of the environment.",
+    faults.TakenName: "“{request}” is called like a contact that was found; give it a name of its "
+    "own.",
+    faults.TimedTwice: "“{request}” is the second to say how long “{phase}” takes; keep one.",
+    faults.NoBoneChosen: "“{request}” is about no bone yet; choose one, or switch it off.",
+    faults.NoPhaseChosen: "“{request}” holds in a phase, but none is chosen; there are "
+    "{known:names}.",
+    faults.EmptyRange: "“{request}” ends at frame {last:g}, before it begins at frame {first:g}; "
+    "swap them.",
+    faults.CrossedBounds: "“{request}” asks for at least {at_least:.4g} {unit} and at most "
+    "{at_most:.4g} {unit}, which nothing is; raise the one or lower the other.",
+    faults.AsksNothing: "“{request}” asks for nothing; switch on one of its options, or it off.",
+    faults.NoDirection: "“{request}” has an axis that points nowhere; give it a direction.",
+    faults.NamedTwice: "“{request}” is the name of two constraints, body changes or contacts; "
+    "rename one, so that the report can tell them apart.",
+    faults.NameMissing: "A constraint ({kind}) has no name; give it one in the list.",
+    faults.WorkerDied: "The solver stopped without an answer ({detail}); nothing was changed. Try "
+    "again, and report it if it happens twice.",
+    faults.ChangedMeanwhile: (
+        "Nothing was done, because the armature “{armature}” or its keys changed since the "
+        "analysis; press Analyze again.",
+        "The result was thrown away, because the armature “{armature}” or its keys changed since "
+        "the analysis; press Analyze again.",
+    ),
+    faults.BadDimensions: "The figure cannot be reduced to {given} dimensions; choose from 1 to "
+    "{most}, or leave them out to have them chosen.",
+    faults.UnknownReductionBone: "Row {row} of the reduction's matrix names “{bone}”, whose joint "
+    "cannot be tied to others; those that can are {known:names}.",
+    faults.WrongWeights: "Row {row} of the reduction's matrix gives “{bone}” a list of {given} "
+    "weights, but its joint has {needed} angles; give one weight each.",
+    faults.DependentRows: "Of the {rows} rows of the reduction's matrix only {rank} say something "
+    "that the others do not; leave out the empty and the repeated ones.",
+    faults.UnknownPhase: "The pin “{pin}” names the phase “{phase}”, on which nothing touches the "
+    "ground; there are {known:names}.",
+    faults.UnknownContact: "The pin “{pin}” names “{what}”, which does not touch in its phase; "
+    "what touches is {known:names}.",
+}
+PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
+
+MISSED = {  # by the unit that it is measured in
+    "mm": "“{name}” stays {metres:length} from its place",
+    "m/s": "“{name}” still slides at {amount:.3g} m/s",
+    "BW": "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
+    "BW·m": "in {name}, the body turns without cause ({amount:.3g} BW·m)",
+    "N·m beyond the limit": "“{name}” needs {amount:.3g} N·m more than its limit",
+    "degrees": "“{name}” is missed by {amount:.3g}°",
+    "BW of pull": "“{name}” would have to pull with {amount:.3g} of the body's weight",
+    "BW beyond friction": "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
+    "BW beyond the cap": "“{name}” is exceeded by {amount:.3g} of the body's weight",
+}
+MISSED_OTHERWISE = "{name}: {amount:.3g} {unit}"
+
+
+def sentence(fault: Fault, translate: Translate = str) -> str:
+    """One or two sentences about a fault. Raises TypeError for a fault without words.
+
+    translate: of a template into the artist's language.
+    """
+    if (template := TEMPLATES.get(type(fault))) is None:
+        raise TypeError(f"no words for {type(fault).__name__}")
+    if not isinstance(template, str):
+        template = template[_variant(fault)]
+    return _Formatter(translate).format(translate(template), fault)
+
+
+def outcome(status: Status, translate: Translate = str) -> str:
+    """The solver's termination status in words, and what to do about it."""
+    return translate(OUTCOMES[status])
 
 
 def recipe_place(path: str | Path, line: int | None) -> str:
-    """Where in a recipe something is wrong."""
-    return f"Recipe {path}" if line is None else f"Recipe {path}, line {line}"
+    """Location of a fault in a recipe."""
+    return PLACES[line is not None].format(path=path, line=line)
 
 
-def _missed(name: str, amount: float, unit: str) -> str:
-    """What of a constraint is left, by the unit that it is measured in."""
-    match unit:
-        case "mm":
-            return f"{_quoted(name)} stays {_length(amount / 1000.0)} from its place"
-        case "m/s":
-            return f"{_quoted(name)} still slides at {amount:.3g} m/s"
-        case "BW":
-            return f"in {name}, {amount:.3g} of the body's weight is not carried as it must be"
-        case "BW·m":
-            return f"in {name}, the body turns without cause ({amount:.3g} BW·m)"
-        case "N·m beyond the limit":
-            return f"{_quoted(name)} needs {amount:.3g} N·m more than its limit"
-        case "degrees":
-            return f"{_quoted(name)} is missed by {amount:.3g}°"
-        case "BW of pull":
-            return f"{_quoted(name)} would have to pull with {amount:.3g} of the body's weight"
-        case "BW beyond friction":
-            return f"{_quoted(name)} slips: {amount:.3g} of the body's weight beyond its friction"
-        case "BW beyond the cap":
-            return f"{_quoted(name)} is exceeded by {amount:.3g} of the body's weight"
-    return f"{name}: {amount:.3g} {unit}"
+def _variant(fault: Fault) -> int:
+    """Index of the template for a fault whose class has several."""
+    match fault:
+        case faults.NoArmature():
+            return fault.object_name is not None
+        case faults.MissingPart():
+            return min(len(fault.tried), 2)
+        case faults.UnreadableClip() | faults.BadRecipe():
+            return fault.line is not None
+        case faults.NoSolution():
+            return (2 if fault.reached else 1) if fault.worst else 0
+        case faults.NothingTouches():
+            return bool(fault.touching)
+        case faults.ChangedMeanwhile():
+            return fault.while_solving
+    raise TypeError(f"which words are for {type(fault).__name__}?")
 
 
-def _quoted(name: str) -> str:
-    return f"“{name}”"
+class _Missed(NamedTuple):
+    """Remaining violation of a constraint, in its own unit."""
+
+    name: str
+    amount: float
+    unit: str
+
+    @property
+    def metres(self) -> float:
+        return self.amount / 1000.0
 
 
-def _names(names: Sequence[str]) -> str:
-    return ", ".join(names) if names else "none"
+class _Formatter(Formatter):
+    """`str.format`, whose fields are the attributes of what it is given."""
+
+    def __init__(self, translate: Translate) -> None:
+        self._translate = translate
+
+    def get_value(self, key: int | str, args: Sequence[Any], _: Mapping[str, Any]) -> Any:
+        return getattr(args[0], str(key))
+
+    def format_field(self, value: Any, format_spec: str) -> Any:
+        match format_spec:
+            case "names":
+                return ", ".join(value) or "none"
+            case "numbers":
+                return ", ".join(f"{number:g}" for number in value)
+            case "plain":  # 100, not 1e+02
+                return f"{float(f'{value:.2g}'):g}"
+            case "percent":
+                return f"{100.0 * value:.0f} %"
+            case "length":
+                return _length(value)
+            case "ended":
+                return value if value.endswith("?") else f"{value}."
+            case "outcome":
+                return outcome(Status(value), self._translate)
+            case "missed":
+                return "; ".join(self._missed(_Missed(*each)) for each in value)
+        return super().format_field(value, format_spec)
+
+    def _missed(self, missed: _Missed) -> str:
+        template = MISSED.get(missed.unit, MISSED_OTHERWISE)
+        return self.format(self._translate(template), missed)
 
 
 def _length(metres: float) -> str:

@@ -1,1 +1,1 @@
-"""From a recording to a performance: joint angles, contact detection, soles, pinned places."""
+"""Analysis of a recording: joint angles, contact detection, and the places of pinned contacts."""

@@ -1,4 +1,6 @@
-"""From a recording and what the artist asks to an adapted motion: the calls that others make.
+"""Analysis pipeline: character, performance and corrected contact schedule of a recording.
+
+The whole way to an adapted motion:
 
 analysis = analyse(recording, problem)      # character, contacts
 fitted = fit(analysis.performance, analysis.schedule)
@@ -16,23 +18,24 @@ from ..data.recording import Recording
 from .contact_detection import require_flight
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
 
-SHORTEST_CLIP = 0.3  # s
+MIN_CLIP_DURATION = 0.3  # s
 
 
 @dataclass(frozen=True)
 class Analysis:
-    """What a recording shows: the figure's movement and its contacts."""
+    """Result of an analysis: the character's movement and its contacts."""
 
     performance: Performance
     schedule: ContactSchedule
 
 
 def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
-    """Finds character and contacts in the problem's frames of a recording.
+    """Character and contacts in the problem's frames of a recording.
 
-    Raises ClipTooShort, NoFlight, UnseenSupport, MissingPart, ZeroLengthBone, UnknownContactName.
+    Raises ClipTooShort, NoFlight, UnseenSupport, MissingPart, ZeroLengthBone, UnknownContactName,
+    BadTiming.
     """
-    recording, character = figure(recording, problem)
+    recording, character = build_figure(recording, problem)
     performance = perform(recording, character)
     schedule = _corrected(find_contacts(performance), problem, performance)
     for gap in schedule.unseen:
@@ -41,16 +44,16 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     return Analysis(performance, schedule)
 
 
-def figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:
-    """The problem's frames of a recording, and the figure that they show.
+def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:
+    """The problem's frames of a recording, and the character built from them.
 
     Raises ClipTooShort, MissingPart, ZeroLengthBone.
     """
     if problem.frames is not None:
         recording = recording.window(*problem.frames)
     seconds = float(recording.times[-1]) if len(recording.times) else 0.0
-    if seconds < SHORTEST_CLIP:
-        raise ClipTooShort(seconds, SHORTEST_CLIP)
+    if seconds < MIN_CLIP_DURATION:
+        raise ClipTooShort(seconds, MIN_CLIP_DURATION)
     character = build_character(
         recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
     )
@@ -58,6 +61,7 @@ def figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Cha
 
 
 def _frame(recording: Recording, time: float) -> float:
+    """Nearest scene frame of an instant, s."""
     rate = (len(recording.times) - 1) / float(recording.times[-1])
     return float(round(recording.frames[0] + time * rate))
 
@@ -65,7 +69,10 @@ def _frame(recording: Recording, time: float) -> float:
 def _corrected(
     schedule: ContactSchedule, problem: MotionProblem, performance: Performance
 ) -> ContactSchedule:
-    """The schedule with the artist's corrections; unchanged contacts keep their exact instants."""
+    """The schedule with the artist's corrections; unchanged contacts keep their exact instants.
+
+    Raises UnknownContactName, BadTiming.
+    """
     if not problem.contacts and not problem.added:
         return schedule
     contacts: dict[str, Contact] = {c.name: c for c in schedule.contacts}
@@ -94,7 +101,7 @@ def _corrected(
 
 
 def _added(name: str, span: tuple[float, float], performance: Performance) -> Contact:
-    """A contact of a point during (start, end) s, where the point then is on average."""
+    """Contact of a point during (start, end) s, at the point's mean position then."""
     points, _ = contact_points(performance)
     if name not in points:
         raise UnknownContactName(name, tuple(points))

@@ -1,4 +1,4 @@
-"""A recording seen through a character: joint angles, centre of mass, feet, contacts."""
+"""Joint angles and centre of mass of a recording, and its candidate contact points."""
 
 from dataclasses import dataclass
 
@@ -15,15 +15,15 @@ from .contact_detection import detect_contacts
 from .soles import FootTracks, floor_height, foot_points
 
 SNAP_FRAMES = 1.5
-SNAP_LEAST = 0.012  # s; instants nearer than this share a knot
+MIN_SNAP_TOLERANCE = 0.012  # s; instants nearer than this share a knot
 
 
 @dataclass(frozen=True)
 class Performance:
-    """The recording in the character's terms, at the recording's frames (T,).
+    """A recording in the character's coordinates, at the recording's frames (T,).
 
     rotations: (T, B, 3, 3) body to world. centres: (T, B, 3) m, joint centres as recorded.
-    angles: (T, n_angles). com: (T, 3) m.
+    angles: (T, n_angles) rad. com: (T, 3) m. World frame.
     """
 
     recording: Recording
@@ -35,10 +35,11 @@ class Performance:
 
     @property
     def times(self) -> FloatArray:
+        """(T,) s."""
         return self.recording.times
 
     def points(self, points: tuple[BodyPoint, ...], times: FloatArray) -> FloatArray:
-        """(N, P, 3) world places of bodies' points at any instants, cubic between frames."""
+        """(N, P, 3) positions, m, world, of body points at instants (N,), s; cubic in between."""
         bodies = [p.body for p in points]
         local = np.stack([p.place for p in points])
         turned = np.einsum("tpij,pj->tpi", self.rotations[:, bodies], local)
@@ -46,7 +47,7 @@ class Performance:
 
 
 def perform(recording: Recording, character: Character) -> Performance:
-    """Reads joint angles and centre of mass out of a recording."""
+    """Joint angles and centre of mass of a recording (the inverse of forward kinematics)."""
     bones = [recording.index(body.bone) for body in character.bodies]
     rotations = body_rotations(recording, bones)
     centres = recording.heads[:, bones]
@@ -66,20 +67,20 @@ def perform(recording: Recording, character: Character) -> Performance:
 
 
 def find_contacts(performance: Performance) -> ContactSchedule:
-    """What of feet and hands touches, instants snapped so that no span is needlessly short."""
+    """Contact schedule of feet and hands, event times snapped so that no span is too short."""
     points, floor_m = contact_points(performance)
     schedule = detect_contacts(performance.times, points, floor_m=floor_m, com=performance.com)
     return snap(schedule, snap_tolerance(performance))
 
 
 def snap_tolerance(performance: Performance) -> float:
-    """Instants nearer than this, s, are made one."""
+    """Tolerance, s, within which event times are merged."""
     frame = float(np.median(np.diff(performance.times)))
-    return max(SNAP_FRAMES * frame, SNAP_LEAST)
+    return max(SNAP_FRAMES * frame, MIN_SNAP_TOLERANCE)
 
 
 def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], float]:
-    """The points that may touch, by name (heel and toe of each foot, hands), and the floor, m."""
+    """Candidate contact points by name (heel and toe of each foot, hands), and floor height, m."""
     feet = [_foot(performance, side) for side in (Side.LEFT, Side.RIGHT)]
     floor_m = floor_height(performance.times, feet)
     points = foot_points(performance.times, feet, floor_m)
@@ -91,6 +92,7 @@ def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], f
 
 
 def _palm(performance: Performance, hand: int) -> ContactPoint:
+    """Contact point in the middle of a hand."""
     body, recording = performance.character.bodies[hand], performance.recording
     place = 0.5 * body.tip
     track = performance.centres[:, hand] + performance.rotations[:, hand] @ place
@@ -99,6 +101,7 @@ def _palm(performance: Performance, hand: int) -> ContactPoint:
 
 
 def _foot(performance: Performance, side: Side) -> FootTracks:
+    """Joint tracks of one foot."""
     character, recording = performance.character, performance.recording
     foot, toe = character.body(Part.FOOT, side), character.body(Part.TOE, side)
     assert foot is not None

@@ -1,21 +1,22 @@
-"""Where every contact shall be: the recorded places, moved by the artist's pins (thesis 6.2)."""
+"""Target positions of contacts: the recorded places, moved by the artist's pins (thesis 6.2)."""
 
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.constants import UP
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.faults import ContradictoryPins, UnknownContact, UnknownPhase
-from ..data.problem import Axes3, MotionProblem, Pin
+from ..data.problem import MotionProblem, OffsetAxes, Pin
 from .performance import Performance
 
-SAME_BODY_SLACK = 0.003  # m
-SAME_FOOT_SLACK = 0.02  # m; toes bend
+SAME_BODY_TOLERANCE = 0.003  # m
+SAME_FOOT_TOLERANCE = 0.02  # m; toes bend
 
 
 def pinned_places(
     problem: MotionProblem, performance: Performance, schedule: ContactSchedule
 ) -> FloatArray:
-    """(n_contacts, 3) m: where every contact shall be.
+    """(n_contacts, 3) m: target position of every contact, world.
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins.
     """
@@ -28,7 +29,7 @@ def pinned_places(
         for i, place in zip(chosen, target, strict=True):
             if i in moved_by:
                 apart = float(np.linalg.norm(places[i] - place))
-                if apart > SAME_BODY_SLACK:
+                if apart > SAME_BODY_TOLERANCE:
                     raise ContradictoryPins(moved_by[i].name, pin.name, apart)
             places[i] = place
             moved_by[i] = pin
@@ -75,19 +76,23 @@ def _moved(
     performance: Performance,
     schedule: ContactSchedule,
 ) -> FloatArray:
+    """(len(chosen), 3) m: the chosen contacts' places turned and moved by a pin."""
     places = np.array([schedule.contacts[i].place for i in chosen])
     centre = places.mean(axis=0)
     c, s = np.cos(pin.turn), np.sin(pin.turn)
     turned = centre + (places - centre) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     offset = np.array(pin.offset, dtype=float)
-    if pin.axes is Axes3.TRAVEL:
+    if pin.axes is OffsetAxes.TRAVEL:
         offset = travel_axes(performance, schedule, phase) @ offset
     goal = centre if pin.place is None else np.array(pin.place, dtype=float)
     return np.asarray(turned - centre + goal + offset)
 
 
 def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phase) -> FloatArray:
-    """(3, 3) columns forward, left and up: along the flight that ends (or else starts) a phase."""
+    """(3, 3) travel frame, columns forward, left and up in world axes, of a ground phase.
+
+    Forward: level, along the flight that ends in the phase, or else the first one.
+    """
     flights = [p for p in schedule.phases if p.kind is PhaseKind.FLIGHT]
     before = [f for f in flights if f.end <= phase.start + 1e-9]
     flight = before[-1] if before else (flights[0] if flights else phase)
@@ -100,14 +105,14 @@ def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phas
     if np.linalg.norm(ahead) < 0.05:  # a jump on the spot: where the pelvis faces
         ahead = _facing(performance, 0.5 * (flight.start + flight.end))
     ahead /= np.linalg.norm(ahead)
-    up = np.array([0.0, 0.0, 1.0])
-    return np.stack([ahead, np.cross(up, ahead), up], axis=1)
+    return np.stack([ahead, np.cross(UP, ahead), UP], axis=1)
 
 
 def _facing(performance: Performance, time: float) -> FloatArray:
+    """(3,) level direction in which the pelvis faces, not normalised."""
     frame = int(np.argmin(np.abs(performance.times - time)))
     width = performance.rotations[frame, 0] @ performance.character.bodies[0].box_rotation[:, 0]
-    return np.asarray(np.cross(width, [0.0, 0.0, 1.0]) * np.array([1.0, 1.0, 0.0]))
+    return np.asarray(np.cross(width, UP) * np.array([1.0, 1.0, 0.0]))
 
 
 def _check_rigid(
@@ -116,7 +121,7 @@ def _check_rigid(
     places: FloatArray,
     moved_by: dict[int, Pin],
 ) -> None:
-    """Heel and toe of one foot cannot part: pins that ask for it contradict each other."""
+    """Rigidity check: heel and toe of one foot keep their distance. Raises ContradictoryPins."""
     contacts = schedule.contacts
     bodies = {body.bone: body for body in performance.character.bodies}
     for i, first in enumerate(contacts):
@@ -127,7 +132,7 @@ def _check_rigid(
             feet = {one.part.value, two.part.value} <= {"foot", "toe"}
             if not together or one.side is not two.side or not feet:
                 continue
-            slack = SAME_BODY_SLACK if first.bone == second.bone else SAME_FOOT_SLACK
+            slack = SAME_BODY_TOLERANCE if first.bone == second.bone else SAME_FOOT_TOLERANCE
             was = np.linalg.norm(first.place - second.place)
             now = np.linalg.norm(places[i] - places[j])
             if abs(now - was) > slack:

@@ -1,26 +1,25 @@
-"""The soles: where on the foot bones the heel and the toe touch, and how high the floor lies."""
+"""Heel and toe contact points on the foot bones, and floor height, from standing frames."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..data.contacts import ContactPoint, PointKind
 
-HEEL_BEHIND = 0.25  # of the level distance from ankle to ball; where the heel presses
-TOE_AHEAD = 0.75  # of the way from ball to tip; where the toe leaves last
-THICKEST_SOLE = 0.08  # m from the ball joint to the floor
-USUAL_SOLE = 0.025  # m, where nothing tells
-LEVEL_SPEED = 0.25  # m/s; a foot slower than this stands
-PLATEAU = 0.02  # m; how much the height of a standing foot varies
-FEWEST_FRAMES = 4
+HEEL_OFFSET_RATIO = 0.25  # of the level distance from ankle to ball; where the heel presses
+TOE_OFFSET_RATIO = 0.75  # of the way from ball to tip; where the toe leaves last
+MAX_SOLE_THICKNESS = 0.08  # m from the ball joint to the floor
+DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
+MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
+STANDING_HEIGHT_BAND = 0.02  # m; how much the height of a standing foot varies
+MIN_STANDING_FRAMES = 4
 
 
 @dataclass(frozen=True)
 class FootTracks:
-    """One foot's joints over the clip, world, Z up.
+    """Joint tracks of one foot over the clip, world, Z up.
 
     side: as in the points' names ("Left"). ankle, ball, tip: (T, 3) m; the heads of the foot bone
     and the toe bone, and the toe bone's tail. foot_rotation, toe_rotation: (T, 3, 3), bone to
@@ -38,18 +37,18 @@ class FootTracks:
 
 
 def floor_height(times: FloatArray, feet: Sequence[FootTracks]) -> float:
-    """Height of the floor, m, from where the balls of the feet stand lowest.
+    """Floor height, m, from the lowest standing height of the balls of the feet.
 
     The height 0 is taken where it can be the floor, since recordings are made upon it.
     """
     lowest = min(_standing(times, foot)[1] for foot in feet)
-    return 0.0 if 0.0 < lowest <= THICKEST_SOLE else lowest - USUAL_SOLE
+    return 0.0 if 0.0 < lowest <= MAX_SOLE_THICKNESS else lowest - DEFAULT_SOLE_THICKNESS
 
 
 def foot_points(
     times: FloatArray, feet: Sequence[FootTracks], floor_m: float
 ) -> dict[str, ContactPoint]:
-    """The heel and the toe of each foot: points of its sole that lie on the floor when it stands.
+    """Heel and toe contact points: points of each sole that lie on the floor when it stands.
 
     times: (T,) s. floor_m: as from `floor_height`. Keys such as "Left heel", "Left toe".
     """
@@ -57,8 +56,8 @@ def foot_points(
     for foot in feet:
         flat, _ = _standing(times, foot)
         ahead = _level(foot.ball - foot.ankle)
-        heel = _on_floor(foot.ankle - HEEL_BEHIND * ahead, floor_m)
-        toe = _on_floor(foot.ball + TOE_AHEAD * _level(foot.tip - foot.ball), floor_m)
+        heel = _on_floor(foot.ankle - HEEL_OFFSET_RATIO * ahead, floor_m)
+        toe = _on_floor(foot.ball + TOE_OFFSET_RATIO * _level(foot.tip - foot.ball), floor_m)
         toe_head = foot.ankle if foot.toe_bone == foot.foot_bone else foot.ball
         points[f"{foot.side} heel"] = _fixed_in(
             PointKind.HEEL, foot.foot_bone, foot.ankle, foot.foot_rotation, heel, flat
@@ -69,28 +68,30 @@ def foot_points(
     return points
 
 
-def _standing(times: FloatArray, foot: FootTracks) -> tuple[NDArray[np.bool_], float]:
-    """The frames in which the foot stands flat, (T,), and the ball's height there, m.
+def _standing(times: FloatArray, foot: FootTracks) -> tuple[BoolArray, float]:
+    """Mask (T,) of the frames in which the foot stands flat, and the ball's median height then, m.
 
     A runner's foot never quite stands: then the slowest and lowest frames are taken.
     """
     ankle, ball = foot.ankle[:, 2], foot.ball[:, 2]
     speed = _speed(times, foot.ankle) + _speed(times, foot.ball)
-    flat = speed < 2 * LEVEL_SPEED
+    flat = speed < 2 * MAX_STANDING_SPEED
     for height in (ball, ankle):
         if flat.any():
-            flat &= height < np.percentile(height[flat], 20) + PLATEAU
-    if flat.sum() < FEWEST_FRAMES:
+            flat &= height < np.percentile(height[flat], 20) + STANDING_HEIGHT_BAND
+    if flat.sum() < MIN_STANDING_FRAMES:
         flat = np.zeros(len(times), dtype=np.bool_)
-        flat[np.argsort(speed + (ankle + ball) / 0.1)[:FEWEST_FRAMES]] = True
+        flat[np.argsort(speed + (ankle + ball) / 0.1)[:MIN_STANDING_FRAMES]] = True
     return flat, float(np.median(ball[flat]))
 
 
 def _speed(times: FloatArray, track: FloatArray) -> FloatArray:
+    """(T,) m/s of a track (T, 3), by central differences."""
     return np.asarray(np.linalg.norm(np.gradient(track, times, axis=0), axis=1))
 
 
 def _level(vectors: FloatArray) -> FloatArray:
+    """Horizontal components of (..., 3)."""
     return np.asarray(vectors * np.array([1.0, 1.0, 0.0]))
 
 
@@ -104,9 +105,9 @@ def _fixed_in(
     head: FloatArray,
     rotation: FloatArray,
     seen: FloatArray,
-    flat: NDArray[np.bool_],
+    flat: BoolArray,
 ) -> ContactPoint:
-    """The point of the bone that lies nearest to `seen` (T, 3) over the frames `flat`."""
+    """Bone-fixed point: the median of `seen` (T, 3) in the bone's frame over the frames `flat`."""
     local = np.einsum("tji,tj->ti", rotation[flat], (seen - head)[flat])
     offset = np.median(local, axis=0)
     return ContactPoint(kind, bone, offset, head + rotation @ offset)

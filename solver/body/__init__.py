@@ -1,1 +1,1 @@
-"""The performer as a tree of rigid bodies: anatomy, kinematics, dynamics, human limits."""
+"""The articulated rigid-body model: anatomy, mass, kinematics, dynamics, human limits."""

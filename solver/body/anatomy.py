@@ -1,4 +1,4 @@
-"""Which bone is which part of the body, from names and hierarchy.
+"""Anatomical labelling of bones, from names and hierarchy.
 
 Names come in two styles: of segments (LeftArm, lfemur, thigh.L) and of joints (LeftShoulder,
 LeftHip, LeftKnee). The style of a side is decided by what else is there: a *shoulder* beside a
@@ -16,7 +16,7 @@ from ..data.recording import Bone
 
 
 class Part(Enum):
-    """A kind of body segment. Sided parts occur twice, spine and neck once or several times."""
+    """Kind of body segment. Sided parts occur twice, spine and neck once or several times."""
 
     PELVIS = "pelvis"
     SPINE = "spine"
@@ -42,7 +42,7 @@ class Side(Enum):
 
 @dataclass(frozen=True)
 class Segment:
-    """A part of the body and the bone that carries it (an index into the bones)."""
+    """Body segment: its part, side and bone (an index into the bones)."""
 
     part: Part
     side: Side
@@ -50,11 +50,12 @@ class Segment:
 
     @property
     def label(self) -> str:
+        """Such as "left foot"; no side in the middle."""
         return f"{self.side.value} {self.part.value}".strip()
 
 
 # In order of preference: an exact "hand" is the hand even where a "wrist" stands before it.
-NAMES: Mapping[Part, tuple[str, ...]] = {
+PART_NAMES: Mapping[Part, tuple[str, ...]] = {
     Part.HEAD: ("head",),
     Part.CLAVICLE: ("clavicle", "collar", "collarbone", "shoulder"),
     Part.UPPER_ARM: ("upperarm", "uparm", "humerus", "arm", "shoulder"),
@@ -65,9 +66,9 @@ NAMES: Mapping[Part, tuple[str, ...]] = {
     Part.FOOT: ("foot", "ankle"),
     Part.TOE: ("toe", "toes", "toebase", "ball", "toe0", "toe1"),
 }
-SIDED = tuple(part for part in NAMES if part is not Part.HEAD)
-NEEDED = (Part.UPPER_ARM, Part.FOREARM, Part.THIGH, Part.SHANK, Part.FOOT)
-PLAIN_WORDS = {name for names in NAMES.values() for name in names}
+SIDED_PARTS = tuple(part for part in PART_NAMES if part is not Part.HEAD)
+REQUIRED_PARTS = (Part.UPPER_ARM, Part.FOREARM, Part.THIGH, Part.SHANK, Part.FOOT)
+KNOWN_WORDS = {name for names in PART_NAMES.values() for name in names}
 
 
 def split_side(name: str) -> tuple[Side, str]:
@@ -86,7 +87,7 @@ def split_side(name: str) -> tuple[Side, str]:
             match = re.match(pattern, bare, flags=re.IGNORECASE)
             if match:
                 return side, _plain(match["word"])
-        if bare[:1].lower() == letter and _plain(bare[1:]) in PLAIN_WORDS:
+        if bare[:1].lower() == letter and _plain(bare[1:]) in KNOWN_WORDS:
             return side, _plain(bare[1:])
     return Side.MIDDLE, _plain(bare)
 
@@ -98,7 +99,7 @@ def _plain(word: str) -> str:
 def map_anatomy(
     bones: Sequence[Bone], chosen: Mapping[str, str] | None = None
 ) -> tuple[Segment, ...]:
-    """The mapped segments, parents first; the pelvis is the first.
+    """Segments of a skeleton, parents first; the pelvis is the first.
 
     bones: parents first. chosen: the artist's own choices, segment label -> bone name
     ("left foot" -> "Fuss.L"); they win over the guess. Clavicles, hands, toes and necks may be
@@ -112,12 +113,12 @@ def map_anatomy(
         mine = index[bone_name]
         found = {key: bone for key, bone in found.items() if bone != mine}
         found[_key(label)] = mine
-    for part in NEEDED:
+    for part in REQUIRED_PARTS:
         for side in (Side.LEFT, Side.RIGHT):
             if (part, side) not in found:
-                raise MissingPart(f"{side.value} {part.value}", NAMES[part])
+                raise MissingPart(f"{side.value} {part.value}", PART_NAMES[part])
     if (Part.HEAD, Side.MIDDLE) not in found:
-        raise MissingPart("head", NAMES[Part.HEAD])
+        raise MissingPart("head", PART_NAMES[Part.HEAD])
     _add_trunk(bones, found)
     segments = [Segment(part, side, bone) for (part, side), bone in found.items()]
     segments += _chain(bones, found)
@@ -125,12 +126,14 @@ def map_anatomy(
 
 
 def guess_anatomy(bones: Sequence[Bone]) -> dict[str, str | None]:
-    """The bone's name for the label of every part but the spine's and neck's, None where there is
-    none; sided parts in pairs. Raises nothing, so that an artist can fill in what is missing."""
+    """Bone name, or None, for the label of every part but spine and neck; sided parts in pairs.
+
+    Raises nothing, so that an artist can fill in what is missing.
+    """
     found = _by_name(bones)
     keys = [(Part.PELVIS, Side.MIDDLE), (Part.HEAD, Side.MIDDLE)]
-    keys += [(part, side) for part in SIDED for side in (Side.LEFT, Side.RIGHT)]
-    if all(key in found for key in keys if needed(key[0])):
+    keys += [(part, side) for part in SIDED_PARTS for side in (Side.LEFT, Side.RIGHT)]
+    if all(key in found for key in keys if is_required(key[0])):
         with suppress(MissingPart):
             _add_trunk(bones, found)
     return {
@@ -141,12 +144,13 @@ def guess_anatomy(bones: Sequence[Bone]) -> dict[str, str | None]:
     }
 
 
-def needed(part: Part) -> bool:
-    """Whether the physics needs the part; the pelvis follows from the others."""
-    return part in NEEDED or part is Part.HEAD
+def is_required(part: Part) -> bool:
+    """Whether the dynamics need the part; the pelvis follows from the others."""
+    return part in REQUIRED_PARTS or part is Part.HEAD
 
 
 def _key(label: str) -> tuple[Part, Side]:
+    """Part and side of a label. Raises MissingPart."""
     side, word = split_side(label)
     for part in Part:
         if _plain(part.value) == word:
@@ -155,14 +159,15 @@ def _key(label: str) -> tuple[Part, Side]:
 
 
 def _by_name(bones: Sequence[Bone]) -> dict[tuple[Part, Side], int]:
+    """Bone index of every part that a name tells."""
     words: dict[tuple[str, Side], int] = {}
     for i, bone in enumerate(bones):
         side, word = split_side(bone.name)
         words.setdefault((word, side), i)  # the shallowest wins: parents come first
     found: dict[tuple[Part, Side], int] = {}
     for side in (Side.LEFT, Side.RIGHT):
-        for part in SIDED:
-            for word in NAMES[part]:
+        for part in SIDED_PARTS:
+            for word in PART_NAMES[part]:
                 bone_index = words.get((word, side))
                 if bone_index is not None and bone_index not in _of_side(found, side):
                     found[part, side] = bone_index

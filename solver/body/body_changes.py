@@ -1,4 +1,4 @@
-"""Another body, or another world, for a recording's movement (requests.BodyChange; thesis 6.2).
+"""Changed lengths, masses and gravity of a character (requests.BodyChange; thesis 6.2).
 
 Joints, their axes and their angles stay those of the recording's figure, so that every spline of
 angles stays valid; lengths, masses and gravity change. A bone is stretched along itself: a point
@@ -15,12 +15,12 @@ from ..arrays import FloatArray
 from ..data.recording import Bone, Recording
 from ..data.requests import AddedMass, BodyChange
 from .anatomy import Segment
-from .body_shapes import joined, stretched
-from .character import Body, Character, _height
+from .body_shapes import stretched, with_ball
+from .character import Body, Character, standing_height
 from .kinematics import BodyPoint
-from .proportions import above_zero, along, index_of, limb_factors
+from .proportions import axial_fraction, bone_index, limb_factors, require_positive
 
-SAME_PLACE = 1e-9  # m
+COINCIDENCE_TOLERANCE = 1e-9  # m
 WHOLE_BODY = "body"  # what a fault calls the change of the total mass
 
 
@@ -30,7 +30,7 @@ WHOLE_BODY = "body"  # what a fault calls the change of the total mass
 def changed_character(
     character: Character, change: BodyChange, recording: Recording, changed: Recording
 ) -> Character:
-    """The figure with the change's lengths, masses and gravity, and the same joints and angles.
+    """The character with the change's lengths, masses and gravity, and the same joint axes.
 
     recording: what the character was built from. changed: `changed_recording` of it.
     A stretched body keeps its thickness and its mass. A limb's mass factor changes the whole
@@ -45,15 +45,15 @@ def changed_character(
             character.bodies, _changed_tips(character, offsets, recording, changed), strict=True
         )
     ]
-    bodies = _weighed(bodies, change, recording)
+    bodies = _with_masses(bodies, change, recording)
     total = sum(body.mass for body in bodies)
     for added in change.added:
-        bodies = _loaded(bodies, added, total, changed)
+        bodies = _with_added_mass(bodies, added, total, changed)
     joints = [
         replace(joint, offset=offset)
         for joint, offset in zip(character.joints, offsets, strict=True)
     ]
-    height = character.height + _taller(character, offsets, recording)
+    height = character.height + _height_change(character, offsets, recording)
     return Character(tuple(bodies), tuple(joints), height, change.gravity)
 
 
@@ -86,15 +86,17 @@ def _changed_tips(
     after = _rest_centres(character, offsets)
     tips = []
     for i, body in enumerate(character.bodies):
-        beyond = [k for k in range(len(before)) if k != i and i in character.lineage(k)]
+        beyond = [k for k in range(len(before)) if k != i and i in character.ancestors(k)]
         end = before[i] + body.tip
-        at = next((k for k in beyond if np.linalg.norm(before[k] - end) < SAME_PLACE), None)
+        at = next(
+            (k for k in beyond if np.linalg.norm(before[k] - end) < COINCIDENCE_TOLERANCE), None
+        )
         if at is not None:
             tips.append(body.tip + (after[at] - before[at]) - (after[i] - before[i]))
             continue
         bone, new = (each.bones[each.index(body.bone)] for each in (recording, changed))
         longer = (new.tail - new.head) - (bone.tail - bone.head)
-        tips.append(body.tip + along(bone, bone.head + body.tip) * longer)
+        tips.append(body.tip + axial_fraction(bone, bone.head + body.tip) * longer)
     return tips
 
 
@@ -106,48 +108,51 @@ def _rest_centres(character: Character, offsets: Sequence[FloatArray]) -> list[F
     return centres
 
 
-def _weighed(bodies: Sequence[Body], change: BodyChange, recording: Recording) -> list[Body]:
+def _with_masses(bodies: Sequence[Body], change: BodyChange, recording: Recording) -> list[Body]:
     """The bodies with their masses changed; other density, same shape."""
     by_bone = limb_factors(recording, change.limbs, lambda limb: limb.mass)
     factors = np.array([by_bone[recording.index(body.bone)] for body in bodies])
     if change.mass is not None:
         together = factors @ np.array([body.mass for body in bodies])
-        factors *= above_zero(WHOLE_BODY, change.mass) / together
+        factors *= require_positive(WHOLE_BODY, change.mass) / together
     return [
         replace(body, mass=float(factor) * body.mass, inertia=factor * body.inertia)
         for body, factor in zip(bodies, factors, strict=True)
     ]
 
 
-def _loaded(
+def _with_added_mass(
     bodies: Sequence[Body], added: AddedMass, total: float, changed: Recording
 ) -> list[Body]:
     """The bodies with a ball joined to one of them; total: the body's mass that shares are of."""
-    bone = changed.bones[index_of(changed, added.name, added.bone)]
-    home = _carrier(bodies, bone, changed)
+    bone = changed.bones[bone_index(changed, added.name, added.bone)]
+    home = _carrying_body(bodies, bone, changed)
     mass = (added.mass or 0.0) + (added.share or 0.0) * total
     reach = bone.tail - bone.head
     if added.offset is not None:
         reach = bone.rotation @ np.array(added.offset)
     start = changed.bones[changed.index(bodies[home].bone)].head
     loaded = list(bodies)
-    ball = above_zero(added.name, mass)
-    loaded[home] = joined(bodies[home], ball, bone.head + reach - start)
+    ball = require_positive(added.name, mass)
+    loaded[home] = with_ball(bodies[home], ball, bone.head + reach - start)
     return loaded
 
 
-def _carrier(bodies: Sequence[Body], bone: Bone, recording: Recording) -> int:
+def _carrying_body(bodies: Sequence[Body], bone: Bone, recording: Recording) -> int:
+    """Index of the body of a bone, else of its nearest ancestor's, else of the root."""
     by_bone = {body.bone: i for i, body in enumerate(bodies)}
     while bone.name not in by_bone and bone.parent >= 0:
         bone = recording.bones[bone.parent]
     return by_bone.get(bone.name, 0)
 
 
-def _taller(character: Character, offsets: Sequence[FloatArray], recording: Recording) -> float:
-    """How much taller the figure stands, m."""
+def _height_change(
+    character: Character, offsets: Sequence[FloatArray], recording: Recording
+) -> float:
+    """Change of the standing height, m."""
     segments = [Segment(b.part, b.side, recording.index(b.bone)) for b in character.bodies]
     before = [joint.offset for joint in character.joints]
-    return _height(segments, offsets) - _height(segments, before)
+    return standing_height(segments, offsets) - standing_height(segments, before)
 
 
 # ---------------------------------------------------------------- the motion
@@ -156,12 +161,14 @@ def _taller(character: Character, offsets: Sequence[FloatArray], recording: Reco
 def changed_points(
     points: Sequence[BodyPoint], before: Character, after: Character
 ) -> tuple[BodyPoint, ...]:
-    """The bodies' points where the stretch of their bodies takes them (a longer foot's toe)."""
+    """Body points moved with the stretch of their bodies (a longer foot's toe)."""
     moved = []
     for point in points:
         old, new = before.bodies[point.body], after.bodies[point.body]
         limb = Bone(old.bone, -1, np.zeros(3), old.tip, np.eye(3))
         moved.append(
-            replace(point, place=point.place + along(limb, point.place) * (new.tip - old.tip))
+            replace(
+                point, place=point.place + axial_fraction(limb, point.place) * (new.tip - old.tip)
+            )
         )
     return tuple(moved)

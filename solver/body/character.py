@@ -1,4 +1,4 @@
-"""The artist's figure as a tree of rigid bodies (thesis 3.3.1), built from a recording.
+"""Articulated rigid-body model of a figure (thesis 3.3.1), built from a recording.
 
 A body's frame sits at its joint's centre (the bone's head) and is aligned with the world in the
 rest pose, so a body's rotation is its bone's rotation times the inverse of the rest rotation.
@@ -10,16 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.faults import ZeroLengthBone
 from ..data.problem import MassTable
 from ..data.recording import Recording
 from ..numerics.rotations import unit
 from .anatomy import Part, Segment, Side, map_anatomy
-from .joint_axes import Axes, ball_axes, hinge_axes, residual_angle, universal_axes
-from .mass_tables import ABSENT_GOES_TO, ASPECT, DENSITY, TABLES, Share
+from .joint_axes import JointAxes, ball_axes, hinge_axes, residual_angle, universal_axes
+from .mass_tables import BODY_DENSITY, BOX_ASPECT, MASS_FALLBACK, MASS_TABLES, SegmentInertia
 
-UP = np.array([0.0, 0.0, 1.0])
-DOFS: Mapping[Part, int] = {
+JOINT_DOFS: Mapping[Part, int] = {
     Part.SHANK: 1,
     Part.TOE: 1,
     Part.FOREARM: 1,
@@ -27,11 +27,12 @@ DOFS: Mapping[Part, int] = {
     Part.CLAVICLE: 2,
     Part.HAND: 2,
 }  # every other part has 3
-MAY_GROW = (Part.FOREARM, Part.FOOT, Part.CLAVICLE, Part.HAND)
-FOLLOWED = np.radians(4.0)  # a joint that misses the recording by more gets another DOF, if it may
-SHORTEST = 1e-4  # m
-NECK_SECTION = 0.5  # a neck's cross-section as a share of the head's, to part their mass
-LEAF_LENGTH: Mapping[Part, tuple[float, float]] = {
+EXTENDABLE_JOINTS = (Part.FOREARM, Part.FOOT, Part.CLAVICLE, Part.HAND)
+MAX_JOINT_RESIDUAL = np.radians(4.0)  # RMS; beyond it an extendable joint gets another DOF
+MIN_BONE_LENGTH = 1e-4  # m; a shorter bone has no direction
+MIN_BOX_LENGTH = 0.02  # m; of a body of almost no length, which still needs some inertia
+NECK_AREA_RATIO = 0.5  # a neck's cross-section as a share of the head's, to part their mass
+END_SEGMENT_LENGTH: Mapping[Part, tuple[float, float]] = {
     # Bounds on a leaf's length as a share of body height: where a skeleton ends, files often lie.
     Part.HEAD: (0.09, 0.16),
     Part.HAND: (0.06, 0.11),
@@ -42,7 +43,7 @@ LEAF_LENGTH: Mapping[Part, tuple[float, float]] = {
 
 @dataclass(frozen=True)
 class Body:
-    """A rigid body. Vectors in the body's frame, m; com and inertia (about com) in kg·m²."""
+    """Rigid body. Vectors (3,) in the body's frame, m; com and inertia (about com) in kg·m²."""
 
     name: str
     bone: str
@@ -59,7 +60,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Joint:
-    """Joins a body to its parent: `offset` (3,) m from parent's joint centre, parent's frame.
+    """Joint of a body to its parent: `offset` (3,) m from parent's joint centre, parent's frame.
 
     parent: index of the parent body, -1 for the root, whose position is free.
     first: index of its first angle in the joint angles (n_angles,).
@@ -67,33 +68,36 @@ class Joint:
 
     parent: int
     offset: FloatArray
-    axes: Axes
+    axes: JointAxes
     first: int
 
     @property
     def dofs(self) -> slice:
+        """Its place in the joint angles (n_angles,)."""
         return slice(self.first, self.first + self.axes.dofs)
 
 
 @dataclass(frozen=True)
 class Character:
-    """Bodies and joints, one joint a body, parents first; the root is body 0.
+    """Kinematic tree: bodies and joints, one joint a body, parents first; the root is body 0.
 
     Configuration: centre of mass (3,) m and joint angles (n_angles,) rad, the root's three first.
-    gravity: m/s², of the world that the figure is in.
+    height: m. gravity: m/s², of the world that the figure is in.
     """
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     height: float
-    gravity: float = 9.81
+    gravity: float = STANDARD_GRAVITY
 
     @property
     def mass(self) -> float:
+        """Total, kg."""
         return sum(body.mass for body in self.bodies)
 
     @property
     def n_angles(self) -> int:
+        """Number of joint angles, the root's three included."""
         last = self.joints[-1]
         return last.first + last.axes.dofs
 
@@ -109,8 +113,8 @@ class Character:
                 return i
         return None
 
-    def lineage(self, body: int) -> list[int]:
-        """The body and its ancestors up to the root."""
+    def ancestors(self, body: int) -> list[int]:
+        """Indices of the body and its ancestors up to the root, nearest first."""
         line = []
         while body >= 0:
             line.append(body)
@@ -125,7 +129,7 @@ def build_character(
     table: MassTable = MassTable.THESIS,
     chosen: Mapping[str, str] | None = None,
 ) -> Character:
-    """The figure of a recording: bodies from bones, axes from the clip, mass from a table.
+    """Character of a recording: bodies from bones, joint axes from the clip, mass from a table.
 
     mass: total, kg. chosen: segment label -> bone name, see `map_anatomy`.
     Raises MissingPart, ZeroLengthBone.
@@ -135,7 +139,7 @@ def build_character(
     rotations = body_rotations(recording, [s.bone for s in segments])
     offsets = _offsets(recording, segments, parents, rotations)
     rest = [recording.bones[s.bone].head for s in segments]
-    height = _height(segments, offsets)
+    height = standing_height(segments, offsets)
     tips = [_tip(recording, segments, parents, offsets, i, height) for i in range(len(segments))]
     _check_lengths(recording, segments, tips)
     lengths = np.array([np.linalg.norm(tip) for tip in tips])
@@ -155,12 +159,13 @@ def build_character(
 
 
 def body_rotations(recording: Recording, bones: Sequence[int]) -> FloatArray:
-    """(T, len(bones), 3, 3) rotations of the bodies on these bones: rest to current, world."""
+    """(T, len(bones), 3, 3) rotations, body to world, of the bodies on these bones."""
     rest = np.stack([recording.bones[b].rotation for b in bones])
     return np.asarray(recording.rotations[:, bones] @ np.swapaxes(rest, -1, -2))
 
 
 def _parent(recording: Recording, segments: Sequence[Segment], i: int) -> int:
+    """Index of the nearest segment above, -1 for the root."""
     by_bone = {s.bone: k for k, s in enumerate(segments)}
     bone = recording.bones[segments[i].bone].parent
     while bone >= 0:
@@ -192,7 +197,7 @@ def _children(parents: Sequence[int], i: int) -> list[int]:
     return [k for k, parent in enumerate(parents) if parent == i]
 
 
-def _height(segments: Sequence[Segment], offsets: Sequence[FloatArray]) -> float:
+def standing_height(segments: Sequence[Segment], offsets: Sequence[FloatArray]) -> float:
     """Standing height, m, from the segments' lengths: leg, trunk, neck, head and a sole."""
     leg = trunk = 0.0
     for i, segment in enumerate(segments):
@@ -234,9 +239,9 @@ def _tip(
     end = _farthest(recording, segments[i].bone)
     span = end - bone.head
     length = float(np.linalg.norm(span))
-    if length < SHORTEST:
+    if length < MIN_BONE_LENGTH:
         return np.asarray(span)
-    low, high = LEAF_LENGTH.get(part, (0.0, np.inf))
+    low, high = END_SEGMENT_LENGTH.get(part, (0.0, np.inf))
     return np.asarray(span / length * np.clip(length, low * height, high * height))
 
 
@@ -256,34 +261,33 @@ def _check_lengths(
 ) -> None:
     may_be_short = (Part.PELVIS, Part.SPINE, Part.NECK, Part.CLAVICLE)
     for segment, tip in zip(segments, tips, strict=True):
-        if segment.part not in may_be_short and np.linalg.norm(tip) < SHORTEST:
+        if segment.part not in may_be_short and np.linalg.norm(tip) < MIN_BONE_LENGTH:
             raise ZeroLengthBone(recording.bones[segment.bone].name)
 
 
 def _masses(
     segments: Sequence[Segment], lengths: FloatArray, total: float, table: MassTable
-) -> tuple[list[float], list[Share]]:
+) -> tuple[list[float], list[SegmentInertia]]:
     """Mass of every segment and the share it comes from; they sum to the total exactly.
 
     Spine bones share the spine's mass by length, neck and head the head's, foot and toe the
     foot's; what has no bone gives its mass to the part it hangs on.
     """
-    shares = TABLES[table]
+    shares = MASS_TABLES[table]
     parts = {(s.part, s.side) for s in segments}
     amounts: dict[tuple[Part, Side], float] = {}
     for part, share in shares.items():
         middle = part in (Part.PELVIS, Part.SPINE, Part.HEAD)
         for side in (Side.MIDDLE,) if middle else (Side.LEFT, Side.RIGHT):
-            home = part if (part, side) in parts else ABSENT_GOES_TO.get(part, part)
+            home = part if (part, side) in parts else MASS_FALLBACK.get(part, part)
             home_side = Side.MIDDLE if home is Part.SPINE else side
             amounts[home, home_side] = amounts.get((home, home_side), 0.0) + share.mass
     owner = {Part.NECK: Part.HEAD, Part.TOE: Part.FOOT}
     keys = [(owner.get(s.part, s.part), s.side) for s in segments]
-    # A bone of almost no length (a spine joint that sits on the next) still needs some inertia.
-    weights = np.maximum(lengths, 0.02)
+    weights = np.maximum(lengths, MIN_BOX_LENGTH)  # a spine joint may sit on the next
     for i, segment in enumerate(segments):
         if segment.part is Part.NECK:
-            weights[i] *= NECK_SECTION
+            weights[i] *= NECK_AREA_RATIO
     masses = []
     for i, key in enumerate(keys):
         together = sum(weights[k] for k, other in enumerate(keys) if other == key)
@@ -291,7 +295,8 @@ def _masses(
     scale = total / sum(masses)
     alone = [keys.count(key) == 1 for key in keys]
     used = [
-        shares[key[0]] if single else Share(0.0) for key, single in zip(keys, alone, strict=True)
+        shares[key[0]] if single else SegmentInertia(0.0)
+        for key, single in zip(keys, alone, strict=True)
     ]
     return [m * scale for m in masses], used
 
@@ -308,15 +313,16 @@ def _body(
     recording: Recording,
     segment: Segment,
     mass: float,
-    share: Share,
+    share: SegmentInertia,
     tip: FloatArray,
     forward: FloatArray,
 ) -> Body:
-    length = max(float(np.linalg.norm(tip)), 0.02)
-    direction = unit(tip) if np.linalg.norm(tip) > SHORTEST else UP
+    """Rigid body of a segment: a uniform box, or published radii of gyration."""
+    length = max(float(np.linalg.norm(tip)), MIN_BOX_LENGTH)
+    direction = unit(tip) if np.linalg.norm(tip) > MIN_BONE_LENGTH else UP
     box = _box_frame(direction, forward)
-    section = mass / (DENSITY * length)
-    aspect = ASPECT.get(segment.part, 1.0)
+    section = mass / (BODY_DENSITY * length)
+    aspect = BOX_ASPECT.get(segment.part, 1.0)
     size = np.array([np.sqrt(section * aspect), np.sqrt(section / aspect), length])
     if share.gyration is None:
         squared = (size @ size - size**2) / 12.0  # a uniform box about its centre
@@ -350,25 +356,26 @@ def _box_frame(direction: FloatArray, forward: FloatArray) -> FloatArray:
 
 def _axes(
     segment: Segment, relative: FloatArray, tip: FloatArray, forward: FloatArray, *, root: bool
-) -> Axes:
+) -> JointAxes:
+    """Joint axes of a segment from its rotations (T, 3, 3) to its parent."""
     sideways = np.cross(UP, forward)
     frame = np.stack([sideways, forward, UP], axis=1)
     if root:
         return ball_axes(relative, (UP, sideways), frame)
-    along = unit(tip) if np.linalg.norm(tip) > SHORTEST else UP
+    along = unit(tip) if np.linalg.norm(tip) > MIN_BONE_LENGTH else UP
     hinge = (
         sideways if abs(float(sideways @ along)) < 0.8 else UP
     )  # arms may point sideways at rest
-    dofs = DOFS.get(segment.part, 3)
-    grow = segment.part in MAY_GROW
+    dofs = JOINT_DOFS.get(segment.part, 3)
+    grow = segment.part in EXTENDABLE_JOINTS
     if dofs == 1:
         axes = hinge_axes(relative, hinge)
-        if not grow or residual_angle(axes, relative) < FOLLOWED:
+        if not grow or residual_angle(axes, relative) < MAX_JOINT_RESIDUAL:
             return axes
         dofs = 2
     if dofs == 2:
         other = {Part.FOREARM: along, Part.FOOT: along}.get(segment.part, np.cross(along, hinge))
         axes = universal_axes(relative, (hinge, unit(other)))
-        if not grow or residual_angle(axes, relative) < FOLLOWED:
+        if not grow or residual_angle(axes, relative) < MAX_JOINT_RESIDUAL:
             return axes
     return ball_axes(relative, frame=frame)

@@ -1,7 +1,7 @@
-"""The equations of motion as CasADi functions (thesis 3.2.2: the root rows).
+"""Centroidal equations of motion as CasADi functions (thesis 3.2.2: the root rows).
 
 With the centre of mass as coordinates the six root rows of the Euler-Lagrange equations fall into
-    m c'' = m g + sum of contact forces              (linear; see transcription.py)
+    m c'' = m g + sum of contact forces              (linear; see transcription/transcription.py)
     L'(theta, theta', theta'') = sum (p_i - c) x f_i   (angular momentum about the centre of mass)
 and L' depends on the joint angles alone. Forces are in body weights, so L' is in body weights x m
 (thesis 4.1: scaling).
@@ -15,17 +15,20 @@ import casadi as ca
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.constants import STANDARD_GRAVITY
 from ..numerics.parallel import in_threads
 from .character import Character
 
-GRAVITY = 9.81
-FEWEST_EACH = 32  # instants worth a thread of their own
+MIN_INSTANTS_PER_THREAD = 32  # instants worth a thread of their own
 
 
 @dataclass(frozen=True)
-class Moving:
-    """A body's frame as expressions: rotation, angular velocity and acceleration, and of its
-    joint's centre position, velocity and acceleration relative to the pelvis's centre."""
+class BodyMotion:
+    """Motion of a body's frame as expressions, world axes.
+
+    R: rotation, body to world. omega, alpha: angular velocity (rad/s) and acceleration (rad/s²).
+    x, v, a: position, velocity, acceleration of its joint's centre from the root's, m, s.
+    """
 
     R: ca.SX
     omega: ca.SX
@@ -35,8 +38,8 @@ class Moving:
     a: ca.SX
 
 
-def carried(frame: Moving, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """Position, velocity, acceleration of a point fixed in a moving body."""
+def point_motion(frame: BodyMotion, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Position, velocity, acceleration (3,) of a body-fixed point, world axes, from the root."""
     arm = frame.R @ local
     swing = ca.cross(frame.omega, arm)
     return (
@@ -46,14 +49,17 @@ def carried(frame: Moving, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
     )
 
 
-def body_frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[Moving]:
-    """Kinematics from the root outwards (Featherstone 2008, ch. 5.3, forward pass)."""
+def body_frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[BodyMotion]:
+    """Forward pass of the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3).
+
+    q, v, a: (n_angles,) joint angles, rad, and their first two derivatives by s. One per body.
+    """
     zero = ca.SX.zeros(3)
-    ground = Moving(ca.SX.eye(3), zero, zero, zero, zero, zero)
-    frames: list[Moving] = []
+    ground = BodyMotion(ca.SX.eye(3), zero, zero, zero, zero, zero)
+    frames: list[BodyMotion] = []
     for joint in character.joints:
         parent = frames[joint.parent] if joint.parent >= 0 else ground
-        x, xv, xa = carried(parent, ca.SX(joint.offset))
+        x, xv, xa = point_motion(parent, ca.SX(joint.offset))
         R = parent.R @ ca.SX(joint.axes.before)
         omega, alpha = parent.omega, parent.alpha
         for k in range(joint.axes.dofs):
@@ -61,13 +67,13 @@ def body_frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[Movi
             axis = R[:, k]
             alpha = alpha + axis * a[i] + ca.cross(omega, axis * v[i])
             omega = omega + axis * v[i]
-            R = turned(R, k, q[i])
-        frames.append(Moving(R @ ca.SX(joint.axes.after), omega, alpha, x, xv, xa))
+            R = times_axis_rotation(R, k, q[i])
+        frames.append(BodyMotion(R @ ca.SX(joint.axes.after), omega, alpha, x, xv, xa))
     return frames
 
 
-def turned(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
-    """R times the rotation by `angle` about coordinate axis `axis`: mixes two columns."""
+def times_axis_rotation(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
+    """R (3, 3) times the rotation by `angle`, rad, about coordinate axis 0, 1 or 2."""
     c, s = ca.cos(angle), ca.sin(angle)
     columns = [R[:, 0], R[:, 1], R[:, 2]]
     i, j = (axis + 1) % 3, (axis + 2) % 3
@@ -76,13 +82,13 @@ def turned(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
 
 
 class MomentFunction:
-    """L' about the centre of mass, in body weights x m, and its Jacobian at many instants."""
+    """Rate of centroidal angular momentum L', body weights x m, and its Jacobian, vectorised."""
 
     def __init__(self, character: Character) -> None:
         n = character.n_angles
         self.n = n
         q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
-        rate = momentum_rate(character, q, v, a) / (character.mass * GRAVITY)
+        rate = momentum_rate(character, q, v, a) / (character.mass * STANDARD_GRAVITY)
         x = ca.vertcat(q, v, a)
         jacobian = ca.densify(ca.jacobian(rate, x))
         # No ca.cse: it takes 0.4 s here and saves 3 % of the instructions.
@@ -90,7 +96,7 @@ class MomentFunction:
         self._both = ca.Function("moment_jacobian", [x], [ca.densify(rate), jacobian])
 
     def value(self, q: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        """(N, 3) L' at (N, n_angles) angles, velocities, accelerations."""
+        """(N, 3) L', world axes, at (N, n_angles) angles, velocities, accelerations (rad, s)."""
         x = np.concatenate([q, v, a], axis=1)
         (rate,) = evaluate(self._value, x, [(3,)])
         return rate
@@ -98,7 +104,7 @@ class MomentFunction:
     def jacobian(
         self, q: FloatArray, v: FloatArray, a: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """L' (N, 3) and its derivatives (N, 3, 3, n_angles): row, by q, v or a, angle."""
+        """L' (N, 3) and its derivatives (N, 3, 3, n_angles): component, by q, v or a, angle."""
         x = np.concatenate([q, v, a], axis=1)
         rate, jacobian = evaluate(self._both, x, [(3,), (3 * self.n, 3)])
         by_order = np.swapaxes(jacobian, 1, 2).reshape(len(x), 3, 3, self.n)
@@ -106,12 +112,16 @@ class MomentFunction:
 
 
 def momentum_rate(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
-    """(3,) rate of change of the angular momentum about the centre of mass, N·m."""
+    """(3,) rate of change of the angular momentum about the centre of mass, N·m, world axes.
+
+    q, v, a: (n_angles,) rad, s. Sum over bodies of r x m a + I alpha + omega x I omega
+    (Newton-Euler; thesis 3.2.2; Orin, Goswami and Lee 2013).
+    """
     frames = body_frames(character, q, v, a)
     moving = []
     centre = ca.SX.zeros(3)
     for frame, body in zip(frames, character.bodies, strict=True):
-        x, _, acceleration = carried(frame, ca.SX(body.com))
+        x, _, acceleration = point_motion(frame, ca.SX(body.com))
         moving.append((x, acceleration))
         centre += body.mass / character.mass * x
     rate = ca.SX.zeros(3)
@@ -125,7 +135,7 @@ def momentum_rate(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
 def evaluate(
     function: ca.Function, x: FloatArray, shapes: Sequence[tuple[int, ...]]
 ) -> list[FloatArray]:
-    """Dense outputs (N, *shape) of a one-input function at every row of x (N, n).
+    """Batch evaluation: dense outputs (N, *shape) of a one-input function at rows of x (N, n).
 
     CasADi stores columns first, so a matrix output of r rows and c columns has shape (c, r) here.
     """
@@ -135,7 +145,7 @@ def evaluate(
     in_threads(
         lambda part: _fill(function, inputs[part], [out[part] for out in outputs]),
         len(x),
-        FEWEST_EACH,
+        MIN_INSTANTS_PER_THREAD,
     )
     return outputs
 

@@ -1,4 +1,4 @@
-"""How far human joints turn, as limits on a figure's bones.
+"""Human joint ranges of motion, as limits on a figure's bones.
 
 The ranges are those of active motion that the American Academy of Orthopaedic Surgeons gives
 (Joint Motion: Method of Measuring and Recording, 1965), as tabulated by Norkin and White
@@ -17,28 +17,31 @@ from math import acos, radians, tan
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.constants import UP
 from ..numerics.rotations import perpendicular, unit
 from .anatomy import Part, Side
 
-UP = np.array([0.0, 0.0, 1.0])
-KNEE = (-10.0, 135.0)  # hyperextension, flexion
-ELBOW = (0.0, 150.0)
-ANKLE = (-50.0, 20.0)  # plantar flexion, dorsiflexion
-HIP_FORWARD = (-30.0, 120.0)  # extension, flexion
-HIP_OUTWARD = (-30.0, 45.0)  # adduction, abduction
-SHOULDER_FORWARD = (-60.0, 180.0)  # extension, flexion
-WRIST = 80.0  # flexion; extension 70, to the sides 20 and 30
-SPINE_FORWARD = (-25.0, 80.0)  # extension, flexion of chest and loins together
-SPINE_SIDEWAYS = 35.0
-NECK = 45.0  # flexion, extension and to either side
-LEAST_BEND = 0.05  # of a bone's length; a joint that bends less does not tell its direction
+KNEE_FLEXION = (-10.0, 135.0)  # hyperextension, flexion
+ELBOW_FLEXION = (0.0, 150.0)
+ANKLE_FLEXION = (-50.0, 20.0)  # plantar flexion, dorsiflexion
+HIP_FLEXION = (-30.0, 120.0)  # extension, flexion
+HIP_ABDUCTION = (-30.0, 45.0)  # adduction, abduction
+SHOULDER_FLEXION = (-60.0, 180.0)  # extension, flexion
+WRIST_FLEXION = 80.0  # flexion; extension 70, to the sides 20 and 30
+SPINE_FLEXION = (-25.0, 80.0)  # extension, flexion of chest and loins together
+SPINE_LATERAL_FLEXION = 35.0
+NECK_FLEXION = 45.0  # flexion, extension and to either side
+MIN_BEND_SINE = 0.05  # a joint that bends less does not tell in which direction it bends
 SIDES = (Side.LEFT, Side.RIGHT)
 
 
 @dataclass(frozen=True)
 class RestFigure:
-    """The bones of a figure at rest, world axes. parts: the bones of each part, parents first.
-    parents: the mapped bone above each. along: (3,) unit, to the next joint. left: (3,) unit."""
+    """Skeleton at rest, world axes.
+
+    parts: the bones of each part, parents first. parents: the mapped bone above each. along: (3,)
+    unit, to the next joint. left: (3,) unit.
+    """
 
     parts: Mapping[tuple[Part, Side], tuple[str, ...]]
     parents: Mapping[str, str]
@@ -47,16 +50,17 @@ class RestFigure:
 
     @property
     def forward(self) -> FloatArray:
+        """Unit, (3,), level."""
         return unit(np.cross(self.left, UP))
 
     def outward(self, side: Side) -> FloatArray:
-        """Away from the body's middle, (3,)."""
+        """Lateral direction: away from the body's middle, (3,) unit."""
         return self.left if side is Side.LEFT else -self.left
 
 
 @dataclass(frozen=True)
 class BendRange:
-    """A joint's bend from the straight limb, rad; see requests.AngleLimit."""
+    """Range of a joint's bend from the straight limb, rad; see requests.AngleLimit."""
 
     name: str
     bone: str
@@ -66,7 +70,7 @@ class BendRange:
 
 @dataclass(frozen=True)
 class ConeRange:
-    """A cone of a bone's directions; see requests.ConeLimit."""
+    """Cone of a bone's directions; see requests.ConeLimit."""
 
     name: str
     bone: str
@@ -75,12 +79,12 @@ class ConeRange:
     stretch: tuple[float, float] = (1.0, 1.0)
 
 
-Range = BendRange | ConeRange
+JointRange = BendRange | ConeRange
 
 
-def human_ranges(figure: RestFigure) -> tuple[Range, ...]:
-    """The limits of all joints of the table whose bones the figure has."""
-    ranges: list[Range] = []
+def human_ranges(figure: RestFigure) -> tuple[JointRange, ...]:
+    """Limits of all joints of the table whose bones the figure has."""
+    ranges: list[JointRange] = []
     for side in SIDES:
         for part, joint, make in _SIDED:
             for bone in figure.parts.get((part, side), ()):
@@ -103,8 +107,8 @@ def missing_joints(figure: RestFigure) -> tuple[str, ...]:
     return (*lost, *(n for n, part in middle.items() if (part, Side.MIDDLE) not in figure.parts))
 
 
-def beyond(limit: Range, directions: FloatArray, figure: RestFigure) -> float:
-    """By how much, rad, a recording leaves a limit at worst; 0 where it never does.
+def limit_violation(limit: JointRange, directions: FloatArray, figure: RestFigure) -> float:
+    """Largest violation of a limit over a recording, rad; 0 where it holds throughout.
 
     directions: (T, 3) unit, the bone's against its parent, in the axes of the rest pose.
     """
@@ -113,14 +117,14 @@ def beyond(limit: Range, directions: FloatArray, figure: RestFigure) -> float:
     straight = figure.along[figure.parents[limit.bone]]
     mean = directions.mean(axis=0)
     across = mean - straight * (mean @ straight)
-    if np.linalg.norm(across) < LEAST_BEND:
+    if np.linalg.norm(across) < MIN_BEND_SINE:
         return 0.0
     bend = np.arctan2(directions @ unit(across), directions @ straight)
     return max(limit.lower - float(bend.min()), float(bend.max()) - limit.upper, 0.0)
 
 
 def _lean(limit: ConeRange, directions: FloatArray, figure: RestFigure) -> FloatArray:
-    """As measures.Cone has it, (T,) rad."""
+    """(T,) rad from the cone's axis, as constraint_functions.Cone has it."""
     side = figure.left - limit.axis * (figure.left @ limit.axis)
     side = unit(side) if np.linalg.norm(side) > 0.3 else perpendicular(limit.axis)
     crosses = np.stack([side, np.cross(limit.axis, side)]) / np.array(limit.stretch)[:, None]
@@ -136,34 +140,34 @@ def _bend(name: str, bone: str, table: tuple[float, float], zero: float = 0.0) -
 
 
 def _knee(name: str, bone: str, _side: Side, _figure: RestFigure) -> BendRange:
-    return _bend(name, bone, KNEE)
+    return _bend(name, bone, KNEE_FLEXION)
 
 
 def _elbow(name: str, bone: str, _side: Side, _figure: RestFigure) -> BendRange:
-    return _bend(name, bone, ELBOW)
+    return _bend(name, bone, ELBOW_FLEXION)
 
 
 def _ankle(name: str, bone: str, _side: Side, figure: RestFigure) -> BendRange:
     at_rest = _angle(figure.along[bone], figure.along[figure.parents[bone]])
-    return _bend(name, bone, ANKLE, at_rest)
+    return _bend(name, bone, ANKLE_FLEXION, at_rest)
 
 
 def _hip(name: str, bone: str, side: Side, figure: RestFigure) -> ConeRange:
-    ahead, aside = radians(_middle(HIP_FORWARD)), radians(_middle(HIP_OUTWARD))
+    ahead, aside = radians(_middle(HIP_FLEXION)), radians(_middle(HIP_ABDUCTION))
     forwards = np.sin(ahead) * figure.forward - np.cos(ahead) * UP
     axis = np.cos(aside) * forwards + np.sin(aside) * figure.outward(side)
-    return _elliptic(name, bone, axis, _half(HIP_OUTWARD), _half(HIP_FORWARD))
+    return _elliptic(name, bone, axis, _half(HIP_ABDUCTION), _half(HIP_FLEXION))
 
 
 def _shoulder(name: str, bone: str, side: Side, figure: RestFigure) -> ConeRange:
     axis = unit(figure.forward + figure.outward(side))
-    ends = [np.sin(e) * figure.forward - np.cos(e) * UP for e in map(radians, SHOULDER_FORWARD)]
+    ends = [np.sin(e) * figure.forward - np.cos(e) * UP for e in map(radians, SHOULDER_FLEXION)]
     widest = max(_angle(axis, end) for end in (*ends, -UP))
     return ConeRange(name, bone, axis, widest)
 
 
 def _wrist(name: str, bone: str, _side: Side, figure: RestFigure) -> ConeRange:
-    return ConeRange(name, bone, figure.along[figure.parents[bone]], radians(WRIST))
+    return ConeRange(name, bone, figure.along[figure.parents[bone]], radians(WRIST_FLEXION))
 
 
 _SIDED = (
@@ -177,15 +181,15 @@ _SIDED = (
 
 
 def _vertebra(name: str, bone: str, count: int, figure: RestFigure) -> ConeRange:
-    tilt = radians(_middle(SPINE_FORWARD)) / count
+    tilt = radians(_middle(SPINE_FLEXION)) / count
     along = figure.along[bone]
     ahead = figure.forward - along * (figure.forward @ along)
     axis = np.cos(tilt) * along + np.sin(tilt) * unit(ahead)
-    return _elliptic(name, bone, axis, SPINE_SIDEWAYS / count, _half(SPINE_FORWARD) / count)
+    return _elliptic(name, bone, axis, SPINE_LATERAL_FLEXION / count, _half(SPINE_FLEXION) / count)
 
 
 def _neck(name: str, bone: str, count: int, figure: RestFigure) -> ConeRange:
-    return ConeRange(name, bone, figure.along[bone], radians(NECK) / count)
+    return ConeRange(name, bone, figure.along[bone], radians(NECK_FLEXION) / count)
 
 
 def _chain(
@@ -193,8 +197,8 @@ def _chain(
     bones: Iterable[str],
     figure: RestFigure,
     make: Callable[[str, str, int, RestFigure], ConeRange],
-) -> list[Range]:
-    """Limits of bones that share a range."""
+) -> list[JointRange]:
+    """Limits of bones that share a range evenly."""
     jointed = [bone for bone in bones if bone in figure.parents]
     numbers = [f" {i}" for i in range(1, len(jointed) + 1)] if len(jointed) > 1 else [""]
     return [
@@ -206,7 +210,7 @@ def _chain(
 def _elliptic(
     name: str, bone: str, axis: FloatArray, sideways: float, forwards: float
 ) -> ConeRange:
-    """A cone as wide as these two, degrees."""
+    """Elliptic cone of these half-angles, degrees."""
     side, ahead = radians(sideways), radians(forwards)
     return ConeRange(name, bone, unit(axis), side, (1.0, tan(ahead) / tan(side)))
 

@@ -1,7 +1,4 @@
-"""Inverse dynamics of the whole tree: what a movement and its contact forces ask of every joint.
-
-Newton and Euler per body, summed from the leaves inwards (Featherstone 2008, ch. 5.3).
-"""
+"""Inverse dynamics by the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from .character import Character
-from .dynamics import body_frames, carried, evaluate, turned
+from .dynamics import body_frames, evaluate, point_motion, times_axis_rotation
 from .kinematics import BodyPoint
 
 
@@ -19,8 +16,8 @@ from .kinematics import BodyPoint
 class GeneralisedForces:
     """Generalised forces at N instants.
 
-    root_force (N, 3) N and root_moment (N, 3) N·m about the centre of mass, world axes: what
-    nothing explains, zero for a valid motion; taken to act on the root body. torques
+    root_force (N, 3) N and root_moment (N, 3) N·m about the centre of mass, world axes: the
+    residual wrench, zero for a valid motion; taken to act on the root body. torques
     (N, n_angles - 3) N·m at the joint angles after the root's three, positive along the angle.
     """
 
@@ -31,28 +28,29 @@ class GeneralisedForces:
 
 @dataclass(frozen=True)
 class _Wrench:
-    """Force, and moment about a point at x."""
+    """Wrench: force, and moment about a point at x (3,)."""
 
     x: ca.SX
     force: ca.SX
     moment: ca.SX
 
     def about(self, x: ca.SX) -> ca.SX:
+        """Moment about another point."""
         return self.moment + ca.cross(self.x - x, self.force)
 
 
 class InverseDynamics:
-    """The equations of motion of a character that touches the ground at chosen points."""
+    """Vectorised inverse dynamics of a character with external forces at chosen points."""
 
     def __init__(self, character: Character, points: Sequence[BodyPoint] = ()) -> None:
         n = character.n_angles
         self.n_angles, self.n_points = n, len(points)
         q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
-        fall = ca.SX.sym("fall", 3)
+        com_acceleration = ca.SX.sym("com_acceleration", 3)
         forces = ca.SX.sym("forces", 3, len(points))
-        every = inverse_dynamics(character, points, q, v, a, fall, forces)
-        x = ca.vertcat(q, v, a, fall, ca.vec(forces))
-        self._function = ca.Function("efforts", [x], [ca.densify(ca.cse(every))])
+        every = inverse_dynamics(character, points, q, v, a, com_acceleration, forces)
+        x = ca.vertcat(q, v, a, com_acceleration, ca.vec(forces))
+        self._function = ca.Function("inverse_dynamics", [x], [ca.densify(ca.cse(every))])
 
     def __call__(
         self,
@@ -62,8 +60,11 @@ class InverseDynamics:
         com_acceleration: FloatArray,
         forces: FloatArray,
     ) -> GeneralisedForces:
-        """At angles, velocities, accelerations (N, n_angles), centre of mass's acceleration
-        (N, 3) m/s² and forces on the body (N, P, 3) N, world axes."""
+        """Generalised forces of a movement.
+
+        q, v, a: (N, n_angles) joint angles, rad, and their derivatives by s. com_acceleration:
+        (N, 3) m/s², forces on the body: (N, P, 3) N; both in world axes.
+        """
         x = np.concatenate([q, v, a, com_acceleration, forces.reshape(len(q), -1)], axis=1)
         (out,) = evaluate(self._function, x, [(self.n_angles + 3,)])
         return GeneralisedForces(out[:, :3], out[:, 3:6], out[:, 6:])
@@ -75,23 +76,31 @@ def inverse_dynamics(
     q: ca.SX,
     v: ca.SX,
     a: ca.SX,
-    fall: ca.SX,
+    com_acceleration: ca.SX,
     forces: ca.SX,
 ) -> ca.SX:
+    """(6 + n_angles - 3,) residual force and moment at the root, then joint torques, N, N·m.
+
+    Newton-Euler per body, wrenches summed from the leaves inwards (Featherstone 2008, ch. 5.3,
+    backward pass). q, v, a: (n_angles,) rad, s. com_acceleration: (3,) m/s², forces: (3, P) N on
+    the body at `points`; both in world axes. The root's moment is about the centre of mass.
+    """
     frames = body_frames(character, q, v, a)
-    moving = [carried(f, ca.SX(b.com)) for f, b in zip(frames, character.bodies, strict=True)]
+    moving = [point_motion(f, ca.SX(b.com)) for f, b in zip(frames, character.bodies, strict=True)]
     shares = [body.mass / character.mass for body in character.bodies]
     com = sum((s * m[0] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
-    sway = sum((s * m[2] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
+    com_drift = sum((s * m[2] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
     wrenches: list[_Wrench] = []  # that each body and all beyond it need, about its joint
     for frame, body, (x, _, acceleration) in zip(frames, character.bodies, moving, strict=True):
-        force = body.mass * (fall - sway + acceleration + ca.SX([0.0, 0.0, character.gravity]))
+        force = body.mass * (
+            com_acceleration - com_drift + acceleration + ca.SX([0.0, 0.0, character.gravity])
+        )
         inertia = frame.R @ ca.SX(body.inertia) @ frame.R.T
         spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
         wrenches.append(_Wrench(frame.x, force, spin + ca.cross(x - frame.x, force)))
     for p, point in enumerate(points):
         held = wrenches[point.body]
-        at = carried(frames[point.body], ca.SX(point.place))[0]
+        at = point_motion(frames[point.body], ca.SX(point.place))[0]
         push = _Wrench(at, -forces[:, p], ca.SX.zeros(3))
         wrenches[point.body] = _sum(held, push)
     torques = ca.SX.zeros(character.n_angles)
@@ -100,10 +109,11 @@ def inverse_dynamics(
         R = frames[joint.parent].R @ ca.SX(joint.axes.before)
         for k in range(joint.axes.dofs):
             torques[joint.first + k] = ca.dot(R[:, k], wrenches[i].moment)
-            R = turned(R, k, q[joint.first + k])
+            R = times_axis_rotation(R, k, q[joint.first + k])
         wrenches[joint.parent] = _sum(wrenches[joint.parent], wrenches[i])
     return ca.vertcat(wrenches[0].force, wrenches[0].about(com), torques[3:])
 
 
 def _sum(held: _Wrench, added: _Wrench) -> _Wrench:
+    """Sum of two wrenches, about the first one's point."""
     return _Wrench(held.x, held.force + added.force, held.moment + added.about(held.x))

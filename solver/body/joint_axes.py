@@ -1,4 +1,4 @@
-"""Joint angles without gimbal lock: axes chosen from the clip (architecture: `q`).
+"""Gimbal-free joint axes: search for the axis pair that keeps the clip from gimbal lock.
 
 Every joint turns by R = A Rx(a) Ry(b) Rz(c) B (fewer factors with fewer DOFs), with constant
 frames A and B. Let u be the joint's first axis (fixed in the parent, A's first column) and w its
@@ -22,14 +22,16 @@ from ..numerics.rotations import (
     unit,
 )
 
-GOOD_SINE = np.sin(np.radians(45.0))  # the preferred axes stand if the middle angle stays below
+MAX_MIDDLE_SINE = np.sin(
+    np.radians(45.0)
+)  # the preferred axes stand if the middle angle stays below
 
 
 @dataclass(frozen=True)
-class Axes:
-    """A joint's rotation R = before @ Rx(a) Ry(b) Rz(c) @ after, with `dofs` of the factors.
+class JointAxes:
+    """Joint parametrisation R = before @ Rx(a) Ry(b) Rz(c) @ after, with `dofs` of the factors.
 
-    before, after: (3, 3) constant rotations.
+    before, after: (3, 3) constant rotations: joint frame to parent, child to joint frame.
     """
 
     dofs: int
@@ -37,33 +39,37 @@ class Axes:
     after: FloatArray
 
     def rotation(self, angles: FloatArray) -> FloatArray:
-        """(..., 3, 3) rotations, child to parent, of (..., dofs) angles in rad."""
+        """(..., 3, 3) rotations, child to parent, of (..., dofs) joint angles in rad."""
         R = np.broadcast_to(self.before, (*angles.shape[:-1], 3, 3))
         for i in range(self.dofs):
             R = R @ axis_rotation(i, angles[..., i])
         return np.asarray(R @ self.after)
 
     def angles(self, R: FloatArray) -> FloatArray:
-        """(T, dofs) angles of (T, 3, 3) rotations, unwrapped over time.
+        """(T, dofs) joint angles, rad, of (T, 3, 3) rotations, unwrapped over time.
 
         What the joint cannot follow (with one or two DOFs) is left out.
         """
-        E = self.before.T @ R @ self.after.T
+        # (3, 3, T): each entry's samples side by side, see rotations.py
+        E = np.ascontiguousarray(np.moveaxis(self.before.T @ R @ self.after.T, 0, -1))
         if self.dofs == 3:
-            a = np.arctan2(-E[:, 1, 2], E[:, 2, 2])
-            b = np.arcsin(np.clip(E[:, 0, 2], -1.0, 1.0))
-            c = np.arctan2(-E[:, 0, 1], E[:, 0, 0])
+            a = np.arctan2(-E[1, 2], E[2, 2])
+            b = np.arcsin(np.clip(E[0, 2], -1.0, 1.0))
+            c = np.arctan2(-E[0, 1], E[0, 0])
             columns = [a, b, c]
         elif self.dofs == 2:
-            b = np.arctan2(E[:, 0, 2], E[:, 0, 0])
-            columns = [np.arctan2(E[:, 2, 1], E[:, 1, 1]), b]
+            b = np.arctan2(E[0, 2], E[0, 0])
+            columns = [np.arctan2(E[2, 1], E[1, 1]), b]
         else:
-            columns = [np.arctan2(E[:, 2, 1] - E[:, 1, 2], E[:, 1, 1] + E[:, 2, 2])]
+            columns = [np.arctan2(E[2, 1] - E[1, 2], E[1, 1] + E[2, 2])]
         return np.unwrap(np.stack(columns, axis=1), axis=0)
 
 
 def middle_sine(R: FloatArray, u: FloatArray, w: FloatArray) -> float:
-    """Largest |sin| of the middle angle over (T, 3, 3) rotations for first axis u, last axis w."""
+    """Largest |sin| of the middle angle over (T, 3, 3) rotations; 1 is gimbal lock.
+
+    u: (3,) first axis, in the parent. w: (3,) last axis, in the child.
+    """
     return float(np.abs((R @ w) @ u).max())
 
 
@@ -71,13 +77,13 @@ def ball_axes(
     R: FloatArray,
     preferred: tuple[FloatArray, FloatArray] | None = None,
     frame: FloatArray | None = None,
-) -> Axes:
-    """Axes of a 3-DOF joint that keep far from gimbal lock over (T, 3, 3) rotations.
+) -> JointAxes:
+    """Ball joint: the axes farthest from gimbal lock over (T, 3, 3) rotations, child to parent.
 
     preferred: (u, w), taken if the middle angle stays below 45 degrees with it. frame: (3, 3)
     the figure's own directions as columns, so that the choice does not depend on where it faces.
     """
-    if preferred is not None and middle_sine(R, *preferred) < GOOD_SINE:
+    if preferred is not None and middle_sine(R, *preferred) < MAX_MIDDLE_SINE:
         u, w = preferred
     else:
         u, w = _search(R, np.eye(3) if frame is None else frame)
@@ -87,10 +93,11 @@ def ball_axes(
     third = unit(third) if np.linalg.norm(third) > 1e-6 else perpendicular(u)
     before = np.stack([u, np.cross(third, u), third], axis=1)
     middle = axis_rotation(1, np.arcsin(np.clip(u @ along, -1.0, 1.0)))
-    return Axes(3, before, (before @ middle).T @ mean)
+    return JointAxes(3, before, (before @ middle).T @ mean)
 
 
 def _search(R: FloatArray, frame: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The pair (u, w) of smallest `middle_sine`, by exhaustion over directions."""
     sample = R[:: max(1, len(R) // 80)]
     directions = _half_sphere(180) @ frame.T
     turned = np.einsum("tij,wj->twi", sample, directions)
@@ -110,8 +117,8 @@ def _half_sphere(count: int) -> FloatArray:
     return np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
 
 
-def hinge_axes(R: FloatArray, expected: FloatArray) -> Axes:
-    """A 1-DOF joint about the axis that (T, 3, 3) rotations mostly turn about.
+def hinge_axes(R: FloatArray, expected: FloatArray) -> JointAxes:
+    """Hinge joint about the principal axis of (T, 3, 3) rotations, child to parent.
 
     expected: (3,) the anatomical axis in the child's frame; it decides where the clip hardly bends.
     """
@@ -122,11 +129,11 @@ def hinge_axes(R: FloatArray, expected: FloatArray) -> Axes:
     axis = axis if axis @ expected >= 0 else -axis
     second = perpendicular(axis)
     after = np.stack([axis, second, np.cross(axis, second)])
-    return Axes(1, mean @ after.T, after)
+    return JointAxes(1, mean @ after.T, after)
 
 
-def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Axes:
-    """A 2-DOF joint (u fixed in the parent, v in the child) that best follows (T, 3, 3) rotations.
+def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> JointAxes:
+    """Universal joint (u fixed in the parent, v in the child) that best fits (T, 3, 3) rotations.
 
     R = A Rx Ry B holds exactly if u . R v = 0; the pair minimising the sum of squares is found by
     alternating eigenvectors. expected: the two anatomical axes in the child's frame, which decide
@@ -157,10 +164,10 @@ def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Ax
     first_row = E[0] - v * (E[0] @ v)
     row = unit(first_row)
     after = np.stack([row, v, np.cross(row, v)])
-    return Axes(2, before, after)
+    return JointAxes(2, before, after)
 
 
-def residual_angle(axes: Axes, R: FloatArray) -> float:
-    """RMS angle in rad that the joint cannot follow of (T, 3, 3) rotations."""
+def residual_angle(axes: JointAxes, R: FloatArray) -> float:
+    """RMS angle, rad, between (T, 3, 3) rotations and the joint's nearest ones."""
     missed = np.swapaxes(axes.rotation(axes.angles(R)), -1, -2) @ R
     return float(np.sqrt((rotation_vector(missed) ** 2).sum(axis=-1).mean()))

@@ -1,4 +1,4 @@
-"""Positions of the figure and their Jacobians, for many instants at once (thesis 3.3.1).
+"""Forward kinematics and point Jacobians, for many instants at once (thesis 3.3.1).
 
 Everything is relative to the centre of mass: the configuration holds the centre of mass itself,
 so a point's place in the world is the centre of mass plus what is computed here.
@@ -17,7 +17,7 @@ from .character import Character
 
 @dataclass(frozen=True)
 class BodyPoint:
-    """A point fixed in a body: index of the body, place (3,) m in the body's frame."""
+    """Body-fixed point: index of the body, place (3,) m in the body's frame."""
 
     body: int
     place: FloatArray
@@ -25,7 +25,7 @@ class BodyPoint:
 
 @dataclass(frozen=True)
 class Pose:
-    """The figure at N instants. Positions (N, ..., 3) m relative to the centre of mass."""
+    """Body poses at N instants. Positions (N, ..., 3) m, world axes, from the centre of mass."""
 
     character: Character
     rotations: FloatArray  # (N, B, 3, 3) body to world
@@ -33,7 +33,7 @@ class Pose:
     axes: FloatArray  # (N, n_angles, 3) world axis that each angle turns about
 
     def at(self, instants: slice | IntArray) -> "Pose":
-        """The figure at some of the instants."""
+        """The poses at some of the instants."""
         parts = (self.rotations, self.centres, self.axes)
         return Pose(self.character, *(part[instants] for part in parts))
 
@@ -44,32 +44,35 @@ class Pose:
         return np.asarray(self.centres + np.einsum("nbij,bj->nbi", self.rotations, local))
 
     def points(self, points: Sequence[BodyPoint]) -> FloatArray:
-        """(N, P, 3) the points' positions."""
+        """(N, P, 3) positions of body-fixed points, m, from the centre of mass."""
         bodies = [p.body for p in points]
         local = np.stack([p.place for p in points])
         turned = np.einsum("npij,pj->npi", self.rotations[:, bodies], local)
         return np.asarray(self.centres[:, bodies] + turned)
 
     def point_jacobian(self, points: Sequence[BodyPoint]) -> FloatArray:
-        """(N, P, 3, n_angles) derivatives of `points` by the joint angles."""
-        moves = _moves(self.character)[[p.body for p in points]]  # (P, n)
+        """(N, P, 3, n_angles) geometric Jacobian of `points`, m/rad (Featherstone 2008, ch. 4.1).
+
+        A column is axis x (point - joint centre), less the centre of mass's own.
+        """
+        moves = _path_matrix(self.character)[[p.body for p in points]]  # (P, n)
         at = self.points(points)
         n, count, angles = len(at), len(points), self.axes.shape[1]
         # axis x (point - origin), as one product per instant instead of a cross per pair
         turn = cross_matrix(self.axes)  # (N, n, 3, 3)
         spin = (turn.reshape(n, 3 * angles, 3) @ np.swapaxes(at, 1, 2)).reshape(n, angles, 3, count)
-        about = np.cross(self.axes, self.centres[:, _owner(self.character)])
+        about = np.cross(self.axes, self.centres[:, _body_of_angle(self.character)])
         moved = (spin - about[..., None]) * moves.T[None, :, None, :]
         moved -= self._com_jacobian[..., None]
         return np.ascontiguousarray(moved.transpose(0, 3, 2, 1))
 
     @cached_property
     def _com_jacobian(self) -> FloatArray:
-        """(N, n_angles, 3) how the centre of mass moves when the pelvis's centre stays."""
+        """(N, n_angles, 3) Jacobian of the centre of mass with the root's centre fixed, m/rad."""
         masses = np.array([body.mass for body in self.character.bodies])
-        share = _moves(self.character) * (masses / masses.sum())[:, None]  # (B, n)
+        share = _path_matrix(self.character) * (masses / masses.sum())[:, None]  # (B, n)
         moment = np.einsum("bk,nbi->nki", share, self.body_coms)
-        owner = _owner(self.character)
+        owner = _body_of_angle(self.character)
         carried = moment - share.sum(axis=0)[:, None] * self.centres[:, owner]
         return np.cross(self.axes, carried)
 
@@ -77,17 +80,18 @@ class Pose:
 def point_velocity(
     posed: Pose, points: Sequence[BodyPoint], speeds: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Velocities relative to the centre of mass, for joint speeds (N, n_angles) in rad/s.
+    """Point velocities relative to the centre of mass and their derivatives.
 
-    Returns velocities (N, P, 3) in m/s and their derivatives by angle and by speed, each
-    (N, P, 3, n_angles). The derivative of a column J_j by an angle k nearer the root is
-    axis_k x J_j, and by one farther out axis_j x J_k (Featherstone 2008, ch. 2.10).
+    speeds: (N, n_angles) rad/s. Returns velocities (N, P, 3) m/s, world axes, and their
+    derivatives by angle and by speed, each (N, P, 3, n_angles). The derivative of a column J_j by
+    an angle k nearer the root is axis_k x J_j, and by one farther out axis_j x J_k (Featherstone
+    2008, ch. 2.10).
     """
     character = posed.character
     places = [BodyPoint(p.body, p.place) for p in points]
     places += [BodyPoint(i, body.com) for i, body in enumerate(character.bodies)]
-    moves = _moves(character)[[p.body for p in places]]
-    arm = posed.points(places)[:, :, None] - posed.centres[:, None, _owner(character)]
+    moves = _path_matrix(character)[[p.body for p in places]]
+    arm = posed.points(places)[:, :, None] - posed.centres[:, None, _body_of_angle(character)]
     columns = np.cross(posed.axes[:, None], arm) * moves[None, :, :, None]  # (N, P + B, n, 3)
     carried = columns * speeds[:, None, :, None]
     outward = np.cumsum(carried[:, :, ::-1], axis=2)[:, :, ::-1]  # sum over j >= k
@@ -112,28 +116,32 @@ def point_velocity(
     )
 
 
-def _owner(character: Character) -> IntArray:
-    """(n_angles,) the body whose joint each angle belongs to."""
+def _body_of_angle(character: Character) -> IntArray:
+    """(n_angles,) index of the body whose joint each angle belongs to."""
     return np.repeat(
         np.arange(len(character.bodies)), [joint.axes.dofs for joint in character.joints]
     )
 
 
-def _moves(character: Character) -> FloatArray:
-    """(B, n_angles) 1 where an angle moves a body."""
+def _path_matrix(character: Character) -> FloatArray:
+    """(B, n_angles) path matrix: 1 where an angle lies between the root and a body."""
     moves = np.zeros((len(character.bodies), character.n_angles))
     for i in range(len(character.bodies)):
-        for ancestor in character.lineage(i):
+        for ancestor in character.ancestors(i):
             moves[i, character.joints[ancestor].dofs] = 1.0
     return moves
 
 
-def pose(character: Character, angles: FloatArray) -> Pose:
-    """The figure at (N, n_angles) joint angles in rad."""
+def forward_kinematics(character: Character, angles: FloatArray) -> Pose:
+    """Forward kinematics: body poses at (N, n_angles) joint angles in rad.
+
+    World axes; positions from the centre of mass (Featherstone 2008, ch. 4.1).
+    """
     n = len(angles)
     rotations = np.empty((n, len(character.bodies), 3, 3))
     centres = np.zeros((n, len(character.bodies), 3))
     axes = np.empty((n, character.n_angles, 3))
+    cosines, sines = np.cos(angles), np.sin(angles)  # of all at once: see rotations.py
     for i, joint in enumerate(character.joints):
         turn = np.broadcast_to(np.eye(3), (n, 3, 3))
         if joint.parent >= 0:
@@ -141,8 +149,9 @@ def pose(character: Character, angles: FloatArray) -> Pose:
             centres[:, i] = centres[:, joint.parent] + turn @ joint.offset
         turn = turn @ joint.axes.before
         for k in range(joint.axes.dofs):
-            axes[:, joint.first + k] = turn[:, :, k]
-            turn = _turn_columns(turn, k, angles[:, joint.first + k])
+            j = joint.first + k
+            axes[:, j] = turn[:, :, k]
+            turn = _times_axis_rotation(turn, k, cosines[:, j, None], sines[:, j, None])
         rotations[:, i] = turn @ joint.axes.after
     masses = np.array([body.mass for body in character.bodies])
     local = np.stack([body.com for body in character.bodies])
@@ -151,9 +160,9 @@ def pose(character: Character, angles: FloatArray) -> Pose:
     return Pose(character, rotations, centres, axes)
 
 
-def _turn_columns(R: FloatArray, axis: int, angle: FloatArray) -> FloatArray:
-    """R times the rotation by `angle` about coordinate axis `axis`: mixes two columns."""
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+def _times_axis_rotation(R: FloatArray, axis: int, c: FloatArray, s: FloatArray) -> FloatArray:
+    """R (N, 3, 3) times the rotation about a coordinate axis by the angle with cosine c (N, 1) and
+    sine s: mixes two columns."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     turned = np.array(R)
     turned[:, :, i] = R[:, :, i] * c + R[:, :, j] * s

@@ -1,4 +1,4 @@
-"""A skeleton of other proportions, and how a recording would move it (thesis 6.2).
+"""Retargeting of a recording to other bone lengths (thesis 6.2).
 
 A bone is stretched along itself: a point of it moves by its share of the way from head to tail,
 what hangs on it moves with the place where it hangs.
@@ -16,18 +16,18 @@ from ..data.requests import LimbChange
 
 
 def changed_recording(recording: Recording, limbs: tuple[LimbChange, ...]) -> Recording:
-    """The recording as a figure of other proportions would move with the same rotations.
+    """The recording on a skeleton of other bone lengths, with the same rotations.
 
     Factors multiply where several changes name a bone. The roots' heads keep their tracks; what a
     bone slides against its parent in the recording it still does. Raises UnknownBone, NotAboveZero.
     """
-    longer = _longer(recording, limbs)
+    longer = _elongations(recording, limbs)
     bones, moved = list(recording.bones), np.zeros_like(recording.heads)
     rest = np.zeros((len(bones), 3))
     for b, bone in enumerate(recording.bones):
         if bone.parent >= 0:
             parent = recording.bones[bone.parent]
-            shift = along(parent, bone.head) * longer[bone.parent]
+            shift = axial_fraction(parent, bone.head) * longer[bone.parent]
             turn = recording.rotations[:, bone.parent] @ parent.rotation.T
             rest[b] = rest[bone.parent] + shift
             moved[:, b] = moved[:, bone.parent] + turn @ shift
@@ -35,8 +35,8 @@ def changed_recording(recording: Recording, limbs: tuple[LimbChange, ...]) -> Re
     return replace(recording, bones=tuple(bones), heads=recording.heads + moved)
 
 
-def along(bone: Bone, point: FloatArray) -> float:
-    """How far along a bone a rest point (3,) lies: 0 at or before its head, 1 at or past its tail.
+def axial_fraction(bone: Bone, point: FloatArray) -> float:
+    """Fraction of a bone at which a rest point (3,) projects: clamped to 0 (head) and 1 (tail).
 
     0 for a bone of no length.
     """
@@ -45,8 +45,8 @@ def along(bone: Bone, point: FloatArray) -> float:
     return float(np.clip((point - bone.head) @ span / square, 0.0, 1.0)) if square > 0.0 else 0.0
 
 
-def _longer(recording: Recording, limbs: Sequence[LimbChange]) -> FloatArray:
-    """(B, 3) how much further each bone's tail is from its head at rest, m, world."""
+def _elongations(recording: Recording, limbs: Sequence[LimbChange]) -> FloatArray:
+    """(B, 3) elongation of each bone at rest, m, world."""
     factors = limb_factors(recording, limbs, lambda limb: limb.length)
     spans = np.stack([bone.tail - bone.head for bone in recording.bones])
     return np.asarray((factors - 1.0)[:, None] * spans)
@@ -55,15 +55,15 @@ def _longer(recording: Recording, limbs: Sequence[LimbChange]) -> FloatArray:
 def limb_factors(
     recording: Recording, limbs: Sequence[LimbChange], of: Callable[[LimbChange], float]
 ) -> FloatArray:
-    """(B,) the product of the limbs' factors, bone by bone."""
+    """(B,) product of the limbs' factors, bone by bone. Raises UnknownBone, NotAboveZero."""
     factors = np.ones(len(recording.bones))
     for limb in limbs:
         for bone in limb.bones:
-            factors[index_of(recording, limb.name, bone)] *= above_zero(limb.name, of(limb))
+            factors[bone_index(recording, limb.name, bone)] *= require_positive(limb.name, of(limb))
     return factors
 
 
-def index_of(recording: Recording, request: str, bone: str) -> int:
+def bone_index(recording: Recording, request: str, bone: str) -> int:
     """A bone's index. Raises UnknownBone."""
     try:
         return recording.index(bone)
@@ -71,8 +71,8 @@ def index_of(recording: Recording, request: str, bone: str) -> int:
         raise UnknownBone(request, bone) from None
 
 
-def above_zero(request: str, amount: float) -> float:
-    """The amount. Raises NotAboveZero."""
+def require_positive(request: str, amount: float) -> float:
+    """The amount, if positive. Raises NotAboveZero."""
     if not amount > 0.0:
         raise NotAboveZero(request, amount)
     return amount

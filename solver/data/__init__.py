@@ -1,1 +1,1 @@
-"""Plain data that everything else is stated in: recordings, contacts, problems, faults."""
+"""Plain records shared by all layers: recordings, contacts, requests, problems, faults."""

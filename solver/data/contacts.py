@@ -1,4 +1,4 @@
-"""Which points of the body touch the ground, when and where, and the phases that follow from it."""
+"""Contact schedule: contacts of body points with the ground, and the ground and flight phases."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from ..arrays import FloatArray
 
 
 class PhaseKind(Enum):
-    """Whether anything carries the body."""
+    """Ground phase (supported) or flight phase (ballistic)."""
 
     GROUND = "ground"
     FLIGHT = "flight"
@@ -17,41 +17,59 @@ class PhaseKind(Enum):
 
 @dataclass(frozen=True)
 class ContactThresholds:
-    """How one kind of point behaves when it touches.
+    """Contact-detection thresholds of one kind of point.
 
-    low: m above the floor, slow: m/s; what a point must be to touch at all. landed, lifted: m
-    above the point's own height in this contact, at which its force begins and ends (a sole is
-    still pressed when it is a little up). lead: s before reaching `landed` at which the force
-    begins (a heel's pad gives). skid: m/s along the floor at most. shortest: s; the shortest
-    contact believed.
+    max_height (m above the floor) and max_speed (m/s) must both hold for a point to touch at all.
+    landing_height, lift_off_height: m above the point's own height in this contact, at which its
+    force begins and ends (a sole is still pressed when it is a little up). lead_time: s before
+    reaching landing_height at which the force begins (a heel's pad gives). max_slip_speed: m/s
+    along the floor. min_duration: s; the shortest contact believed.
     """
 
-    low: float
-    slow: float
-    landed: float
-    lifted: float
-    lead: float
-    skid: float
-    shortest: float
+    max_height: float
+    max_speed: float
+    landing_height: float
+    lift_off_height: float
+    lead_time: float
+    max_slip_speed: float
+    min_duration: float
 
 
 class PointKind(Enum):
-    """What touches; the numbers were set on recordings with measured ground forces."""
+    """Kinds of contact point; thresholds set on recordings with measured ground forces."""
 
     HEEL = ContactThresholds(
-        low=0.03, slow=0.5, landed=0.005, lifted=0.005, lead=0.02, skid=2.5, shortest=0.04
+        max_height=0.03,
+        max_speed=0.5,
+        landing_height=0.005,
+        lift_off_height=0.005,
+        lead_time=0.02,
+        max_slip_speed=2.5,
+        min_duration=0.04,
     )
     TOE = ContactThresholds(
-        low=0.05, slow=0.5, landed=0.004, lifted=0.015, lead=0.0, skid=2.5, shortest=0.04
+        max_height=0.05,
+        max_speed=0.5,
+        landing_height=0.004,
+        lift_off_height=0.015,
+        lead_time=0.0,
+        max_slip_speed=2.5,
+        min_duration=0.04,
     )
     HAND = ContactThresholds(
-        low=0.06, slow=0.15, landed=0.005, lifted=0.005, lead=0.0, skid=0.3, shortest=0.15
+        max_height=0.06,
+        max_speed=0.15,
+        landing_height=0.005,
+        lift_off_height=0.005,
+        lead_time=0.0,
+        max_slip_speed=0.3,
+        min_duration=0.15,
     )
 
 
 @dataclass(frozen=True)
 class ContactPoint:
-    """A point fixed in a bone. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up."""
+    """A candidate contact point. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up."""
 
     kind: PointKind
     bone: str
@@ -61,7 +79,7 @@ class ContactPoint:
 
 @dataclass(frozen=True)
 class Contact:
-    """One interval during which one point of one bone touches.
+    """Interval during which one point of one bone touches.
 
     name: the point and its count in time, such as "Left heel 2"; point: "Left heel".
     offset: (3,) m, bone-local, from the bone's head. place: (3,) m, world, Z up.
@@ -84,8 +102,8 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Flight:
-    """An interval, s, in which nothing touches."""
+class Interval:
+    """A time interval [start, end], s."""
 
     start: float
     end: float
@@ -93,7 +111,7 @@ class Flight:
 
 @dataclass(frozen=True)
 class Phase:
-    """A stretch of the clip on the ground or in flight, s; number counts from 1 in each kind."""
+    """A ground or flight phase [start, end], s; number counts from 1 in each kind."""
 
     kind: PhaseKind
     number: int
@@ -108,7 +126,7 @@ class Phase:
 
 @dataclass(frozen=True)
 class ContactSchedule:
-    """Every contact of a clip of `duration` seconds; floor_m is the floor's height, world.
+    """All contacts of a clip of `duration` s, by start; floor_m is the floor's height, m, world.
 
     unseen: intervals without a contact in which the body does not fall, so something that the
     recording does not show carries it (a box, a rail, a drifting floor): they are not flights.
@@ -117,18 +135,18 @@ class ContactSchedule:
     contacts: tuple[Contact, ...]
     duration: float
     floor_m: float
-    unseen: tuple[Flight, ...] = ()
+    unseen: tuple[Interval, ...] = ()
 
     @property
-    def flights(self) -> tuple[Flight, ...]:
-        """What neither a contact nor unseen support covers, in order."""
+    def flights(self) -> tuple[Interval, ...]:
+        """Flight intervals: what neither a contact nor unseen support covers, in order."""
         carried = [(c.start, c.end) for c in self.contacts]
         carried += [(u.start, u.end) for u in self.unseen]
         return gaps(carried, self.duration)
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Ground and flight in turn, covering [0, duration]."""
+        """Alternating ground and flight phases that cover [0, duration]."""
         flights = self.flights
         ground = gaps(((f.start, f.end) for f in flights), self.duration)
         named = [Phase(PhaseKind.FLIGHT, i + 1, f.start, f.end) for i, f in enumerate(flights)]
@@ -137,7 +155,7 @@ class ContactSchedule:
 
     @property
     def boundaries(self) -> tuple[float, ...]:
-        """The clip's ends and every instant at which a contact begins or ends, ascending, s."""
+        """Phase boundaries, s, ascending: the clip's ends and every start and end of a contact."""
         ends = {0.0, self.duration}
         ends |= {t for c in self.contacts for t in (c.start, c.end)}
         ends |= {t for u in self.unseen for t in (u.start, u.end)}
@@ -148,21 +166,21 @@ class ContactSchedule:
         return tuple(c for c in self.contacts if c.start < phase.end and c.end > phase.start)
 
 
-def gaps(covered: Iterable[tuple[float, float]], duration: float) -> tuple[Flight, ...]:
-    """What the intervals (start, end) leave of [0, duration], in order."""
+def gaps(covered: Iterable[tuple[float, float]], duration: float) -> tuple[Interval, ...]:
+    """Complement of the intervals (start, end), s, in [0, duration], in order."""
     free = []
     reached = 0.0
     for start, end in sorted(covered):
         if start > reached:
-            free.append(Flight(reached, start))
+            free.append(Interval(reached, start))
         reached = max(reached, end)
     if reached < duration:
-        free.append(Flight(reached, duration))
+        free.append(Interval(reached, duration))
     return tuple(free)
 
 
 def snap(schedule: ContactSchedule, tolerance_s: float) -> ContactSchedule:
-    """The schedule with instants that lie within tolerance_s of each other made one.
+    """Event times within tolerance_s of each other merged into one.
 
     The solver puts knots at these instants, and spans of a few milliseconds would spoil its
     equations. The clip's ends and the ends of flights keep their places; other instants go to
@@ -173,7 +191,7 @@ def snap(schedule: ContactSchedule, tolerance_s: float) -> ContactSchedule:
         fixed |= {flight.start, flight.end}
     goes_to = _merged(schedule.boundaries, fixed, tolerance_s)
     moved = (replace(c, start=goes_to[c.start], end=goes_to[c.end]) for c in schedule.contacts)
-    unseen = (Flight(goes_to[u.start], goes_to[u.end]) for u in schedule.unseen)
+    unseen = (Interval(goes_to[u.start], goes_to[u.end]) for u in schedule.unseen)
     return replace(
         schedule,
         contacts=numbered(c for c in moved if c.end > c.start),
@@ -193,7 +211,7 @@ def numbered(contacts: Iterable[Contact]) -> tuple[Contact, ...]:
 
 
 def _merged(instants: Iterable[float], fixed: set[float], tolerance: float) -> dict[float, float]:
-    """Where each instant goes: the nearest groups are joined until all are further apart."""
+    """Clustering of instants, s, to centres: nearest ones merge until all are further apart."""
     groups = [[t] for t in sorted({*instants, *fixed})]
     while True:
         centres = [_centre(group, fixed) for group in groups]
@@ -209,5 +227,5 @@ def _merged(instants: Iterable[float], fixed: set[float], tolerance: float) -> d
 
 
 def _centre(group: Sequence[float], fixed: set[float]) -> float:
-    """The group's fixed instant, else its middle."""
+    """The cluster's fixed instant, else the middle of its ends, s."""
     return next((t for t in group if t in fixed), (group[0] + group[-1]) / 2)

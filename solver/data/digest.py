@@ -1,4 +1,4 @@
-"""Names for recordings by their content, to tell whether one is still the same."""
+"""Content hash and approximate equality of recordings."""
 
 import hashlib
 
@@ -6,11 +6,11 @@ import numpy as np
 
 from .recording import Recording
 
-SAME = 1e-5  # m and rad; going into edit mode and back moves bones by less
+POSE_TOLERANCE = 1e-5  # m and rad; going into edit mode and back moves bones by less
 
 
 def digest(recording: Recording) -> str:
-    """Hexadecimal; differs if anything does: name, bones, rest, frames, rate or poses."""
+    """SHA-256, hexadecimal, of name, bones, rest pose, frames, times and poses."""
     content = hashlib.sha256(recording.name.encode())
     for bone in recording.bones:
         content.update(f"\0{bone.name}\0{bone.parent}".encode())
@@ -21,8 +21,8 @@ def digest(recording: Recording) -> str:
     return content.hexdigest()
 
 
-def alike(one: Recording, other: Recording) -> bool:
-    """Whether two recordings show the same motion of the same bones, but for rounding."""
+def same_motion(one: Recording, other: Recording) -> bool:
+    """Whether two recordings are the same motion of the same bones, to POSE_TOLERANCE."""
     if [(b.name, b.parent) for b in one.bones] != [(b.name, b.parent) for b in other.bones]:
         return False
     pairs = [
@@ -32,4 +32,6 @@ def alike(one: Recording, other: Recording) -> bool:
         (one.rotations, other.rotations),
         *((a.rotation, b.rotation) for a, b in zip(one.bones, other.bones, strict=True)),
     ]
-    return all(a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=SAME) for a, b in pairs)
+    return all(
+        a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=POSE_TOLERANCE) for a, b in pairs
+    )

@@ -1,7 +1,8 @@
-"""What can be wrong with what the artist gave us, as data. Worded in operators/words only."""
+"""Exceptions for faulty input and failed solves, as data; worded in operators/words only."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from difflib import get_close_matches
 
 
 @dataclass
@@ -11,6 +12,13 @@ class Fault(Exception):
     def __reduce__(self) -> tuple[Callable[..., "Fault"], tuple[object, ...]]:
         """Pickled by its fields: an exception's own way forgets those that were given by name."""
         return type(self), tuple(getattr(self, field.name) for field in fields(self))
+
+
+@dataclass
+class RequestFault(Fault):
+    """Base of faults of one request, which goes by the name that the artist gave it."""
+
+    request: str
 
 
 @dataclass
@@ -44,7 +52,7 @@ class ClipTooShort(Fault):
 
 @dataclass
 class NoFlight(Fault):
-    """No instant found at which every foot is off the ground."""
+    """No instant found at which every foot is off the ground; how high the lower one comes."""
 
     lowest_cm: float
 
@@ -167,18 +175,16 @@ class UnknownContactName(Fault):
 
 
 @dataclass
-class UnknownBone(Fault):
+class UnknownBone(RequestFault):
     """A request names a bone that the armature does not have."""
 
-    request: str
     bone: str
 
 
 @dataclass
-class NotAboveZero(Fault):
+class NotAboveZero(RequestFault):
     """A request's mass, or factor on a length or a mass, is zero, negative or not given."""
 
-    request: str
     amount: float
 
 
@@ -236,138 +242,112 @@ class DependentRows(Fault):
 
 
 @dataclass
-class UnknownPhaseIn(Fault):
+class UnknownPhaseIn(RequestFault):
     """A request names a phase that the clip does not have."""
 
-    request: str
     phase: str
     known: tuple[str, ...]
 
 
 @dataclass
-class StillBone(Fault):
+class StillBone(RequestFault):
     """A request names a bone that the figure's bodies do not move."""
 
-    request: str
     bone: str
     known: tuple[str, ...]
 
+    @property
+    def likeliest(self) -> tuple[str, ...]:
+        """Those names that are most like it: all of them would run off the screen."""
+        return tuple(get_close_matches(self.bone, self.known, n=4, cutoff=0.0))
+
 
 @dataclass
-class BadTiming(Fault):
+class BadTiming(RequestFault):
     """A request's time is empty, too short, or outside the clip; seconds: how long it would be."""
 
-    request: str
     seconds: float
 
 
 @dataclass
-class RootHasNoJoint(Fault):
+class RootHasNoJoint(RequestFault):
     """A joint's limit or torque was asked of the root bone, which has no joint to a parent."""
 
-    request: str
     bone: str
 
 
-@dataclass
-class NeedsTorques(Fault):
+class NeedsTorques(RequestFault):
     """A torque was limited, but the reduced dynamics that were chosen have none."""
 
-    request: str
-
 
 @dataclass
-class NothingTouches(Fault):
+class NothingTouches(RequestFault):
     """A request names contacts, points or bones of which none touches; none named means all."""
 
-    request: str
     touching: tuple[str, ...]
 
 
 @dataclass
-class WrongAngle(Fault):
+class WrongAngle(RequestFault):
     """A request names an angle that a joint does not have; count: how many it has."""
 
-    request: str
     bone: str
     count: int
 
 
-@dataclass
-class FreePoint(Fault):
+class FreePoint(RequestFault):
     """A point that the world shall push at is held in no direction."""
 
-    request: str
 
-
-@dataclass
-class TakenName(Fault):
+class TakenName(RequestFault):
     """A point that the world shall push at is called like a contact that was found."""
 
-    request: str
-
 
 @dataclass
-class TimedTwice(Fault):
+class TimedTwice(RequestFault):
     """A second request for the duration of one phase."""
 
-    request: str
     phase: str
 
 
-@dataclass
-class NoBoneChosen(Fault):
+class NoBoneChosen(RequestFault):
     """A request of a kind that is about a bone names none."""
 
-    request: str
-
 
 @dataclass
-class NoPhaseChosen(Fault):
+class NoPhaseChosen(RequestFault):
     """A request that is to hold in a phase names none."""
 
-    request: str
     known: tuple[str, ...]
 
 
 @dataclass
-class EmptyRange(Fault):
+class EmptyRange(RequestFault):
     """A request's last frame comes before its first."""
 
-    request: str
     first: float
     last: float
 
 
 @dataclass
-class CrossedBounds(Fault):
+class CrossedBounds(RequestFault):
     """A request's least value is above its greatest; both in `unit`."""
 
-    request: str
     at_least: float
     at_most: float
     unit: str
 
 
-@dataclass
-class AsksNothing(Fault):
+class AsksNothing(RequestFault):
     """A request in which everything that it could ask for is switched off."""
 
-    request: str
 
-
-@dataclass
-class NoDirection(Fault):
+class NoDirection(RequestFault):
     """An axis or a normal of a request that is zero, so that it points nowhere."""
 
-    request: str
 
-
-@dataclass
-class NamedTwice(Fault):
+class NamedTwice(RequestFault):
     """Two requests, or a request and a contact, of the same name; reports could not tell them."""
-
-    request: str
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""What the artist asks for, as data: the recipe that a MotionProblem is written from and to."""
+"""Problem statement of an adaptation: body, frames, corrected contacts, pins and requests."""
 
 from dataclasses import dataclass, field
 from enum import Enum
@@ -7,14 +7,14 @@ from .requests import Requests
 
 
 class MassTable(Enum):
-    """Which published table gives the segments' inertia."""
+    """Published table of segment inertia parameters (thesis Table 3.1; de Leva 1996)."""
 
     THESIS = "thesis"
     DE_LEVA = "de leva"
 
 
-class Axes3(Enum):
-    """Which axes an offset is given in: the world's, or forward, left and up of the travel."""
+class OffsetAxes(Enum):
+    """Axes of a pin's offset: the world's, or forward, left and up of the travel."""
 
     WORLD = "world"
     TRAVEL = "travel"
@@ -22,7 +22,7 @@ class Axes3(Enum):
 
 @dataclass(frozen=True)
 class Pin:
-    """Moves contacts of one phase.
+    """Displacement of the contacts of one ground phase.
 
     name: the artist's. phase: such as "ground 2". touching: bone names or point names ("Left
     heel"); empty means every contact of the phase. offset: (3,) m in `axes`. place: (3,) m, world;
@@ -34,14 +34,14 @@ class Pin:
     phase: str
     touching: tuple[str, ...] = ()
     offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    axes: Axes3 = Axes3.TRAVEL
+    axes: OffsetAxes = OffsetAxes.TRAVEL
     place: tuple[float, float, float] | None = None
     turn: float = 0.0
 
 
 @dataclass(frozen=True)
 class ContactEdit:
-    """The artist's correction of a detected contact, by its name ("Left heel 2"); scene frames."""
+    """Correction of a detected contact, by its name ("Left heel 2"); scene frames."""
 
     name: str
     start_frame: float | None = None
@@ -51,7 +51,7 @@ class ContactEdit:
 
 @dataclass(frozen=True)
 class AddedContact:
-    """A contact that was not detected: a point ("Left heel") touches between two scene frames."""
+    """Contact that was not detected: a point ("Left heel") touches between two scene frames."""
 
     point: str
     start_frame: float
@@ -60,7 +60,10 @@ class AddedContact:
 
 @dataclass(frozen=True)
 class MotionProblem:
-    """Everything that defines an adaptation but the recording itself."""
+    """Everything that defines an adaptation but the recording itself.
+
+    frames: first and last scene frame, None for all. mass: kg. height: m, None as the armature is.
+    """
 
     frames: tuple[float, float] | None = None
     mass: float = 70.0

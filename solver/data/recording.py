@@ -1,4 +1,4 @@
-"""A recorded performance as plain arrays: what the bridge reads and the solver adapts."""
+"""Motion-capture recording and resulting pose track as plain arrays (world frame, Z up, SI)."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from ..arrays import FloatArray
 
 @dataclass(frozen=True)
 class Bone:
-    """One bone of the rest skeleton.
+    """Bone of the rest skeleton.
 
     parent: index of the parent in `Recording.bones`, -1 for a root; parents come first.
     head, tail: (3,) rest positions, world, m. rotation: (3, 3) rest orientation, bone to world.
@@ -22,7 +22,7 @@ class Bone:
 
 @dataclass(frozen=True)
 class Recording:
-    """Every bone's pose at every frame, in the world, Z up.
+    """Pose of every bone at every frame, world frame, Z up.
 
     frames: (T,) scene frame numbers. times: (T,) s, times[0] = 0.
     heads: (T, B, 3) m. rotations: (T, B, 3, 3), bone to world, proper rotations.
@@ -58,7 +58,7 @@ class Recording:
 
 @dataclass(frozen=True)
 class PoseTrack:
-    """An adapted performance, ready to be written as keyframes.
+    """Pose trajectory of the moving bones, ready to be written as keyframes.
 
     frames: (T,) scene frames. bones: the bones that move, parents first; the first is the pelvis.
     rotations: (T, len(bones), 3, 3), bone to world. root_head: (T, 3) m, the pelvis bone's head.

@@ -1,4 +1,4 @@
-"""What the artist asks for beside moved contacts, as named records (thesis 3.3): pure data.
+"""Constraint, force, body, timing and solver requests as named records (thesis 3.3).
 
 Every record carries the artist's name for it, by which it is reported. Bones are named as in the
 armature. Angles are in rad, lengths in m, forces in body weights, torques in N·m, world Z up.
@@ -7,12 +7,14 @@ armature. Angles are in rad, lengths in m, forces in body weights, torques in N�
 from dataclasses import dataclass, field
 from enum import Enum
 
+from .constants import STANDARD_GRAVITY
+
 Vector = tuple[float, float, float]
 Bound = tuple[float | None, float | None]  # lower, upper; None is free
 
 
 class Moment(Enum):
-    """A single instant of a phase. APEX: when the centre of mass is highest."""
+    """Single instant of a phase. APEX: when the centre of mass is highest."""
 
     START = "start"
     MIDDLE = "middle"
@@ -22,7 +24,7 @@ class Moment(Enum):
 
 @dataclass(frozen=True)
 class When:
-    """During what a request holds: the whole clip, or what is given.
+    """Time domain of a request: the whole clip, or what is given.
 
     phase: such as "flight 1", or the name of a Hold. frames: scene frames of the recording, both
     ends included; one frame where they are equal. moment: one instant of the phase.
@@ -37,7 +39,7 @@ ALWAYS = When()
 
 
 class PointAxes(Enum):
-    """What directions a point's bounds and places are given in."""
+    """Axes of a point request's bounds and displacement."""
 
     WORLD = "world"
     TRAVEL = "travel"  # forward, left, up of the flight that ends (or else starts) there
@@ -46,7 +48,7 @@ class PointAxes(Enum):
 
 @dataclass(frozen=True)
 class Path:
-    """A place that moves: instants as scene frames, (T,), and places, T of (3,) m, world."""
+    """Target trajectory: instants as scene frames, (T,), and places, T of (3,) m, world."""
 
     frames: tuple[float, ...]
     places: tuple[Vector, ...]
@@ -54,7 +56,7 @@ class Path:
 
 @dataclass(frozen=True)
 class PointRequest:
-    """A point of a bone is held at, or kept within bounds of, a place.
+    """Point constraint (thesis 3.3.2): a bone's point at, or within bounds of, a place.
 
     offset: (3,) m from the bone's head, in the bone's axes; None is the middle of the bone.
     place: world; None takes the place of the fit (per instant, or its mean where `environment`).
@@ -80,7 +82,7 @@ class PointRequest:
 
 @dataclass(frozen=True)
 class Lift:
-    """Contacts of one phase that shall not touch any more (a hop on one leg).
+    """Removal of contacts of one phase (a hop on one leg).
 
     touching: bones, points or contacts as in a Pin; empty lifts all of the phase.
     """
@@ -92,7 +94,7 @@ class Lift:
 
 @dataclass(frozen=True)
 class AngleLimit:
-    """Bounds on how far a joint is bent: the angle between the bone and the straight limb, rad.
+    """Joint limit: bounds on the angle between the bone and the straight limb, rad.
 
     Positive the way the joint bends in the recording. Equal bounds fix the joint.
     """
@@ -106,7 +108,7 @@ class AngleLimit:
 
 @dataclass(frozen=True)
 class ConeLimit:
-    """The bone stays in a cone about an axis (thesis 3.3.3: a . S R l).
+    """Cone limit of a joint: the bone stays in a cone about an axis (thesis 3.3.3: a . S R l).
 
     half_angle: rad. axis: in the parent's rest frame (world axes of the rest pose); None takes
     the bone's mean direction over `when` in the fit. stretch: how much wider the cone is along
@@ -123,7 +125,7 @@ class ConeLimit:
 
 @dataclass(frozen=True)
 class TwistLimit:
-    """Bounds on how far a bone is turned about itself against its parent, rad; rest is zero."""
+    """Axial rotation limit: bounds on a bone's turn about itself from rest, to its parent, rad."""
 
     name: str
     bone: str
@@ -134,7 +136,7 @@ class TwistLimit:
 
 @dataclass(frozen=True)
 class TorqueLimit:
-    """A bound on the torque of a joint (thesis 3.3.4), the norm's components each.
+    """Torque constraint on joints (thesis 3.2.3, 6.2), on each component.
 
     bones: whose joints to their parents. bound: N·m; or share: of the fit's own peak in `when`,
     bone by bone. One of the two is given; zero is limp. dof: only this angle of the joint (0, 1,
@@ -151,7 +153,7 @@ class TorqueLimit:
 
 
 class Reference(Enum):
-    """Where a pose is taken from."""
+    """Source of a reference pose."""
 
     FIT = "fit"
     REST = "rest"
@@ -159,7 +161,7 @@ class Reference(Enum):
 
 @dataclass(frozen=True)
 class PoseRequest:
-    """Joints are posed as at some frame of the recording (or as at rest).
+    """Pose constraint or preference: joints as at some frame of the recording (or at rest).
 
     bones: empty is the whole body. frame: of the recording, whose fit gives the pose; None the
     same frame. weight: None holds exactly; else the solutions only prefer it, by this much.
@@ -177,7 +179,7 @@ class PoseRequest:
 
 @dataclass(frozen=True)
 class OrientationRequest:
-    """A bone points a certain way in the world.
+    """Orientation constraint on a bone, in the world.
 
     turn: rad about the world's vertical, against the fit's own orientation at each instant; tilt:
     rad about the travel's left axis (forwards positive) after it. slack: rad by which it may miss.
@@ -192,7 +194,7 @@ class OrientationRequest:
 
 
 class ConeShape(Enum):
-    """How a friction cone is bounded."""
+    """Shape of a friction cone: second-order or linearised."""
 
     EXACT = "exact"
     PYRAMID = "pyramid"  # four planes inside the cone
@@ -200,11 +202,11 @@ class ConeShape(Enum):
 
 @dataclass(frozen=True)
 class ForceRequest:
-    """What contact forces may be, of every contact or of those named, in `when`.
+    """Contact-force request: friction coefficient, peak and tracking weight, in `when`.
 
     friction: coefficient, for the whole of every contact that `when` meets; None leaves it as it
     is. peak: body weights, of the sum of all forces of the contacts named.
-    match: how strongly all forces are kept like the fit's, times the usual price.
+    match: how strongly all forces are kept like the fit's, times the usual cost weight.
     touching: bones, points or contacts; empty is all.
     """
 
@@ -219,7 +221,7 @@ class ForceRequest:
 
 @dataclass(frozen=True)
 class AddedMass:
-    """A mass carried at a bone, as a small solid: kg, or a share of the body's mass.
+    """Carried mass, rigidly joined to a bone as a small solid: kg, or a share of the body's mass.
 
     offset: (3,) m from the bone's head in the bone's axes; None is the bone's tail.
     """
@@ -233,7 +235,7 @@ class AddedMass:
 
 @dataclass(frozen=True)
 class LimbChange:
-    """Bones made longer or shorter, heavier or lighter, by factors; thickness stays."""
+    """Scale factors on the length and the mass of bones; thickness stays."""
 
     name: str
     bones: tuple[str, ...]
@@ -243,20 +245,20 @@ class LimbChange:
 
 @dataclass(frozen=True)
 class BodyChange:
-    """What of the body, or of the world it is in, differs from the recording's.
+    """Differences of body and gravity from the recording's.
 
     mass: total, kg, before what is carried; None keeps it. gravity: m/s².
     """
 
     mass: float | None = None
-    gravity: float = 9.81
+    gravity: float = STANDARD_GRAVITY
     added: tuple[AddedMass, ...] = ()
     limbs: tuple[LimbChange, ...] = ()
 
 
 @dataclass(frozen=True)
 class PhaseTiming:
-    """A phase takes longer or shorter: times `factor`, or `seconds` instead."""
+    """Retiming of a phase: duration times `factor`, or `seconds` instead."""
 
     name: str
     phase: str
@@ -266,7 +268,7 @@ class PhaseTiming:
 
 @dataclass(frozen=True)
 class Hold:
-    """The frame `frame` is repeated for `seconds`, a phase of its own called `name` (thesis 6.2).
+    """Held frame: `frame` is repeated for `seconds`, a phase called `name` (thesis 6.2).
 
     ends: the recording after it is left out, so that the motion ends with it.
     """
@@ -278,7 +280,7 @@ class Hold:
 
 
 class Dynamics(Enum):
-    """Whose equations of motion are in the problem (thesis 3.2).
+    """Dynamics formulation: whose equations of motion are in the problem (thesis 3.2).
 
     AUTOMATIC: the root's, and those of the joints whose torques are limited or weighed.
     """
@@ -289,7 +291,7 @@ class Dynamics(Enum):
 
 
 class Method(Enum):
-    """Which solution (thesis 4.3, 4.4)."""
+    """Solution method by its unknowns: implicit or explicit (thesis 4.3, 4.4)."""
 
     IMPLICIT = "implicit"  # (q, lambda)
     IMPLICIT_TORQUES = "implicit with torques"  # (q, tau, lambda)
@@ -297,7 +299,7 @@ class Method(Enum):
 
 
 class ObjectiveKind(Enum):
-    """Objectives that the explicit solution may weigh (thesis 4.3)."""
+    """Objective terms of the explicit solution (thesis 4.3)."""
 
     TORQUE_SMOOTHNESS = "torque smoothness"
     POWER = "power"
@@ -310,7 +312,7 @@ class ObjectiveKind(Enum):
 
 
 class ReductionKind(Enum):
-    """How the joints other than the root are tied together (thesis 5)."""
+    """Model-reduction method for the joints other than the root's (thesis 5)."""
 
     PCA = "pca"
     VARIMAX = "varimax"
@@ -323,7 +325,7 @@ class ReductionKind(Enum):
 
 @dataclass(frozen=True)
 class Reduction:
-    """A smaller figure. dimensions: None chooses by `explained`, the share of variance kept.
+    """Model reduction (thesis 5). dimensions: None chooses by `explained`, the share of variance.
 
     matrix: for MATRIX, one row per combined coordinate: {bone: (weights of its angles)}.
     """
@@ -336,7 +338,7 @@ class Reduction:
 
 @dataclass(frozen=True)
 class SolverOptions:
-    """How to solve. objectives: weights by kind, for the explicit solution; their shares of it.
+    """Solver options. objectives: (kind, weight) of the explicit solution, weights as shares.
 
     longest_span: s, between knots; torque_span: s, between knots of the torques' own splines;
     None chooses them automatically.
@@ -355,7 +357,7 @@ class SolverOptions:
 
 @dataclass(frozen=True)
 class Requests:
-    """Everything asked for beside pins, in the order it was written."""
+    """All requests beside pins, in the order written."""
 
     points: tuple[PointRequest, ...] = ()
     lifts: tuple[Lift, ...] = ()
@@ -373,7 +375,7 @@ class Requests:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the artist called them."""
+        """The artist's names of all requests."""
         kinds = (self.points, self.lifts, self.angles, self.cones, self.twists, self.torques)
         more = (self.poses, self.orientations, self.forces, self.body.added, self.body.limbs)
         every = (*kinds, *more, self.timings, self.holds)
@@ -381,5 +383,5 @@ class Requests:
 
     @property
     def preferred(self) -> tuple[PoseRequest, ...]:
-        """The poses that are not held but only preferred."""
+        """Poses with a weight: cost terms instead of constraints."""
         return tuple(pose for pose in self.poses if pose.weight is not None)

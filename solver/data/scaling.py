@@ -1,4 +1,4 @@
-"""A figure of another height: the recording scaled for the solver, its answer scaled back."""
+"""Uniform length scaling of recordings, problems, schedules and results, about the origin."""
 
 from dataclasses import replace
 
@@ -7,11 +7,11 @@ import numpy as np
 from .contacts import ContactSchedule
 from .problem import MotionProblem
 from .recording import PoseTrack, Recording
-from .requests import PointRequest, Vector
+from .requests import Bound, PointRequest, Vector
 
 
 def scaled_recording(recording: Recording, factor: float) -> Recording:
-    """Every length times `factor`, about the world's origin."""
+    """The recording with every length times `factor`, about the world's origin."""
     bones = tuple(
         replace(bone, head=factor * bone.head, tail=factor * bone.tail) for bone in recording.bones
     )
@@ -19,22 +19,13 @@ def scaled_recording(recording: Recording, factor: float) -> Recording:
 
 
 def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
-    """The same edit of a recording scaled by `factor`."""
-
-    def scaled(vector: tuple[float, float, float]) -> tuple[float, float, float]:
-        x, y, z = (factor * value for value in vector)
-        return x, y, z
-
+    """The problem with every length times `factor`: offsets, places, bounds, paths."""
     pins = (
-        replace(
-            pin, offset=scaled(pin.offset), place=None if pin.place is None else scaled(pin.place)
-        )
-        for pin in problem.pins
+        replace(p, offset=_times(factor, p.offset), place=p.place and _times(factor, p.place))
+        for p in problem.pins
     )
     requests = problem.requests
-    added = (
-        m if m.offset is None else replace(m, offset=scaled(m.offset)) for m in requests.body.added
-    )
+    added = (replace(m, offset=m.offset and _times(factor, m.offset)) for m in requests.body.added)
     requests = replace(
         requests,
         points=tuple(_scaled_point(point, factor) for point in requests.points),
@@ -44,28 +35,34 @@ def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
 
 
 def _scaled_point(point: PointRequest, factor: float) -> PointRequest:
-    def scaled(vector: Vector) -> Vector:
-        x, y, z = (factor * value for value in vector)
-        return x, y, z
+    def bound(ends: Bound) -> Bound:
+        low, high = (None if end is None else factor * end for end in ends)
+        return low, high
 
-    bounds, path = point.bounds, point.path
-    if bounds is not None:
-        low_high = [tuple(None if b is None else factor * b for b in bound) for bound in bounds]
-        bounds = tuple(low_high)  # type: ignore[assignment]
+    path = point.path
     if path is not None:
-        path = replace(path, places=tuple(map(scaled, path.places)))
+        path = replace(path, places=tuple(_times(factor, place) for place in path.places))
+    bounds = point.bounds
+    if bounds is not None:
+        x, y, z = map(bound, bounds)
+        bounds = x, y, z
     return replace(
         point,
-        offset=None if point.offset is None else scaled(point.offset),
-        place=None if point.place is None else scaled(point.place),
-        relative=scaled(point.relative),
+        offset=point.offset and _times(factor, point.offset),
+        place=point.place and _times(factor, point.place),
+        relative=_times(factor, point.relative),
         bounds=bounds,
         path=path,
     )
 
 
+def _times(factor: float, vector: Vector) -> Vector:
+    x, y, z = (factor * value for value in vector)
+    return x, y, z
+
+
 def scaled_schedule(schedule: ContactSchedule, factor: float) -> ContactSchedule:
-    """Contacts whose places and points are `factor` times as far."""
+    """The schedule with places, offsets and floor height times `factor`."""
     contacts = (
         replace(c, place=np.asarray(factor * c.place), offset=np.asarray(factor * c.offset))
         for c in schedule.contacts
@@ -74,5 +71,5 @@ def scaled_schedule(schedule: ContactSchedule, factor: float) -> ContactSchedule
 
 
 def scaled_track(track: PoseTrack, factor: float) -> PoseTrack:
-    """The same poses with the pelvis `factor` times as far."""
+    """The pose track with the pelvis's positions times `factor`."""
     return replace(track, root_head=factor * track.root_head)

@@ -1,10 +1,10 @@
-"""How a solve ends; apart, so that it can be worded where CasADi is missing."""
+"""Termination status of solves and drags; apart, so that it can be worded without CasADi."""
 
 from enum import Enum
 
 
 class Status(Enum):
-    """How a solve ended."""
+    """Termination status of a solve."""
 
     SOLVED = "solved"
     STALLED = "stalled"
@@ -14,8 +14,8 @@ class Status(Enum):
 
 
 class DragStatus(Enum):
-    """How a motion gets on that follows a dragged pin."""
+    """Convergence of a motion that follows a dragged pin."""
 
-    ON_ITS_WAY = "on its way"
-    ARRIVED = "arrived"  # the pin is reached and physics holds
-    LOST = "lost"  # it cannot follow, and stays where it last could
+    CONVERGING = "converging"
+    CONVERGED = "converged"  # the pin is reached and physics holds
+    DIVERGED = "diverged"  # it cannot follow, and stays where it last could

@@ -1,7 +1,7 @@
-"""When things happen after phases were retimed and frames held (thesis 6.2, 6.3).
+"""Time warp from recording to adapted motion: retimed phases, held frames (thesis 6.2, 6.3).
 
-A timeline maps the recording's time to the adapted motion's, linear in pieces: a phase that takes
-longer stretches, a held frame opens a gap in which the old time stands still.
+The map is piecewise linear: a phase that takes longer stretches, a held frame opens a gap in which
+the old time stands still.
 """
 
 from collections.abc import Sequence
@@ -16,14 +16,14 @@ from .contacts import ContactSchedule, Phase
 from .faults import BadTiming, TimedTwice, UnknownPhaseIn
 from .requests import Hold, Moment, PhaseTiming, When
 
-SHORTEST_PHASE = 0.03  # s
-EASE = 0.2  # s
-DIGITS = 9  # of an instant in s, so that those that are one stay one
+MIN_PHASE_DURATION = 0.03  # s
+HOLD_EASING_TIME = 0.2  # s; half-width of the moving average around a hold
+TIME_DECIMALS = 9  # instants, s, are rounded to, so that those that are one stay one
 
 
 @dataclass(frozen=True)
-class Span:
-    """A stretch of time with a name, s."""
+class NamedInterval:
+    """A time interval [start, end], s, with a name."""
 
     name: str
     start: float
@@ -32,51 +32,57 @@ class Span:
 
 @dataclass(frozen=True)
 class Timeline:
-    """old, new: (T,) s, the corners of the map, both ascending. holds: what was inserted, in new
-    time. first_frame, rate: of the recording's scene frames, frames a second."""
+    """Piecewise linear time warp.
+
+    old, new: (T,) s, its corners, both ascending. holds: inserted intervals, in new time.
+    first_frame: scene frame of old time 0. rate: scene frames a second.
+    """
 
     old: FloatArray
     new: FloatArray
-    holds: tuple[Span, ...]
+    holds: tuple[NamedInterval, ...]
     first_frame: float
     rate: float
 
     @property
     def duration(self) -> float:
+        """Duration of the adapted motion, s."""
         return float(self.new[-1])
 
     @cached_property
     def unchanged(self) -> bool:
+        """Whether the map is the identity."""
         return len(self.holds) == 0 and bool(np.allclose(self.old, self.new))
 
     def to_new(self, old: FloatArray | float) -> FloatArray:
-        """New instants of old ones; a held frame's is the beginning of its hold."""
+        """New instants (...), s, of old ones; a held frame's is the beginning of its hold."""
         apart = self.old + 1e-12 * np.arange(len(self.old))
-        return np.round(np.interp(old, apart, self.new), DIGITS)
+        return np.round(np.interp(old, apart, self.new), TIME_DECIMALS)
 
     def to_old(self, new: FloatArray | float) -> FloatArray:
-        """Old instants of new ones."""
+        """Old instants (...), s, of new ones."""
         return np.asarray(np.interp(new, self.new, self.old))
 
     def eased(self, new: FloatArray) -> FloatArray:
-        """Old instants as `to_old`, but gliding into holds and out of them instead of stopping.
+        """Old instants (N,), s, as `to_old`, but gliding into holds and out of them.
 
-        A moving average over EASE to both sides (less near the ends), with a parabola's weights.
+        A moving average over HOLD_EASING_TIME to both sides (less near the ends) with parabolic
+        (Epanechnikov) weights.
         """
         if not self.holds:
             return self.to_old(new)
         share = np.linspace(-1.0, 1.0, 21)
         weight = 1.0 - share**2
-        reach = np.minimum(EASE, np.minimum(new, self.duration - new))
+        reach = np.minimum(HOLD_EASING_TIME, np.minimum(new, self.duration - new))
         around = new[:, None] + share * np.maximum(reach, 0.0)[:, None]
         return np.asarray(self.to_old(around) @ (weight / weight.sum()))
 
     def instant(self, frame: float) -> float:
-        """New time of a scene frame of the recording."""
+        """New time, s, of a scene frame of the recording."""
         return float(self.to_new((frame - self.first_frame) / self.rate))
 
     def schedule(self, schedule: ContactSchedule) -> ContactSchedule:
-        """The contacts at their new instants; those after the end are gone."""
+        """The schedule in new time; contacts after the end are dropped."""
         moved = []
         for contact in schedule.contacts:
             start, end = (float(self.to_new(t)) for t in (contact.start, contact.end))
@@ -94,7 +100,10 @@ def timeline(
     timings: Sequence[PhaseTiming],
     holds: Sequence[Hold],
 ) -> Timeline:
-    """The map that phases' new durations and held frames make. Raises UnknownPhaseIn, BadTiming."""
+    """Time warp from new phase durations and held frames.
+
+    schedule: of the recording. Raises UnknownPhaseIn, BadTiming, TimedTwice.
+    """
     phases = {phase.name: phase for phase in schedule.phases}
     wanted: dict[str, float] = {}
     for timing in timings:
@@ -102,7 +111,7 @@ def timeline(
         length = phase.end - phase.start
         factor = 1.0 if timing.factor is None else timing.factor
         seconds = length * factor if timing.seconds is None else timing.seconds
-        if seconds < SHORTEST_PHASE:
+        if seconds < MIN_PHASE_DURATION:
             raise BadTiming(timing.name, seconds)
         if timing.phase in wanted:
             raise TimedTwice(timing.name, timing.phase)
@@ -112,7 +121,7 @@ def timeline(
     for hold in holds:
         at = (hold.frame - first_frame) / rate
         at = next((edge for edge in edges if abs(edge - at) < 1e-6), at)
-        if not 0.0 < at <= schedule.duration or hold.seconds < SHORTEST_PHASE:
+        if not 0.0 < at <= schedule.duration or hold.seconds < MIN_PHASE_DURATION:
             raise BadTiming(hold.name, hold.seconds)
         stops.setdefault(at, []).append(hold)
     corners = sorted({*edges, *stops})
@@ -123,32 +132,34 @@ def timeline(
         length = inside.end - inside.start
         old.append(end)
         longer = wanted.get(inside.name, length) / length
-        new.append(round(new[-1] + (end - start) * longer, DIGITS))
+        new.append(round(new[-1] + (end - start) * longer, TIME_DECIMALS))
         for hold in stops.get(end, []):
             old.append(end)
-            new.append(round(new[-1] + hold.seconds, DIGITS))
-            named.append(Span(hold.name, new[-2], new[-1]))
+            new.append(round(new[-1] + hold.seconds, TIME_DECIMALS))
+            named.append(NamedInterval(hold.name, new[-2], new[-1]))
         if any(hold.ends for hold in stops.get(end, [])):
             break
     return Timeline(np.array(old), np.array(new), tuple(named), first_frame, rate)
 
 
 def _known(name: str, phase: str, phases: dict[str, Phase]) -> Phase:
+    """The phase called `phase`. Raises UnknownPhaseIn."""
     if phase not in phases:
         raise UnknownPhaseIn(name, phase, tuple(phases))
     return phases[phase]
 
 
-def interval(
+def active_interval(
     name: str, when: When, line: Timeline, phases: Sequence[Phase], apex: FloatArray
 ) -> tuple[float, float]:
-    """Start and end, s, of when something holds; equal for a single instant.
+    """Start and end, s, in new time, of when a request holds; equal for a single instant.
 
-    apex: (T, 2) instants and heights of the centre of mass. Raises UnknownPhaseIn, BadTiming.
+    phases: in new time. apex: (T, 2) instants, s, and heights, m, of the centre of mass.
+    Raises UnknownPhaseIn, BadTiming.
     """
     start, end = 0.0, line.duration
     if when.phase is not None:
-        known = [*(Span(p.name, p.start, p.end) for p in phases), *line.holds]
+        known = [*(NamedInterval(p.name, p.start, p.end) for p in phases), *line.holds]
         found = [each for each in known if each.name == when.phase]
         if not found:
             raise UnknownPhaseIn(name, when.phase, tuple(each.name for each in known))
@@ -161,17 +172,28 @@ def interval(
         start, end = max(start, first), min(end, last)
     if end < start:
         raise BadTiming(name, end - start)
-    match when.moment:
+    if when.moment is None:
+        return start, end
+    at = moment_within(when.moment, start, end, apex)
+    if at is None:
+        raise BadTiming(name, end - start)
+    return at, at
+
+
+def moment_within(moment: Moment, start: float, end: float, heights: FloatArray) -> float | None:
+    """The instant that a moment of [start, end] is, in any unit of time.
+
+    heights: (T, 2) instants and heights of the centre of mass, of which the highest is the apex;
+    None where no instant of them lies within.
+    """
+    match moment:
         case Moment.START:
-            return start, start
+            return start
         case Moment.END:
-            return end, end
+            return end
         case Moment.MIDDLE:
-            return 0.5 * (start + end), 0.5 * (start + end)
-        case Moment.APEX:
-            inside = (apex[:, 0] >= start) & (apex[:, 0] <= end)
-            if not inside.any():
-                raise BadTiming(name, end - start)
-            best = apex[inside][np.argmax(apex[inside, 1]), 0]
-            return float(best), float(best)
-    return start, end
+            return 0.5 * (start + end)
+    inside = (heights[:, 0] >= start) & (heights[:, 0] <= end)
+    if not inside.any():
+        return None
+    return float(heights[inside][np.argmax(heights[inside, 1]), 0])

@@ -1,4 +1,4 @@
-"""What a motion looks like to those who draw it: figure, paths, forces, torques over time.
+"""Sampled quantities of a motion for drawing: body, paths, forces, torques over time.
 
 Data alone, without CasADi: Blender keeps and draws it. results/trace_sampling.py makes it.
 """
@@ -11,8 +11,11 @@ from ..arrays import FloatArray
 
 
 @dataclass(frozen=True)
-class Flight:
-    """A flight's parabola: points (N, 3) m, world, from take-off to landing (scene frames)."""
+class FlightParabola:
+    """Ballistic path of the centre of mass in a flight phase.
+
+    start, end: scene frames of take-off and landing. parabola: (N, 3) m, world.
+    """
 
     name: str
     start: float
@@ -22,7 +25,7 @@ class Flight:
 
 @dataclass(frozen=True)
 class Traces:
-    """A motion at T instants; world, SI units.
+    """Sampled motion at T instants; world frame, SI units.
 
     frames: (T,) scene frames. bones: of the figure; heads, tails: (T, B, 3) m. com: (T, 3) m;
     velocity: (T, 3) m/s of it; momentum: (T, 3) N·m·s about it. contacts: names of the points that
@@ -45,11 +48,11 @@ class Traces:
     weight: float
     joints: tuple[str, ...]
     torques: FloatArray
-    flights: tuple[Flight, ...]
+    flights: tuple[FlightParabola, ...]
 
 
 def scaled_traces(traces: Traces, factor: float) -> Traces:
-    """Of a figure `factor` times as large: lengths times it, forces and torques as they were."""
+    """Traces of a figure `factor` times as large: lengths scaled, forces and torques kept."""
     lengths = ("heads", "tails", "com", "velocity", "points")
     flights = tuple(replace(f, parabola=factor * f.parabola) for f in traces.flights)
     scaled = {name: factor * getattr(traces, name) for name in lengths}

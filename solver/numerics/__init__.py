@@ -1,1 +1,1 @@
-"""General numerics: splines, rotations, block-banded factorisation, interpolation."""
+"""Numerical methods: B-splines, rotations, block-banded Cholesky, interpolation, threads."""

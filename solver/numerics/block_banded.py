@@ -1,4 +1,4 @@
-"""Cholesky factorisation of block-banded symmetric matrices, with numpy alone.
+"""Cholesky factorisation of block-banded SPD matrices, with numpy alone.
 
 Splines make every matrix of the method banded in time: coefficients four apart do not meet. So
 the unknowns are ordered by time in K blocks of n, and a block row holds at most `band` blocks
@@ -11,36 +11,43 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 
-BAND = 3
+BANDWIDTH = 3
 
 
 class BlockBanded:
-    """A symmetric block-banded matrix; lower[j][k] is the block in row k + j, column k."""
+    """Symmetric block-banded matrix of K blocks of n by n unknowns.
 
-    def __init__(self, blocks: int, size: int, band: int = BAND) -> None:
+    lower: (band + 1, K, n, n); lower[j][k] is the block in row k + j, column k.
+    """
+
+    def __init__(self, blocks: int, size: int, band: int = BANDWIDTH) -> None:
         self.lower = np.zeros((band + 1, blocks, size, size))
 
     @property
     def band(self) -> int:
+        """Block half-bandwidth: blocks left of the diagonal."""
         return len(self.lower) - 1
 
     def copy(self, band: int | None = None) -> "BlockBanded":
-        """A matrix of its own with the same entries, with room for a wider band."""
+        """Deep copy, optionally with a wider band."""
         _, blocks, size, _ = self.lower.shape
         twin = BlockBanded(blocks, size, self.band if band is None else band)
         twin.lower[: self.band + 1] = self.lower
         return twin
 
     def add_windows(self, first: IntArray, windows: FloatArray, part: slice = slice(None)) -> None:
-        """Adds dense (S, w, n, w, n) windows, w at most band + 1, whose first block row is
-        first (S,), all different; or those of a part of each block."""
+        """Assembly: adds dense (S, w, n, w, n) windows at block rows first (S,).
+
+        w is at most band + 1; first holds no index twice. part: the unknowns of each block that
+        the windows' n stand for.
+        """
         for row in range(windows.shape[1]):
             for column in range(row + 1):
                 block = self.lower[row - column][:, part, part]
                 block[first + column] += windows[:, row, :, column, :]
 
-    def changed(self, change: FloatArray) -> "BlockBanded":
-        """T' A T of each block with T (n, k), another basis of every block's unknowns."""
+    def congruent(self, change: FloatArray) -> "BlockBanded":
+        """Congruence T' A T, block by block, with T (n, k), a basis of every block's unknowns."""
         twin = BlockBanded(0, 0)
         twin.lower = change.T @ self.lower @ change
         return twin
@@ -51,7 +58,7 @@ class BlockBanded:
         self.lower[0][:, index, index] += values
 
     def times(self, x: FloatArray) -> FloatArray:
-        """The product with (K, n)."""
+        """Matrix-vector product (K, n) with x (K, n)."""
         lower = self.lower
         y = np.einsum("kij,kj->ki", lower[0], x)
         for j in range(1, self.band + 1):
@@ -59,8 +66,11 @@ class BlockBanded:
             y[:-j] += np.einsum("kij,ki->kj", lower[j][:-j], x[j:])
         return np.asarray(y)
 
-    def factor(self) -> "Factor":
-        """Cholesky factor. Raises numpy.linalg.LinAlgError if the matrix is not positive."""
+    def factor(self) -> "CholeskyFactor":
+        """Cholesky factor, right-looking by blocks (Golub and Van Loan 2013, ch. 4.3).
+
+        Raises numpy.linalg.LinAlgError if the matrix is not positive definite.
+        """
         lower = self.lower.copy()
         _, count, n, _ = lower.shape
         inverse = np.empty((count, n, n))
@@ -73,22 +83,22 @@ class BlockBanded:
             for row in range(reach):
                 for column in range(row + 1):
                     lower[row - column][k + 1 + column] -= update[row, :, column, :]
-        return Factor(inverse, lower[1:])
+        return CholeskyFactor(inverse, lower[1:])
 
 
 @dataclass(frozen=True)
-class Factor:
-    """A Cholesky factor: inverses of its diagonal blocks and the blocks below them."""
+class CholeskyFactor:
+    """Block Cholesky factor L: inverses of its diagonal blocks and the blocks below them."""
 
     inverse: FloatArray  # (K, n, n)
     below: FloatArray  # (band, K, n, n)
 
     def solve(self, b: FloatArray) -> FloatArray:
-        """x (K, n) with matrix times x = b (K, n)."""
+        """x of A x = b, both (K, n) or (K, n, m)."""
         return self.backward(self.forward(b))
 
     def forward(self, b: FloatArray) -> FloatArray:
-        """L^-1 b, for b (K, n) or many at once (K, n, m)."""
+        """Forward substitution L^-1 b, b (K, n) or (K, n, m)."""
         x = np.array(b)
         band, count = len(self.below), len(x)
         for k in range(count):
@@ -98,7 +108,7 @@ class Factor:
         return x
 
     def backward(self, b: FloatArray) -> FloatArray:
-        """L^-T b, for b (K, n) or many at once (K, n, m)."""
+        """Back substitution L^-T b, b (K, n) or (K, n, m)."""
         x = np.array(b)
         band, count = len(self.below), len(x)
         for k in reversed(range(count)):

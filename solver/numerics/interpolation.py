@@ -1,4 +1,4 @@
-"""Interpolation of samples over time."""
+"""Local cubic Lagrange interpolation of samples over time."""
 
 import numpy as np
 
@@ -6,7 +6,10 @@ from ..arrays import FloatArray
 
 
 def interpolate(times: FloatArray, samples: FloatArray, at: FloatArray) -> FloatArray:
-    """(N, ...) cubic (four-point Lagrange) interpolation of (T, ...) samples at instants (N,)."""
+    """(N, ...) four-point Lagrange interpolation of (T, ...) samples at instants (N,).
+
+    times: (T,) ascending, T at least 4, in the unit of `at`. Raises ValueError if T is less.
+    """
     count = len(times)
     if count < 4:
         raise ValueError("four samples are needed")

@@ -1,4 +1,4 @@
-"""Sharing array work among threads: numpy and CasADi let go of Python's lock while they compute."""
+"""Data-parallel array work in threads: numpy and CasADi release Python's lock as they compute."""
 
 import itertools
 import os
@@ -8,12 +8,12 @@ from functools import cache
 
 import numpy as np
 
-MOST = 4
+MAX_THREADS = 4
 
 
-def in_threads(work: Callable[[slice], object], count: int, fewest: int) -> None:
-    """Calls work on slices that together cover range(count), at least `fewest` each."""
-    workers = min(MOST, os.cpu_count() or 1, count // fewest)
+def in_threads(work: Callable[[slice], object], count: int, chunk: int) -> None:
+    """Calls `work` on slices that partition range(count), at least `chunk` items each."""
+    workers = min(MAX_THREADS, os.cpu_count() or 1, count // chunk)
     if workers < 2:
         work(slice(0, count))
         return
@@ -27,5 +27,5 @@ def in_threads(work: Callable[[slice], object], count: int, fewest: int) -> None
 
 @cache
 def _pool() -> ThreadPoolExecutor:
-    """One for the process: starting threads for every call would take longer than some calls."""
-    return ThreadPoolExecutor(MOST, thread_name_prefix="hangtime")
+    """One thread pool for the process: starting threads takes longer than some calls."""
+    return ThreadPoolExecutor(MAX_THREADS, thread_name_prefix="hangtime")

@@ -1,4 +1,12 @@
-"""Rotation matrices, vectorised over leading axes. Angles in rad."""
+"""Rotation matrices and rotation vectors, vectorised over leading axes. Angles in rad.
+
+Results must not depend on where in memory arrays happen to lie, or two processes end in different
+motions: iterations make a millimetre of a last bit. So sines, arctan2 and the like are taken of
+samples that lie side by side. For samples with gaps between them (a column, an entry of every
+matrix) numpy 1 has, on processors with AVX-512, two versions that round differently, and takes the
+slow one where input and output seem to overlap: also where the output merely begins within a gap's
+length of the input's end.
+"""
 
 import numpy as np
 
@@ -6,8 +14,8 @@ from ..arrays import FloatArray
 
 
 def axis_rotation(axis: int, angle: FloatArray | float) -> FloatArray:
-    """(..., 3, 3) rotations by `angle` (...) about coordinate axis 0, 1 or 2."""
-    angle = np.asarray(angle, dtype=float)
+    """(..., 3, 3) elementary rotations by `angle` (...), rad, about coordinate axis 0, 1 or 2."""
+    angle = np.array(angle, dtype=float, order="C")  # side by side: see above
     c, s = np.cos(angle), np.sin(angle)
     i, j = (axis + 1) % 3, (axis + 2) % 3
     R = np.zeros((*angle.shape, 3, 3))
@@ -20,8 +28,11 @@ def axis_rotation(axis: int, angle: FloatArray | float) -> FloatArray:
 
 
 def rotation_vector(R: FloatArray) -> FloatArray:
-    """(..., 3) rotation vectors of (..., 3, 3) rotations, angle in [0, pi]."""
-    # The quaternion of largest component is safe at every angle, pi included (Shepperd 1978).
+    """(..., 3) rotation vectors, rad, of (..., 3, 3) rotations: the logarithm, angle in [0, pi].
+
+    By way of the quaternion of largest component (Shepperd 1978).
+    """
+    # The largest component keeps this safe at every angle, pi included.
     trace = np.trace(R, axis1=-2, axis2=-1)
     diagonal = np.diagonal(R, axis1=-2, axis2=-1)
     q = np.empty((*R.shape[:-2], 4, 4))
@@ -46,7 +57,7 @@ def rotation_vector(R: FloatArray) -> FloatArray:
 
 
 def rotation_matrix(vector: FloatArray) -> FloatArray:
-    """(..., 3, 3) rotations of (..., 3) rotation vectors (Rodrigues)."""
+    """(..., 3, 3) rotations of (..., 3) rotation vectors, rad: the exponential (Rodrigues)."""
     vector = np.asarray(vector, dtype=float)
     angle = np.linalg.norm(vector, axis=-1)[..., None, None]
     K = cross_matrix(vector)
@@ -56,7 +67,7 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
 
 
 def cross_matrix(v: FloatArray) -> FloatArray:
-    """(..., 3, 3) matrices with cross_matrix(v) @ w = v x w."""
+    """(..., 3, 3) skew-symmetric matrices of v (..., 3): cross_matrix(v) @ w = v x w."""
     v = np.asarray(v, dtype=float)
     K = np.zeros((*v.shape[:-1], 3, 3))
     K[..., 0, 1], K[..., 0, 2] = -v[..., 2], v[..., 1]
@@ -66,17 +77,17 @@ def cross_matrix(v: FloatArray) -> FloatArray:
 
 
 def mean_rotation(R: FloatArray) -> FloatArray:
-    """(3, 3) chordal mean of (T, 3, 3) rotations: the rotation nearest to their average."""
+    """(3, 3) chordal mean of (T, 3, 3) rotations: the projection of their average onto SO(3)."""
     u, _, vt = np.linalg.svd(R.mean(axis=0))
     return np.asarray(u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt)
 
 
 def unit(v: FloatArray) -> FloatArray:
-    """(..., 3) vectors scaled to length 1."""
+    """(..., 3) vectors normalised to length 1; NaN for zero."""
     return np.asarray(v / np.linalg.norm(v, axis=-1, keepdims=True))
 
 
 def perpendicular(v: FloatArray) -> FloatArray:
-    """(3,) some unit vector at right angles to the unit vector v."""
+    """(3,) a unit vector orthogonal to the unit vector v (3,)."""
     other = np.eye(3)[int(np.argmin(np.abs(v)))]
     return unit(np.cross(v, other))

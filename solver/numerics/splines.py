@@ -1,4 +1,4 @@
-"""Cubic B-splines whose knots fall on the phase boundaries (findings: physics between the nodes).
+"""Cubic B-spline basis with knots at phase boundaries (thesis 4).
 
 A boundary is a double knot: position and velocity are continuous there, acceleration may jump.
 Contact forces live in the matching space of second derivatives: linear in each span, continuous
@@ -20,11 +20,11 @@ ORDER = DEGREE + 1
 
 
 @dataclass(frozen=True)
-class Basis:
-    """A cubic B-spline basis over [breaks[0], breaks[-1]] s.
+class SplineBasis:
+    """Cubic B-spline basis over [breaks[0], breaks[-1]] s, clamped at both ends.
 
-    breaks: (n_spans + 1,) increasing instants. double: (n_spans + 1,) bool, which interior
-    breaks are double knots.
+    breaks: (n_spans + 1,) increasing breakpoints, s. double: (n_spans + 1,) bool, which interior
+    breakpoints are double knots.
     """
 
     breaks: FloatArray
@@ -32,16 +32,19 @@ class Basis:
 
     @property
     def n_spans(self) -> int:
+        """Number of polynomial pieces."""
         return len(self.breaks) - 1
 
     @cached_property
     def knots(self) -> FloatArray:
+        """(n_coefficients + 4,) knot vector, s, with fourfold ends."""
         inner = np.repeat(self.breaks[1:-1], 1 + self.double[1:-1])
         ends = self.breaks[[0, -1]]
         return np.concatenate([np.repeat(ends[0], ORDER), inner, np.repeat(ends[1], ORDER)])
 
     @property
     def n_coefficients(self) -> int:
+        """Number of control points."""
         return len(self.knots) - ORDER
 
     @cached_property
@@ -50,41 +53,36 @@ class Basis:
         jumps = np.concatenate([[0], np.cumsum(1 + self.double[1:-1].astype(int))])
         return np.asarray(jumps, dtype=int)
 
-    @property
-    def n_force_nodes(self) -> int:
-        """Values of a piecewise linear force: one at a single knot, two at a double knot."""
-        return self.n_coefficients - 2
-
     def spans(self, times: FloatArray) -> IntArray:
-        """(T,) index of the span of each instant; a break belongs to the span after it."""
+        """(T,) index of the span of each instant, s; a breakpoint belongs to the span after it."""
         inside = np.searchsorted(self.breaks, times, side="right") - 1
         return np.clip(inside, 0, self.n_spans - 1)
 
     def evaluate(
         self, times: FloatArray, derivative: int = 0, spans: IntArray | None = None
     ) -> FloatArray:
-        """(T, 4) values (or derivatives) of the four basis functions of each instant's span.
+        """(T, 4) values, or derivatives by s, of the four basis functions of each instant's span.
 
-        spans: which span each instant is taken to be in, for the two sides of a break.
+        spans: (T,) the span each instant is taken to be in, for one-sided limits at a breakpoint.
         """
         spans = self.spans(times) if spans is None else spans
         last = self.first_coefficient[spans] + DEGREE  # knots[last] <= t < knots[last + 1]
         return _basis_functions(self.knots, last, np.asarray(times, dtype=float), derivative)
 
     def force_nodes(self, spans: IntArray) -> IntArray:
-        """(S, 2) indices of the force values at the start and end of each span."""
+        """(S, 2) indices of the force nodes at the start and end of each span (S,)."""
         first = self.first_coefficient[spans]
         return np.stack([first, first + 1], axis=-1)
 
     def force_weights(self, times: FloatArray, spans: IntArray | None = None) -> FloatArray:
-        """(T, 2) weights of the two force values of each instant's span."""
+        """(T, 2) linear interpolation weights of the two force nodes of each instant's span."""
         spans = self.spans(times) if spans is None else spans
         start, end = self.breaks[spans], self.breaks[spans + 1]
         w = (times - start) / (end - start)
         return np.stack([1.0 - w, w], axis=-1)
 
     def matrix(self, times: FloatArray, derivative: int = 0) -> FloatArray:
-        """(T, n_coefficients) collocation matrix."""
+        """(T, n_coefficients) collocation matrix of values, or of derivatives by s."""
         spans = self.spans(times)
         values = self.evaluate(times, derivative, spans)
         full = np.zeros((len(times), self.n_coefficients))
@@ -95,17 +93,17 @@ class Basis:
     def combine(
         self, coefficients: FloatArray, times: FloatArray, derivative: int = 0
     ) -> FloatArray:
-        """(T, n) spline values of (n_coefficients, n) coefficients."""
+        """(T, n) spline values, or derivatives by s, of (n_coefficients, n) coefficients."""
         spans = self.spans(times)
         values = self.evaluate(times, derivative, spans)
         columns = self.first_coefficient[spans][:, None] + np.arange(ORDER)
         return np.asarray(np.einsum("tk,tkn->tn", values, coefficients[columns]))
 
     def project(self, times: FloatArray, samples: FloatArray, smooth: float = 1e-12) -> FloatArray:
-        """(n_coefficients, n) least-squares spline of (T, n) samples.
+        """(n_coefficients, n) penalised least-squares fit of (T, n) samples at times (T,), s.
 
-        smooth: weight of the squared third derivative, just enough to settle spans that hold
-        too few samples.
+        smooth: weight of the squared third derivative (a P-spline's penalty), just enough to
+        settle spans that hold too few samples.
         """
         B = self.matrix(times)
         middles = 0.5 * (self.breaks[:-1] + self.breaks[1:])
@@ -113,10 +111,11 @@ class Basis:
         normal = B.T @ B + smooth * len(times) * third.T @ third
         return np.asarray(np.linalg.solve(normal, B.T @ samples))
 
-    def coarse_to(self, finer: "Basis", coefficients: FloatArray) -> FloatArray:
-        """Coefficients of the same curve on a finer basis (whose knots contain this one's).
+    def insert_knots(self, finer: "SplineBasis", coefficients: FloatArray) -> FloatArray:
+        """Knot insertion: (n, m) coefficients of the same curve on a finer basis.
 
-        A coefficient is its piece's polar form at three consecutive knots (Ramshaw 1989).
+        The finer basis's knots must contain this one's. A coefficient is its piece's polar form
+        (blossom) at three consecutive knots (Ramshaw 1989).
         """
         spans = np.searchsorted(finer.first_coefficient, np.arange(finer.n_coefficients), "right")
         own = np.maximum(spans - 1, 0)  # a finer span in which each coefficient acts
@@ -140,7 +139,7 @@ class Basis:
 def _basis_functions(
     knots: FloatArray, last: IntArray, t: FloatArray, derivative: int
 ) -> FloatArray:
-    """Cox-de Boor recursion for many instants at once (de Boor, A Practical Guide, ch. X)."""
+    """(T, 4) Cox-de Boor recursion for many instants at once (de Boor 1978, ch. X)."""
     degree = DEGREE - derivative
     values = np.ones((len(t), 1))
     for p in range(1, degree + 1):
@@ -159,6 +158,7 @@ def _basis_functions(
 def _raise_degree(
     knots: FloatArray, last: IntArray, t: FloatArray, values: FloatArray, p: int
 ) -> FloatArray:
+    """(T, p + 1) basis functions of degree p from (T, p) of degree p - 1 (de Boor 1978, ch. X)."""
     raised = np.zeros((len(t), p + 1))
     for i in range(p):
         left, right = knots[last - p + 1 + i], knots[last + 1 + i]
@@ -169,7 +169,10 @@ def _raise_degree(
 
 
 def gauss_instants(breaks: FloatArray, per_span: int) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Gauss-Legendre instants in every span: (times, weights in s, span indices), each flat."""
+    """Gauss-Legendre quadrature in every span: times, s, weights, s, and span indices.
+
+    Each is flat, (n_spans * per_span,).
+    """
     nodes, weights = np.polynomial.legendre.leggauss(per_span)  # type: ignore[no-untyped-call]
     half = 0.5 * np.diff(breaks)
     middle = 0.5 * (breaks[:-1] + breaks[1:])
@@ -181,9 +184,10 @@ def gauss_instants(breaks: FloatArray, per_span: int) -> tuple[FloatArray, Float
 def phase_breaks(
     boundaries: Sequence[float], extra: Sequence[float], longest: float
 ) -> tuple[FloatArray, BoolArray]:
-    """Breaks and double flags: every boundary (double inside) and extra instant, spans <= longest.
+    """Breakpoints (n,), s, and double-knot flags (n,) from phase boundaries.
 
-    boundaries: sorted instants including both ends. extra: instants that are single knots.
+    boundaries: sorted instants including both ends; inner ones are double knots. extra: instants
+    that are single knots. No span is longer than `longest`, s.
     """
     fixed = sorted({*boundaries, *extra})
     breaks: list[float] = []

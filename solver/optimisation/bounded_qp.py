@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..numerics.block_banded import Factor
+from ..numerics.block_banded import CholeskyFactor
 from ..transcription.rows import violation
 
 CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
@@ -33,7 +33,7 @@ class BoundedStep:
 
     def __init__(
         self,
-        factor: Factor,
+        factor: CholeskyFactor,
         columns: Callable[[IntArray], FloatArray],
         bounds: tuple[FloatArray, FloatArray],
         tolerance: FloatArray,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..numerics.block_banded import BlockBanded, Factor
+from ..numerics.block_banded import BlockBanded, CholeskyFactor
 from ..numerics.parallel import in_threads
 from ..numerics.splines import ORDER
 from ..transcription.rows import RowKind, Rows, by_kind
@@ -94,7 +94,7 @@ class _SpanRows:
         return columns
 
 
-def _factor(system: BlockBanded) -> Factor:
+def _factor(system: BlockBanded) -> CholeskyFactor:
     """Cholesky factor; far from any motion rounding can spoil it, and a small ridge mends that."""
     try:
         return system.factor()
@@ -121,7 +121,7 @@ class LinearisedProblem:
     ) -> None:
         self._transcription, self._basis = transcription, basis
         self.rows = rows
-        self._metric = metric if basis is None else metric.changed(basis)
+        self._metric = metric if basis is None else metric.congruent(basis)
         self._blocks = transcription.basis.n_coefficients
         self._scale = by_kind(rows.kind, ROW_SCALES)
         self._tolerance = rows.tolerance

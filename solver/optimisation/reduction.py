@@ -221,7 +221,7 @@ def _across(character: Character) -> FloatArray:
     for side in (Side.LEFT, Side.RIGHT):
         thigh = character.body(Part.THIGH, side)
         assert thigh is not None  # no figure is built without thighs
-        linearised = character.lineage(thigh)  # at rest, every body's frame is the world's
+        linearised = character.ancestors(thigh)  # at rest, every body's frame is the world's
         hips.append(np.sum([character.joints[body].offset for body in linearised], axis=0))
     return unit(hips[0] - hips[1])
 

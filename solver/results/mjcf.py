@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
-from ..body.kinematics import BodyPoint, pose
+from ..body.kinematics import BodyPoint, forward_kinematics
 from ..transcription.motion import Motion
 
 ROOT_SIZE = 6  # velocities of the free joint
@@ -104,7 +104,7 @@ class Swing:
 
 def swing(character: Character, q: FloatArray, v: FloatArray, a: FloatArray) -> Swing:
     """Motion of all bodies at (N, n_angles) angles, their velocities and accelerations."""
-    posed = pose(character, q)
+    posed = forward_kinematics(character, q)
     count = (len(q), len(character.bodies), 3)
     omega, alpha = np.zeros(count), np.zeros(count)
     joint_v, joint_a = np.zeros(count), np.zeros(count)

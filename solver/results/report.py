@@ -12,9 +12,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..body.character import Character
-from ..body.dynamics import GRAVITY
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase, PhaseKind
-from ..data.problem import Axes3, MotionProblem, Pin
+from ..data.problem import MotionProblem, OffsetAxes, Pin
 from ..data.requests import ConeShape, Dynamics, Method
 from ..optimisation.sqp import Outcome
 from ..stages.fit import Fit
@@ -122,7 +122,7 @@ def _figure(fit: Fit, motion: Motion, problem: MotionProblem) -> Json:
 
 
 def _pin(pin: Pin) -> Json:
-    axes = "offset_world_m" if pin.axes is Axes3.WORLD else "offset_forward_left_up_m"
+    axes = "offset_world_m" if pin.axes is OffsetAxes.WORLD else "offset_forward_left_up_m"
     return {
         "name": pin.name,
         "phase": pin.phase,
@@ -225,7 +225,7 @@ def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> Json:
 def _forces(motion: Motion, adaptation: Adaptation) -> Json:
     fit = adaptation.fit
     times = instants(motion.duration, RATE)
-    forces = motion.forces(times) / (motion.transcription.character.mass * GRAVITY)
+    forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
     ground = forces.sum(axis=1)
     total = np.linalg.norm(ground, axis=1)
     # Where the ground hardly carries, a shoe may slip a little; that is no need of friction.

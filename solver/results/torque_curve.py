@@ -12,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import FloatArray
-from ..body.dynamics import GRAVITY
-from ..numerics.splines import Basis, phase_breaks
+from ..data.constants import STANDARD_GRAVITY
+from ..numerics.splines import SplineBasis, phase_breaks
 from ..transcription.motion import Motion
 from ..transcription.sampling import Instants, State
 from ..transcription.torque_constraint import TorqueFunction
@@ -28,7 +28,7 @@ PER_SPAN = 8
 class Piece:
     """One stretch without a jump: basis over it, coefficients (K, m) N·m."""
 
-    basis: Basis
+    basis: SplineBasis
     coefficients: FloatArray
 
 
@@ -64,7 +64,7 @@ def torque_curve(
     while True:
         pieces, squares, count = [], 0.0, 0
         for times, values in stretches:
-            basis = Basis(*phase_breaks([times[0], times[-1]], [], span))
+            basis = SplineBasis(*phase_breaks([times[0], times[-1]], [], span))
             piece = Piece(basis, basis.project(times, values))
             pieces.append(piece)
             squares = squares + ((basis.combine(piece.coefficients, times) - values) ** 2).sum(0)
@@ -79,7 +79,7 @@ def exact_torques(motion: Motion, torques: TorqueFunction, times: FloatArray) ->
     """(T, m) N·m, by inverse dynamics."""
     t = motion.transcription
     state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
-    return torques.value(state) * t.character.mass * GRAVITY
+    return torques.value(state) * t.character.mass * STANDARD_GRAVITY
 
 
 def _stretches(motion: Motion) -> Iterator[FloatArray]:

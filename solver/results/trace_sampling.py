@@ -9,11 +9,11 @@ import numpy as np
 from ..analysis.performance import Performance, contact_points
 from ..arrays import FloatArray
 from ..body.character import Character
-from ..body.dynamics import GRAVITY
 from ..body.inverse_dynamics import InverseDynamics
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.recording import Recording
-from ..data.traces import Flight, Traces
+from ..data.traces import FlightParabola, Traces
 from ..transcription.motion import Motion, motion_inverse_dynamics
 
 PARABOLA_POINTS = 25
@@ -91,7 +91,7 @@ def motion_traces(
         contacts=tuple(names.get(i, "") for i in range(len(motion.transcription.points))),
         points=motion.contact_points(times),
         forces=motion.forces(times),
-        weight=character.mass * GRAVITY,
+        weight=character.mass * STANDARD_GRAVITY,
         joints=() if dynamics is None else tuple(body.bone for body in character.bodies[1:]),
         torques=_torques(motion, times, dynamics),
         flights=tuple(
@@ -139,7 +139,7 @@ def _momentum(
     return np.asarray((masses * np.cross(arm, speed) + whirl).sum(axis=1))
 
 
-def _flight(motion: Motion, phase: Phase, first: float, per_second: float) -> Flight:
+def _flight(motion: Motion, phase: Phase, first: float, per_second: float) -> FlightParabola:
     times = np.linspace(phase.start, min(phase.end, motion.duration), PARABOLA_POINTS)
     ends = (first + per_second * phase.start, first + per_second * phase.end)
-    return Flight(phase.name, *ends, motion.com(times))
+    return FlightParabola(phase.name, *ends, motion.com(times))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.character import Character
-from ..body.dynamics import GRAVITY
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase
 from ..data.problem import MotionProblem
 from ..stages.fit import Fit
@@ -99,7 +99,7 @@ def shown(amount: float, kind: RowKind, character: Character) -> tuple[float, st
     if kind in (RowKind.PIN, RowKind.POINT):
         return 1000.0 * amount, "mm"
     if kind is RowKind.TORQUE:
-        return amount * character.mass * GRAVITY, "N·m beyond the limit"
+        return amount * character.mass * STANDARD_GRAVITY, "N·m beyond the limit"
     if kind.unit == "rad":
         return math.degrees(amount), "degrees"
     return amount, kind.unit

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.anatomy import Part
-from ..body.kinematics import BodyPoint, pose
+from ..body.kinematics import BodyPoint, forward_kinematics
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
 from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants
@@ -51,10 +51,10 @@ def _turn_arm(
     start = contact.contact.start - EASE_IN
     during = np.flatnonzero((times >= start) & (times <= contact.contact.end))
     moved = angles[during]
-    pelvis = pose(character, moved).centres[:, 0] + motion.com(times[during])
+    pelvis = forward_kinematics(character, moved).centres[:, 0] + motion.com(times[during])
     chain = _chain(motion, point.body)
     for _ in range(IK_ITERATIONS):
-        posed = pose(character, moved)
+        posed = forward_kinematics(character, moved)
         at = posed.points([point])[:, 0] - posed.centres[:, 0] + pelvis
         pelvis_jacobian = posed.point_jacobian([BodyPoint(0, np.zeros(3))])
         jacobian = (posed.point_jacobian([point]) - pelvis_jacobian)[:, 0]
@@ -70,6 +70,6 @@ def _turn_arm(
 def _chain(motion: Motion, body: int) -> IntArray:
     """Kinematic chain: indices of the angles of the joints from the shoulder to a body."""
     character = motion.transcription.character
-    bodies = {body, *character.lineage(body)}
+    bodies = {body, *character.ancestors(body)}
     joints = [character.joints[b] for b in sorted(bodies) if character.bodies[b].part in ARM]
     return np.concatenate([np.arange(j.first, j.dofs.stop) for j in joints])

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..body.dynamics import GRAVITY
+from ..data.constants import STANDARD_GRAVITY
 from ..data.faults import NothingTouches, WrongAngle
 from ..data.requests import ForceRequest, Requests, TorqueLimit
 from ..transcription.constraint import Bounds, Constraint
@@ -67,7 +67,7 @@ def _torque_limit(
         angles += mine
         bounds += [max(bound, LIMP_TORQUE)] * len(mine)
     function = TorqueFunction(context.character, transcription.points, angles)
-    unit_nm = context.character.mass * GRAVITY
+    unit_nm = context.character.mass * STANDARD_GRAVITY
     middle, half = request.value / unit_nm, np.array(bounds) / unit_nm
     return Constraint(request.name, function, Bounds(middle - half, middle + half), *span)
 
@@ -81,7 +81,7 @@ def _peak_torque(
     function = TorqueFunction(t.character, t.points, angles)
     times = np.unique(context.reference_times(np.linspace(*span, 400)))
     state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
-    return float(np.abs(function.value(state)).max()) * t.character.mass * GRAVITY
+    return float(np.abs(function.value(state)).max()) * t.character.mass * STANDARD_GRAVITY
 
 
 def _peak_limit(

@@ -9,7 +9,7 @@ from ..data.contacts import Contact, ContactSchedule
 from ..data.faults import BadTiming, FreePoint, NothingTouches, TakenName, UnknownPhaseIn
 from ..data.problem import MotionProblem
 from ..data.requests import ConeShape, PointRequest
-from ..data.timeline import SHORTEST_PHASE
+from ..data.timeline import MIN_PHASE_DURATION
 from ..transcription.contact_pins import PlaceTrajectory, PointContact
 from .evaluation_context import EvaluationContext, touches
 from .point_constraints import path_places, point_axes, point_place
@@ -43,7 +43,7 @@ def added_contact(request: PointRequest, context: EvaluationContext) -> Contact:
     """
     body = context.body(request.name, request.bone)
     span = context.interval(request.name, request.when)
-    if span[1] - span[0] < SHORTEST_PHASE:
+    if span[1] - span[0] < MIN_PHASE_DURATION:
         raise BadTiming(request.name, span[1] - span[0])
     if any(request.name in (c.name, c.point) for c in context.schedule.contacts):
         raise TakenName(request.name)

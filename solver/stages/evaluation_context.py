@@ -13,7 +13,7 @@ from ..data.contacts import Contact, ContactSchedule, Phase
 from ..data.faults import RootHasNoJoint, StillBone
 from ..data.recording import Recording
 from ..data.requests import When
-from ..data.timeline import Timeline, interval
+from ..data.timeline import Timeline, active_interval
 from ..transcription.motion import Motion
 
 APEX_SAMPLING_RATE = 240.0  # Hz
@@ -51,7 +51,7 @@ class EvaluationContext:
 
     def interval(self, name: str, when: When) -> tuple[float, float]:
         """Start and end, s, on the new time. Raises UnknownPhaseIn, BadTiming."""
-        return interval(name, when, self.timeline, self.phases, self.apex)
+        return active_interval(name, when, self.timeline, self.phases, self.apex)
 
     def body(self, name: str, bone: str) -> int:
         """Index of a bone's body. Raises StillBone."""

@@ -12,15 +12,16 @@ import numpy as np
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
-from ..body.dynamics import GRAVITY, MomentFunction
-from ..body.kinematics import BodyPoint, pose
+from ..body.dynamics import MomentFunction
+from ..body.kinematics import BodyPoint, forward_kinematics
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Contact, ContactSchedule
 from ..data.recording import Recording
 from ..data.requests import BodyChange
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..numerics.interpolation import interpolate
-from ..numerics.splines import Basis, gauss_instants, phase_breaks
+from ..numerics.splines import SplineBasis, gauss_instants, phase_breaks
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
 from ..transcription.contact_pins import PointContact, touching_spans
 from ..transcription.motion import (
@@ -180,10 +181,10 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
     old = motion.transcription
     breaks = split_spans(old.basis.breaks, spans)
     double = np.isin(breaks, old.basis.breaks[old.basis.double])
-    basis = Basis(breaks, double)
+    basis = SplineBasis(breaks, double)
     new = replace(old, basis=basis)
     x = np.zeros((basis.n_coefficients, old.layout.n_block))
-    x[:, old.layout.motion] = old.basis.coarse_to(basis, motion.x[:, old.layout.motion])
+    x[:, old.layout.motion] = old.basis.insert_knots(basis, motion.x[:, old.layout.motion])
     inner = np.arange(basis.n_spans)
     nodes = basis.force_nodes(inner)
     middles = 0.5 * (breaks[:-1] + breaks[1:])
@@ -213,7 +214,7 @@ def motion_target(motion: Motion) -> TrackingTarget:
     t = motion.transcription
     com = t.basis.combine(motion.x[:, t.layout.com], t.node_times)
     q, a = (t.angles_at_nodes(motion.x, k) for k in (0, 2))
-    markers = pose(t.character, q).points(marker_points(t.character)) + com[:, None]
+    markers = forward_kinematics(t.character, q).points(marker_points(t.character)) + com[:, None]
     return TrackingTarget(markers, com, a, motion.x[:, t.layout.forces])
 
 
@@ -251,13 +252,13 @@ def point_contacts(
 
 def _coarsest_basis(
     performance: Performance, boundaries: Sequence[float], extra: Sequence[float]
-) -> Basis:
+) -> SplineBasis:
     """Basis with the fewest knots that follows the recording; `refine` adds more for physics."""
     for longest in CANDIDATE_SPANS:
-        basis = Basis(*phase_breaks(boundaries, extra, longest))
+        basis = SplineBasis(*phase_breaks(boundaries, extra, longest))
         angles = recorded_spline(basis, performance, performance.angles)
-        posed = pose(performance.character, basis.combine(angles, performance.times))
-        off = posed.centres - pose(performance.character, performance.angles).centres
+        posed = forward_kinematics(performance.character, basis.combine(angles, performance.times))
+        off = posed.centres - forward_kinematics(performance.character, performance.angles).centres
         if np.sqrt((off**2).sum(axis=2).mean(axis=0)).max() < SPLINE_FIT_TOLERANCE:
             break
     return basis
@@ -305,7 +306,7 @@ def initial_guess(transcription: Transcription, performance: Performance) -> Flo
     x[:, layout.angles] = recorded_spline(basis, performance, performance.angles)
     spans = np.arange(basis.n_spans)
     middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
-    load = basis.combine(x[:, layout.com], middles, 2)[:, 2] / GRAVITY + 1.0
+    load = basis.combine(x[:, layout.com], middles, 2)[:, 2] / STANDARD_GRAVITY + 1.0
     blocks = layout.force_block(basis.force_nodes(spans))
     for contact in transcription.contacts:
         inside = touching_spans(basis, contact.contact)
@@ -319,7 +320,9 @@ def initial_guess(transcription: Transcription, performance: Performance) -> Flo
     return x
 
 
-def recorded_spline(basis: Basis, performance: Performance, samples: FloatArray) -> FloatArray:
+def recorded_spline(
+    basis: SplineBasis, performance: Performance, samples: FloatArray
+) -> FloatArray:
     """(n_coefficients, n) least-squares spline of samples (T, n) at the recording's frames.
 
     Fitted between the frames too: a short span may hold no frame, and a spline that nothing holds
@@ -344,12 +347,12 @@ def recorded_target(
     )
 
 
-def greville_abscissae(basis: Basis) -> FloatArray:
+def greville_abscissae(basis: SplineBasis) -> FloatArray:
     """(n_coefficients,) Greville abscissae, s: the instant that each coefficient stands for."""
     k = basis.knots
     return np.asarray((k[1:-3] + k[2:-2] + k[3:-1]) / 3.0)
 
 
-def dense_instants(basis: Basis, per_span: int = 4) -> FloatArray:
+def dense_instants(basis: SplineBasis, per_span: int = 4) -> FloatArray:
     """Gauss instants, s, that determine a spline on this basis."""
     return gauss_instants(basis.breaks, per_span)[0]

@@ -63,11 +63,11 @@ class Follower:
         x = warm_start(self.motion, stance_moves(self.setup.schedule, was, target))
         if not self._step(x, target):
             self.motion, self._linearised = self._held, None
-            return DragStatus.LOST
+            return DragStatus.DIVERGED
         if self.violation < NEAR_FEASIBLE:
             self._held = self.motion
         there = steps == 1 and self.violation <= 1.0
-        return DragStatus.ARRIVED if there else DragStatus.ON_ITS_WAY
+        return DragStatus.CONVERGED if there else DragStatus.CONVERGING
 
     def _set_up(self, problem: MotionProblem) -> None:
         """Sets up for other requests, from the same unknowns where basis and layout allow."""

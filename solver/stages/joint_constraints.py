@@ -5,6 +5,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..body.anatomy import Part
 from ..body.character import Body
+from ..body.human_limits import MIN_BEND_SINE
 from ..data.faults import BadTiming
 from ..data.requests import (
     AngleLimit,
@@ -25,8 +26,6 @@ from ..transcription.constraint_functions import (
 )
 from .evaluation_context import EvaluationContext
 
-MIN_BEND = 0.05  # of a bone's length; a joint that bends less does not tell its direction
-
 
 def bend_limit(request: AngleLimit, context: EvaluationContext) -> Constraint:
     """Raises StillBone, RootHasNoJoint, UnknownPhaseIn, BadTiming."""
@@ -46,7 +45,7 @@ def bend_function(context: EvaluationContext, body: int) -> BendAngle:
     turned = joint.axes.rotation(context.reference.angles(times)[:, joint.dofs]) @ along
     mean = turned.mean(axis=0)
     across = mean - straight * (mean @ straight)
-    if np.linalg.norm(across) < MIN_BEND:
+    if np.linalg.norm(across) < MIN_BEND_SINE:
         across = _expected_flexion(character.bodies[body], straight)
     return BendAngle(joint, along, straight, unit(across))
 
@@ -56,7 +55,7 @@ def _expected_flexion(body: Body, straight: FloatArray) -> FloatArray:
     forward = body.box_rotation[:, 1]
     forward = -forward if body.part is Part.SHANK else forward
     across = forward - straight * (forward @ straight)
-    return across if np.linalg.norm(across) > MIN_BEND else perpendicular(straight)
+    return across if np.linalg.norm(across) > MIN_BEND_SINE else perpendicular(straight)
 
 
 def cone_limit(request: ConeLimit, context: EvaluationContext) -> Constraint:

@@ -5,7 +5,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..body.body_changes import changed_points
 from ..body.character import Character
-from ..body.kinematics import pose
+from ..body.kinematics import forward_kinematics
 from ..transcription.motion import Motion
 from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants
 
@@ -31,7 +31,7 @@ def reseat(motion: Motion, character: Character) -> FloatArray:
 def _com_shift(motion: Motion, character: Character, times: FloatArray) -> FloatArray:
     """(T, 3) displacement of the centre of mass that keeps contact points in place, m."""
     t = motion.transcription
-    old, new = motion.pose(times), pose(character, motion.angles(times))
+    old, new = motion.pose(times), forward_kinematics(character, motion.angles(times))
     off = old.centres[:, 0] - new.centres[:, 0]  # with the root where it was
     pinned = np.array([(c.pin_start <= times) & (times <= c.pin_end) for c in t.contacts])
     if not pinned.any():

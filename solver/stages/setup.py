@@ -14,8 +14,9 @@ import numpy as np
 from ..analysis.pinned_places import pinned_places, travel_axes
 from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
-from ..body.dynamics import GRAVITY, MomentFunction
+from ..body.dynamics import MomentFunction
 from ..body.proportions import changed_recording
+from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule, Phase
 from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
@@ -23,7 +24,7 @@ from ..data.recording import Recording
 from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Requests
 from ..data.timeline import timeline
 from ..numerics.block_banded import BlockBanded
-from ..numerics.splines import Basis, phase_breaks
+from ..numerics.splines import SplineBasis, phase_breaks
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
 from ..transcription.motion import Motion
@@ -242,14 +243,16 @@ def _start(
     if coarse is None:
         basis = _mapped_basis(t.basis, context, extra)
     else:
-        basis = Basis(*phase_breaks(schedule.boundaries, extra, coarse))
+        basis = SplineBasis(*phase_breaks(schedule.boundaries, extra, coarse))
     new = Transcription(t.character, basis, points, contacts, t.moment)
     x = _resampled(reference, new, context.timeline.eased)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
     return replace(motion, places=_current_places(motion, fit))
 
 
-def _mapped_basis(old: Basis, context: EvaluationContext, extra: Sequence[float]) -> Basis:
+def _mapped_basis(
+    old: SplineBasis, context: EvaluationContext, extra: Sequence[float]
+) -> SplineBasis:
     """The old knots at their new instants, and those that new boundaries and holds need."""
     retiming, boundaries = context.timeline, context.schedule.boundaries
     fixed = sorted({*boundaries, *extra})
@@ -262,7 +265,7 @@ def _mapped_basis(old: Basis, context: EvaluationContext, extra: Sequence[float]
         near = min(abs(t - other) for other in (*fixed, *kept))
         if 0.0 < t < retiming.duration and near > MIN_SPAN:
             kept.append(t)
-    return Basis(*phase_breaks(boundaries, [*extra, *kept], CANDIDATE_SPANS[0]))
+    return SplineBasis(*phase_breaks(boundaries, [*extra, *kept], CANDIDATE_SPANS[0]))
 
 
 def _resampled(
@@ -283,7 +286,7 @@ def _resampled(
     came_from = {name: point for point, name in names.items()}
     nodes = basis.force_nodes(np.arange(basis.n_spans))
     inside = 1e-6 * np.diff(basis.breaks)
-    weight = old.character.mass * GRAVITY
+    weight = old.character.mass * STANDARD_GRAVITY
     for side, at in enumerate((basis.breaks[:-1] + inside, basis.breaks[1:] - inside)):
         forces = motion.forces(to_old(at)) / weight
         for contact in new.contacts:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..body.character import Character
-from ..numerics.splines import Basis
+from ..numerics.splines import SplineBasis
 from .rows import Layout, RowKind, Rows, violation
 from .sampling import Instants, MotionFunction, State
 
@@ -67,7 +67,7 @@ class Constraint:
     def kind(self) -> RowKind:
         return self.function.kind
 
-    def instants(self, basis: Basis) -> Instants:
+    def instants(self, basis: SplineBasis) -> Instants:
         """Collocation instants on a basis: both ends, and evenly inside every span.
 
         Torques follow accelerations, which have corners at the breaks and jump at the double ones:
@@ -84,7 +84,7 @@ class Constraint:
         ends = [self.start, self.end]
         return Instants(basis, np.unique(np.concatenate([times, ends, self.extra])))
 
-    def _node_instants(self, basis: Basis) -> Instants:
+    def _node_instants(self, basis: SplineBasis) -> Instants:
         """Force nodes: forces are linear in between, so a convex bound holds there too."""
         inside = (basis.breaks[1:] > self.start) & (basis.breaks[:-1] < self.end)
         spans = np.flatnonzero(inside)
@@ -93,7 +93,7 @@ class Constraint:
         times = np.concatenate([basis.breaks[spans], basis.breaks[spans + 1]])
         return Instants(basis, times, np.concatenate([spans, spans]))
 
-    def _sided_instants(self, basis: Basis) -> Instants:
+    def _sided_instants(self, basis: SplineBasis) -> Instants:
         """Breaks, double ones from both sides, and evenly inside every span."""
         first, last = basis.breaks[:-1], basis.breaks[1:]
         spans = np.arange(basis.n_spans)
@@ -114,7 +114,7 @@ class Constraint:
             return Instants(basis, np.array([0.5 * (self.start + self.end)]))
         return Instants(basis, times[order], owner[order])
 
-    def dense(self, basis: Basis) -> Instants:
+    def dense(self, basis: SplineBasis) -> Instants:
         """Dense grid that tells whether it holds between its instants."""
         longest = float(np.diff(basis.breaks).max())
         per_span = max(MIN_DENSE_PER_SPAN, int(np.ceil(longest / MAX_DENSE_SPACING)))
@@ -128,7 +128,7 @@ class DiscretisedConstraint:
         self,
         constraint: Constraint,
         character: Character,
-        basis: Basis,
+        basis: SplineBasis,
         layout: Layout,
         owner: int,
     ) -> None:
@@ -178,7 +178,7 @@ class DenseViolation:
 
 
 def dense_violation(
-    constraint: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    constraint: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> DenseViolation:
     """Largest violation by unknowns x (K, n_block), between the constraint's instants too."""
     instants, size = _violation_on_grid(constraint, character, basis, layout, x)
@@ -188,7 +188,7 @@ def dense_violation(
 
 
 def exchange(
-    constraint: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    constraint: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> Constraint:
     """The constraint with the dense grid's local maxima of violation added to its instants.
 
@@ -204,7 +204,7 @@ def exchange(
 
 
 def _violation_on_grid(
-    constraint: Constraint, character: Character, basis: Basis, layout: Layout, x: FloatArray
+    constraint: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> tuple[Instants, FloatArray]:
     instants = constraint.dense(basis)
     value = constraint.function.value(State(character, layout, instants, x))

@@ -179,7 +179,7 @@ class BodyOrientation:
             state.pose.axes, 1, 2
         )
         moves = np.zeros(state.character.n_angles)
-        for ancestor in state.character.lineage(self.body):
+        for ancestor in state.character.ancestors(self.body):
             moves[state.character.joints[ancestor].dofs] = 1.0
         return [ChannelJacobian(Channel.ANGLES, 0, _inverse_left_jacobian(off) @ turned * moves)]
 

@@ -15,14 +15,14 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.kinematics import BodyPoint, Pose, point_velocity
 from ..data.contacts import Contact
 from ..numerics.interpolation import interpolate
-from ..numerics.splines import ORDER, Basis
+from ..numerics.splines import ORDER, SplineBasis
 from .rows import Layout, RowKind, Rows
 
 DEFAULT_FRICTION = 1.0  # of a rubber sole on a hall's floor
 VELOCITY_STEP = 1e-3  # s, of the central differences that give a moving place its velocity
 
 
-def touching_spans(basis: Basis, contact: Contact) -> IntArray:
+def touching_spans(basis: SplineBasis, contact: Contact) -> IntArray:
     """Indices of the spans during which a contact carries force."""
     middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
     return np.flatnonzero((middles > contact.start) & (middles < contact.end))
@@ -111,7 +111,9 @@ class _PinPairs:
 class Pins:
     """Pin rows on one basis. times, spans: (U,) the breaks at which anything is pinned."""
 
-    def __init__(self, basis: Basis, layout: Layout, contacts: Sequence[PointContact]) -> None:
+    def __init__(
+        self, basis: SplineBasis, layout: Layout, contacts: Sequence[PointContact]
+    ) -> None:
         self.layout = layout
         slack = 1e-9
         pinned = np.array(

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..numerics.rotations import perpendicular, unit
-from ..numerics.splines import ORDER, Basis
+from ..numerics.splines import ORDER, SplineBasis
 from .contact_pins import PointContact, touching_spans
 from .rows import FORCE_BLOCKS, Layout, RowKind, Rows
 
@@ -21,7 +21,9 @@ MIN_TANGENTIAL_FORCE = 1e-9  # BW; below it a tangential force has no direction
 class FrictionCones:
     """Push and friction rows on one basis, at U pairs of a force node and a contact."""
 
-    def __init__(self, basis: Basis, layout: Layout, contacts: Sequence[PointContact]) -> None:
+    def __init__(
+        self, basis: SplineBasis, layout: Layout, contacts: Sequence[PointContact]
+    ) -> None:
         self._layout = layout
         nodes, owner = [], []
         for i, contact in enumerate(contacts):

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..body.dynamics import GRAVITY
 from ..body.inverse_dynamics import GeneralisedForces, InverseDynamics
-from ..body.kinematics import Pose, pose
+from ..body.kinematics import Pose, forward_kinematics
+from ..data.constants import STANDARD_GRAVITY
 from ..data.recording import PoseTrack, Recording
 from ..numerics.rotations import cross_matrix
 from .contact_pins import PointContact, touching_spans
@@ -48,12 +48,12 @@ class Motion:
         spans = t.basis.spans(times)
         values = self.x[t.layout.force_block(t.basis.force_nodes(spans))][:, :, t.layout.forces]
         forces = np.einsum("tk,tkn->tn", t.basis.force_weights(times, spans), values)
-        newtons = forces * t.character.mass * GRAVITY
+        newtons = forces * t.character.mass * STANDARD_GRAVITY
         return np.asarray(newtons.reshape(len(times), t.layout.n_points, 3))
 
     def pose(self, times: FloatArray) -> Pose:
         """Forward kinematics relative to the centre of mass."""
-        return pose(self.transcription.character, self.angles(times))
+        return forward_kinematics(self.transcription.character, self.angles(times))
 
     def joint_centres(self, times: FloatArray) -> FloatArray:
         """(T, B, 3) m, world."""
@@ -118,11 +118,11 @@ def dynamics_residual(motion: Motion, times: FloatArray) -> DynamicsResidual:
     By the solver's own functions, for choosing knots; the figures are measured by another engine.
     """
     t = motion.transcription
-    weight = t.character.mass * GRAVITY
-    fall = t.character.gravity / GRAVITY
+    weight = t.character.mass * STANDARD_GRAVITY
+    fall = t.character.gravity / STANDARD_GRAVITY
     forces = motion.forces(times) / weight
     total = forces.sum(axis=1)
-    force = motion.com(times, 2) / GRAVITY + np.array([0.0, 0.0, fall]) - total
+    force = motion.com(times, 2) / STANDARD_GRAVITY + np.array([0.0, 0.0, fall]) - total
     rate = t.moment.value(*(motion.angles(times, k) for k in range(3)))
     if t.points:
         arms = motion.pose(times).points(t.points)

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
-from ..body.kinematics import Pose, pose
-from ..numerics.splines import ORDER, Basis
+from ..body.kinematics import Pose, forward_kinematics
+from ..numerics.splines import ORDER, SplineBasis
 from .rows import FORCE_BLOCKS, Layout
 
 
@@ -38,7 +38,9 @@ class Instants:
     the span's two force values. blocks: (U, 4) of the unknowns that act in the span.
     """
 
-    def __init__(self, basis: Basis, times: FloatArray, spans: IntArray | None = None) -> None:
+    def __init__(
+        self, basis: SplineBasis, times: FloatArray, spans: IntArray | None = None
+    ) -> None:
         self.times = times
         self.spans = basis.spans(times) if spans is None else spans
         self.values = [basis.evaluate(times, k, self.spans) for k in range(3)]
@@ -97,7 +99,7 @@ class State:
     @cached_property
     def pose(self) -> Pose:
         """Forward kinematics relative to the centre of mass."""
-        return pose(self.character, self.angles())
+        return forward_kinematics(self.character, self.angles())
 
 
 class MotionFunction(Protocol):

@@ -13,9 +13,10 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
-from ..body.dynamics import GRAVITY, evaluate
+from ..body.dynamics import evaluate
 from ..body.inverse_dynamics import inverse_dynamics
 from ..body.kinematics import BodyPoint
+from ..data.constants import STANDARD_GRAVITY
 from .rows import ROOT_ANGLES, RowKind
 from .sampling import Channel, ChannelJacobian, State
 from .transcription import Transcription
@@ -40,7 +41,7 @@ class TorqueFunction:
         q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
         fall = ca.SX.sym("fall", 3)
         forces = ca.SX.sym("forces", 3, len(points))
-        weight = character.mass * GRAVITY
+        weight = character.mass * STANDARD_GRAVITY
         every = inverse_dynamics(character, points, q, v, a, fall, weight * forces)
         torques = every[(self.angles + ROOT_FORCES).tolist()] / weight
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..body.character import Character
-from ..body.kinematics import BodyPoint, Pose, pose
+from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import ORDER
 from .rows import FORCE_BLOCKS
@@ -107,7 +107,7 @@ class TrackingCost:
         local = t.window(x, t.node_spans[nodes])
         values = [each[nodes] for each in self._values]
         motion, second = (np.einsum("nk,nkj->nj", B, local) for B in values)
-        posed = pose(t.character, motion[:, t.layout.angles])
+        posed = forward_kinematics(t.character, motion[:, t.layout.angles])
         com, target = motion[:, t.layout.com], self.target
         relative = posed.points(self.points)
         markers, centre = target.markers[nodes], target.com[nodes]

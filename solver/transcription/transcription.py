@@ -23,10 +23,11 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
-from ..body.dynamics import GRAVITY, MomentFunction
-from ..body.kinematics import BodyPoint, Pose, pose
+from ..body.dynamics import MomentFunction
+from ..body.kinematics import BodyPoint, Pose, forward_kinematics
+from ..data.constants import STANDARD_GRAVITY
 from ..numerics.rotations import cross_matrix
-from ..numerics.splines import ORDER, Basis, gauss_instants
+from ..numerics.splines import ORDER, SplineBasis, gauss_instants
 from .constraint import Constraint, DiscretisedConstraint
 from .contact_pins import Pins, PointContact, touching_spans
 from .friction_cones import FrictionCones
@@ -47,7 +48,7 @@ class Transcription:
     """
 
     character: Character
-    basis: Basis
+    basis: SplineBasis
     points: tuple[BodyPoint, ...]
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
@@ -146,7 +147,7 @@ class Transcription:
         """Forward kinematics at the dynamics nodes and at the pins' breaks, evaluated together."""
         q = self.angles_at_nodes(x, 0)
         pinned = self.pins.angles(self.window(x, self.pins.spans))
-        posed = pose(self.character, np.concatenate([q, pinned]))
+        posed = forward_kinematics(self.character, np.concatenate([q, pinned]))
         return posed.at(slice(0, len(q))), posed.at(slice(len(q), None))
 
     # -- balance ---------------------------------------------------------------------------
@@ -158,7 +159,7 @@ class Transcription:
         _, first = np.unique(nodes.ravel(), return_index=True)
         span, side = spans[first // 2], first % 2
         times = basis.breaks[span + side]
-        second = basis.evaluate(times, 2, span) / GRAVITY
+        second = basis.evaluate(times, 2, span) / STANDARD_GRAVITY
         jacobian = np.zeros((len(span), 3, ORDER, layout.n_block))
         each = np.arange(len(span))
         for axis in range(3):
@@ -167,7 +168,7 @@ class Transcription:
                 jacobian[
                     each, axis, FORCE_BLOCKS.start + side, layout.force(point).start + axis
                 ] = -1.0
-        weight = np.tile([0.0, 0.0, self.character.gravity / GRAVITY], (len(span), 1))
+        weight = np.tile([0.0, 0.0, self.character.gravity / STANDARD_GRAVITY], (len(span), 1))
         return self._only_active(Rows.of(span, weight, jacobian, RowKind.BALANCE, times))
 
     def _balance_residual(self, x: FloatArray) -> FloatArray:

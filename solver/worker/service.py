@@ -5,7 +5,7 @@ from collections import Counter, OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ..analysis.analyse import Analysis, analyse, figure
+from ..analysis.analyse import Analysis, analyse, build_figure
 from ..analysis.pinned_places import travel_axes
 from ..body.inverse_dynamics import InverseDynamics
 from ..data.contacts import ContactSchedule, PhaseKind
@@ -213,7 +213,7 @@ def _measure(recording: Recording, problem: MotionProblem) -> _Measured:
         analysis = analyse(recording, problem)
         return _Measured(analysis, problem, analysis.performance.character.height, 1.0)
     # Before any contact is sought: at a wrong scale none would be found.
-    height = figure(recording, problem)[1].height
+    height = build_figure(recording, problem)[1].height
     factor = problem.height / height
     problem = scaled_problem(problem, factor)
     analysis = analyse(scaled_recording(recording, factor), problem)

@@ -8,11 +8,12 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from hangtime.benchmarks import ipopt_peer, naive_peer, scaling
+from hangtime.benchmarks import naive_peer, scaling
 from hangtime.benchmarks.solutions import SOLUTIONS, with_solution
 from hangtime.benchmarks.tables import Table, write_json
-from hangtime.benchmarks.task import Equations, Task, metric_entries
 from hangtime.benchmarks.timing import in_turns
+from hangtime.devtools.peers import ipopt_peer
+from hangtime.devtools.peers.task import Equations, Task, metric_entries
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.stages.fit import ADAPT_COST_WEIGHTS, motion_metric

@@ -5,8 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hangtime.benchmarks.pendulum import GRAVITY, LENGTH, MASS, SCALES, Swing, main, solve, wanted
+from hangtime.benchmarks.pendulum import LENGTH, MASS, SCALES, Swing, main, solve, wanted
 from hangtime.solver.body.dynamics import MomentFunction
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.tests.helpers.toy_problems import figure
 
 
@@ -29,7 +30,7 @@ def test_the_swing_obeys_the_pendulum_and_stays_near_what_was_wanted() -> None:
     swing = swings()["body weights"]
     step = swing.times[1]
     bend = np.gradient(np.gradient(swing.angle, step), step)
-    inertia, weight = MASS * LENGTH**2 / 3.0, 0.5 * MASS * GRAVITY * LENGTH
+    inertia, weight = MASS * LENGTH**2 / 3.0, 0.5 * MASS * STANDARD_GRAVITY * LENGTH
     left = inertia * bend + weight * np.sin(swing.angle) - swing.torque
     assert np.sqrt((left[5:-5] ** 2).mean()) < 0.02 * np.abs(swing.torque).max()
     assert np.abs(swing.angle - wanted(swing.times)).max() < 0.1

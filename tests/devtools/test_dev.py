@@ -53,3 +53,18 @@ def test_errors_count_as_failures(tmp_path: Path) -> None:
     for name in ("a.xml", "b.xml"):
         (tmp_path / name).write_text(f"<testsuites><testsuite {counts}/></testsuites>")
     assert str(summary.read_all(tmp_path)) == "6 passed, 6 failed, 6 skipped"
+
+
+def test_a_skip_for_want_of_data_is_no_allowed_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cases = "".join(
+        f'<testcase classname="tests.t" name="{name}"><skipped message="{why}"/></testcase>'
+        for name, why in (("peer", "no Drake"), ("clip", "the recordings are not here"))
+    )
+    suite = f'<testsuite tests="2" failures="0" errors="0" skipped="2">{cases}</testsuite>'
+    (tmp_path / "a.xml").write_text(f"<testsuites>{suite}</testsuites>")
+    assert summary.main(tmp_path) == 1
+    told, total = capsys.readouterr().out.splitlines()
+    assert told.endswith("a.xml: tests.t.clip: the recordings are not here")
+    assert total == "0 passed, 0 failed, 2 skipped"

@@ -6,7 +6,7 @@ from pathlib import Path
 from hangtime.bridge.formats.acclaim import find_asf, read_acclaim
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.guess import guess_unit, guess_up
-from hangtime.bridge.formats.skeleton import MotionClip, to_recording
+from hangtime.bridge.formats.motion_clip import MotionClip, to_recording
 from hangtime.devtools.recordings import find
 from hangtime.solver.data.recording import Recording
 

@@ -7,8 +7,8 @@ import numpy as np
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
 from hangtime.solver.body.dynamics import MomentFunction
-from hangtime.solver.body.joint_axes import Axes
-from hangtime.solver.body.kinematics import BodyPoint, pose
+from hangtime.solver.body.joint_axes import JointAxes
+from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.recording import Bone, Recording
 from hangtime.solver.data.requests import Requests
@@ -16,7 +16,7 @@ from hangtime.solver.data.status import Status
 from hangtime.solver.data.timeline import Timeline
 from hangtime.solver.numerics.block_banded import BlockBanded
 from hangtime.solver.numerics.rotations import rotation_matrix
-from hangtime.solver.numerics.splines import ORDER, Basis, phase_breaks
+from hangtime.solver.numerics.splines import ORDER, SplineBasis, phase_breaks
 from hangtime.solver.optimisation.sqp import FeasibleSet, Outcome, restore
 from hangtime.solver.stages.constraint_builder import build_constraints
 from hangtime.solver.stages.evaluation_context import EvaluationContext
@@ -50,16 +50,16 @@ def figure() -> Character:
     random = np.random.default_rng(7)
     skew = rotation_matrix(0.2 * random.normal(size=(9, 3)))
     bodies = [body("trunk", Part.PELVIS, Side.MIDDLE, 40.0, (0.0, 0.05, 0.5))]
-    joints = [Joint(-1, np.zeros(3), Axes(3, skew[0], skew[1]), 0)]
+    joints = [Joint(-1, np.zeros(3), JointAxes(3, skew[0], skew[1]), 0)]
     first = 3
     for i, side in enumerate((Side.LEFT, Side.RIGHT)):
         hip = np.array([0.1 - 0.2 * i, 0.0, 0.0])
         thigh = len(bodies)
         bodies.append(body(f"{side.value} thigh", Part.THIGH, side, 9.0, (0.0, 0.0, -0.45)))
-        joints.append(Joint(0, hip, Axes(2, skew[2 + i], np.eye(3)), first))
+        joints.append(Joint(0, hip, JointAxes(2, skew[2 + i], np.eye(3)), first))
         bodies.append(body(f"{side.value} shank", Part.SHANK, side, 6.0, (0.0, -0.03, -0.5)))
         knee = np.array([0.0, 0.0, -0.45])
-        joints.append(Joint(thigh, knee, Axes(1, skew[4 + i], np.eye(3)), first + 2))
+        joints.append(Joint(thigh, knee, JointAxes(1, skew[4 + i], np.eye(3)), first + 2))
         first += 3
     return Character(tuple(bodies), tuple(joints), 1.5)
 
@@ -72,9 +72,9 @@ def feet() -> tuple[BodyPoint, ...]:
 
 
 @cache
-def _basis() -> Basis:
+def _basis() -> SplineBasis:
     breaks, double = phase_breaks([0.0, LIFT, DURATION], [], 0.05)
-    return Basis(breaks, double)
+    return SplineBasis(breaks, double)
 
 
 @cache
@@ -85,7 +85,11 @@ def standing() -> Transcription:
 
 def contacts() -> tuple[PointContact, ...]:
     """Each foot a little nearer than with straight legs and the centre of mass one metre up."""
-    at = pose(figure(), np.zeros((1, figure().n_angles))).points(feet())[0] + [0.0, 0.0, 1.08]
+    at = forward_kinematics(figure(), np.zeros((1, figure().n_angles))).points(feet())[0] + [
+        0.0,
+        0.0,
+        1.08,
+    ]
     ends = (DURATION, LIFT)
     bones = [figure().bodies[p.body].bone for p in feet()]
     made = [
@@ -161,7 +165,7 @@ def recording() -> Recording:
     """What context() was read from; bones' axes are the bodies'."""
     character = figure()
     times = np.linspace(0.0, DURATION, round(DURATION * RATE) + 1)
-    still = pose(character, np.zeros((1, character.n_angles)))
+    still = forward_kinematics(character, np.zeros((1, character.n_angles)))
     bones = tuple(
         Bone(b.bone, j.parent, head, head + b.tip, np.eye(3))
         for b, j, head in zip(character.bodies, character.joints, still.centres[0], strict=True)
@@ -183,15 +187,15 @@ def arm(dofs: int) -> Character:
     """A trunk and an arm that hangs from it by a joint of x, y and z in turn."""
     trunk = body("trunk", Part.PELVIS, Side.MIDDLE, 40.0, (0.0, 0.0, 0.5))
     hanging = body("arm", Part.UPPER_ARM, Side.LEFT, 5.0, (0.0, 0.0, -0.6))
-    shoulder = Joint(0, np.array([0.2, 0.0, 0.5]), Axes(dofs, np.eye(3), np.eye(3)), 3)
-    root = Joint(-1, np.zeros(3), Axes(3, np.eye(3), np.eye(3)), 0)
+    shoulder = Joint(0, np.array([0.2, 0.0, 0.5]), JointAxes(dofs, np.eye(3), np.eye(3)), 3)
+    root = Joint(-1, np.zeros(3), JointAxes(3, np.eye(3), np.eye(3)), 0)
     return Character((trunk, hanging), (root, shoulder), 1.2)
 
 
 def still(character: Character, angles: np.ndarray, com: np.ndarray | None = None) -> State:
     """The character in one pose, seen at one instant of a second."""
     layout = Layout(character.n_angles, 0)
-    basis = Basis(np.array([0.0, 1.0]), np.array([False, False]))
+    basis = SplineBasis(np.array([0.0, 1.0]), np.array([False, False]))
     x = np.zeros((basis.n_coefficients, layout.n_block))
     x[:, layout.angles] = angles
     x[:, layout.com] = 0.0 if com is None else com

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from hangtime.solver.body.dynamics import GRAVITY
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.contacts import ContactSchedule
 from hangtime.solver.stages.fit import Fit
 from hangtime.solver.transcription.motion import Motion, dynamics_residual, pinned_instants
@@ -30,7 +30,9 @@ def measure(motion: Motion, schedule: ContactSchedule) -> Measures:
     flying = np.any([(times > f.start) & (times < f.end) for f in schedule.flights], axis=0)
     contacts = motion.transcription.contacts
     drifts = [motion.drift(i, pinned_instants(c, RATE)).max() for i, c in enumerate(contacts)]
-    vertical = motion.forces(times)[..., 2] / (motion.transcription.character.mass * GRAVITY)
+    vertical = motion.forces(times)[..., 2] / (
+        motion.transcription.character.mass * STANDARD_GRAVITY
+    )
     return Measures(
         force=_rms(left.force),
         flight_moment=_rms(left.moment[flying]),

@@ -1,1 +1,1 @@
-"""Flat drawings as data, and their painting in a region."""
+"""Flat drawings as data, their batches on the GPU, and a cache of what was built."""

@@ -1,99 +1,76 @@
-"""Sketches painted in a region: the only part of plots and timeline that uses the GPU."""
+"""Drawings painted in a region by the GPU: for plots and timeline."""
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import blf
+import bpy
+import gpu
 import numpy as np
 
-from .sketch import Array, Picture, Text
+from ...bridge.plots.screen import Array
+from . import batches
+from .sketch import Drawing, Text
 
-if TYPE_CHECKING:
-    import bpy
-    import gpu
-
-FONT = 0
-REMEMBERED = 8  # pictures; a few regions of different sizes
+FONT_ID = 0  # Blender's own font
+CACHED_DRAWINGS = 8  # a few regions of different sizes
 
 
 @dataclass(frozen=True)
-class Painting:
-    """A picture whose shapes are on the GPU."""
+class DrawingBatches:
+    """A drawing whose shapes are on the GPU."""
 
     areas: gpu.types.GPUBatch | None
     lines: gpu.types.GPUBatch | None
     texts: tuple[Text, ...]
 
 
-class Easel:
-    """Paints pictures, which are made and sent to the GPU once for each key."""
-
-    def __init__(self) -> None:
-        self._paintings: OrderedDict[Hashable, Painting] = OrderedDict()
-
-    def painting(self, key: Hashable, make: Callable[[], Picture]) -> Painting:
-        """The painting of a key; `make` is called where there is none yet."""
-        if key not in self._paintings:
-            self._paintings[key] = _prepared(make())
-            if len(self._paintings) > REMEMBERED:
-                self._paintings.popitem(last=False)
-        self._paintings.move_to_end(key)
-        return self._paintings[key]
+AREAS, LINES = "FLAT_COLOR", "POLYLINE_FLAT_COLOR"  # shaders
 
 
-def paint(painting: Painting, region: bpy.types.Region, width: float, shift: float = 0.0) -> None:
+def upload(drawing: Drawing) -> DrawingBatches:
+    """A drawing's shapes, sent to the GPU. Only while something is drawn."""
+    return DrawingBatches(
+        _batch(AREAS, drawing.triangles, drawing.fills),
+        _batch(LINES, drawing.lines, drawing.strokes),
+        drawing.texts,
+    )
+
+
+def _batch(shader: str, corners: Array, colours: Array) -> gpu.types.GPUBatch | None:
+    flat = np.zeros((len(corners), 1), np.float32)
+    return batches.batch(shader, np.hstack([corners, flat]), colours) if len(corners) else None
+
+
+def paint(
+    drawing: DrawingBatches, region: bpy.types.Region, width: float, shift: float = 0.0
+) -> None:
     """Paints in a region. width: of lines; shift: by which all is moved to the right; px."""
-    import gpu  # not at the top: a Blender without a window has none
-
+    matrix: Any = gpu.matrix  # the stubs say that it returns nothing
     gpu.state.blend_set("ALPHA")
-    with gpu.matrix.push_pop():
-        gpu.matrix.translate((shift, 0.0))
-        if painting.areas is not None:
-            painting.areas.draw(gpu.shader.from_builtin("FLAT_COLOR"))
-        if painting.lines is not None:
-            shader = gpu.shader.from_builtin("POLYLINE_FLAT_COLOR")
-            shader.bind()
-            shader.uniform_float("viewportSize", (region.width, region.height))
-            shader.uniform_float("lineWidth", width)
-            painting.lines.draw(shader)
+    with matrix.push_pop():
+        matrix.translate((shift, 0.0))
+        for shader, shapes in ((AREAS, drawing.areas), (LINES, drawing.lines)):
+            if shapes is not None:
+                batches.draw(shapes, shader, width, (region.width, region.height))
     gpu.state.blend_set("NONE")
-    write(painting.texts)
+    write(drawing.texts)
 
 
 def write(texts: Iterable[Text]) -> None:
     """Writes texts."""
     for text in texts:
-        blf.size(FONT, text.size)
-        blf.color(FONT, *text.colour)
-        x = text.x - text.align.value * blf.dimensions(FONT, text.words)[0]
-        blf.position(FONT, round(x), round(text.y), 0.0)
-        blf.draw(FONT, text.words)
+        blf.size(FONT_ID, text.size)
+        blf.color(FONT_ID, *text.colour)
+        x = text.x - text.align.value * blf.dimensions(FONT_ID, text.words)[0]
+        blf.position(FONT_ID, round(x), round(text.y), 0.0)
+        blf.draw(FONT_ID, text.words)
 
 
 def text_width(words: str, size: float) -> float:
     """Width, px, of a text."""
-    blf.size(FONT, size)
-    return float(blf.dimensions(FONT, words)[0])
-
-
-def _prepared(picture: Picture) -> Painting:
-    return Painting(
-        _batch("FLAT_COLOR", "TRIS", picture.triangles, picture.fills),
-        _batch("POLYLINE_FLAT_COLOR", "LINES", picture.lines, picture.strokes),
-        picture.texts,
-    )
-
-
-def _batch(shader: str, kind: str, corners: Array, colours: Array) -> gpu.types.GPUBatch | None:
-    import gpu
-    from gpu_extras.batch import batch_for_shader
-
-    if len(corners) == 0:
-        return None
-    flat = np.zeros((len(corners), 1), np.float32)
-    content = {"pos": np.hstack([corners, flat]), "color": colours}
-    return batch_for_shader(gpu.shader.from_builtin(shader), kind, content)
+    blf.size(FONT_ID, size)
+    return float(blf.dimensions(FONT_ID, words)[0])

@@ -11,11 +11,11 @@ import numpy as np
 from ...bridge.plots.screen import Array, Rect
 
 Colour = tuple[float, float, float, float]  # sRGB and opacity
-Measure = Callable[[str, float], float]  # width, px, of a text of a size, px
+TextWidth = Callable[[str, float], float]  # width, px, of a text of a size, px
 
 
 class Align(Enum):
-    """Which part of a text is at its place."""
+    """Alignment: the part of a text that is at its place."""
 
     LEFT = 0.0
     CENTRE = 0.5
@@ -35,7 +35,7 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Picture:
+class Drawing:
     """A finished sketch. triangles (3N, 2) and lines (2M, 2) px, with a colour for each corner."""
 
     triangles: Array
@@ -81,8 +81,8 @@ class Sketch:
     def text(self, text: Text) -> None:
         self._texts.append(text)
 
-    def finished(self) -> Picture:
-        return Picture(
+    def finished(self) -> Drawing:
+        return Drawing(
             _joined(self._triangles, 2),
             _joined(self._fills, 4),
             _joined(self._lines, 2),

@@ -6,28 +6,29 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ...bridge.accessors import present
 from ...operators.drag import rays
 from ...operators.names import GizmoGroupId, OperatorId
-from ..overlay.context.figure_cache import Figures
-from ..overlay.context.view_context import Seen
+from ..overlay.context.figure_cache import FigureCache
+from ..overlay.context.view_context import ViewContext
 from ..overlay.geometry import palette
-from ..overlay.geometry.limit_shapes import seen_of
-from ..overlay.layers.limits import chosen_limit, pose_of
-from .places import Drawn, Knob, Places, Tip, places
+from ..overlay.geometry.limit_shapes import limit_frames
+from ..overlay.layers.limits import chosen_limit, limit_pose
+from .places import Knob, LimitHandlePlaces, LimitPlacement, Tip, handle_places
 from .shown import handled, knob, paint, put
 
 ENDS = ("lower", "upper", "half_angle")
 
 
-def handles(seen: Seen, figures: Figures, sight: rays.Vector) -> Places:
+def handles(view: ViewContext, figures: FigureCache, sight: rays.Vector) -> LimitHandlePlaces:
     """Of the limit that is chosen. sight: (3,) unit vector towards the viewer, world."""
-    limit = chosen_limit(seen)
+    limit = chosen_limit(view)
     if limit is None:
-        return Places()
-    figure = figures.of(seen, seen.recorded)
-    joints, drawn = seen_of([limit], figure, pose_of(seen.armature, (limit,)))
-    at = Drawn(drawn.axes[0], drawn.origins[0], joints.turns[0])
-    return places(limit, at, np.array(seen.armature.matrix_world), sight)
+        return LimitHandlePlaces()
+    figure = figures.of(view, view.recorded)
+    joints, drawn = limit_frames([limit], figure, limit_pose(view.armature, (limit,)))
+    at = LimitPlacement(drawn.axes[0], drawn.origins[0], joints.turns[0])
+    return handle_places(limit, at, np.array(view.armature.matrix_world), sight)
 
 
 class LimitHandles(bpy.types.GizmoGroup):
@@ -39,11 +40,11 @@ class LimitHandles(bpy.types.GizmoGroup):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        seen = handled(context)
-        return seen is not None and seen.view.limits and chosen_limit(seen) is not None
+        view = handled(context)
+        return view is not None and view.options.limits and chosen_limit(view) is not None
 
     def setup(self, _context: bpy.types.Context) -> None:
-        self._figures = Figures()
+        self._figures = FigureCache()
         self._ends = {end: self._new(OperatorId.DRAG_LIMIT) for end in ENDS}
         for end, (_, drag) in self._ends.items():
             drag.end = end
@@ -53,12 +54,12 @@ class LimitHandles(bpy.types.GizmoGroup):
         """Blender calls this before each redraw; nothing else is told of undo or of scripts."""
         for gizmo, _ in (*self._ends.values(), self._tip):
             gizmo.hide = True
-        seen = handled(context)
-        if seen is None:
+        view = handled(context)
+        if view is None:
             return
-        sight = context.region_data.view_rotation @ Vector((0.0, 0.0, 1.0))
-        found = handles(seen, self._figures, np.array(sight))
-        chosen = seen.settings.active_constraint
+        sight = present(context.region_data).view_rotation @ Vector((0.0, 0.0, 1.0))
+        found = handles(view, self._figures, np.array(sight))
+        chosen = view.settings.active_constraint
         for each in found.knobs:
             _show_knob(*self._ends[each.end], each, chosen)
         if found.tip is not None:
@@ -73,7 +74,7 @@ class LimitHandles(bpy.types.GizmoGroup):
 def _show_knob(
     gizmo: bpy.types.Gizmo, drag: bpy.types.OperatorProperties, knob: Knob, chosen: int
 ) -> None:
-    put(gizmo, Vector(knob.at))
+    put(gizmo, Vector(knob.at.tolist()))
     circle = knob.circle
     drag.constraint, drag.narrow, drag.radius = chosen, knob.narrow, circle.radius
     drag.centre, drag.zero, drag.ahead = circle.centre, circle.zero, circle.ahead
@@ -82,7 +83,7 @@ def _show_knob(
 def _show_tip(
     gizmo: bpy.types.Gizmo, aim: bpy.types.OperatorProperties, tip: Tip, chosen: int
 ) -> None:
-    put(gizmo, Vector(tip.at))
+    put(gizmo, Vector(tip.at.tolist()))
     aim.constraint, aim.centre, aim.tip = chosen, tip.centre, tip.at
     aim.turn = Matrix(tip.turn.tolist())
 

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 import bpy
 from mathutils import Vector
 
-from ...bridge.properties.kinds import ConstraintKind
+from ...bridge.constraint_kinds import point
 from ...bridge.properties.stances import active_stance, stance_contacts, stance_middle
 from ...operators.names import GizmoGroupId, OperatorId
-from ..overlay.context.view_context import Seen
+from ..overlay.context.view_context import ViewContext
 from ..overlay.geometry import palette
 from ..overlay.geometry.shapes import faded
-from .shown import handled, knob, paint, put
+from .shown import handled, knob, new_gizmo, paint, put
 
 UNSEEN = 0.0  # opacity of those that show only under the mouse
-AROUND = 0.14  # m, by how much the ring is wider than the stance, of a figure of usual size
+RING_MARGIN = 0.14  # m, by how much the ring is wider than the stance, of a figure of usual size
 ARROW = 0.7  # length, as a share of the size of gizmos in the preferences
 
 
@@ -30,9 +30,9 @@ class Handle:
     near: bool  # whether it belongs to what is chosen
 
 
-def handles(seen: Seen) -> list[Handle]:
+def handles(view: ViewContext) -> list[Handle]:
     """Of every contact that counts and of every point with a place of its own."""
-    settings = seen.settings
+    settings = view.settings
     stance = active_stance(settings)
     phase = stance.name if stance is not None else None
     contacts = [
@@ -43,10 +43,7 @@ def handles(seen: Seen) -> list[Handle]:
     points = [
         Handle(-1, i, Vector(row.place), True)
         for i, row in enumerate(settings.constraints)
-        if row.kind == ConstraintKind.POINT.name
-        and row.used
-        and row.use_place
-        and row.target is None
+        if row.kind == point.KIND.name and row.used and row.use_place and row.target is None
     ]
     return contacts + points
 
@@ -60,8 +57,8 @@ class PinHandles(bpy.types.GizmoGroup):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        seen = handled(context)
-        return seen is not None and seen.view.pins and len(seen.settings.contacts) > 0
+        view = handled(context)
+        return view is not None and view.options.pins and len(view.settings.contacts) > 0
 
     def setup(self, _context: bpy.types.Context) -> None:
         self._pins: list[tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]] = []
@@ -70,8 +67,8 @@ class PinHandles(bpy.types.GizmoGroup):
 
     def draw_prepare(self, context: bpy.types.Context) -> None:
         """Blender calls this before each redraw; nothing else is told of undo or of scripts."""
-        seen = handled(context)
-        shown = handles(seen) if seen is not None else []
+        view = handled(context)
+        shown = handles(view) if view is not None else []
         while len(self._pins) < len(shown):
             self._pins.append(self._new_pin())
         for gizmo, _ in self._pins[len(shown) :]:
@@ -80,20 +77,22 @@ class PinHandles(bpy.types.GizmoGroup):
             put(gizmo, handle.at)
             gizmo.alpha = palette.PIN[3] if handle.near else UNSEEN
             drag.contact, drag.constraint = handle.contact, handle.constraint
-        self._place_stance(seen)
+        self._place_stance(view)
 
-    def _place_stance(self, seen: Seen | None) -> None:
-        stance = active_stance(seen.settings) if seen is not None else None
-        middle = stance_middle(seen.settings, stance.name) if stance is not None else None
-        self._ring.hide = self._arrow.hide = middle is None
+    def _place_stance(self, view: ViewContext | None) -> None:
+        self._ring.hide = self._arrow.hide = True
+        stance = active_stance(view.settings) if view is not None else None
+        if view is None or stance is None:
+            return
+        middle = stance_middle(view.settings, stance.name)
         if middle is None:
             return
-        contacts = stance_contacts(seen.settings, stance.name)
-        reach = max((Vector(c.at) - middle).xy.length for c in contacts) + AROUND * seen.units
+        contacts = stance_contacts(view.settings, stance.name)
+        reach = max((Vector(c.at) - middle).xy.length for c in contacts) + RING_MARGIN * view.units
         put(self._ring, middle, reach)
         # in front of the feet, where it hides none of their handles
         put(self._arrow, middle + reach * Vector(stance.forward_axis))
-        self._lift.contact = seen.settings.active_contact
+        self._lift.contact = view.settings.active_contact
 
     def _new_pin(self) -> tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]:
         gizmo = knob(self)
@@ -112,9 +111,9 @@ class PinHandles(bpy.types.GizmoGroup):
         return ring
 
     def _new_arrow(self) -> tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]:
-        arrow = self.gizmos.new("GIZMO_GT_arrow_3d")
-        arrow.draw_style, arrow.draw_options = "NORMAL", {"STEM"}
-        arrow.length = ARROW
+        arrow = new_gizmo(
+            self, "GIZMO_GT_arrow_3d", draw_style="NORMAL", draw_options={"STEM"}, length=ARROW
+        )
         paint(arrow, faded(palette.MOVE, 0.5))
         lift = arrow.target_set_operator(OperatorId.DRAG_PIN)
         lift.release_confirm = lift.whole = True

@@ -1,4 +1,4 @@
-"""Where the handles of a limit are, from where ui/overlay draws it: numpy only; world.
+"""Placement of a limit's handles, from where ui/overlay draws it: numpy only; world.
 
 A limit's angles count on a circle about its joint; its ends are points of that circle.
 """
@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...bridge.shapes.limits import directions
 from ...operators.drag.rays import Circle, Vector, scaled, unit
-from ..overlay.geometry.arcs import spoke
+from ...solver.arrays import FloatArray
 from ..overlay.geometry.limit_shapes import ARC, CONE, RING, TWIST, Limit
-from ..overlay.geometry.shapes import FloatArray
 
 SIDEWAYS = 0.2  # sine of axis and view: below, one looks along the cone
 
@@ -41,7 +41,7 @@ class Tip:
 
 
 @dataclass(frozen=True)
-class Places:
+class LimitHandlePlaces:
     """The handles of a limit."""
 
     knobs: tuple[Knob, ...] = ()
@@ -49,8 +49,8 @@ class Places:
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """Where a limit is drawn, in the armature's space; see overlay/geometry/arcs.py for its axes.
+class LimitPlacement:
+    """A limit as drawn in the armature's space, in the axes of bridge/shapes/limits.py.
 
     axes: (3, 3) columns. origin: (3,). parent: (3, 3) the parent's turn from rest to now.
     """
@@ -60,20 +60,22 @@ class Drawn:
     parent: FloatArray
 
 
-def places(limit: Limit, drawn: Drawn, armature: FloatArray, sight: Vector) -> Places:
+def handle_places(
+    limit: Limit, placed: LimitPlacement, armature: FloatArray, sight: Vector
+) -> LimitHandlePlaces:
     """armature: (4, 4) its matrix in the world. sight: (3,) unit vector to the viewer, world."""
     scale = float(np.linalg.norm(armature[:3, 0]))
     if scale == 0.0:  # nothing of it is to be seen
-        return Places()
+        return LimitHandlePlaces()
     to_world = armature[:3, :3] / scale
-    origin, axes = armature[:3, :3] @ drawn.origin + armature[:3, 3], to_world @ drawn.axes
+    origin, axes = armature[:3, :3] @ placed.origin + armature[:3, 3], to_world @ placed.axes
     length = scale * limit.length
     if limit.kind == CONE:
         knob = _rim(limit, Circle(origin, axes[:, 0], axes[:, 1], length), axes, sight)
-        turn = to_world @ drawn.parent.T @ to_world.T
-        return Places((knob,), Tip(_on(knob.circle, 0.0), origin, turn))
+        turn = to_world @ placed.parent.T @ to_world.T
+        return LimitHandlePlaces((knob,), Tip(_on(knob.circle, 0.0), origin, turn))
     radius = (RING if limit.kind == TWIST else ARC) * length
-    return Places(tuple(_ends(limit, Circle(origin, axes[:, 0], axes[:, 1], radius))))
+    return LimitHandlePlaces(tuple(_ends(limit, Circle(origin, axes[:, 0], axes[:, 1], radius))))
 
 
 def _ends(limit: Limit, circle: Circle) -> Iterator[Knob]:
@@ -93,5 +95,5 @@ def _rim(limit: Limit, circle: Circle, axes: FloatArray, sight: Vector) -> Knob:
 
 
 def _on(circle: Circle, angle: float) -> Vector:
-    along, across, _ = spoke(angle)
-    return circle.centre + circle.radius * (along * circle.zero + across * circle.ahead)
+    along, across, _ = directions(angle)
+    return np.asarray(circle.centre + circle.radius * (along * circle.zero + across * circle.ahead))

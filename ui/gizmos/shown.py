@@ -1,38 +1,47 @@
-"""When handles are shown at all, and how they look."""
+"""Conditions under which handles are shown, and their looks."""
 
 from __future__ import annotations
 
 import bpy
 from mathutils import Matrix, Vector
 
-from ...bridge.armature.actions import current_action
+from ...bridge.accessors import current_action
 from ...operators.solve.session import session
-from ..overlay.context.view_context import Seen, look_at
+from ..drawing.editor import view_3d
+from ..drawing.sketch import Colour
+from ..overlay.context.view_context import ViewContext, read_view
 from ..overlay.geometry import palette
-from ..overlay.geometry.shapes import Colour
 
 HIGHLIGHT: Colour = palette.WITHIN
 KNOB = 0.1  # radius of a handle, as a share of the size of gizmos in the preferences
 
 
-def handled(context: bpy.types.Context) -> Seen | None:
-    """What the viewport shows; None where nothing can be dragged now."""
-    space = context.space_data
-    if space is None or space.type != "VIEW_3D":
+def handled(context: bpy.types.Context) -> ViewContext | None:
+    """The context that handles are shown in; None where nothing can be dragged now."""
+    space = view_3d(context)
+    if space is None or not (space.show_gizmo and space.show_gizmo_context):
         return None
-    if not (space.show_gizmo and space.show_gizmo_context) or session().solving is not None:
+    if session().solving is not None:
         return None
-    seen = look_at(context)
-    if seen is None or seen.armature.mode == "EDIT" or not seen.armature.is_editable:
+    view = read_view(context)
+    if view is None or view.armature.mode == "EDIT" or not view.armature.is_editable:
         return None
-    return seen if current_action(seen.armature) is not None else None
+    return view if current_action(view.armature) is not None else None
+
+
+def new_gizmo(group: bpy.types.GizmoGroup, kind: str, **own: object) -> bpy.types.Gizmo:
+    """A gizmo of a kind, with values of properties that only this kind has."""
+    gizmo = group.gizmos.new(kind)
+    for name, value in own.items():
+        setattr(gizmo, name, value)
+    return gizmo
 
 
 def knob(group: bpy.types.GizmoGroup) -> bpy.types.Gizmo:
     """A disc that faces the viewer and has the same size on the screen wherever it is."""
-    gizmo = group.gizmos.new("GIZMO_GT_move_3d")
-    gizmo.draw_style = "RING_2D"
-    gizmo.draw_options = {"FILL_SELECT", "ALIGN_VIEW"}
+    gizmo = new_gizmo(
+        group, "GIZMO_GT_move_3d", draw_style="RING_2D", draw_options={"FILL_SELECT", "ALIGN_VIEW"}
+    )
     gizmo.scale_basis = KNOB
     gizmo.line_width = 2.0
     return gizmo

@@ -1,6 +1,6 @@
-"""What the 3D viewport shows of a motion and of what is asked for.
+"""Overlays of the 3D viewport: a motion, and what is asked of it.
 
-Each redraw: `seen` reads what is there, `picture` names the layers that shall be drawn by their
-content, `pictures` keeps what was built for the same content, and `drawn` hands it to the graphics
-card. Shapes are arrays (`shapes`, `solids`, `arcs`, `figure`) and know nothing of Blender.
+Each redraw: `context` reads what is there, `layer_selection` names the layers that shall be drawn
+by their content, `picture_cache` keeps what was built for the same content, and `gpu_batches` hands
+it to the graphics card. Shapes are arrays (`geometry`) and know nothing of Blender's data.
 """

@@ -2,42 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import ExitStack
-from typing import TYPE_CHECKING
 
 import bpy
 
-from .context.figure_cache import Figures
-from .context.view_context import look_at
-from .geometry.shapes import Label, Shape
+from ..drawing.editor import ui_scale
+from .context.figure_cache import FigureCache
+from .context.view_context import read_view
+from .geometry.shapes import Label
+from .gpu_batches import GpuBatches, draw, upload
 from .layer_selection import layers
 from .layers import labels
-from .picture_cache import Pictures
-
-if TYPE_CHECKING:
-    from .gpu_batches import Drawn
+from .picture_cache import PictureCache
 
 
 class Overlay:
-    """Draws what is seen. Nothing is built again while its content stays."""
+    """Draws the overlay. Nothing is built again while its content stays."""
 
     def __init__(self) -> None:
-        self._figures = Figures()
-        self._pictures: Pictures[Drawn] = Pictures(_upload)
+        self._figures = FigureCache()
+        self._pictures: PictureCache[GpuBatches] = PictureCache(upload)
         self._labels: tuple[Label, ...] = ()
 
     def draw_view(self) -> None:
         """In the world (POST_VIEW)."""
-        from .gpu_batches import draw
-
         self._labels = ()
-        seen = look_at(bpy.context)
-        if seen is None:
+        context = bpy.context
+        view = read_view(context)
+        if view is None:
             return
-        picture = self._pictures.of(list(layers(seen, self._figures)))
-        draw(picture.drawn, bpy.context.preferences.system.ui_scale)
-        self._labels = picture.labels if seen.view.labels else ()
+        picture = self._pictures.of(list(layers(view, self._figures)))
+        draw(picture.batches, ui_scale(context))
+        self._labels = picture.labels if view.options.labels else ()
 
     def draw_labels(self) -> None:
         """Over the picture (POST_PIXEL), which follows for the same region."""
@@ -51,19 +47,13 @@ class Overlay:
         self._labels = ()
 
 
-def _upload(shapes: Sequence[Shape]) -> Drawn:
-    from .gpu_batches import upload  # the graphics card is there only once something is drawn
-
-    return upload(shapes)
-
-
 def add(undo: ExitStack) -> Overlay:
     """Shows overlays in every 3D viewport until `undo` is closed."""
     overlay = Overlay()
     undo.callback(overlay.clear)
     space = bpy.types.SpaceView3D
-    for draw, when in ((overlay.draw_view, "POST_VIEW"), (overlay.draw_labels, "POST_PIXEL")):
-        handle = space.draw_handler_add(draw, (), "WINDOW", when)
+    for callback, when in ((overlay.draw_view, "POST_VIEW"), (overlay.draw_labels, "POST_PIXEL")):
+        handle = space.draw_handler_add(callback, (), "WINDOW", when)
         undo.callback(space.draw_handler_remove, handle, "WINDOW")
     _redraw()
     undo.callback(_redraw)

@@ -4,42 +4,30 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import present
+from ...bridge.constraint_kinds import KINDS
 from ...bridge.constraints.linked_rows import linked_count
-from ...bridge.properties.kinds import BodyKind, ConstraintKind, Met, Span
+from ...bridge.properties.settings import HangtimeSettings
+from ...bridge.rows.choices import BodyKind, Met
+from ...bridge.rows.kind import Icon, Row
 from ...operators.names import ListId
+from ..drawing.editor import ui_scale
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
-ICONS = {
-    ConstraintKind.POINT.name: "PINNED",
-    ConstraintKind.LIFT.name: "TRIA_UP_BAR",
-    ConstraintKind.ANGLE.name: "DRIVER_ROTATIONAL_DIFFERENCE",
-    ConstraintKind.CONE.name: "CONE",
-    ConstraintKind.TWIST.name: "FORCE_VORTEX",
-    ConstraintKind.TORQUE.name: "FORCE_MAGNETIC",
-    ConstraintKind.POSE.name: "ARMATURE_DATA",
-    ConstraintKind.ORIENTATION.name: "ORIENTATION_GIMBAL",
-    ConstraintKind.FORCE.name: "FORCE_FORCE",
-    ConstraintKind.TIMING.name: "TIME",
-    ConstraintKind.HOLD.name: "PAUSE",
+ICONS: dict[str, Icon] = {
+    **{kind.name: kind.icon for kind in KINDS.values()},
     BodyKind.LOAD.name: "PACKAGE",
     BodyKind.LIMB.name: "BONE_DATA",
 }
-MET_ICONS = {Met.UNKNOWN.name: "INFO", Met.MET.name: "CHECKMARK", Met.MISSED.name: "ERROR"}
+MET_ICONS: dict[str, Icon] = {
+    Met.UNKNOWN.name: "INFO",
+    Met.MET.name: "CHECKMARK",
+    Met.MISSED.name: "ERROR",
+}
 
 
-def range_text(row: bpy.types.PropertyGroup) -> str:
-    """When a constraint holds, in a few letters."""
-    if row.kind in (ConstraintKind.TIMING.name, ConstraintKind.LIFT.name):
-        return str(row.phase)
-    if row.kind == ConstraintKind.HOLD.name or row.span == Span.FRAME.name:
-        return f"{row.first_frame:.0f}"
-    if row.span == Span.FRAMES.name:
-        return f"{row.first_frame:.0f}–{row.last_frame:.0f}"
-    return str(row.phase) if row.span == Span.PHASE.name else ""
-
-
-class _RowList:
-    """Mixin: a line of either list."""
+class _RowList(bpy.types.UIList):
+    """Base: a line of either list."""
 
     rows = ""  # the settings' property
 
@@ -47,23 +35,24 @@ class _RowList:
         self,
         context: bpy.types.Context,
         layout: bpy.types.UILayout,
-        settings: bpy.types.PropertyGroup,
-        row: bpy.types.PropertyGroup,
-        _icon: int,
-        _active_owner: bpy.types.PropertyGroup,
-        _active_name: str,
-        index: int,
+        settings: HangtimeSettings | None,
+        row: Row,
+        _icon: int | None,
+        _active_owner: HangtimeSettings | None,
+        _active_name: str | None,
+        index: int | None,
+        _filter: int | None,
     ) -> None:
         line = layout.row(align=True)
         line.prop(row, "used", text="")
         line = line.row(align=True)
         line.active = row.used
-        wide = context.region.width > WIDE * context.preferences.system.ui_scale
+        wide = present(context.region).width > WIDE * ui_scale(context)
         text = self.told(row) if wide else ""
         if text:
             line = line.split(factor=0.65, align=True)
         name = line.row(align=True)
-        if index < linked_count(settings.id_data, self.rows):
+        if present(index) < linked_count(row.id_data, self.rows):
             name.label(text=row.name, icon=ICONS[row.kind])
         else:
             name.prop(row, "name", text="", emboss=False, icon=ICONS[row.kind])
@@ -74,24 +63,24 @@ class _RowList:
         if row.status:
             end.label(text="", icon=MET_ICONS[row.met])
 
-    def told(self, row: bpy.types.PropertyGroup) -> str:
+    def told(self, row: Row) -> str:
         """What stands beside the name."""
         raise NotImplementedError
 
 
-class ConstraintList(_RowList, bpy.types.UIList):
+class ConstraintList(_RowList):
     bl_idname = ListId.CONSTRAINTS
     rows = "constraints"
 
-    def told(self, row: bpy.types.PropertyGroup) -> str:
-        return range_text(row)
+    def told(self, row: Row) -> str:
+        return KINDS[row.kind].told(row)
 
 
-class BodyChangeList(_RowList, bpy.types.UIList):
+class BodyChangeList(_RowList):
     bl_idname = ListId.BODY_CHANGES
     rows = "body_changes"
 
-    def told(self, row: bpy.types.PropertyGroup) -> str:
+    def told(self, row: Row) -> str:
         if row.kind == BodyKind.LIMB.name:
             return f"× {row.length:.2g}" if row.length != 1.0 else ""
         return f"{100.0 * row.share:.0f} %" if row.by_share else f"{row.mass:.3g} kg"

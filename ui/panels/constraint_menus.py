@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.properties.kinds import BodyKind, ConstraintKind
+from ...bridge.accessors import present
+from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
+from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.kind import Icon, MenuGroup
 from ...operators.names import MenuId, OperatorId
 from .constraint_lists import ICONS
-
-GROUPS = (
-    (ConstraintKind.POINT, ConstraintKind.POSE, ConstraintKind.ORIENTATION),
-    (ConstraintKind.ANGLE, ConstraintKind.CONE, ConstraintKind.TWIST, ConstraintKind.TORQUE),
-    (ConstraintKind.FORCE, ConstraintKind.LIFT),
-    (ConstraintKind.TIMING, ConstraintKind.HOLD),
-)
 
 
 class AddConstraintMenu(bpy.types.Menu):
@@ -22,12 +18,10 @@ class AddConstraintMenu(bpy.types.Menu):
     bl_description = "Add a constraint about the selected pose bones and the current frame"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
-        for group in GROUPS:
-            for kind in group:
-                entry = layout.operator(
-                    OperatorId.ADD_CONSTRAINT, text=kind.value, icon=ICONS[kind.name]
-                )
+        layout = present(self.layout)
+        for group in MenuGroup:
+            for kind in (kind for kind in KINDS.values() if kind.menu is group):
+                entry = layout.operator(OperatorId.ADD_CONSTRAINT, text=kind.label, icon=kind.icon)
                 entry.kind = kind.name
             layout.separator()
         layout.menu(MenuId.PRESETS, icon="PRESET")
@@ -38,12 +32,12 @@ class PresetsMenu(bpy.types.Menu):
     bl_label = "Add Preset"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.operator(OperatorId.JOINT_LIMITS, icon=ICONS[ConstraintKind.CONE.name])
-        layout.operator(OperatorId.JOINT_STRENGTH, icon=ICONS[ConstraintKind.TORQUE.name])
+        layout = present(self.layout)
+        layout.operator(OperatorId.JOINT_LIMITS, icon=cone.KIND.icon)
+        layout.operator(OperatorId.JOINT_STRENGTH, icon=torque_limit.KIND.icon)
         layout.separator()
-        layout.operator(OperatorId.SOFT_LANDING, icon=ICONS[ConstraintKind.FORCE.name])
-        layout.operator(OperatorId.LIMP_LIMB, icon=ICONS[ConstraintKind.TORQUE.name])
+        layout.operator(OperatorId.SOFT_LANDING, icon=contact_force.KIND.icon)
+        layout.operator(OperatorId.LIMP_LIMB, icon=torque_limit.KIND.icon)
         layout.operator(OperatorId.CARRY_WEIGHT, icon=ICONS[BodyKind.LOAD.name])
 
 
@@ -52,16 +46,17 @@ class ConstraintMoreMenu(bpy.types.Menu):
     bl_label = "Constraint Specials"
 
     def draw(self, _context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         layout.operator(OperatorId.COPY_CONSTRAINT, icon="DUPLICATE")
         layout.operator(OperatorId.ASSIGN_BONES, icon="RESTRICT_SELECT_OFF").of = "CONSTRAINTS"
         layout.operator(OperatorId.PLACE_CONSTRAINT, icon="CON_LOCLIKE")
         layout.separator()
-        for to, text, icon in (
+        ranges: tuple[tuple[str, str, Icon], ...] = (
             ("FRAME", "Set Range to Current Frame", "KEYFRAME"),
             ("PHASE", "Set Range to Current Phase", "CENTER_ONLY"),
             ("PREVIEW", "Set Range to Preview Range", "PREVIEW_RANGE"),
-        ):
+        )
+        for to, text, icon in ranges:
             layout.operator(OperatorId.SET_CONSTRAINT_RANGE, text=text, icon=icon).to = to
         layout.separator()
         layout.menu(MenuId.PRESETS, icon="PRESET")
@@ -74,7 +69,7 @@ class AddBodyChangeMenu(bpy.types.Menu):
 
     def draw(self, _context: bpy.types.Context) -> None:
         for kind in BodyKind:
-            entry = self.layout.operator(
+            entry = present(self.layout).operator(
                 OperatorId.ADD_BODY_CHANGE, text=kind.value, icon=ICONS[kind.name]
             )
             entry.kind = kind.name

@@ -4,23 +4,27 @@ from __future__ import annotations
 
 import bpy
 
-from ...bridge.properties.kinds import BodyKind, ConstraintKind
+from ...bridge.accessors import armature_data, present
+from ...bridge.constraint_kinds import KINDS
+from ...bridge.properties.settings import settings_of
+from ...bridge.rows.choices import BodyKind
+from ...bridge.rows.kind import Row
 from ...operators.lists.row_lists import RowList
 from ...operators.names import ListId, MenuId, OperatorId, PanelId
 from ...operators.solve.common import chosen_armature
 from .constraint_fields import draw_bone, draw_bones, draw_constraint
-from .constraint_lists import ICONS, MET_ICONS
-from .sidebar import ArmaturePanel, split
+from .constraint_lists import MET_ICONS
+from .sidebar import ArmaturePanel, settings_in, split
 
 
-class ConstraintsPanel(ArmaturePanel, bpy.types.Panel):
+class ConstraintsPanel(ArmaturePanel):
     bl_idname = PanelId.CONSTRAINTS
     bl_label = "Constraints"
     bl_order = 3
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        settings = chosen_armature(context).hangtime
+        layout = present(self.layout)
+        settings = settings_in(context)
         row = layout.row()
         row.template_list(
             ListId.CONSTRAINTS, "", settings, "constraints", settings, "active_constraint", rows=5
@@ -35,7 +39,7 @@ class ConstraintsPanel(ArmaturePanel, bpy.types.Panel):
         side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_DOWN").direction = "DOWN"
 
 
-class ConstraintPanel(ArmaturePanel, bpy.types.Panel):
+class ConstraintPanel(ArmaturePanel):
     bl_idname = PanelId.CONSTRAINT
     bl_parent_id = PanelId.CONSTRAINTS
     bl_label = ""
@@ -43,36 +47,36 @@ class ConstraintPanel(ArmaturePanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        return armature is not None and RowList.CONSTRAINTS.chosen(armature.hangtime) >= 0
+        return armature is not None and RowList.CONSTRAINTS.chosen(settings_of(armature)) >= 0
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        row = _chosen(chosen_armature(context), RowList.CONSTRAINTS)
-        kind = ConstraintKind[row.kind].value
-        self.layout.label(text=kind, icon=ICONS[row.kind])
+        row = _chosen(present(chosen_armature(context)), RowList.CONSTRAINTS)
+        kind = KINDS[row.kind]
+        present(self.layout).label(text=kind.label, icon=kind.icon)
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
-        armature = chosen_armature(context)
+        armature = present(chosen_armature(context))
         row = _chosen(armature, RowList.CONSTRAINTS)
         _draw_status(layout, row)
         body = layout.column()
         body.active = row.used
         own = _is_own(armature, RowList.CONSTRAINTS)
-        draw_constraint(body, row, armature.data, own=own)
+        draw_constraint(body, row, armature_data(armature), own=own)
 
 
-class BodyChangesPanel(ArmaturePanel, bpy.types.Panel):
+class BodyChangesPanel(ArmaturePanel):
     bl_idname = PanelId.BODY_CHANGES
     bl_label = "Body Changes"
     bl_order = 4
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
-        armature = chosen_armature(context)
-        settings = armature.hangtime
+        armature = present(chosen_armature(context))
+        settings = settings_of(armature)
         mass = layout.row(heading="New Mass (kg)")
         mass.prop(settings, "use_new_mass", text="")
         value = mass.row()
@@ -108,12 +112,12 @@ def _draw_body_change(layout: bpy.types.UILayout, armature: bpy.types.Object) ->
     own = _is_own(armature, RowList.BODY_CHANGES)
     if row.kind == BodyKind.LIMB.name:
         none = "Select bones and assign them"
-        draw_bones(body, row, armature.data, "BODY_CHANGES", none, own=own)
+        draw_bones(body, row, armature_data(armature), "BODY_CHANGES", none, own=own)
         factors = body.column(align=True)
         factors.prop(row, "length", text="Length ×")
         factors.prop(row, "mass_factor", text="Mass ×")
         return
-    draw_bone(body, row, armature.data, own=own)
+    draw_bone(body, row, armature_data(armature), own=own)
     body.prop(row, "by_share")
     body.prop(row, "share" if row.by_share else "mass")
     body.prop(row, "use_offset")
@@ -121,18 +125,19 @@ def _draw_body_change(layout: bpy.types.UILayout, armature: bpy.types.Object) ->
         body.column(align=True).prop(row, "offset")
 
 
-def _draw_status(layout: bpy.types.UILayout, row: bpy.types.PropertyGroup) -> None:
+def _draw_status(layout: bpy.types.UILayout, row: Row) -> None:
     if row.status:
         layout.label(text=row.status, icon=MET_ICONS[row.met])
 
 
-def _chosen(armature: bpy.types.Object, of: RowList) -> bpy.types.PropertyGroup:
-    return of.rows(armature.hangtime)[of.chosen(armature.hangtime)]
+def _chosen(armature: bpy.types.Object, of: RowList) -> Row:
+    settings = settings_of(armature)
+    return of.rows(settings)[of.chosen(settings)]
 
 
 def _is_own(armature: bpy.types.Object, of: RowList) -> bool:
     """Whether the chosen row is the artist's, not a linked file's."""
-    return of.chosen(armature.hangtime) >= of.linked(armature)
+    return of.chosen(settings_of(armature)) >= of.linked(armature)
 
 
 CLASSES = (ConstraintsPanel, ConstraintPanel, BodyChangesPanel)

@@ -1,23 +1,25 @@
-"""Contacts: what touches when and where, and where it shall touch instead."""
+"""Panels of contacts: what touches when and where, and where it shall touch instead."""
 
 from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import present
+from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import active_contact, active_stance
 from ...operators.names import ListId, OperatorId, PanelId
 from ...operators.solve.common import chosen_armature
-from .sidebar import ArmaturePanel, split
+from .sidebar import ArmaturePanel, settings_in, split
 
 
-class ContactsPanel(ArmaturePanel, bpy.types.Panel):
+class ContactsPanel(ArmaturePanel):
     bl_idname = PanelId.CONTACTS
     bl_label = "Contacts"
     bl_order = 2
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        settings = chosen_armature(context).hangtime
+        layout = present(self.layout)
+        settings = settings_in(context)
         if not settings.contacts:
             layout.label(text="Press Analyze to find them", icon="INFO")
             return
@@ -32,7 +34,7 @@ class ContactsPanel(ArmaturePanel, bpy.types.Panel):
 
 
 class _ActivePanel(ArmaturePanel):
-    """Mixin: a subpanel about the chosen contact."""
+    """Base: a subpanel about the chosen contact."""
 
     bl_parent_id = PanelId.CONTACTS
     bl_label = ""
@@ -40,24 +42,24 @@ class _ActivePanel(ArmaturePanel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        return armature is not None and active_contact(armature.hangtime) is not None
+        return armature is not None and active_contact(settings_of(armature)) is not None
 
 
-class StancePanel(_ActivePanel, bpy.types.Panel):
+class StancePanel(_ActivePanel):
     bl_idname = PanelId.STANCE
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        return armature is not None and active_stance(armature.hangtime) is not None
+        return armature is not None and active_stance(settings_of(armature)) is not None
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        self.layout.label(text=f"Move {active_stance(chosen_armature(context).hangtime).name}")
+        present(self.layout).label(text=f"Move {present(active_stance(settings_in(context))).name}")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
-        stance = active_stance(chosen_armature(context).hangtime)
+        stance = present(active_stance(settings_in(context)))
         column = layout.column(align=True)
         for name in ("forward", "left", "up", "turn"):
             column.prop(stance, name)
@@ -66,18 +68,18 @@ class StancePanel(_ActivePanel, bpy.types.Panel):
         buttons.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
 
 
-class ContactPanel(_ActivePanel, bpy.types.Panel):
+class ContactPanel(_ActivePanel):
     bl_idname = PanelId.CONTACT
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        row = active_contact(chosen_armature(context).hangtime)
-        self.layout.label(text=f"{row.name} ({row.bone})")
+        row = present(active_contact(settings_in(context)))
+        present(self.layout).label(text=f"{row.name} ({row.bone})")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
-        row = active_contact(chosen_armature(context).hangtime)
+        row = present(active_contact(settings_in(context)))
         frames = layout.column(align=True)
         frames.prop(row, "start_frame")
         frames.prop(row, "end_frame")

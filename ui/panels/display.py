@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import armature_data, present
+from ...bridge.properties.settings import scene_settings
+from ...bridge.properties.view import HangtimeView
 from ...operators.names import OperatorId, PanelId
 from ...operators.solve.common import chosen_armature
 from .sidebar import SidebarPanel
@@ -13,17 +16,17 @@ _MOTION = ("path", "forces", "momentum")
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
 
-class DisplayPanel(SidebarPanel, bpy.types.Panel):
+class DisplayPanel(SidebarPanel):
     bl_idname = PanelId.DISPLAY
     bl_label = "Display"
     bl_order = 8
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        self.layout.prop(context.scene.hangtime.view, "show", text="")
+        present(self.layout).prop(scene_settings(context.scene).view, "show", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout, view = self.layout, context.scene.hangtime.view
+        layout, view = present(self.layout), scene_settings(context.scene).view
         layout.use_property_split = True
         layout.use_property_decorate = False
         shown = layout.column()
@@ -37,14 +40,14 @@ class DisplayPanel(SidebarPanel, bpy.types.Panel):
 
 
 def _draw_column(
-    layout: bpy.types.UILayout, view: bpy.types.PropertyGroup, heading: str, names: tuple[str, ...]
+    layout: bpy.types.UILayout, view: HangtimeView, heading: str, names: tuple[str, ...]
 ) -> None:
     column = layout.column(heading=heading)
     for name in names:
         column.prop(view, name)
 
 
-def _draw_ghosts(layout: bpy.types.UILayout, view: bpy.types.PropertyGroup) -> None:
+def _draw_ghosts(layout: bpy.types.UILayout, view: HangtimeView) -> None:
     column = layout.column(heading="Ghosts")
     column.prop(view, "ghosts", text="Show")
     column = column.column()
@@ -54,7 +57,7 @@ def _draw_ghosts(layout: bpy.types.UILayout, view: bpy.types.PropertyGroup) -> N
 
 
 def _draw_plots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    view = context.scene.hangtime.view
+    view = scene_settings(context.scene).view
     column = layout.column(heading="Plots")
     column.prop(view, "plots", text="Show")
     column = column.column()
@@ -65,7 +68,7 @@ def _draw_plots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if armature is None:
         column.prop(view, "plot_bone")
     else:
-        column.prop_search(view, "plot_bone", armature.data, "bones")
+        column.prop_search(view, "plot_bone", armature_data(armature), "bones")
     layout.operator(OperatorId.SAVE_PLOTS, icon="EXPORT")
 
 

@@ -6,6 +6,7 @@ from contextlib import ExitStack
 
 import bpy
 
+from ...bridge.accessors import present
 from ...operators.names import MenuId, OperatorId
 
 GROUPS = (
@@ -29,10 +30,11 @@ class HangtimeMenu(bpy.types.Menu):
     bl_label = "Hangtime"
 
     def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
         for group in GROUPS:
             for operator in group:
-                self.layout.operator(operator)
-            self.layout.separator()
+                layout.operator(operator)
+            layout.separator()
 
 
 def add(undo: ExitStack) -> None:
@@ -43,8 +45,9 @@ def add(undo: ExitStack) -> None:
 
 
 def _draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    menu.layout.separator()
-    menu.layout.menu(MenuId.HANGTIME)
+    layout = present(menu.layout)
+    layout.separator()
+    layout.menu(MenuId.HANGTIME)
 
 
 CLASSES = (HangtimeMenu,)

@@ -4,25 +4,28 @@ from __future__ import annotations
 
 import bpy
 
+from ...bridge.accessors import armature_data, present
+from ...bridge.armature.actions import recorded_action
+from ...bridge.properties.settings import scene_settings, settings_of
 from ...operators.names import OperatorId, PanelId
 from ...operators.solve.common import chosen_armature
-from .sidebar import ArmaturePanel, SidebarPanel, lines, split
+from .sidebar import ArmaturePanel, SidebarPanel, lines, settings_in, split
 
 
-class CharacterPanel(SidebarPanel, bpy.types.Panel):
+class CharacterPanel(SidebarPanel):
     bl_idname = PanelId.CHARACTER
     bl_label = "Character"
     bl_order = 0
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
         armature = chosen_armature(context)
         active = armature.name if armature is not None else "Select an armature"
-        layout.prop(context.scene.hangtime, "armature", placeholder=active)
+        layout.prop(scene_settings(context.scene), "armature", placeholder=active)
         if armature is None:
             return
-        settings = armature.hangtime
+        settings = settings_of(armature)
         layout.prop(settings, "mass")
         height = layout.row(heading="Own Height")
         height.prop(settings, "use_height", text="")
@@ -33,43 +36,43 @@ class CharacterPanel(SidebarPanel, bpy.types.Panel):
             layout.label(text=f"Measured height: {settings.measured_height:.2f} m")
 
 
-class BonesPanel(ArmaturePanel, bpy.types.Panel):
+class BonesPanel(ArmaturePanel):
     bl_idname = PanelId.BONES
     bl_parent_id = PanelId.CHARACTER
     bl_label = "Bones"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        parts = chosen_armature(context).hangtime.parts
+        parts = settings_in(context).parts
         missing = sum(part.needed and not part.bone for part in parts)
         if missing:
-            self.layout.label(text=f"{missing} missing", icon="ERROR")
+            present(self.layout).label(text=f"{missing} missing", icon="ERROR")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
-        armature = chosen_armature(context)
+        armature = present(chosen_armature(context))
+        settings, bones = settings_of(armature), armature_data(armature)
         column = layout.column(align=True)
-        for part in armature.hangtime.parts:
+        for part in settings.parts:
             row = column.row()
             row.alert = part.needed and not part.bone
-            row.prop_search(part, "bone", armature.data, "bones", text=part.name.capitalize())
+            row.prop_search(part, "bone", bones, "bones", text=part.name.capitalize())
         layout.operator(OperatorId.FIND_BONES, icon="BONE_DATA")
-        layout.prop(armature.hangtime, "mass_table")
+        layout.prop(settings, "mass_table")
 
 
-class RecordingPanel(ArmaturePanel, bpy.types.Panel):
+class RecordingPanel(ArmaturePanel):
     bl_idname = PanelId.RECORDING
     bl_label = "Recording"
     bl_order = 1
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
-        armature = chosen_armature(context)
-        settings = armature.hangtime
-        action = armature.animation_data.action if armature.animation_data else None
-        recorded = (action.hangtime.recording or action) if action else None
+        armature = present(chosen_armature(context))
+        settings = settings_of(armature)
+        recorded = recorded_action(armature)
         if recorded is not None:
             layout.label(text=recorded.name, icon="ACTION")
         else:

@@ -1,15 +1,21 @@
-"""What the sidebar's panels share."""
+"""Bases and helpers of the sidebar's panels."""
 
 from __future__ import annotations
 
+from typing import Literal
+
 import bpy
 
+from ...bridge.accessors import present
+from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...operators.names import CATEGORY
 from ...operators.solve.common import chosen_armature
 
+Icon = Literal["NONE", "CHECKMARK", "ERROR"]
 
-class SidebarPanel:
-    """Mixin: a panel of the extension's tab. Drawing shows what is stored and computes nothing."""
+
+class SidebarPanel(bpy.types.Panel):
+    """Base: a panel of the extension's tab. Drawing shows what is stored and computes nothing."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -17,11 +23,16 @@ class SidebarPanel:
 
 
 class ArmaturePanel(SidebarPanel):
-    """Mixin: a panel about the chosen armature."""
+    """Base: a panel about the chosen armature."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return chosen_armature(context) is not None
+
+
+def settings_in(context: bpy.types.Context) -> HangtimeSettings:
+    """The chosen armature's settings; a panel's poll has found that there is one."""
+    return settings_of(present(chosen_armature(context)))
 
 
 def split(layout: bpy.types.UILayout) -> None:
@@ -30,10 +41,9 @@ def split(layout: bpy.types.UILayout) -> None:
     layout.use_property_decorate = False
 
 
-def lines(layout: bpy.types.UILayout, text: str, icon: str = "NONE") -> None:
+def lines(layout: bpy.types.UILayout, text: str, icon: Icon = "NONE") -> None:
     """Several lines of text, close together; the icon stands before the first."""
     column = layout.column(align=True)
     column.scale_y = 0.8
-    for line in text.splitlines():
-        column.label(text=line, icon=icon)
-        icon = "BLANK1" if icon != "NONE" else "NONE"
+    for index, line in enumerate(text.splitlines()):
+        column.label(text=line, icon=icon if index == 0 or icon == "NONE" else "BLANK1")

@@ -6,21 +6,23 @@ from textwrap import fill
 
 import bpy
 
+from ...bridge.accessors import present
+from ...bridge.properties.settings import action_settings
 from ...operators.names import OperatorId, PanelId
-from ...operators.solve.common import chosen_armature
 from ...operators.solve.session import session
-from .sidebar import ArmaturePanel, lines, split
+from ..drawing.editor import ui_scale
+from .sidebar import ArmaturePanel, lines, settings_in, split
 
 CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
 
 
-class SolvePanel(ArmaturePanel, bpy.types.Panel):
+class SolvePanel(ArmaturePanel):
     bl_idname = PanelId.SOLVE
     bl_label = "Solve"
     bl_order = 5
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         solving = session().solving
         if solving is not None:
             layout.progress(factor=solving.share, text=solving.doing.capitalize())
@@ -33,22 +35,22 @@ class SolvePanel(ArmaturePanel, bpy.types.Panel):
         row.operator(OperatorId.ADAPT, icon="PLAY")
         row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
         if session().failure:
-            width = context.region.width / (CHARACTER_PX * context.preferences.system.ui_scale)
+            width = present(context.region).width / (CHARACTER_PX * ui_scale(context))
             lines(layout, fill(session().failure, max(20, int(width))), icon="ERROR")
         if session().best is not None:
             layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
 
 
-class AdvancedPanel(ArmaturePanel, bpy.types.Panel):
+class AdvancedPanel(ArmaturePanel):
     bl_idname = PanelId.ADVANCED
     bl_parent_id = PanelId.SOLVE
     bl_label = "Advanced"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         split(layout)
-        settings = chosen_armature(context).hangtime
+        settings = settings_in(context)
         layout.prop(settings, "method")
         refine = layout.column(heading="Refine")
         refine.prop(settings, "objective")
@@ -58,19 +60,19 @@ class AdvancedPanel(ArmaturePanel, bpy.types.Panel):
         recipe.template_ID(settings, "requests", new="text.new", open="text.open")
 
 
-class ResultPanel(ArmaturePanel, bpy.types.Panel):
+class ResultPanel(ArmaturePanel):
     bl_idname = PanelId.RESULT
     bl_label = "Result"
     bl_order = 6
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        settings = chosen_armature(context).hangtime
+        layout = present(self.layout)
+        settings = settings_in(context)
         if settings.adapted is None:
             layout.label(text="Nothing has been adapted yet", icon="INFO")
             return
-        icon = "CHECKMARK" if settings.adapted.hangtime.accepted else "ACTION"
-        layout.label(text=settings.adapted.name, icon=icon)
+        accepted = action_settings(settings.adapted).accepted
+        layout.label(text=settings.adapted.name, icon="CHECKMARK" if accepted else "ACTION")
         row = layout.row(align=True)
         row.operator(OperatorId.ACCEPT, icon="CHECKMARK")
         row.operator(OperatorId.DISCARD, icon="TRASH")
@@ -80,14 +82,14 @@ class ResultPanel(ArmaturePanel, bpy.types.Panel):
         lines(layout, settings.status)
 
 
-class ExportPanel(ArmaturePanel, bpy.types.Panel):
+class ExportPanel(ArmaturePanel):
     bl_idname = PanelId.EXPORT
     bl_label = "Export"
     bl_order = 7
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, _context: bpy.types.Context) -> None:
-        row = self.layout.row(align=True)
+        row = present(self.layout).row(align=True)
         row.operator(OperatorId.EXPORT_FBX, text="FBX", icon="EXPORT")
         row.operator(OperatorId.EXPORT_GLTF, text="glTF", icon="EXPORT")
 

@@ -8,15 +8,15 @@ import numpy as np
 
 from ...bridge.plots.curves import Cap, Curve
 from ...bridge.plots.screen import Rect
-from ..drawing.sketch import Align, Colour, Measure, Picture, Sketch, Text
+from ..drawing.sketch import Align, Colour, Drawing, Sketch, Text, TextWidth
 from . import looks
-from .figure import Figure, Panel
+from .figure import ChartPanel, PlotFigure
 from .numbers import number, thinned
 
 WHOLE = 0.05  # a frame that is nearer to a whole one is written as that
 
 
-def still(figure: Figure, measure: Measure) -> Picture:
+def still(figure: PlotFigure, measure: TextWidth) -> Drawing:
     """All that does not depend on the scene's frame."""
     sketch = Sketch()
     for panel in figure.panels:
@@ -35,7 +35,7 @@ def still(figure: Figure, measure: Measure) -> Picture:
     return sketch.finished()
 
 
-def playhead(figure: Figure) -> Picture:
+def playhead(figure: PlotFigure) -> Drawing:
     """A line through every chart, at its first frame, and a plate for the frame's number."""
     sketch = Sketch()
     for panel in figure.panels:
@@ -49,8 +49,8 @@ def playhead(figure: Figure) -> Picture:
     return sketch.finished()
 
 
-def readings(figure: Figure, frame: float) -> list[Text]:
-    """What changes with the frame: its number, those beside it, and each curve's value there."""
+def readings(figure: PlotFigure, frame: float) -> list[Text]:
+    """Texts that change with the frame: its number, those beside it, each curve's value."""
     shift, scale = figure.playhead(frame), figure.scale
     size = looks.SMALL * scale
     hidden = 0.5 * (looks.PLATE_WIDTH + looks.TICK_WIDTH) * scale
@@ -70,7 +70,7 @@ def readings(figure: Figure, frame: float) -> list[Text]:
     return texts
 
 
-def _draw_phases(sketch: Sketch, figure: Figure, panel: Panel, measure: Measure) -> None:
+def _draw_phases(sketch: Sketch, figure: PlotFigure, panel: ChartPanel, measure: TextWidth) -> None:
     size = looks.SMALL * figure.scale
     axis, plot = panel.frames, panel.plot
     for phase in figure.phases:
@@ -91,7 +91,7 @@ def _names(name: str) -> tuple[str, ...]:
     return name, f"{kind[:1]}{count}"
 
 
-def _draw_head(sketch: Sketch, panel: Panel, scale: float, measure: Measure) -> None:
+def _draw_head(sketch: Sketch, panel: ChartPanel, scale: float, measure: TextWidth) -> None:
     """The title with its unit, and below it the legend."""
     size, padding = looks.FONT * scale, looks.PADDING * scale
     x, y = panel.card.left + padding, panel.card.top - padding - 10.0 * scale
@@ -108,13 +108,13 @@ def _draw_head(sketch: Sketch, panel: Panel, scale: float, measure: Measure) -> 
         sketch.text(Text(label_x, reading.y, reading.label, looks.WORDS, size))
 
 
-def _draw_missing(sketch: Sketch, panel: Panel, scale: float) -> None:
+def _draw_missing(sketch: Sketch, panel: ChartPanel, scale: float) -> None:
     x, y = 0.5 * (panel.card.left + panel.card.right), 0.5 * (panel.plot.bottom + panel.plot.top)
     words = panel.chart.missing
     sketch.text(Text(x, y, words, looks.FAINT, looks.FONT * scale, Align.CENTRE))
 
 
-def _draw_values(sketch: Sketch, panel: Panel, scale: float) -> None:
+def _draw_values(sketch: Sketch, panel: ChartPanel, scale: float) -> None:
     plot, size = panel.plot, looks.SMALL * scale
     for tick in panel.value_ticks:
         y = panel.values.at(tick)
@@ -124,14 +124,14 @@ def _draw_values(sketch: Sketch, panel: Panel, scale: float) -> None:
         sketch.text(Text(x, y - 0.35 * size, words, looks.FAINT, size, Align.RIGHT))
 
 
-def _draw_frames(sketch: Sketch, panel: Panel, scale: float) -> None:
+def _draw_frames(sketch: Sketch, panel: ChartPanel, scale: float) -> None:
     plot = panel.plot
     for tick in panel.frame_ticks:
         x = panel.frames.at(tick)
         sketch.path(((x, plot.bottom), (x, plot.bottom - 3.0 * scale)), looks.FAINT)
 
 
-def _draw_curve(sketch: Sketch, panel: Panel, curve: Curve) -> None:
+def _draw_curve(sketch: Sketch, panel: ChartPanel, curve: Curve) -> None:
     frames, values = thinned(curve.frames, curve.values, max(2, floor(panel.plot.width)))
     points = np.stack([panel.frames.all_at(frames), panel.values.all_at(values)], axis=1)
     sketch.path(points, _colour(curve))
@@ -141,7 +141,7 @@ def _colour(curve: Curve) -> Colour:
     return looks.PART if curve.part else looks.TAKES[curve.take]
 
 
-def _draw_cap(sketch: Sketch, panel: Panel, cap: Cap, scale: float) -> None:
+def _draw_cap(sketch: Sketch, panel: ChartPanel, cap: Cap, scale: float) -> None:
     """A dashed line with its value; an arrow up where it lies beyond the axis."""
     plot, size = panel.plot, looks.SMALL * scale
     left = max(panel.frames.at(cap.start), plot.left)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from ...bridge.plots.curves import Chart, Curve
 from ...bridge.plots.screen import Axis, Rect, round_range, round_step
-from ...bridge.properties.phases import PhaseSpan
-from ..drawing.sketch import Measure, Text
+from ...bridge.rows.phases import PhaseSpan
+from ..drawing.sketch import Text, TextWidth
 from . import looks
 from .numbers import decimals, number
 
@@ -26,7 +26,7 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Panel:
+class ChartPanel:
     """A chart in its card. plot: the rectangle of the curves. ticks: of both axes."""
 
     chart: Chart
@@ -41,10 +41,10 @@ class Panel:
 
 
 @dataclass(frozen=True)
-class Figure:
+class PlotFigure:
     """All charts, one below or beside the other, over the same frames."""
 
-    panels: tuple[Panel, ...]
+    panels: tuple[ChartPanel, ...]
     phases: tuple[PhaseSpan, ...]
     scale: float
 
@@ -74,13 +74,13 @@ class Figure:
         ]
 
 
-def figure(
+def lay_out(
     charts: tuple[Chart, ...],
     phases: tuple[PhaseSpan, ...],
     cards: tuple[Rect, ...],
     scale: float,
-    measure: Measure,
-) -> Figure | None:
+    measure: TextWidth,
+) -> PlotFigure | None:
     """Lays out charts in cards; None where there is nothing to be shown."""
     frames = [f for c in charts for curve in c.curves for f in (curve.frames[0], curve.frames[-1])]
     if not frames or not cards or min(frames) == max(frames):
@@ -98,8 +98,10 @@ def figure(
         along = Axis(*span, plot.left, plot.right)
         readings = _readings(chart, card, scale, measure)
         frame_ticks = along.ticks(looks.FRAMES_APART * scale, finest=1.0)
-        panels.append(Panel(chart, card, plot, along, values, frame_ticks, ticks, digits, readings))
-    return Figure(tuple(panels), phases, scale)
+        panels.append(
+            ChartPanel(chart, card, plot, along, values, frame_ticks, ticks, digits, readings)
+        )
+    return PlotFigure(tuple(panels), phases, scale)
 
 
 def _plot(card: Rect, label_width: float, scale: float) -> Rect:
@@ -133,7 +135,7 @@ def _extent(chart: Chart) -> tuple[float, float]:
     return low, max(*highs, *near, low + 1e-6)
 
 
-def _readings(chart: Chart, card: Rect, scale: float, measure: Measure) -> tuple[Reading, ...]:
+def _readings(chart: Chart, card: Rect, scale: float, measure: TextWidth) -> tuple[Reading, ...]:
     """The legend from left to right; what finds no room is left out."""
     size = looks.FONT * scale
     padding = looks.PADDING * scale

@@ -1,19 +1,22 @@
-"""The plots' draw handler: it looks up what is stored and paints what has been prepared."""
+"""Draw handler of the plots: looks up what is stored, paints what has been prepared."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from contextlib import ExitStack
 
 import bpy
 
-from ...bridge.plots.charts import Plotted, plotted
+from ...bridge.accessors import present
+from ...bridge.plots.charts import PlottedMotions, plotted
 from ...bridge.plots.screen import Rect
+from ...bridge.properties.settings import scene_settings
 from ...operators.solve.common import chosen_armature
 from ..drawing import paint
+from ..drawing.cache import ContentCache
+from ..drawing.editor import ui_scale, view_3d
 from . import looks
 from .drawing import playhead, readings, still
-from .figure import Figure, figure
+from .figure import PlotFigure, lay_out
 from .layout import Overlap, cards, free_room
 
 
@@ -29,8 +32,8 @@ class PlotOverlay:
     """Draws the plots; what it prepares is remembered for each content and room."""
 
     def __init__(self) -> None:
-        self._easel = paint.Easel()
-        self._figures: dict[Hashable, Figure | None] = {}
+        self._drawings = ContentCache[paint.DrawingBatches](paint.CACHED_DRAWINGS)
+        self._figures = ContentCache[PlotFigure | None](paint.CACHED_DRAWINGS)
 
     def draw(self) -> None:
         """Called by Blender for each viewport, and at each frame of playback."""
@@ -38,49 +41,41 @@ class PlotOverlay:
         shown = _wanted(context)
         if shown is None:
             return
-        scale = context.preferences.system.ui_scale
+        region, scale = present(context.region), ui_scale(context)
         room = _room(context)
-        key = (shown.asked, room, scale)
-        placed = self._figure(key, shown, room, scale)
+        key = (shown.content, room, scale)
+        placed = self._figures.get("figure", key, lambda: arranged(shown, room, scale))
         if placed is None:
             return
-        stroke = looks.STROKE * scale
-        width = paint.text_width
-        picture = self._easel.painting(key, lambda: still(placed, width))
-        paint.paint(picture, context.region, stroke)
-        frame = context.scene.frame_current_final
+        stroke, width = looks.STROKE * scale, paint.text_width
+        curves = self._drawings.get("curves", key, lambda: paint.upload(still(placed, width)))
+        paint.paint(curves, region, stroke)
+        frame = present(context.scene).frame_current_final
         shift = placed.playhead(frame)
         if shift is not None:
-            line = self._easel.painting((key, "playhead"), lambda: playhead(placed))
-            paint.paint(line, context.region, stroke, shift)
+            line = self._drawings.get("playhead", key, lambda: paint.upload(playhead(placed)))
+            paint.paint(line, region, stroke, shift)
         paint.write(readings(placed, frame))
 
-    def _figure(self, key: Hashable, shown: Plotted, room: Rect, scale: float) -> Figure | None:
-        if key not in self._figures:
-            if len(self._figures) >= paint.REMEMBERED:
-                self._figures.pop(next(iter(self._figures)))
-            self._figures[key] = arranged(shown, room, scale)
-        return self._figures[key]
 
-
-def arranged(shown: Plotted, room: Rect, scale: float) -> Figure | None:
+def arranged(shown: PlottedMotions, room: Rect, scale: float) -> PlotFigure | None:
     """The charts in a free room; None where that is too small or nothing is to be shown."""
     charts = shown.charts()
     places = cards(room, len(charts), scale)
-    return figure(charts, shown.asked.phases, places, scale, paint.text_width)
+    return lay_out(charts, shown.content.phases, places, scale, paint.text_width)
 
 
-def _wanted(context: bpy.types.Context) -> Plotted | None:
-    view = context.scene.hangtime.view
-    if not (view.show and view.plots and context.space_data.overlay.show_overlays):
+def _wanted(context: bpy.types.Context) -> PlottedMotions | None:
+    view, space = scene_settings(context.scene).view, view_3d(context)
+    if space is None or not (view.show and view.plots and space.overlay.show_overlays):
         return None
     armature = chosen_armature(context)
     return plotted(armature, view) if armature is not None else None
 
 
 def _room(context: bpy.types.Context) -> Rect:
-    """What bars and the sidebar leave of the viewport, in its px."""
-    window = context.region
+    """The rectangle that bars and the sidebar leave of the viewport, in its px."""
+    window = present(context.region)
     overlaps = [
         Overlap(
             region.alignment,
@@ -91,13 +86,15 @@ def _room(context: bpy.types.Context) -> Rect:
                 region.y - window.y + region.height,
             ),
         )
-        for region in context.area.regions
-        if region.type != "WINDOW" and _is_open(region, context.space_data)
+        for region in present(context.area).regions
+        if region.type != "WINDOW" and _is_open(region, view_3d(context))
     ]
     return free_room(window.width, window.height, overlaps)
 
 
-def _is_open(region: bpy.types.Region, space: bpy.types.SpaceView3D) -> bool:
+def _is_open(region: bpy.types.Region, space: bpy.types.SpaceView3D | None) -> bool:
     """Whether a region is to be seen; the shelf's bar keeps its size when the shelf is closed."""
-    closed = region.type == "ASSET_SHELF_HEADER" and not space.show_region_asset_shelf
+    closed = region.type == "ASSET_SHELF_HEADER" and not (
+        space is not None and space.show_region_asset_shelf
+    )
     return region.width > 1 and region.height > 1 and not closed

@@ -1,4 +1,4 @@
-"""Where plots go in a viewport: what bars and the sidebar leave free, and the cards in it."""
+"""Layout of plots in a viewport: the room that bars and the sidebar leave, and the cards in it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Overlap:
 
 
 def free_room(width: float, height: float, overlaps: Iterable[Overlap]) -> Rect:
-    """What overlapping regions leave of a viewport; their rectangles are in its px."""
+    """The rectangle that overlapping regions leave of a viewport; theirs are in its px."""
     left, bottom, right, top = 0.0, 0.0, width, height
     for overlap in overlaps:
         rect = overlap.rect

@@ -1,4 +1,4 @@
-"""Values as they are printed, and curves as they are drawn."""
+"""Printing of values, and decimation of curves that keeps their extremes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from math import floor, log10
 
 import numpy as np
 
-from ...bridge.plots.screen import Array
+from ...solver.arrays import FloatArray
 
 
 def decimals(step: float) -> int:
@@ -21,7 +21,7 @@ def number(value: float, digits: int) -> str:
     return words.lstrip("-") if float(words) == 0.0 else words.replace("-", "\N{MINUS SIGN}")
 
 
-def thinned(frames: Array, values: Array, columns: int) -> tuple[Array, Array]:
+def thinned(frames: FloatArray, values: FloatArray, columns: int) -> tuple[FloatArray, FloatArray]:
     """A curve of (T,) samples with no more than `columns` lowest and highest each.
 
     A curve's peaks are what is looked for; leaving out samples evenly would lose them.

@@ -1,16 +1,16 @@
-"""Contacts' and phases' bars as a picture."""
+"""Contacts' and phases' bars as a drawing."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...bridge.plots.screen import Rect
+from ...bridge.plots.screen import Array, Rect
 from ...operators.timeline.contact_bars import Bar, Bars
-from ..drawing.sketch import Align, Colour, Measure, Picture, Sketch, Text
+from ..drawing.sketch import Align, Colour, Drawing, Sketch, Text, TextWidth
 from . import looks
 
 
-def drawn(bars: Bars, measure: Measure) -> Picture:
+def drawn(bars: Bars, measure: TextWidth) -> Drawing:
     """The bars as far as they are in sight, their edges, and names where there is room."""
     sketch = Sketch()
     sketch.area(bars.room, looks.BACK)
@@ -26,7 +26,7 @@ def drawn(bars: Bars, measure: Measure) -> Picture:
 
 
 def _draw_bar(
-    sketch: Sketch, bar: Bar, rect: Rect, room: Rect, scale: float, measure: Measure
+    sketch: Sketch, bar: Bar, rect: Rect, room: Rect, scale: float, measure: TextWidth
 ) -> None:
     seen = Rect(max(rect.left, room.left), rect.bottom, min(rect.right, room.right), rect.top)
     if bar.used:
@@ -64,7 +64,7 @@ def _colour(bar: Bar) -> Colour:
     return looks.RIGHT if bar.name.startswith("Right") else looks.OTHER
 
 
-def hatch(rect: Rect, apart: float) -> np.ndarray:
+def hatch(rect: Rect, apart: float) -> Array:
     """Strokes at 45 degrees that fill a rectangle, (N, 2, 2) px: their ends."""
     starts = np.arange(rect.left - rect.height, rect.right, apart)
     low = np.maximum(starts, rect.left)

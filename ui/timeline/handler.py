@@ -6,14 +6,15 @@ from contextlib import ExitStack
 
 import bpy
 
+from ...bridge.accessors import present
 from ...operators.names import OperatorId
 from ...operators.timeline.timeline_bars import bars_in
 from ..drawing import paint
+from ..drawing.cache import ContentCache
 from . import looks
 from .drawing import drawn
 
 KEYMAP = "Dopesheet"  # the timeline's, too
-EDITOR = "DOPESHEET_EDITOR"
 # Those that are added last are asked first: edges before bars.
 CLICKED = (OperatorId.PICK_CONTACT, OperatorId.DRAG_CONTACT_EDGE)
 
@@ -24,10 +25,10 @@ def add(undo: ExitStack) -> None:
     space = bpy.types.SpaceDopeSheetEditor
     handle = space.draw_handler_add(overlay.draw, (), "WINDOW", "POST_PIXEL")
     undo.callback(space.draw_handler_remove, handle, "WINDOW")
-    configuration = bpy.context.window_manager.keyconfigs.addon
+    configuration = present(bpy.context.window_manager).keyconfigs.addon
     if configuration is None:  # Blender without an interface
         return
-    keymap = configuration.keymaps.new(name=KEYMAP, space_type=EDITOR)
+    keymap = configuration.keymaps.new(name=KEYMAP, space_type="DOPESHEET_EDITOR")
     for operator in CLICKED:
         item = keymap.keymap_items.new(operator, "LEFTMOUSE", "PRESS")
         undo.callback(keymap.keymap_items.remove, item)
@@ -37,7 +38,7 @@ class BarOverlay:
     """Draws the bars; what it prepares is remembered for each content and zoom."""
 
     def __init__(self) -> None:
-        self._easel = paint.Easel()
+        self._drawings = ContentCache[paint.DrawingBatches](paint.CACHED_DRAWINGS)
 
     def draw(self) -> None:
         """Called by Blender for each timeline and dope sheet."""
@@ -45,5 +46,7 @@ class BarOverlay:
         bars = bars_in(context)
         if bars is None:
             return
-        picture = self._easel.painting(bars, lambda: drawn(bars, paint.text_width))
-        paint.paint(picture, context.region, looks.STROKE * bars.scale)
+        drawing = self._drawings.get(
+            "bars", bars, lambda: paint.upload(drawn(bars, paint.text_width))
+        )
+        paint.paint(drawing, present(context.region), looks.STROKE * bars.scale)

@@ -8,10 +8,11 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature import bone_keys
+from hangtime.bridge.constraint_kinds import KINDS
 from hangtime.bridge.constraints.rows import add_body_change
 from hangtime.bridge.constraints.status import write_status
-from hangtime.bridge.properties.kinds import BodyKind, ConstraintKind
+from hangtime.bridge.rows import bone_keys
+from hangtime.bridge.rows.choices import BodyKind
 from hangtime.solver.data import faults, requests
 from hangtime.solver.data.requests import When
 from hangtime.tests.blender.helpers import rigs
@@ -38,7 +39,7 @@ def rig() -> bpy.types.Object:
 
 
 def test_a_renamed_bone_is_still_meant(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Leg")
+    added(rig, KINDS["CONE"], "thigh", name="Leg")
     rename(rig, "thigh", "Oberschenkel")
     rename(rig, "shin", "thigh")  # which now is another bone
     rig.name = "Renamed"
@@ -47,7 +48,7 @@ def test_a_renamed_bone_is_still_meant(rig: bpy.types.Object) -> None:
 
 
 def test_of_a_bone_and_its_copy_the_one_of_the_same_name_is_meant(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Leg")
+    added(rig, KINDS["CONE"], "thigh", name="Leg")
     bpy.ops.object.mode_set(mode="EDIT")
     for bone in rig.data.edit_bones:
         bone.select = bone.select_head = bone.select_tail = bone.name == "thigh"
@@ -60,7 +61,7 @@ def test_of_a_bone_and_its_copy_the_one_of_the_same_name_is_meant(rig: bpy.types
 
 
 def test_a_copied_armature_means_its_own_bones(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Leg")
+    added(rig, KINDS["CONE"], "thigh", name="Leg")
     copy = rig.copy()
     copy.data = rig.data.copy()
     bpy.context.scene.collection.objects.link(copy)
@@ -70,7 +71,7 @@ def test_a_copied_armature_means_its_own_bones(rig: bpy.types.Object) -> None:
 
 
 def test_a_bone_that_never_had_a_key_is_found_by_name(rig: bpy.types.Object) -> None:
-    row = added(rig, ConstraintKind.CONE, "thigh", name="Leg")
+    row = added(rig, KINDS["CONE"], "thigh", name="Leg")
     rig.data.bones["thigh"].hangtime.key = ""
     assert row.bones[0].name == "thigh"
     row.bones[0].name = "nowhere"
@@ -82,8 +83,8 @@ def test_a_bone_that_never_had_a_key_is_found_by_name(rig: bpy.types.Object) -> 
 
 def fill(rig: bpy.types.Object) -> requests.Requests:
     """Some rows; what they ask for."""
-    added(rig, ConstraintKind.CONE, "thigh", name="Leg", half_angle=0.5)
-    added(rig, ConstraintKind.TORQUE, "shin", "foot", name="Weak", torque=20.0)
+    added(rig, KINDS["CONE"], "thigh", name="Leg", half_angle=0.5)
+    added(rig, KINDS["TORQUE"], "shin", "foot", name="Weak", torque=20.0)
     add_body_change(rig.hangtime, BodyKind.LOAD, ["head"]).mass = 5.0
     return asked(rig)
 
@@ -134,8 +135,8 @@ def test_an_override_keeps_its_values_and_its_own_rows(
     settings.mass = 62.0
     settings.constraints[0].half_angle = 0.75
     settings.constraints[1].used = False
-    added(override, ConstraintKind.TORQUE, "head", "spine", name="Own")
-    added(override, ConstraintKind.POINT, "foot", name="Pin")
+    added(override, KINDS["TORQUE"], "head", "spine", name="Own")
+    added(override, KINDS["POINT"], "foot", name="Pin")
     settings.body_changes[0].mass = 7.0
     before = asked(override)
     for _ in range(2):
@@ -191,10 +192,10 @@ def test_a_linked_armature_is_not_changed(tmp_path: Path) -> None:
 
 
 def test_adding_without_selected_bones_leaves_the_bone_to_be_chosen(rig: bpy.types.Object) -> None:
-    for kind in ConstraintKind:
+    for kind in KINDS.values():
         assert bpy.ops.hangtime.add_constraint(kind=kind.name) == {"FINISHED"}
     rows = rig.hangtime.constraints
-    assert [row.kind for row in rows] == [kind.name for kind in ConstraintKind]
+    assert [row.kind for row in rows] == [kind.name for kind in KINDS.values()]
     assert rig.hangtime.active_constraint == len(rows) - 1
     assert [bone.name for bone in rows[0].bones] == [""]
     assert len({row.name for row in rows}) == len(rows)
@@ -233,7 +234,7 @@ def test_a_sided_bone_gives_a_readable_name() -> None:
 def test_rows_are_removed_copied_and_moved(rig: bpy.types.Object) -> None:
     settings = rig.hangtime
     for name in "abc":
-        added(rig, ConstraintKind.TORQUE, "shin", "foot", name=name, torque=30.0)
+        added(rig, KINDS["TORQUE"], "shin", "foot", name=name, torque=30.0)
     settings.active_constraint = 0
     assert bpy.ops.hangtime.copy_constraint() == {"FINISHED"}
     assert names(rig) == ["a", "b", "c", "a 2"]
@@ -255,21 +256,21 @@ def test_rows_are_removed_copied_and_moved(rig: bpy.types.Object) -> None:
 
 
 def test_selected_bones_are_assigned_and_taken_off(rig: bpy.types.Object) -> None:
-    row = added(rig, ConstraintKind.TORQUE, "head")
+    row = added(rig, KINDS["TORQUE"], "head")
     assert not bpy.ops.hangtime.assign_bones.poll()  # not in pose mode
     select(rig, "foot", "shin")
     assert bpy.ops.hangtime.assign_bones(of="CONSTRAINTS") == {"FINISHED"}
     assert [bone.name for bone in row.bones] == ["foot", "shin"]
     assert bpy.ops.hangtime.remove_bone(of="CONSTRAINTS", index=0) == {"FINISHED"}
     assert [bone.name for bone in row.bones] == ["shin"]
-    cone = added(rig, ConstraintKind.CONE)
+    cone = added(rig, KINDS["CONE"])
     assert bpy.ops.hangtime.assign_bones(of="CONSTRAINTS") == {"FINISHED"}
     assert [bone.name for bone in cone.bones] == ["foot"]
 
 
 def test_ranges_are_set_from_the_timeline(rig: bpy.types.Object) -> None:
     scene = bpy.context.scene
-    added(rig, ConstraintKind.CONE, "thigh")
+    added(rig, KINDS["CONE"], "thigh")
     scene.frame_set(20)
     bpy.ops.hangtime.set_constraint_range(to="FRAME")
     assert asked(rig).cones[0].when == When(frames=(20.0, 20.0))
@@ -283,7 +284,7 @@ def test_ranges_are_set_from_the_timeline(rig: bpy.types.Object) -> None:
 
 
 def test_a_point_is_put_where_it_is_shown(rig: bpy.types.Object) -> None:
-    row = added(rig, ConstraintKind.POINT, "foot")
+    row = added(rig, KINDS["POINT"], "foot")
     row.offset = (0.0, 0.0, 0.0)
     bpy.context.scene.frame_set(12)
     bpy.ops.hangtime.place_constraint()
@@ -319,12 +320,12 @@ def condition(name: str, met: bool, amount: float, unit: str) -> dict[str, objec
 
 
 def test_every_row_is_told_how_it_came_out(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Leg")
-    added(rig, ConstraintKind.POINT, "foot", name="Pin")
-    added(rig, ConstraintKind.TORQUE, "foot", name="Weak")
-    added(rig, ConstraintKind.POINT, "head", name="Bar", environment=True)
-    added(rig, ConstraintKind.TIMING, name="Slow")
-    added(rig, ConstraintKind.CONE, "shin", name="Off", used=False)
+    added(rig, KINDS["CONE"], "thigh", name="Leg")
+    added(rig, KINDS["POINT"], "foot", name="Pin")
+    added(rig, KINDS["TORQUE"], "foot", name="Weak")
+    added(rig, KINDS["POINT"], "head", name="Bar", environment=True)
+    added(rig, KINDS["TIMING"], name="Slow")
+    added(rig, KINDS["CONE"], "shin", name="Off", used=False)
     add_body_change(rig.hangtime, BodyKind.LOAD, ["head"])
     report = {
         "conditions": [

@@ -10,7 +10,7 @@ from hangtime.bridge.files.import_clip import ImportedClip, import_clip
 from hangtime.bridge.formats.acclaim import read_acclaim
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.guess import ACCLAIM_UNIT
-from hangtime.bridge.formats.skeleton import SUBSTITUTE_BONE, forward_kinematics, to_recording
+from hangtime.bridge.formats.motion_clip import SUBSTITUTE_BONE, forward_kinematics, to_recording
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.arrays import FloatArray

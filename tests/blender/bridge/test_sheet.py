@@ -8,7 +8,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-from hangtime.bridge.picture import layout, render
+from hangtime.bridge.picture import cycles, layout
 from hangtime.bridge.picture.render import draw_sheet
 from hangtime.bridge.picture.sheet import Limb, SheetRow, View
 from hangtime.solver.data.faults import OutputNotWritable
@@ -109,7 +109,7 @@ def test_nothing_is_left_behind_when_drawing_fails(rows, tmp_path, monkeypatch):
     def fail(*_, **__):
         raise RuntimeError
 
-    monkeypatch.setattr(render, "_render", fail)
+    monkeypatch.setattr(cycles, "_render", fail)
     before = len(bpy.data.scenes), len(bpy.data.objects), len(bpy.data.meshes)
     with pytest.raises(RuntimeError):
         draw_sheet(rows, tmp_path / "sheet.png", width=40)

@@ -207,7 +207,7 @@ def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
     apexes = []
     for up in (0.01, 0.05):
         chase.want(raised(up))
-        reached = (seen for seen in chased(chase) if seen.course is DragStatus.ARRIVED)
+        reached = (seen for seen in chased(chase) if seen.course is DragStatus.CONVERGED)
         seen = next(s for s in reached if abs(s.change["moved_cm"] - 100.0 * up) < 0.1)
         apexes.append(seen.traces.heads[:, 0, 2].max())
     assert apexes[1] > apexes[0] + 0.01

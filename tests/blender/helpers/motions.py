@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 from hangtime.bridge.armature.traces_store import keep
-from hangtime.solver.data.traces import Flight, Traces
+from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.tests.blender.helpers import rigs
 
 FIRST, LAST = 10.0, 110.0
@@ -31,7 +31,7 @@ def traces(*, adapted: bool) -> Traces:
     torques = np.stack([(1.0 + j) * FRAMES for j in range(len(joints))], axis=1) if joints else None
     com = np.zeros((count, 3))
     com[:, 2] = 1.0 + 0.001 * FRAMES
-    flight = Flight("flight 1", TAKE_OFF, LANDING, np.zeros((25, 3)))
+    flight = FlightParabola("flight 1", TAKE_OFF, LANDING, np.zeros((25, 3)))
     return Traces(
         frames=FRAMES,
         bones=("hips",),

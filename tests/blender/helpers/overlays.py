@@ -6,12 +6,12 @@ import bpy
 import numpy as np
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.traces_store import keep
-from hangtime.bridge.properties.kinds import ConstraintKind
-from hangtime.solver.data.traces import Flight, Traces
+from hangtime.bridge.rows.kind import ConstraintKind
+from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.tests.blender.helpers import rigs
-from hangtime.ui.overlay.context.figure_cache import Figures
+from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Layer, Part
-from hangtime.ui.overlay.context.view_context import Seen
+from hangtime.ui.overlay.context.view_context import ViewContext
 from hangtime.ui.overlay.geometry.shapes import Label, Look, Shape
 from hangtime.ui.overlay.layer_selection import layers
 from mathutils import Euler, Matrix, Vector
@@ -75,7 +75,7 @@ def traced(armature: bpy.types.Object, *, adapted: bool = False) -> Traces:
         weight=700.0,
         joints=(),
         torques=np.zeros((count, 0)),
-        flights=(Flight("flight 1", 12.0, 18.0, np.eye(3)),) * contacts,
+        flights=(FlightParabola("flight 1", 12.0, 18.0, np.eye(3)),) * contacts,
     )
 
 
@@ -83,7 +83,7 @@ def constrain(
     armature: bpy.types.Object, kind: ConstraintKind, *bones: str, **values: object
 ) -> bpy.types.PropertyGroup:
     row = armature.hangtime.constraints.add()
-    row.name, row.kind = f"{kind.value} {len(armature.hangtime.constraints)}", kind.name
+    row.name, row.kind = f"{kind.label} {len(armature.hangtime.constraints)}", kind.name
     for bone in bones:
         row.bones.add().name = bone
     for name, value in values.items():
@@ -91,14 +91,14 @@ def constrain(
     return row
 
 
-def seen(armature: bpy.types.Object, frame: float = FRAME) -> Seen:
+def seen(armature: bpy.types.Object, frame: float = FRAME) -> ViewContext:
     view = bpy.context.scene.hangtime.view
     metres = bpy.context.scene.unit_settings.scale_length
-    return Seen(armature, armature.hangtime, view, frame, metres)
+    return ViewContext(armature, armature.hangtime, view, frame, metres)
 
 
 def shown(armature: bpy.types.Object, frame: float = FRAME) -> dict[Part, Layer]:
-    return {layer.part: layer for layer in layers(seen(armature, frame), Figures())}
+    return {layer.part: layer for layer in layers(seen(armature, frame), FigureCache())}
 
 
 def in_world(layer: Layer, *looks: Look) -> np.ndarray:

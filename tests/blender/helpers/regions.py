@@ -9,14 +9,14 @@ from typing import Any
 import bpy
 import pytest
 from hangtime.ui.drawing import paint
-from hangtime.ui.drawing.sketch import Picture, Text
+from hangtime.ui.drawing.sketch import Drawing, Text
 
 
 @dataclass
 class Canvas:
     """What handlers painted and wrote, and how many pictures were made for it."""
 
-    pictures: list[paint.Painting] = field(default_factory=list)
+    pictures: list[paint.DrawingBatches] = field(default_factory=list)
     texts: list[Text] = field(default_factory=list)
     made: int = 0
 
@@ -34,15 +34,15 @@ def canvas(monkeypatch: pytest.MonkeyPatch) -> Canvas:
     """Stands in for the GPU."""
     shown = Canvas()
 
-    def prepared(picture: Picture) -> paint.Painting:
+    def upload(drawing: Drawing) -> paint.DrawingBatches:
         shown.made += 1
-        return paint.Painting(None, None, picture.texts)
+        return paint.DrawingBatches(None, None, drawing.texts)
 
-    def painted(painting: paint.Painting, *_: object) -> None:
-        shown.pictures.append(painting)
-        shown.texts.extend(painting.texts)
+    def painted(drawing: paint.DrawingBatches, *_: object) -> None:
+        shown.pictures.append(drawing)
+        shown.texts.extend(drawing.texts)
 
-    monkeypatch.setattr(paint, "_prepared", prepared)
+    monkeypatch.setattr(paint, "upload", upload)
     monkeypatch.setattr(paint, "paint", painted)
     monkeypatch.setattr(paint, "write", shown.texts.extend)
     return shown
@@ -60,7 +60,11 @@ def viewport(width: int = 1200, height: int = 700, *others: Any) -> Any:
     return _context(
         window,
         SimpleNamespace(type="VIEW_3D", regions=[window, *others]),
-        SimpleNamespace(overlay=SimpleNamespace(show_overlays=True), show_region_asset_shelf=False),
+        SimpleNamespace(
+            type="VIEW_3D",
+            overlay=SimpleNamespace(show_overlays=True),
+            show_region_asset_shelf=False,
+        ),
     )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 from hangtime.bridge.constraints.requests import requests_of
 from hangtime.bridge.constraints.rows import add_constraint
-from hangtime.bridge.properties.kinds import ConstraintKind
+from hangtime.bridge.rows.kind import ConstraintKind
 from hangtime.solver.data import requests
 from hangtime.tests.blender.helpers import rigs
 

@@ -64,10 +64,12 @@ def test_what_turns_with_the_world_and_what_only_moves(mark):
     there = list(solids(m.at(m.moved(mark, quarter, np.array([1.0, 2.0, 3.0])), 7)))
     assert len(here) == len(there)
     for one, other in zip(here, there, strict=True):
-        moved = one.vertices @ quarter.T + [1.0, 2.0, 3.0]
+        moved = one.mesh.points @ quarter.T + [1.0, 2.0, 3.0]
         if one.look in (Look.SOLID, Look.RING):  # balls do not turn
-            moved = one.vertices - m.at(mark, 7).place + quarter @ m.at(mark, 7).place + [1, 2, 3]
-        cloud, seen = (np.sort(np.round(v, 6), axis=0) for v in (moved, other.vertices))
+            moved = (
+                one.mesh.points - m.at(mark, 7).place + quarter @ m.at(mark, 7).place + [1, 2, 3]
+            )
+        cloud, seen = (np.sort(np.round(v, 6), axis=0) for v in (moved, other.mesh.points))
         np.testing.assert_allclose(seen.mean(axis=0), cloud.mean(axis=0), atol=2e-3)
         np.testing.assert_allclose(np.ptp(seen, axis=0), np.ptp(cloud, axis=0), atol=6e-3)
 
@@ -75,7 +77,7 @@ def test_what_turns_with_the_world_and_what_only_moves(mark):
 def test_a_cone_stands_about_its_axis_and_is_stretched_sideways():
     cone = m.Cone(np.zeros(3), Z, X, np.radians(30), 1.0, stretch=(1.0, 0.5))
     (glass,) = (s for s in solids(cone) if s.look is Look.GLASS)
-    rim = glass.vertices[len(glass.vertices) // 2 :]
+    rim = glass.mesh.points[len(glass.mesh.points) // 2 :]
     np.testing.assert_allclose(np.linalg.norm(rim, axis=1), 1.0)
     widest = np.degrees(np.arctan2(np.abs(rim[:, :2]), rim[:, 2:])).max(axis=0)
     np.testing.assert_allclose(widest, [30.0, np.degrees(np.arctan(0.5 * np.tan(np.pi / 6)))])
@@ -84,7 +86,7 @@ def test_a_cone_stands_about_its_axis_and_is_stretched_sideways():
 def test_a_limit_runs_from_bound_to_bound_and_a_fixed_angle_is_one_line():
     arc = m.LimitArc(np.zeros(3), X, Z, 0.0, np.pi / 2, 0.5)
     (pane,) = (s for s in solids(arc) if s.look is Look.GLASS)
-    ends = pane.vertices[len(pane.vertices) // 2 :][[0, -1]]
+    ends = pane.mesh.points[len(pane.mesh.points) // 2 :][[0, -1]]
     np.testing.assert_allclose(ends, [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0]], atol=1e-12)
     assert {s.look for s in solids(replace(arc, lower=0.3, upper=0.3))} == {Look.LINE}
 
@@ -93,7 +95,7 @@ def test_marks_go_with_the_figures_in_their_span():
     span = (0.0, 0.5)
     tier = lay_out([replace(ROW, marks=(m.Box(HIP, np.eye(3), np.full(3, 0.1), span),))]).tiers[0]
     (box,) = tier.marks
-    at = box.vertices.reshape(-1, 8, 3).mean(axis=1)
+    at = box.mesh.points.reshape(-1, 8, 3).mean(axis=1)
     shown = [f.centre[0] - 0.3 * Z for f in tier.figures if f.time <= 0.5]
     np.testing.assert_allclose(np.sort(at, axis=0), np.sort(shown, axis=0), atol=1e-9)
 
@@ -104,7 +106,9 @@ def test_a_momentary_mark_gets_a_figure_of_its_own():
     (ball,) = tier.marks
     nearest = min(tier.figures, key=lambda f: abs(f.time - 0.33))
     assert nearest.time == pytest.approx(0.325)
-    np.testing.assert_allclose(ball.vertices.mean(axis=0), nearest.centre[0] - 0.3 * Z, atol=1e-3)
+    np.testing.assert_allclose(
+        ball.mesh.points.mean(axis=0), nearest.centre[0] - 0.3 * Z, atol=1e-3
+    )
 
 
 def test_a_mark_after_the_end_is_not_drawn():

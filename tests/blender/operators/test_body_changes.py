@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from hangtime.bridge.armature.build_armature import build_armature
 from hangtime.bridge.armature.read import read_recording
-from hangtime.bridge.formats.clip_of import clip_of
+from hangtime.bridge.formats.motion_clip import from_recording
 from hangtime.solver.body.proportions import changed_recording
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import LimbChange
@@ -21,7 +21,7 @@ def short_legged() -> Recording:
 def test_a_rig_of_those_proportions_is_built() -> None:
     made = short_legged()
     bpy.context.scene.render.fps, bpy.context.scene.render.fps_base = 120, 1.0
-    read = read_recording(build_armature(clip_of(made), 1.0, "Z"))
+    read = read_recording(build_armature(from_recording(made), 1.0, "Z"))
     np.testing.assert_allclose(read.times, made.times, atol=1e-3)
     for b, bone in enumerate(made.bones):
         theirs = read.bones[read.index(bone.name)]

@@ -10,9 +10,11 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.constraint_kinds import KINDS
 from hangtime.bridge.constraints.requests import joined
 from hangtime.bridge.constraints.rows import add_body_change
-from hangtime.bridge.properties.kinds import BodyKind, ConstraintKind, Span
+from hangtime.bridge.rows.choices import BodyKind, Span
+from hangtime.bridge.rows.kind import ConstraintKind
 from hangtime.operators.words.wording import sentence
 from hangtime.solver.data import faults, requests
 from hangtime.solver.data.requests import When
@@ -37,28 +39,28 @@ def rig() -> bpy.types.Object:
     ("kind", "bones", "fields", "field", "record"),
     [
         (
-            ConstraintKind.LIFT,
+            KINDS["LIFT"],
             ("foot",),
             {"name": "Hop"},
             "lifts",
             requests.Lift("Hop", "ground 1", ("foot",)),
         ),
         (
-            ConstraintKind.ANGLE,
+            KINDS["ANGLE"],
             ("shin",),
             {"name": "Knee", "lower": 0.25, "use_upper": False},
             "angles",
             requests.AngleLimit("Knee", "shin", 0.25, None, FLIGHT),
         ),
         (
-            ConstraintKind.TWIST,
+            KINDS["TWIST"],
             ("thigh",),
             {"name": "Hip", "use_lower": False, "upper": 0.5},
             "twists",
             requests.TwistLimit("Hip", "thigh", None, 0.5, FLIGHT),
         ),
         (
-            ConstraintKind.CONE,
+            KINDS["CONE"],
             ("thigh",),
             {"name": "Leg", "half_angle": 0.5, "use_axis": True, "axis": (0.0, 0.0, -1.0)}
             | {"stretch": (1.0, 2.0)},
@@ -66,14 +68,14 @@ def rig() -> bpy.types.Object:
             requests.ConeLimit("Leg", "thigh", 0.5, (0.0, 0.0, -1.0), (1.0, 2.0), FLIGHT),
         ),
         (
-            ConstraintKind.CONE,
+            KINDS["CONE"],
             ("thigh",),
             {"name": "Leg", "half_angle": 0.5, "span": Span.ALWAYS.name},
             "cones",
             requests.ConeLimit("Leg", "thigh", 0.5),
         ),
         (
-            ConstraintKind.TORQUE,
+            KINDS["TORQUE"],
             ("foot", "shin"),
             {"name": "Weak", "torque": 60.0, "use_dof": True, "dof": 1, "torque_value": 5.0},
             "torques",
@@ -82,14 +84,14 @@ def rig() -> bpy.types.Object:
             ),
         ),
         (
-            ConstraintKind.TORQUE,
+            KINDS["TORQUE"],
             ("foot",),
             {"name": "Weak", "torque_by": "SHARE", "share": 0.5},
             "torques",
             requests.TorqueLimit("Weak", ("foot",), share=0.5, when=FLIGHT),
         ),
         (
-            ConstraintKind.POSE,
+            KINDS["POSE"],
             ("thigh",),
             {"name": "Tuck", "source": "REST", "use_pose_frame": True, "slack": 0.25},
             "poses",
@@ -102,7 +104,7 @@ def rig() -> bpy.types.Object:
             ),
         ),
         (
-            ConstraintKind.POSE,
+            KINDS["POSE"],
             (),
             {"name": "Tuck", "span": "PHASE", "instant": "APEX", "hard": False, "weight": 2.0}
             | {"use_pose_frame": True, "pose_frame": 4.0, "slack": 0.25},
@@ -112,7 +114,7 @@ def rig() -> bpy.types.Object:
             ),
         ),
         (
-            ConstraintKind.ORIENTATION,
+            KINDS["ORIENTATION"],
             ("hips",),
             {"name": "Turn", "turn": 0.5, "tilt": 0.25, "slack": 0.125},
             "orientations",
@@ -121,14 +123,14 @@ def rig() -> bpy.types.Object:
             ),
         ),
         (
-            ConstraintKind.FORCE,
+            KINDS["FORCE"],
             (),
             {"name": "Soft", "peak": 2.5},
             "forces",
             requests.ForceRequest("Soft", peak=2.5, when=When("ground 1")),
         ),
         (
-            ConstraintKind.FORCE,
+            KINDS["FORCE"],
             ("foot",),
             {"name": "Ice", "use_peak": False, "use_friction": True, "friction": 0.25}
             | {"shape": "PYRAMID", "use_match": True, "match": 8.0, "span": "ALWAYS"},
@@ -138,21 +140,21 @@ def rig() -> bpy.types.Object:
             ),
         ),
         (
-            ConstraintKind.TIMING,
+            KINDS["TIMING"],
             (),
             {"name": "Slow", "factor": 1.5},
             "timings",
             requests.PhaseTiming("Slow", "flight 1", factor=1.5),
         ),
         (
-            ConstraintKind.TIMING,
+            KINDS["TIMING"],
             (),
             {"name": "Slow", "timing_by": "SECONDS", "seconds": 0.75},
             "timings",
             requests.PhaseTiming("Slow", "flight 1", seconds=0.75),
         ),
         (
-            ConstraintKind.HOLD,
+            KINDS["HOLD"],
             (),
             {"name": "Hang", "seconds": 1.25, "ends": True},
             "holds",
@@ -177,7 +179,7 @@ def test_a_new_point_is_where_its_bone_is_shown_in_metres(rig: bpy.types.Object)
     rig.scale = (2.0, 2.0, 2.0)
     rig.location = (1.0, 2.0, 3.0)
     bpy.context.view_layer.update()
-    added(rig, ConstraintKind.POINT, "foot")
+    added(rig, KINDS["POINT"], "foot")
     (point,) = asked(rig).points
     matrix = rigs.world_of(rig, "foot", IN_FLIGHT)
     bone = rig.data.bones["foot"]
@@ -191,7 +193,7 @@ def test_a_new_point_is_where_its_bone_is_shown_in_metres(rig: bpy.types.Object)
 def test_bounds_of_a_point_may_be_open(rig: bpy.types.Object) -> None:
     added(
         rig,
-        ConstraintKind.POINT,
+        KINDS["POINT"],
         "foot",
         use_place=False,
         use_offset=False,
@@ -212,7 +214,7 @@ def test_bounds_of_a_point_may_be_open(rig: bpy.types.Object) -> None:
 
 
 def test_what_is_switched_off_is_left_out(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, used=False)  # without a bone
+    added(rig, KINDS["CONE"], used=False)  # without a bone
     add_body_change(rig.hangtime, BodyKind.LOAD, ()).used = False
     assert asked(rig) == requests.Requests()
 
@@ -279,7 +281,7 @@ def test_a_point_follows_its_target_and_the_scene_stays(
     target = target_at((1.0, 2.0, 3.0))
     moving(target)
     hidden = target.hide_viewport
-    added(rig, ConstraintKind.POINT, "foot", span="FRAMES", first_frame=4, last_frame=9)
+    added(rig, KINDS["POINT"], "foot", span="FRAMES", first_frame=4, last_frame=9)
     rig.hangtime.constraints[0].target = target
     scene.frame_set(7, subframe=0.25)
     target.name = "Renamed"  # which its pointer survives
@@ -296,7 +298,7 @@ def test_a_point_follows_its_target_and_the_scene_stays(
 
 
 def test_a_target_in_a_phase_is_sampled_in_that_phase(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.POINT, "foot", span="PHASE", target=target_at((1.0, 2.0, 3.0)))
+    added(rig, KINDS["POINT"], "foot", span="PHASE", target=target_at((1.0, 2.0, 3.0)))
     (point,) = asked(rig).points
     assert (point.path.frames[0], point.path.frames[-1]) == (5.0, 15.0)
     assert set(point.path.places) == {(1.0, 2.0, 3.0)}
@@ -306,61 +308,61 @@ def test_a_target_in_a_phase_is_sampled_in_that_phase(rig: bpy.types.Object) -> 
 
 
 def no_bone(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, name="Mine")
+    added(rig, KINDS["CONE"], name="Mine")
 
 
 def lost_bone(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "finger", name="Mine")
+    added(rig, KINDS["CONE"], "finger", name="Mine")
     bpy.ops.object.mode_set(mode="EDIT")
     rig.data.edit_bones.remove(rig.data.edit_bones["finger"])
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def unknown_phase(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Mine", phase="flight 7")
+    added(rig, KINDS["CONE"], "thigh", name="Mine", phase="flight 7")
 
 
 def no_phase(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.TIMING, name="Mine", phase="")
+    added(rig, KINDS["TIMING"], name="Mine", phase="")
 
 
 def empty_range(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Mine", span="FRAMES", last_frame=2.0)
+    added(rig, KINDS["CONE"], "thigh", name="Mine", span="FRAMES", last_frame=2.0)
 
 
 def same_names(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Mine")
+    added(rig, KINDS["CONE"], "thigh", name="Mine")
     add_body_change(rig.hangtime, BodyKind.LOAD, ["head"]).name = "Mine"
 
 
 def contacts_name(rig: bpy.types.Object) -> None:
     rig.hangtime.contacts[0].name = "Mine"
-    added(rig, ConstraintKind.CONE, "thigh", name="Mine")
+    added(rig, KINDS["CONE"], "thigh", name="Mine")
 
 
 def crossed_bounds(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.POINT, "foot", name="Mine", use_bounds=True, at_least=(0.5, 0, 0))
+    added(rig, KINDS["POINT"], "foot", name="Mine", use_bounds=True, at_least=(0.5, 0, 0))
 
 
 def crossed_angles(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.ANGLE, "shin", name="Mine", lower=pi, upper=1.0)
+    added(rig, KINDS["ANGLE"], "shin", name="Mine", lower=pi, upper=1.0)
 
 
 def no_bounds(rig: bpy.types.Object) -> None:
     unbounded = (False, False, False)
-    added(rig, ConstraintKind.POINT, "foot", name="Mine", use_bounds=True, bound_axes=unbounded)
+    added(rig, KINDS["POINT"], "foot", name="Mine", use_bounds=True, bound_axes=unbounded)
 
 
 def no_limits(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.ANGLE, "shin", name="Mine", use_lower=False, use_upper=False)
+    added(rig, KINDS["ANGLE"], "shin", name="Mine", use_lower=False, use_upper=False)
 
 
 def no_force(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.FORCE, name="Mine", use_peak=False)
+    added(rig, KINDS["FORCE"], name="Mine", use_peak=False)
 
 
 def no_normal(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.POINT, "foot", name="Mine", normal=(0.0, 0.0, 0.0))
+    added(rig, KINDS["POINT"], "foot", name="Mine", normal=(0.0, 0.0, 0.0))
 
 
 @pytest.mark.parametrize(
@@ -397,14 +399,14 @@ def test_a_row_that_asks_for_nonsense_is_named(
 
 
 def test_a_row_without_a_name_is_told_by_its_kind(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name=" ")
+    added(rig, KINDS["CONE"], "thigh", name=" ")
     with pytest.raises(faults.NameMissing) as caught:
         asked(rig)
     assert "Cone" in sentence(caught.value)
 
 
 def test_lists_and_text_are_joined_and_may_not_share_a_name(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.CONE, "thigh", name="Mine")
+    added(rig, KINDS["CONE"], "thigh", name="Mine")
     rig.hangtime.gravity = 1.62
     hold = requests.Hold("Hang", 8.0, 1.0)
     solution = requests.SolverOptions(method=requests.Method.EXPLICIT)
@@ -416,6 +418,6 @@ def test_lists_and_text_are_joined_and_may_not_share_a_name(rig: bpy.types.Objec
 
 
 def test_a_hold_is_a_phase_that_others_may_name(rig: bpy.types.Object) -> None:
-    added(rig, ConstraintKind.HOLD, name="Hang")
-    added(rig, ConstraintKind.POSE, name="Tuck", span="PHASE", phase="Hang")
+    added(rig, KINDS["HOLD"], name="Hang")
+    added(rig, KINDS["POSE"], name="Tuck", span="PHASE", phase="Hang")
     assert asked(rig).poses[0].when == When("Hang")

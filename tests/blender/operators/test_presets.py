@@ -10,6 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.poses import sample
+from hangtime.bridge.constraint_kinds import KINDS
 from hangtime.bridge.constraints.requests import requests_of
 from hangtime.bridge.constraints.rest_figure import (
     directions,
@@ -18,8 +19,7 @@ from hangtime.bridge.constraints.rest_figure import (
     rest_rotations,
 )
 from hangtime.bridge.constraints.rows import add_constraint, hold_throughout
-from hangtime.bridge.properties.kinds import ConstraintKind
-from hangtime.bridge.properties.phases import phases_of
+from hangtime.bridge.rows.phases import phases_of
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.rows import asked, names, select
 
@@ -141,7 +141,7 @@ def test_an_adaptation_keeps_a_cone_of_the_list(analysed: bpy.types.Object) -> N
     before = seen(analysed, "LeftArm", flight.start, flight.end)
     axis = before.mean(axis=0) / np.linalg.norm(before.mean(axis=0))
     widest = np.degrees(np.arccos(np.clip(before @ axis, -1.0, 1.0))).max()
-    row = add_constraint(analysed, ConstraintKind.CONE, ["LeftArm"], flight.start + 10.0)
+    row = add_constraint(analysed, KINDS["CONE"], ["LeftArm"], flight.start + 10.0)
     assert row.phase == flight.name
     row.use_axis, row.axis = True, axis.tolist()
     row.half_angle = radians(0.7 * widest)

@@ -9,7 +9,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature.actions import current_action, read_take, write_take_in_parts
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature.actions import read_recorded, write_adapted_incrementally
 from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.operators.solve.session import session
@@ -238,7 +239,7 @@ def test_a_result_that_is_not_accepted_goes_with_the_file(
 def test_writing_that_is_cancelled_leaves_nothing_behind(analysed: bpy.types.Object) -> None:
     recorded = current_action(analysed)
     recorded.use_fake_user = False
-    recording = read_take(analysed, 73.0, 325.0)
+    recording = read_recorded(analysed, 73.0, 325.0)
     bones = [recording.index(name) for name in ("Hips", "LeftUpLeg", "LeftLeg")]
     track = PoseTrack(
         recording.frames,
@@ -246,7 +247,7 @@ def test_writing_that_is_cancelled_leaves_nothing_behind(analysed: bpy.types.Obj
         recording.rotations[:, bones],
         recording.heads[:, bones[0]],
     )
-    writing = write_take_in_parts(analysed, track)
+    writing = write_adapted_incrementally(analysed, track)
     while len(bpy.data.actions) == 1:
         next(writing)
     writing.close()

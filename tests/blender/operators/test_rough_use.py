@@ -9,18 +9,15 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.armature.actions import read_take
+from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.operators.solve.adapt import write_answer
 from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
 from hangtime.operators.solve.common import said
-from hangtime.operators.solve.session import (
-    Asked,
-    session,
-)
-from hangtime.operators.solve.solving import Solving, State
+from hangtime.operators.solve.session import Asked, session
+from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
 from hangtime.solver.data.digest import digest
 from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature
@@ -79,7 +76,7 @@ def test_a_contact_that_ends_before_it_begins_is_named(run: bpy.types.Object) ->
     with pytest.raises(RuntimeError, match=told):
         bpy.ops.hangtime.adapt()
     row.used = False
-    assert problem_of(settings, read_take(run, None, None)).contacts
+    assert problem_of(settings, read_recorded(run, None, None)).contacts
 
 
 @pytest.mark.parametrize("change", ["no keys", "uneven scale"])
@@ -87,13 +84,13 @@ def test_a_change_meanwhile_is_said_to_have_cost_the_result(
     run: bpy.types.Object, change: str
 ) -> None:
     """Also where what is there now cannot be read at all."""
-    recording = read_take(run, 1.0, 20.0)
+    recording = read_recorded(run, 1.0, 20.0)
     asked = Asked(run.name, digest(recording), recording, MotionProblem())
     if change == "no keys":
         run.animation_data.action = bpy.data.actions.new("Other")
     else:
         run.scale = (1.0, 1.0, 2.0)
-    session().solving = replace(Solving(), state=State.SOLVING)
+    session().solving = replace(Solving(), state=SolveState.SOLVING)
     try:
         with pytest.raises(ChangedMeanwhile) as fault:
             complete(write_answer(asked, None))

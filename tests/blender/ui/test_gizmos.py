@@ -10,7 +10,8 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import hangtime
-from hangtime.bridge.properties.kinds import ConstraintKind
+from hangtime.bridge.constraint_kinds import KINDS
+from hangtime.bridge.rows.kind import ConstraintKind
 from hangtime.operators.drag.limit_operator import bounds
 from hangtime.operators.drag.rays import Circle, scaled, unit
 from hangtime.operators.names import GizmoGroupId
@@ -25,8 +26,8 @@ from hangtime.tests.blender.helpers.overlays import (
 )
 from hangtime.ui.gizmos.limit_handles import handles as limit_handles
 from hangtime.ui.gizmos.pin_handles import handles as pin_handles
-from hangtime.ui.gizmos.places import Knob, Places
-from hangtime.ui.overlay.context.figure_cache import Figures
+from hangtime.ui.gizmos.places import Knob, LimitHandlePlaces
+from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Part
 from hangtime.ui.overlay.geometry.shapes import Look
 from mathutils import Matrix, Vector
@@ -43,8 +44,8 @@ def armature(request: pytest.FixtureRequest) -> bpy.types.Object:
     return adapted(WHERE[request.param])
 
 
-def limit_places(armature: bpy.types.Object) -> Places:
-    return limit_handles(seen(armature), Figures(), SIGHT)
+def limit_places(armature: bpy.types.Object) -> LimitHandlePlaces:
+    return limit_handles(seen(armature), FigureCache(), SIGHT)
 
 
 def knob(armature: bpy.types.Object, end: str) -> Knob:
@@ -82,7 +83,7 @@ def test_groups_come_and_go_with_the_extension() -> None:
 # ---------------------------------------------------------------- limits
 
 
-@pytest.mark.parametrize("kind", [ConstraintKind.ANGLE, ConstraintKind.TWIST])
+@pytest.mark.parametrize("kind", [KINDS["ANGLE"], KINDS["TWIST"]])
 def test_the_ends_of_a_limit_are_held_where_they_are_drawn(
     armature: bpy.types.Object, kind: ConstraintKind
 ) -> None:
@@ -95,7 +96,7 @@ def test_the_ends_of_a_limit_are_held_where_they_are_drawn(
 
 
 def test_a_limit_that_is_open_has_no_handle_there(armature: bpy.types.Object) -> None:
-    constrain(armature, ConstraintKind.ANGLE, "shin", use_lower=False)
+    constrain(armature, KINDS["ANGLE"], "shin", use_lower=False)
     assert [each.end for each in limit_places(armature).knobs] == ["upper"]
 
 
@@ -103,7 +104,7 @@ def test_a_limit_that_is_open_has_no_handle_there(armature: bpy.types.Object) ->
 def test_a_cone_is_held_at_its_rim_and_at_its_axis(
     armature: bpy.types.Object, stretch: tuple[float, float]
 ) -> None:
-    constrain(armature, ConstraintKind.CONE, "shin", half_angle=0.7, stretch=stretch)
+    constrain(armature, KINDS["CONE"], "shin", half_angle=0.7, stretch=stretch)
     places = limit_places(armature)
     (rim,) = places.knobs
     chord = 0.05 * rim.circle.radius  # the rim is drawn in straight pieces
@@ -115,7 +116,7 @@ def test_a_cone_is_held_at_its_rim_and_at_its_axis(
 
 
 def test_where_the_mouse_pulls_a_cone_its_rim_follows(armature: bpy.types.Object) -> None:
-    row = constrain(armature, ConstraintKind.CONE, "shin", half_angle=0.5, stretch=(1.7, 0.6))
+    row = constrain(armature, KINDS["CONE"], "shin", half_angle=0.5, stretch=(1.7, 0.6))
     rim = knob(armature, "half_angle")
     pulled = rim.circle.angle(rim.at - rim.circle.centre) + 0.2
     row.half_angle = scaled(pulled, rim.narrow)
@@ -124,7 +125,7 @@ def test_where_the_mouse_pulls_a_cone_its_rim_follows(armature: bpy.types.Object
 
 
 def test_where_the_mouse_pulls_an_axis_the_cone_points(armature: bpy.types.Object) -> None:
-    row = constrain(armature, ConstraintKind.CONE, "shin", half_angle=0.5)
+    row = constrain(armature, KINDS["CONE"], "shin", half_angle=0.5)
     tip = limit_places(armature).tip
     pulled = unit(
         tip.at - tip.centre + np.array((0.3, 0.2, 0.1)) * np.linalg.norm(tip.at - tip.centre)
@@ -136,9 +137,9 @@ def test_where_the_mouse_pulls_an_axis_the_cone_points(armature: bpy.types.Objec
 
 
 def test_only_the_chosen_limit_is_held(armature: bpy.types.Object) -> None:
-    constrain(armature, ConstraintKind.ANGLE, "shin", lower=0.0, upper=1.0)
-    constrain(armature, ConstraintKind.TORQUE, "shin")
-    constrain(armature, ConstraintKind.CONE, "no such bone")
+    constrain(armature, KINDS["ANGLE"], "shin", lower=0.0, upper=1.0)
+    constrain(armature, KINDS["TORQUE"], "shin")
+    constrain(armature, KINDS["CONE"], "no such bone")
     held = []
     for index in range(4):  # the last is no row at all
         armature.hangtime.active_constraint = index
@@ -159,25 +160,25 @@ def test_only_the_chosen_limit_is_held(armature: bpy.types.Object) -> None:
 )
 def test_an_end_goes_as_far_as_it_may(end: str, asked: float, given: float) -> None:
     armature = adapted(Matrix())
-    row = constrain(armature, ConstraintKind.ANGLE, "shin", lower=radians(20), upper=radians(60))
+    row = constrain(armature, KINDS["ANGLE"], "shin", lower=radians(20), upper=radians(60))
     assert bpy.ops.hangtime.drag_limit(end=end, angle=radians(asked)) == {"FINISHED"}
     assert degrees(getattr(row, end)) == pytest.approx(given, abs=1e-4)
 
 
 def test_an_open_end_does_not_bound_the_other() -> None:
-    row = constrain(adapted(Matrix()), ConstraintKind.ANGLE, "shin", use_upper=False, upper=0.1)
+    row = constrain(adapted(Matrix()), KINDS["ANGLE"], "shin", use_upper=False, upper=0.1)
     assert bounds(row, "lower") == (radians(-180), radians(180))
 
 
 def test_a_constraint_that_is_not_there_is_said() -> None:
-    constrain(adapted(Matrix()), ConstraintKind.ANGLE, "shin")
+    constrain(adapted(Matrix()), KINDS["ANGLE"], "shin")
     for operator in (bpy.ops.hangtime.drag_limit, bpy.ops.hangtime.aim_cone):
         with pytest.raises(RuntimeError, match="no such joint limit or cone"):
             operator(constraint=7)
 
 
 def test_what_the_last_solve_said_of_a_limit_is_forgotten() -> None:
-    row = constrain(adapted(Matrix()), ConstraintKind.ANGLE, "shin")
+    row = constrain(adapted(Matrix()), KINDS["ANGLE"], "shin")
     row.status = "Met"
     bpy.ops.hangtime.drag_limit(end="upper", angle=0.3)
     assert row.status == ""
@@ -210,9 +211,9 @@ def places_of(armature: bpy.types.Object) -> list[Vector]:
 def test_contacts_that_count_and_placed_points_are_held(standing: bpy.types.Object) -> None:
     settings = standing.hangtime
     settings.contacts[3].used = False
-    constrain(standing, ConstraintKind.POINT, "foot")
-    constrain(standing, ConstraintKind.POINT, "foot", use_place=True, place=(1.0, 2.0, 3.0))
-    constrain(standing, ConstraintKind.POINT, "foot", use_place=True, target=standing)
+    constrain(standing, KINDS["POINT"], "foot")
+    constrain(standing, KINDS["POINT"], "foot", use_place=True, place=(1.0, 2.0, 3.0))
+    constrain(standing, KINDS["POINT"], "foot", use_place=True, target=standing)
     found = pin_handles(seen(standing))
     assert [(h.contact, h.constraint, h.near) for h in found] == [
         (0, -1, False),
@@ -239,7 +240,7 @@ def test_a_contact_is_dragged_with_its_stance_or_alone(standing: bpy.types.Objec
 
 
 def test_a_point_that_is_dragged_gets_a_place_of_its_own(standing: bpy.types.Object) -> None:
-    row = constrain(standing, ConstraintKind.POINT, "foot", place=(1.0, 0.0, 0.0))
+    row = constrain(standing, KINDS["POINT"], "foot", place=(1.0, 0.0, 0.0))
     assert bpy.ops.hangtime.drag_pin(constraint=0, shift=(0.0, 0.5, 0.0)) == {"FINISHED"}
     assert row.use_place
     assert Vector(row.place) == Vector((1.0, 0.5, 0.0))
@@ -274,7 +275,7 @@ def test_a_stance_cannot_turn_without_a_chosen_contact(standing: bpy.types.Objec
 
 def test_circles_of_handles_are_round(armature: bpy.types.Object) -> None:
     """What a drag is told of: unit vectors at right angles, and the handle on them."""
-    constrain(armature, ConstraintKind.TWIST, "shin", lower=-0.3, upper=0.9)
+    constrain(armature, KINDS["TWIST"], "shin", lower=-0.3, upper=0.9)
     for each in limit_places(armature).knobs:
         circle: Circle = each.circle
         axes = np.stack([circle.zero, circle.ahead])

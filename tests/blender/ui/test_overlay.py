@@ -7,7 +7,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.properties.kinds import ConstraintKind, Span
+from hangtime.bridge.constraint_kinds import KINDS
+from hangtime.bridge.rows.choices import Span
 from hangtime.tests.blender.helpers.overlays import (
     FIGURE,
     FRAME,
@@ -47,7 +48,7 @@ def test_a_cone_opens_about_its_own_axis_from_the_joint(armature: bpy.types.Obje
     rest(armature)
     head, tail = bone_in_world(armature, "shin")
     axis = tail - head
-    constrain(armature, ConstraintKind.CONE, "shin", half_angle=0.6, use_axis=True, axis=axis)
+    constrain(armature, KINDS["CONE"], "shin", half_angle=0.6, use_axis=True, axis=axis)
     rim = in_world(shown(armature)[Part.LIMITS], Look.BOLD)
     np.testing.assert_allclose(angles_to(rim, head, axis), 0.6, atol=1e-3)
     np.testing.assert_allclose(
@@ -59,7 +60,7 @@ def test_a_cone_without_an_axis_is_about_the_recording_at_that_frame(
     armature: bpy.types.Object,
 ) -> None:
     """In one frame the mean direction is the bone's own; the hips' turn is known exactly."""
-    row = constrain(armature, ConstraintKind.CONE, "thigh", half_angle=0.3, span=Span.FRAME.name)
+    row = constrain(armature, KINDS["CONE"], "thigh", half_angle=0.3, span=Span.FRAME.name)
     row.first_frame = FRAME
     head, _ = bone_in_world(armature, "thigh")
     knee, _ = bone_in_world(armature, "shin")
@@ -68,7 +69,7 @@ def test_a_cone_without_an_axis_is_about_the_recording_at_that_frame(
 
 
 def test_a_cone_moves_with_the_parent(armature: bpy.types.Object) -> None:
-    constrain(armature, ConstraintKind.CONE, "shin", half_angle=0.5)
+    constrain(armature, KINDS["CONE"], "shin", half_angle=0.5)
     before = in_world(shown(armature)[Part.LIMITS], Look.BOLD)
     head, _ = bone_in_world(armature, "shin")
     armature.animation_data_clear()
@@ -89,7 +90,7 @@ def test_a_joint_says_how_it_is_bent_and_how_it_is_limited(
 ) -> None:
     """The arc's ends lie at the limits, counted from the straight limb."""
     rest(armature)
-    constrain(armature, ConstraintKind.ANGLE, "shin", lower=0.2, upper=0.8)
+    constrain(armature, KINDS["ANGLE"], "shin", lower=0.2, upper=0.8)
     said = []
     for way in (bend, -bend):
         straighten_and_bend(armature, "shin", way)
@@ -134,7 +135,7 @@ def test_a_twist_is_told_apart_from_the_swing(armature: bpy.types.Object, twist:
     swing = Quaternion((0.6, 0.0, -0.8), 0.5)  # a bone's own axis is y
     foot.rotation_quaternion = swing @ Quaternion((0.0, 1.0, 0.0), twist)
     bpy.context.view_layer.update()
-    constrain(armature, ConstraintKind.TWIST, "foot", lower=-0.5, upper=0.5)
+    constrain(armature, KINDS["TWIST"], "foot", lower=-0.5, upper=0.5)
     layer = shown(armature)[Part.LIMITS]
     assert words(layer) == [f"{np.degrees(twist):.0f}°"]
     head, tail = bone_in_world(armature, "foot")
@@ -156,7 +157,7 @@ def test_pins_are_where_contacts_shall_be(armature: bpy.types.Object) -> None:
 
 
 def test_a_held_point_is_hollow_unless_something_pushes_back(armature: bpy.types.Object) -> None:
-    row = constrain(armature, ConstraintKind.POINT, "foot")
+    row = constrain(armature, KINDS["POINT"], "foot")
     assert looks(shown(armature)[Part.POINTS]) == {Look.BOLD, Look.THIN}
     row.environment = True
     assert looks(shown(armature)[Part.POINTS]) == {Look.SOLID, Look.THIN}
@@ -167,7 +168,7 @@ def looks(layer: Layer) -> set[Look]:
 
 
 def test_a_point_without_a_place_is_where_the_recording_has_it(armature: bpy.types.Object) -> None:
-    constrain(armature, ConstraintKind.POINT, "thigh")
+    constrain(armature, KINDS["POINT"], "thigh")
     head, _ = bone_in_world(armature, "thigh")
     knee, _ = bone_in_world(armature, "shin")
     rings = in_world(shown(armature)[Part.POINTS], Look.BOLD)
@@ -177,7 +178,7 @@ def test_a_point_without_a_place_is_where_the_recording_has_it(armature: bpy.typ
 def test_bounds_without_a_place_count_from_the_floor(armature: bpy.types.Object) -> None:
     armature.hangtime.contacts[0].found_at = (0.0, 0.0, 7.0)
     armature.hangtime.contacts[1].found_at = (0.0, 0.0, 9.0)
-    row = constrain(armature, ConstraintKind.POINT, "foot", use_bounds=True)
+    row = constrain(armature, KINDS["POINT"], "foot", use_bounds=True)
     row.bound_axes, row.at_least, row.at_most = (False, False, True), (0, 0, 30), (0, 0, 50)
     box = pins.points(seen(armature))
     heights = in_world(box, Look.THIN)[:, 2]
@@ -233,7 +234,7 @@ def test_the_path_is_a_line_on_the_ground_and_a_parabola_in_flight(
 def test_a_pose_is_hung_where_the_figure_is(armature: bpy.types.Object) -> None:
     """The pose of the same frame is the figure itself."""
     armature.hangtime.adapted = None
-    row = constrain(armature, ConstraintKind.POSE, span=Span.FRAME.name, first_frame=FRAME)
+    row = constrain(armature, KINDS["POSE"], span=Span.FRAME.name, first_frame=FRAME)
     body = in_world(shown(armature)[Part.POSES])
     for bone in FIGURE:
         head, _ = bone_in_world(armature, bone)

@@ -15,7 +15,9 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.traces_store import keep
-from hangtime.bridge.properties.kinds import ConstraintKind, Span
+from hangtime.bridge.constraint_kinds import KINDS
+from hangtime.bridge.rows.choices import Span
+from hangtime.bridge.rows.times import NEVER
 from hangtime.operators.solve.live import live
 from hangtime.tests.blender.helpers import motions, rigs
 from hangtime.tests.blender.helpers.overlays import (
@@ -29,18 +31,13 @@ from hangtime.tests.blender.helpers.overlays import (
     traced,
 )
 from hangtime.ui.overlay import handlers
-from hangtime.ui.overlay.context import spans
-from hangtime.ui.overlay.context.figure_cache import Figures
+from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Layer, Part
-from hangtime.ui.overlay.context.view_context import look_at
-from hangtime.ui.overlay.geometry.shapes import (
-    Label,
-    Shape,
-    Standing,
-)
+from hangtime.ui.overlay.context.view_context import read_view
+from hangtime.ui.overlay.geometry.shapes import Label, Shape, Standing
 from hangtime.ui.overlay.layer_selection import layers
 from hangtime.ui.overlay.layers import limits, pins
-from hangtime.ui.overlay.picture_cache import Pictures
+from hangtime.ui.overlay.picture_cache import PictureCache
 from mathutils import Matrix
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -69,7 +66,7 @@ def armature() -> bpy.types.Object:
 def test_every_switch_takes_its_own_away(
     armature: bpy.types.Object, switch: str, parts: set[Part]
 ) -> None:
-    constrain(armature, ConstraintKind.POSE)
+    constrain(armature, KINDS["POSE"])
     every = set(shown(armature))
     setattr(bpy.context.scene.hangtime.view, switch, False)
     assert every - set(shown(armature)) == parts
@@ -86,14 +83,14 @@ def test_what_counts_now_stands_out(armature: bpy.types.Object) -> None:
 
 
 def test_phases_and_instants_tell_when_a_constraint_holds(armature: bpy.types.Object) -> None:
-    row = constrain(armature, ConstraintKind.CONE, "shin", span=Span.PHASE.name)
+    row = constrain(armature, KINDS["CONE"], "shin", span=Span.PHASE.name)
     armature.hangtime.use_range = True
     armature.hangtime.first_frame, armature.hangtime.last_frame = 1, 24
     for phase, instant, expected in (
         ("ground 1", "THROUGHOUT", (1.0, 12.0)),
         ("flight 1", "MIDDLE", (15.0, 15.0)),
         ("ground 2", "END", (24.0, 24.0)),
-        ("flight 9", "START", spans.NEVER),
+        ("flight 9", "START", NEVER),
     ):
         row.phase, row.instant = phase, instant
         assert seen(armature).span(row) == pytest.approx(expected)
@@ -101,18 +98,18 @@ def test_phases_and_instants_tell_when_a_constraint_holds(armature: bpy.types.Ob
 
 def test_overlays_follow_the_viewport(armature: bpy.types.Object) -> None:
     context = viewport()
-    assert look_at(context) is not None
+    assert read_view(context) is not None
     context.space_data.overlay.show_overlays = False
-    assert look_at(context) is None
+    assert read_view(context) is None
     context.space_data.overlay.show_overlays = True
     armature.hide_set(True)
-    assert look_at(context) is None
+    assert read_view(context) is None
     armature.hide_set(False)
     bpy.context.scene.hangtime.view.show = False
-    assert look_at(context) is None
+    assert read_view(context) is None
     bpy.context.scene.hangtime.view.show = True
     bpy.data.objects.remove(armature)
-    assert look_at(context) is None
+    assert read_view(context) is None
 
 
 def viewport() -> SimpleNamespace:
@@ -148,8 +145,8 @@ class Counted:
     def __init__(self) -> None:
         self.built: list[Part] = []
         self.uploads = 0
-        self.pictures = Pictures(self._upload)
-        self.figures = Figures()
+        self.pictures = PictureCache(self._upload)
+        self.figures = FigureCache()
 
     def _upload(self, shapes: Sequence[Shape]) -> tuple[Shape, ...]:
         self.uploads += 1
@@ -171,11 +168,11 @@ class Counted:
 
 @pytest.fixture
 def constrained(armature: bpy.types.Object) -> bpy.types.Object:
-    constrain(armature, ConstraintKind.CONE, "thigh")
-    constrain(armature, ConstraintKind.ANGLE, "shin")
-    constrain(armature, ConstraintKind.TWIST, "head")
-    constrain(armature, ConstraintKind.POINT, "foot", use_place=True)
-    constrain(armature, ConstraintKind.POSE, span=Span.FRAME.name, first_frame=5.0)
+    constrain(armature, KINDS["CONE"], "thigh")
+    constrain(armature, KINDS["ANGLE"], "shin")
+    constrain(armature, KINDS["TWIST"], "head")
+    constrain(armature, KINDS["POINT"], "foot", use_place=True)
+    constrain(armature, KINDS["POSE"], span=Span.FRAME.name, first_frame=5.0)
     return armature
 
 
@@ -257,15 +254,15 @@ def test_a_renamed_or_missing_bone_is_no_trouble(constrained: bpy.types.Object) 
 
 def test_a_figure_of_one_body_without_a_length_is_drawn() -> None:
     armature = motions.adapted()
-    constrain(armature, ConstraintKind.CONE, "shin")
-    constrain(armature, ConstraintKind.POSE)
+    constrain(armature, KINDS["CONE"], "shin")
+    constrain(armature, KINDS["POSE"])
     assert Counted().draw(armature, motions.FIRST) == set(shown(armature, motions.FIRST))
 
 
 def test_an_armature_without_anything_shows_nothing() -> None:
     rigs.reset()
     armature = rigs.make_armature()
-    for layer in layers(seen(armature), Figures()):
+    for layer in layers(seen(armature), FigureCache()):
         assert list(layer.build()) == []
 
 
@@ -279,11 +276,11 @@ def test_handlers_come_and_go_without_a_graphics_card() -> None:
 
 
 def test_a_chosen_limit_that_is_off_is_still_seen(armature: bpy.types.Object) -> None:
-    row = constrain(armature, ConstraintKind.CONE, "shin", half_angle=radians(30.0), used=False)
-    assert [x.standing for x in limits.layer(seen(armature), Figures()).content[0]] == [
+    row = constrain(armature, KINDS["CONE"], "shin", half_angle=radians(30.0), used=False)
+    assert [x.standing for x in limits.layer(seen(armature), FigureCache()).content[0]] == [
         Standing.OFF
     ]
     armature.hangtime.active_constraint = -1
-    assert not limits.layer(seen(armature), Figures()).content[0]
+    assert not limits.layer(seen(armature), FigureCache()).content[0]
     row.used = True
-    assert limits.layer(seen(armature), Figures()).content[0]
+    assert limits.layer(seen(armature), FigureCache()).content[0]

@@ -18,11 +18,12 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import hangtime
 from hangtime.bridge import worker_client
-from hangtime.bridge.armature.actions import read_take
+from hangtime.bridge.accessors import ATTRIBUTE
+from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.properties import settings
-from hangtime.operators.names import ATTRIBUTE, ListId, MenuId, OperatorId, PanelId
+from hangtime.operators.names import ListId, MenuId, OperatorId, PanelId
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.tests.blender.bridge.test_read_write import curves_of, snapshot
@@ -112,7 +113,7 @@ def drift(armature: bpy.types.Object, row: bpy.types.PropertyGroup) -> float:
 
     The first and last 30 ms apart, in which it settles and rolls.
     """
-    schedule = analyse(read_take(armature, FIRST, LAST), MotionProblem()).schedule
+    schedule = analyse(read_recorded(armature, FIRST, LAST), MotionProblem()).schedule
     contact = next(c for c in schedule.contacts if c.name == row.name)
     last = row.end_frame if row.end_frame == LAST else row.end_frame - SETTLING
     shown = read_recording(armature, first=row.start_frame + SETTLING, last=last)
@@ -337,7 +338,7 @@ def test_an_empty_that_was_deleted_is_replaced(analysed: bpy.types.Object) -> No
 
 def pins(armature: bpy.types.Object) -> dict[str, Pin]:
     """The pins that the settings ask for, by name."""
-    recording = read_take(armature, FIRST, LAST)
+    recording = read_recorded(armature, FIRST, LAST)
     return {pin.name: pin for pin in problem_of(armature.hangtime, recording).pins}
 
 
@@ -349,13 +350,13 @@ def test_pins_call_contacts_what_they_are_called_after_the_corrections(
     assert pins(analysed)["Left heel 2"].touching == ("Left heel 2",)
     settings.contacts["Left heel 1"].used = False
     settings.contacts["Right toe 2"].start_frame = 236.0
-    problem = problem_of(settings, read_take(analysed, FIRST, LAST))
+    problem = problem_of(settings, read_recorded(analysed, FIRST, LAST))
     removed, later = problem.contacts
     assert (removed.name, removed.remove) == ("Left heel 1", True)
     assert (later.name, later.start_frame, later.end_frame) == ("Right toe 2", 236.0, None)
     pin = pins(analysed)["Left heel 2"]
     assert pin.touching == ("Left heel 1",)
-    schedule = analyse(read_take(analysed, FIRST, LAST), problem).schedule
+    schedule = analyse(read_recorded(analysed, FIRST, LAST), problem).schedule
     assert "Left heel 1" in {c.name for c in schedule.contacts if c.start > 1.0}
     np.testing.assert_allclose(pin.place, settings.contacts["Left heel 2"].at, atol=1e-6)
 
@@ -528,7 +529,7 @@ def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
     )
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     assert analysed.animation_data.action.name.endswith("adapted")
-    problem = problem_of(analysed.hangtime, read_take(analysed, FIRST, LAST))
+    problem = problem_of(analysed.hangtime, read_recorded(analysed, FIRST, LAST))
     assert [limit.name for limit in problem.requests.torques] == ["Weak ankle"]
     assert [load.share for load in problem.requests.body.added] == [0.1]
 

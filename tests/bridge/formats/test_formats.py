@@ -8,7 +8,7 @@ import pytest
 from hangtime.bridge.formats.acclaim import find_asf, read_acclaim
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.guess import ACCLAIM_UNIT, guess_unit, guess_up
-from hangtime.bridge.formats.skeleton import forward_kinematics, rest_axes, to_recording
+from hangtime.bridge.formats.motion_clip import forward_kinematics, rest_axes, to_recording
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.data.faults import NonFiniteKey, UnreadableClip
 from hangtime.tests.helpers.clips import load_clip, load_recording

@@ -11,7 +11,7 @@ from hangtime.bridge.recipe.problem import (
     read_recipe_text,
     write_recipe,
 )
-from hangtime.bridge.recipe.source_lines import json_lines, toml_lines
+from hangtime.bridge.recipe_syntax.source_lines import json_lines, toml_lines
 from hangtime.solver.data.faults import (
     BadRecipe,
     ContradictoryPins,
@@ -21,7 +21,7 @@ from hangtime.solver.data.faults import (
     UnknownContactName,
     UnknownPhase,
 )
-from hangtime.solver.data.problem import Axes3, ContactEdit, MassTable, MotionProblem, Pin
+from hangtime.solver.data.problem import ContactEdit, MassTable, MotionProblem, OffsetAxes, Pin
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -72,7 +72,14 @@ PROBLEM = MotionProblem(
     ),
     pins=(
         Pin("Landing", "ground 2", ("Left heel", "Left toe"), (0.3, 0.0, 0.2), turn=math.pi / 2),
-        Pin("Pin 2", "ground 1", ("Fuss.L",), (0.1, 0.0, -0.2), Axes3.WORLD, place=(1.0, 2.5, 0.0)),
+        Pin(
+            "Pin 2",
+            "ground 1",
+            ("Fuss.L",),
+            (0.1, 0.0, -0.2),
+            OffsetAxes.WORLD,
+            place=(1.0, 2.5, 0.0),
+        ),
     ),
 )
 
@@ -124,7 +131,7 @@ PINS = st.builds(
     phase=NAMES,
     touching=st.lists(NAMES, max_size=3).map(tuple),
     offset=PLACES,
-    axes=st.sampled_from(Axes3),
+    axes=st.sampled_from(OffsetAxes),
     place=st.none() | PLACES,
     turn=st.integers(-720, 720).map(math.radians),
 )

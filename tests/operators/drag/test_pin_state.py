@@ -3,7 +3,7 @@
 from math import inf, radians
 
 import pytest
-from hangtime.operators.drag.pin_state import Axis, PinDrag, State
+from hangtime.operators.drag.pin_state import Axis, DragState, PinDrag
 from hangtime.operators.drag.value_state import ValueDrag
 
 START = (1.0, 2.0, 0.0)
@@ -59,7 +59,7 @@ def test_letting_go_says_whether_anything_has_moved() -> None:
     returned.move((0.1, 0.0, 0.0))
     returned.move((0.0, 0.0, 0.0))
     assert [drag.let_go() for drag in (still, moved, returned)] == [False, True, False]
-    assert moved.state is State.LET_GO
+    assert moved.state is DragState.LET_GO
     assert moved.place == pytest.approx((1.1, 2.0, 0.0))
 
 

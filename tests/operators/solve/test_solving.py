@@ -1,7 +1,7 @@
 """The states of a solve, without Blender."""
 
 import pytest
-from hangtime.operators.solve.solving import Solving, State
+from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.solver.worker.protocol import Progress
 
 
@@ -11,7 +11,7 @@ def told(share: float = 0.5) -> Progress:
 
 def solving() -> Solving:
     under_way = Solving()
-    under_way.advance(State.SOLVING)
+    under_way.advance(SolveState.SOLVING)
     return under_way
 
 
@@ -26,11 +26,11 @@ def test_the_status_bar_says_stage_percent_and_the_worst_constraint() -> None:
 def test_the_share_never_falls_on_the_way() -> None:
     under_way = Solving()
     shares = [under_way.share]
-    under_way.advance(State.SOLVING)
+    under_way.advance(SolveState.SOLVING)
     for share in (0.1, 0.6, 1.0):
         under_way.heard(told(share))
         shares.append(under_way.share)
-    for state in (State.CHECKING, State.WRITING, State.ENDED):
+    for state in (SolveState.CHECKING, SolveState.WRITING, SolveState.ENDED):
         under_way.advance(state)
         shares.append(under_way.share)
     assert shares == sorted(shares)
@@ -42,7 +42,7 @@ def test_only_a_solve_can_be_stopped_and_only_once() -> None:
     assert not under_way.can_stop
     with pytest.raises(ValueError, match="reading"):
         under_way.stop()
-    under_way.advance(State.SOLVING)
+    under_way.advance(SolveState.SOLVING)
     under_way.stop()
     assert not under_way.can_stop
     under_way.heard(told())  # a step that was on its way
@@ -51,9 +51,9 @@ def test_only_a_solve_can_be_stopped_and_only_once() -> None:
 
 def test_states_do_not_go_back() -> None:
     under_way = solving()
-    under_way.advance(State.WRITING)
+    under_way.advance(SolveState.WRITING)
     with pytest.raises(ValueError, match="CHECKING after WRITING"):
-        under_way.advance(State.CHECKING)
+        under_way.advance(SolveState.CHECKING)
     with pytest.raises(ValueError, match="writing"):
         under_way.heard(told())
 
@@ -61,7 +61,7 @@ def test_states_do_not_go_back() -> None:
 def test_blender_stays_usable_but_for_the_moment_of_writing() -> None:
     under_way = solving()
     assert all(under_way.passes(event) for event in ("Z", "SPACE", "LEFTMOUSE", "MOUSEMOVE"))
-    under_way.advance(State.WRITING)
+    under_way.advance(SolveState.WRITING)
     assert not under_way.passes("Z")
     assert not under_way.passes("LEFTMOUSE")
     assert under_way.passes("MOUSEMOVE")

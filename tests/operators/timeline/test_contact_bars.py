@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 from hangtime.bridge.plots.screen import Axis, Rect
-from hangtime.bridge.properties.phases import phases
+from hangtime.bridge.rows.phases import phases
 from hangtime.operators.timeline.contact_bars import Bar, Bars, Row, lay_out
 from hangtime.operators.timeline.contact_edge_state import Edge
-from hangtime.ui.drawing.sketch import Picture
+from hangtime.ui.drawing.sketch import Drawing
 from hangtime.ui.timeline.drawing import drawn, hatch
 
 ROWS = (
@@ -91,7 +91,7 @@ def test_markers_keep_their_strip() -> None:
     assert with_markers.room.top <= 200.0 - 48.0
 
 
-def words(picture: Picture) -> list[str]:
+def words(picture: Drawing) -> list[str]:
     return [text.words for text in picture.texts]
 
 

@@ -6,7 +6,7 @@ import pytest
 from hangtime.operators.timeline.contact_edge_state import (
     Edge,
     EdgeDrag,
-    Stage,
+    EdgeDragState,
     Touch,
     contact_drag,
     phase_drag,
@@ -34,7 +34,7 @@ def test_the_edge_follows_the_mouse_on_whole_frames() -> None:
     assert drag.move(238.6) == {"Left heel 2": 238.0}
     assert drag.change == pytest.approx(7.2)
     assert drag.release()
-    assert drag.stage is Stage.DONE
+    assert drag.stage is EdgeDragState.DONE
 
 
 def test_tenths_of_frames_when_asked() -> None:
@@ -60,7 +60,7 @@ def test_giving_up_restores() -> None:
     drag = grabbed("Left toe 1", Edge.END)
     drag.move(150.0)
     assert drag.cancel() == {"Left toe 1": 175.4}
-    assert drag.stage is Stage.CANCELLED
+    assert drag.stage is EdgeDragState.CANCELLED
     assert drag.change == 0.0
 
 

@@ -1,21 +1,25 @@
 """Every fault has words of its own, which name what the fault carries."""
 
+import ast
 import dataclasses
 import importlib
+import inspect
 import pkgutil
+from string import Formatter
 from typing import get_type_hints
 
 import hangtime.solver
 import pytest
-from hangtime.operators.words.wording import OUTCOMES, sentence
-from hangtime.solver.data.faults import BadRecipe, Fault, NoSolution
+from hangtime.operators.words import wording
+from hangtime.operators.words.wording import OUTCOMES, TEMPLATES, sentence
+from hangtime.solver.data.faults import BadRecipe, Fault, MissingPart, NoSolution, RequestFault
 from hangtime.solver.data.status import Status
 
 
 def all_faults() -> list[type[Fault]]:
     for module in pkgutil.walk_packages(hangtime.solver.__path__, "hangtime.solver."):
         importlib.import_module(module.name)
-    return sorted(descendants(Fault), key=lambda fault: fault.__name__)
+    return sorted(descendants(Fault) - {RequestFault}, key=lambda fault: fault.__name__)
 
 
 def descendants(base: type[Fault]) -> set[type[Fault]]:
@@ -41,12 +45,48 @@ def filled(hint: object) -> object:
 
 @pytest.mark.parametrize("kind", all_faults(), ids=lambda kind: kind.__name__)
 def test_every_fault_has_its_own_words(kind: type[Fault]) -> None:
-    assert kind in sentence.registry
     words = sentence(made(kind))
     assert words[0].isupper() or words[0] == "“"
     assert words.endswith((".", "?"))
     assert words.count(". ") <= 2
     assert not {"{", "None", "ValueError"} & set(words.split())
+
+
+def templates_of(kind: type[Fault]) -> tuple[str, ...]:
+    return (templates,) if isinstance(templates := TEMPLATES[kind], str) else templates
+
+
+def test_nothing_but_faults_has_a_template() -> None:
+    assert set(TEMPLATES) == set(all_faults())
+
+
+@pytest.mark.parametrize("kind", all_faults(), ids=lambda kind: kind.__name__)
+def test_every_template_can_be_filled(kind: type[Fault]) -> None:
+    fault, templates = made(kind), templates_of(kind)
+    for template in templates:
+        named = [name for _, name, _, _ in Formatter().parse(template) if name is not None]
+        assert all(hasattr(fault, name.partition("[")[0]) for name in named), template
+        words = sentence(fault, lambda text, t=template: t if text in templates else text)
+        assert "{" not in words
+
+
+def test_every_template_is_one_literal_for_translators() -> None:
+    body = ast.parse(inspect.getsource(wording)).body
+    tables = [each.value for each in body if isinstance(each, ast.Assign | ast.AnnAssign)]
+    built = ast.JoinedStr, ast.BinOp, ast.Call
+    assert not [node for table in tables for node in ast.walk(table) if isinstance(node, built)]
+
+
+def test_templates_are_translated_before_they_are_filled() -> None:
+    german = {templates_of(MissingPart)[0]: "Kein Knochen für „{part}“."}
+    assert sentence(MissingPart("head"), german.__getitem__) == "Kein Knochen für „head“."
+
+
+def test_what_is_left_is_translated_as_well() -> None:
+    fault = NoSolution("stalled", (("Landing", 12.3, "mm"),), reached=0.25)
+    seen: list[str] = []
+    sentence(fault, lambda template: seen.append(template) or template)
+    assert seen[1:] == [OUTCOMES[Status.STALLED], wording.MISSED["mm"]]
 
 
 def test_a_fault_without_words_is_noticed() -> None:

@@ -7,17 +7,18 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hangtime.bridge.formats.bvh import read_bvh
-from hangtime.bridge.formats.skeleton import to_recording
+from hangtime.bridge.formats.motion_clip import to_recording
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.contact_detection import detect_contacts, require_flight
 from hangtime.solver.analysis.performance import Performance, contact_points, find_contacts, perform
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.contacts import (
     Contact,
     ContactPoint,
     ContactSchedule,
-    Flight,
+    Interval,
     PhaseKind,
     PointKind,
     numbered,
@@ -97,7 +98,7 @@ def test_snap_joins_what_nearly_coincides_and_leaves_flights_alone() -> None:
     )
     snapped = snap(s, 0.0125)
     assert snapped.boundaries == pytest.approx((0.0, 1.0, 2.0, 2.108, 2.5, 3.0))
-    assert snapped.flights == s.flights == (Flight(1.0, 2.0),)
+    assert snapped.flights == s.flights == (Interval(1.0, 2.0),)
     assert "Right heel 1" not in [c.name for c in snapped.contacts]  # nothing of it was left
 
 
@@ -124,13 +125,13 @@ TIMES = np.arange(0, 3 + 1e-9, FRAME)
 
 
 def point(
-    height: np.ndarray, kind: PointKind = PointKind.TOE, x: np.ndarray | float = 0.0
+    height: FloatArray, kind: PointKind = PointKind.TOE, x: FloatArray | float = 0.0
 ) -> ContactPoint:
     track = np.stack([np.broadcast_to(x, height.shape), np.zeros_like(height), height], axis=1)
     return ContactPoint(kind, "Foot", np.zeros(3), track)
 
 
-def leap(start: float, end: float, landing: float = 0.0) -> np.ndarray:
+def leap(start: float, end: float, landing: float = 0.0) -> FloatArray:
     """Height of a point that stands, leaves the floor like a ball at `start`, stops at `end`."""
     t = np.clip(TIMES - start, 0.0, end - start)
     speed = landing / (end - start) + 9.81 * (end - start) / 2

@@ -7,13 +7,14 @@ import pytest
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.pinned_places import pinned_places, travel_axes
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
     ContradictoryPins,
     UnknownContact,
     UnknownContactName,
     UnknownPhase,
 )
-from hangtime.solver.data.problem import Axes3, ContactEdit, MotionProblem, Pin
+from hangtime.solver.data.problem import ContactEdit, MotionProblem, OffsetAxes, Pin
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, frames_of, hop
 
@@ -21,15 +22,15 @@ LANDING = "ground 2"
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def before() -> np.ndarray:
+def before() -> FloatArray:
     return np.stack([c.place for c in hop().schedule.contacts])
 
 
-def after(*pins: Pin) -> np.ndarray:
+def after(*pins: Pin) -> FloatArray:
     return pinned_places(MotionProblem(pins=pins), hop().performance, hop().schedule)
 
 
-def landing() -> np.ndarray:
+def landing() -> FloatArray:
     """(n_contacts,) bool: which contacts belong to the landing."""
     schedule = hop().schedule
     phase = next(p for p in schedule.phases if p.name == LANDING)
@@ -37,7 +38,7 @@ def landing() -> np.ndarray:
     return np.array([c.name in mine for c in schedule.contacts])
 
 
-def of_bone(bone: str) -> np.ndarray:
+def of_bone(bone: str) -> FloatArray:
     return np.array([c.bone == bone for c in hop().schedule.contacts])
 
 
@@ -47,7 +48,7 @@ def test_no_pins_leave_every_contact() -> None:
 
 def test_a_phase_s_pin_moves_all_of_its_contacts_and_no_others() -> None:
     shift = np.array([0.3, -0.1, 0.2])
-    moved = after(Pin("landing", LANDING, offset=tuple(shift), axes=Axes3.WORLD)) - before()
+    moved = after(Pin("landing", LANDING, offset=tuple(shift), axes=OffsetAxes.WORLD)) - before()
     here = landing()
     assert 0 < here.sum() < len(here)
     assert moved[here] == pytest.approx(np.tile(shift, (here.sum(), 1)))
@@ -86,7 +87,7 @@ def test_places_are_for_the_contacts_centre() -> None:
     assert moved.mean(axis=0) == pytest.approx(goal)
     shape = before()[landing()]
     assert moved - moved.mean(axis=0) == pytest.approx(shape - shape.mean(axis=0))
-    added = Pin("there", LANDING, place=goal, offset=(0.1, 0.0, 0.0), axes=Axes3.WORLD)
+    added = Pin("there", LANDING, place=goal, offset=(0.1, 0.0, 0.0), axes=OffsetAxes.WORLD)
     assert after(added)[landing()].mean(axis=0) == pytest.approx([1.1, 2.0, 0.5])
 
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from hangtime.devtools.recordings import HOPS
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Segment, Side, map_anatomy, split_side
 from hangtime.solver.data.faults import MissingPart
 from hangtime.solver.data.recording import Bone
@@ -229,7 +230,7 @@ def test_a_missing_part_is_named(gone: str, part: str) -> None:
     assert caught.value.tried
 
 
-def rest(bone: Bone) -> tuple[int, np.ndarray, np.ndarray, np.ndarray]:
+def rest(bone: Bone) -> tuple[int, FloatArray, FloatArray, FloatArray]:
     return bone.parent, bone.head, bone.tail, bone.rotation
 
 

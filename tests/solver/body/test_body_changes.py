@@ -10,14 +10,17 @@ import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.analysis.performance import perform
+from hangtime.solver.arrays import FloatArray
+from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.body_changes import changed_character, changed_points
-from hangtime.solver.body.body_shapes import joined, stretched
+from hangtime.solver.body.body_shapes import stretched, with_ball
 from hangtime.solver.body.character import Character, build_character
-from hangtime.solver.body.dynamics import GRAVITY, MomentFunction
+from hangtime.solver.body.dynamics import MomentFunction
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
-from hangtime.solver.body.kinematics import BodyPoint, pose
-from hangtime.solver.body.mass_tables import DENSITY
+from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics
+from hangtime.solver.body.mass_tables import BODY_DENSITY
 from hangtime.solver.body.proportions import changed_recording
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.faults import NotAboveZero, UnknownBone
 from hangtime.solver.data.problem import MassTable
 from hangtime.solver.data.recording import Recording
@@ -78,7 +81,7 @@ def test_factors_of_one_change_nothing() -> None:
     for joint, before in zip(made.joints, figure().joints, strict=True):
         np.testing.assert_array_equal(joint.offset, before.offset)
     assert made.height == figure().height
-    assert made.gravity == GRAVITY
+    assert made.gravity == STANDARD_GRAVITY
 
 
 def test_twice_the_length_moves_all_below_along_the_bone() -> None:
@@ -136,7 +139,9 @@ def test_the_changed_figure_stands_where_the_changed_recording_does() -> None:
     limbs = (LimbChange("Legs", LEGS, 1.3), LimbChange("Torso", SPINE, 0.7))
     new, made = changed_recording(recording(), limbs), changed(BodyChange(limbs=limbs))
     before, after = (
-        perform(*each).centres - pose(each[1], perform(*each).angles).centres - com[:, None]
+        perform(*each).centres
+        - forward_kinematics(each[1], perform(*each).angles).centres
+        - com[:, None]
         for each, com in (
             ((recording(), figure()), perform(recording(), figure()).com),
             ((new, made), perform(new, made).com),
@@ -155,8 +160,8 @@ def test_the_changed_figure_stands_where_the_changed_recording_does() -> None:
     mass=st.floats(0.1, 20.0),
 )
 def test_a_stretched_box_is_a_box(factor: float, size: tuple[float, ...], mass: float) -> None:
-    body = toys.body("limb", toys.Part.THIGH, toys.Side.LEFT, mass, (0.0, 0.0, -size[2]))
-    long = toys.body("limb", toys.Part.THIGH, toys.Side.LEFT, mass, (0.0, 0.0, -factor * size[2]))
+    body = toys.body("limb", Part.THIGH, Side.LEFT, mass, (0.0, 0.0, -size[2]))
+    long = toys.body("limb", Part.THIGH, Side.LEFT, mass, (0.0, 0.0, -factor * size[2]))
     made = stretched(body, long.tip)
     np.testing.assert_allclose(made.inertia, long.inertia, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(made.com, long.com)
@@ -233,7 +238,7 @@ def test_what_cannot_be_is_named(change: BodyChange, fault: Exception) -> None:
 # -- MuJoCo's opinion ----------------------------------------------------------------------
 
 
-def random_state(character: Character, seed: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
+def random_state(character: Character, seed: int) -> tuple[list[FloatArray], list[FloatArray]]:
     """Centre of mass and angles, each with two derivatives."""
     random = np.random.default_rng(seed)
     n = character.n_angles
@@ -241,12 +246,12 @@ def random_state(character: Character, seed: int) -> tuple[list[np.ndarray], lis
     return [random.normal(size=(INSTANTS, 3)) for _ in range(3)], angles
 
 
-def relative(ours: np.ndarray, theirs: np.ndarray) -> float:
+def relative(ours: FloatArray, theirs: FloatArray) -> float:
     return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
 
 
 @pytest.mark.parametrize("table", list(MassTable))
-@pytest.mark.parametrize("gravity", [GRAVITY, MOON])
+@pytest.mark.parametrize("gravity", [STANDARD_GRAVITY, MOON])
 def test_inverse_dynamics_of_a_changed_figure_is_mujocos(gravity: float, table: MassTable) -> None:
     character = changed(replace(ALL, gravity=gravity), table)
     points = tuple(BodyPoint(i, character.bodies[i].tip) for i in (3, 7))
@@ -258,7 +263,8 @@ def test_inverse_dynamics_of_a_changed_figure_is_mujocos(gravity: float, table: 
     made = state(character, com, angles)
     theirs, _ = inverse_dynamics(model, made, forces)
     force, moment = root_wrench(made[0], theirs, com[0])
-    ours = InverseDynamics(character, points)(*angles, com[2], forces)
+    q, v, a = angles
+    ours = InverseDynamics(character, points)(q, v, a, com[2], forces)
     assert relative(ours.root_force, force) < 1e-9
     assert relative(ours.root_moment, moment) < 1e-9
     order = hinge_order(character) - 3
@@ -278,7 +284,7 @@ def test_composite_inertia_is_mujocos(
     character = figure()
     where = which % len(character.bodies)
     bodies = list(character.bodies)
-    bodies[where] = joined(bodies[where], mass, np.array(place))
+    bodies[where] = with_ball(bodies[where], mass, np.array(place))
     ours = mujoco.MjModel.from_xml_string(mjcf(replace(character, bodies=tuple(bodies))))
     theirs = mujoco.MjModel.from_xml_string(welded(character, where, mass, np.array(place)))
     com, angles = random_state(character, 11)
@@ -290,7 +296,7 @@ def test_composite_inertia_is_mujocos(
     np.testing.assert_allclose(centre, other_centre, atol=1e-12)
 
 
-def welded(character: Character, body: int, mass: float, place: np.ndarray) -> str:
+def welded(character: Character, body: int, mass: float, place: FloatArray) -> str:
     """The figure's MJCF with a ball as a body of its own, without a joint."""
     root = ET.fromstring(mjcf(character))
     name = f"{body} {character.bodies[body].name}"
@@ -299,7 +305,7 @@ def welded(character: Character, body: int, mass: float, place: np.ndarray) -> s
     ball = ET.SubElement(
         home, "body", name="ball", pos=" ".join(map(repr, (fold @ place).tolist()))
     )
-    radius = (0.75 * mass / (np.pi * DENSITY)) ** (1 / 3)
+    radius = (0.75 * mass / (np.pi * BODY_DENSITY)) ** (1 / 3)
     inertia = " ".join([repr(0.4 * mass * radius**2)] * 3)
     ET.SubElement(ball, "inertial", pos="0 0 0", mass=repr(mass), diaginertia=inertia)
     return ET.tostring(root, encoding="unicode")
@@ -313,7 +319,7 @@ def toy_motion() -> Motion:
     return Motion(t, toys.random_state(3, 0.02), toys.places())
 
 
-def long_legged(factor: float, gravity: float = GRAVITY) -> Character:
+def long_legged(factor: float, gravity: float = STANDARD_GRAVITY) -> Character:
     """The toy with longer legs."""
     old = toys.figure()
     bodies = [
@@ -360,10 +366,12 @@ def test_on_the_moon_vertical_forces_shrink_with_gravity() -> None:
     made = moved_to(motion, long_legged(1.0, MOON))
     times = np.linspace(0.01, 0.29, 15)
     before, after = motion.forces(times), made.forces(times)
-    np.testing.assert_allclose(after[..., 2], MOON / GRAVITY * before[..., 2], atol=1e-9)
+    np.testing.assert_allclose(after[..., 2], MOON / STANDARD_GRAVITY * before[..., 2], atol=1e-9)
     np.testing.assert_allclose(after[..., :2], before[..., :2], atol=1e-9)
     # What a resting centre of mass leaves unexplained is then the accelerations' share alone.
-    left = dynamics_residual(made, times).force * GRAVITY * made.transcription.character.mass
+    left = (
+        dynamics_residual(made, times).force * STANDARD_GRAVITY * made.transcription.character.mass
+    )
     fall = made.com(times, 2) + np.array([0.0, 0.0, MOON])
     expected = made.transcription.character.mass * fall - after.sum(axis=1)
     np.testing.assert_allclose(left, expected, atol=1e-8)

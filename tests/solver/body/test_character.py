@@ -11,7 +11,7 @@ from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Character, build_character
 from hangtime.solver.body.joint_axes import residual_angle
-from hangtime.solver.body.mass_tables import TABLES
+from hangtime.solver.body.mass_tables import MASS_TABLES
 from hangtime.solver.data.faults import MissingPart, ZeroLengthBone
 from hangtime.solver.data.problem import MassTable
 from hangtime.solver.data.recording import Recording
@@ -62,7 +62,7 @@ def shares(figure: Character) -> Mapping[tuple[Part, Side], float]:
 
 @pytest.mark.parametrize("table", MassTable)
 def test_the_tables_sum_to_the_whole(table: MassTable) -> None:
-    total = sum(s.mass * (1 if part in ONCE else 2) for part, s in TABLES[table].items())
+    total = sum(s.mass * (1 if part in ONCE else 2) for part, s in MASS_TABLES[table].items())
     assert total == pytest.approx(1.0, abs=1e-12)
 
 
@@ -79,14 +79,14 @@ def test_every_part_has_its_published_share(table: MassTable) -> None:
     found = shares(build_character(clip(JUMP), table=table))
     expected = {
         (part, side): share.mass
-        for part, share in TABLES[table].items()
+        for part, share in MASS_TABLES[table].items()
         for side in ((Side.MIDDLE,) if part in ONCE else (Side.LEFT, Side.RIGHT))
     }
     assert found == pytest.approx(expected, abs=1e-12)
 
 
 def test_what_has_no_bone_gives_its_mass_to_where_it_hangs() -> None:
-    table = TABLES[MassTable.THESIS]
+    table = MASS_TABLES[MassTable.THESIS]
     handless = shares(build_character(without(clip(JUMP), ("Hand",))))
     arm = table[Part.FOREARM].mass + table[Part.HAND].mass
     assert handless[Part.FOREARM, Side.LEFT] == pytest.approx(arm)
@@ -162,7 +162,7 @@ def test_de_leva_s_centres_of_mass_lie_where_published() -> None:
         assert index is not None
         b = figure.bodies[index]
         along = b.com @ b.tip / (b.tip @ b.tip)
-        assert along == pytest.approx(TABLES[MassTable.DE_LEVA][part].centre, abs=1e-9)
+        assert along == pytest.approx(MASS_TABLES[MassTable.DE_LEVA][part].centre, abs=1e-9)
 
 
 def test_the_figure_scales_with_the_recording() -> None:

@@ -1,5 +1,6 @@
 """Our dynamics against MuJoCo on random trees, and every Jacobian against finite differences."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -9,12 +10,14 @@ import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
-from hangtime.solver.body.dynamics import GRAVITY, MomentFunction, evaluate, momentum_rate
+from hangtime.solver.body.dynamics import MomentFunction, evaluate, momentum_rate
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
-from hangtime.solver.body.joint_axes import Axes
-from hangtime.solver.body.kinematics import BodyPoint, point_velocity, pose
+from hangtime.solver.body.joint_axes import JointAxes
+from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics, point_velocity
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
@@ -49,7 +52,7 @@ def random_tree(seed: int, bodies: int = 9) -> Character:
         before, after = rotation_matrix(random.normal(size=(2, 3)))
         parent = int(random.integers(0, i)) if i else -1
         offset = 0.3 * random.normal(size=3) if i else np.zeros(3)
-        joints.append(Joint(parent, offset, Axes(dofs, before, after), first))
+        joints.append(Joint(parent, offset, JointAxes(dofs, before, after), first))
         first += dofs
     made = [random_body(random, f"body {i}") for i in range(bodies)]
     return Character(tuple(made), tuple(joints), 1.7)
@@ -61,17 +64,19 @@ def random_points(seed: int, character: Character, count: int = 4) -> tuple[Body
     return tuple(BodyPoint(int(b), 0.3 * random.normal(size=3)) for b in chosen)
 
 
-def random_movement(seed: int, n: int) -> list[np.ndarray]:
+def random_movement(seed: int, n: int) -> list[FloatArray]:
     """Angles, velocities and accelerations (INSTANTS, n)."""
     random = np.random.default_rng(200 + seed)
     return [scale * random.normal(size=(INSTANTS, n)) for scale in (1.2, 4.0, 30.0)]
 
 
-def relative(ours: np.ndarray, theirs: np.ndarray) -> float:
+def relative(ours: FloatArray, theirs: FloatArray) -> float:
     return float(np.abs(ours - theirs).max() / np.abs(theirs).max())
 
 
-def central(function, x: np.ndarray, step: float = 1e-6) -> np.ndarray:
+def central(
+    function: Callable[[FloatArray], FloatArray], x: FloatArray, step: float = 1e-6
+) -> FloatArray:
     """(..., n) derivatives of function at x (n,) by central differences."""
     columns = []
     for i in range(len(x)):
@@ -119,9 +124,9 @@ def test_root_rows_of_random_trees_are_mujocos(seed: int) -> None:
     x = [ca.SX.sym(name, character.n_angles) for name in "qva"]
     function = ca.Function("rate", [ca.vertcat(*x)], [momentum_rate(character, *x)])
     (rate,) = evaluate(function, np.concatenate([q, v, a], axis=1), [(3,)])
-    arms = pose(character, q).points(points)
+    arms = forward_kinematics(character, q).points(points)
     ours_moment = rate - np.cross(arms, forces).sum(axis=1)
-    gravity = np.array([0.0, 0.0, -GRAVITY])
+    gravity = np.array([0.0, 0.0, -STANDARD_GRAVITY])
     ours_force = character.mass * (com[2] - gravity) - forces.sum(axis=1)
 
     model = mujoco.MjModel.from_xml_string(mjcf(character, points))
@@ -130,7 +135,7 @@ def test_root_rows_of_random_trees_are_mujocos(seed: int) -> None:
     force, moment = root_wrench(qpos, theirs, centre)
     assert relative(ours_force, force) < 1e-9
     assert relative(ours_moment, moment) < 1e-9
-    scaled = MomentFunction(character).value(q, v, a) * character.mass * GRAVITY
+    scaled = MomentFunction(character).value(q, v, a) * character.mass * STANDARD_GRAVITY
     assert relative(scaled, rate) < 1e-12
 
 
@@ -164,8 +169,8 @@ def test_moment_jacobian(seed: int) -> None:
     np.testing.assert_allclose(value, function.value(q, v, a), rtol=1e-12, atol=1e-12)
     for i in range(2):
 
-        def moved(x: np.ndarray) -> np.ndarray:
-            return function.value(*(part[None] for part in np.split(x, 3)))[0]
+        def moved(x: FloatArray) -> FloatArray:
+            return np.asarray(function.value(*(part[None] for part in np.split(x, 3)))[0])
 
         numeric = central(moved, np.concatenate([q[i], v[i], a[i]]))
         assert relative(jacobian[i].reshape(3, 3 * n), numeric) < 1e-7
@@ -176,9 +181,9 @@ def test_point_jacobian(seed: int) -> None:
     character = random_tree(seed)
     points = random_points(seed, character)
     q = random_movement(seed, character.n_angles)[0]
-    jacobian = pose(character, q).point_jacobian(points)
+    jacobian = forward_kinematics(character, q).point_jacobian(points)
     for i in range(2):
-        numeric = central(lambda x: pose(character, x[None]).points(points)[0], q[i])
+        numeric = central(lambda x: forward_kinematics(character, x[None]).points(points)[0], q[i])
         assert relative(jacobian[i], numeric) < 1e-7
 
 
@@ -187,15 +192,16 @@ def test_point_velocity_and_its_jacobian(seed: int) -> None:
     character = random_tree(seed, bodies=6)
     points = random_points(seed, character)
     q, v, _ = random_movement(seed, character.n_angles)
-    posed = pose(character, q)
+    posed = forward_kinematics(character, q)
     speeds, *jacobian = point_velocity(posed, points, v)
     by_angle = posed.point_jacobian(points)
     np.testing.assert_allclose(speeds, np.einsum("npij,nj->npi", by_angle, v), atol=1e-11)
     for i in range(2):
 
-        def moved(x: np.ndarray) -> np.ndarray:
+        def moved(x: FloatArray) -> FloatArray:
             angles, rates = np.split(x, 2)
-            return point_velocity(pose(character, angles[None]), points, rates[None])[0][0]
+            posed = forward_kinematics(character, angles[None])
+            return np.asarray(point_velocity(posed, points, rates[None])[0][0])
 
         numeric = central(moved, np.concatenate([q[i], v[i]]))
         ours = np.concatenate([by[i] for by in jacobian], axis=-1)
@@ -212,7 +218,7 @@ def jump() -> Fit:
     return fit(analysis.performance, analysis.schedule)
 
 
-def random_unknowns(transcription: Transcription, x: np.ndarray) -> np.ndarray:
+def random_unknowns(transcription: Transcription, x: FloatArray) -> FloatArray:
     random = np.random.default_rng(5)
     return x + transcription.active * 0.03 * random.normal(size=x.shape)
 
@@ -274,7 +280,7 @@ def test_efforts_of_an_adapted_jump_leave_nothing_at_the_root() -> None:
     motion = adapted.motion
     t = motion.transcription
     efforts = motion_inverse_dynamics(InverseDynamics(t.character, t.points), motion, t.node_times)
-    weight = t.character.mass * GRAVITY
+    weight = t.character.mass * STANDARD_GRAVITY
     assert np.abs(efforts.root_force).max() < 1e-4 * weight
     assert np.abs(efforts.root_moment).max() < 1e-4 * weight
     assert 50.0 < np.abs(efforts.torques).max() < 2000.0

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.joint_axes import (
-    Axes,
+    JointAxes,
     ball_axes,
     hinge_axes,
     residual_angle,
@@ -12,6 +13,7 @@ from hangtime.solver.body.joint_axes import (
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_matrix, unit
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import ArrayLike
 
 TIME = np.linspace(0.0, 1.0, 201)
 TURN = 2.0 * np.pi * TIME
@@ -21,22 +23,22 @@ DIRECTIONS = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.6, -0.64, 0.
 seeds = st.integers(0, 2**31)
 
 
-def about(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
+def about(axis: ArrayLike, angle: FloatArray) -> FloatArray:
     return rotation_matrix(np.asarray(angle)[:, None] * unit(np.asarray(axis, dtype=float)))
 
 
-def smooth_angles(random: np.random.Generator, size: float) -> np.ndarray:
+def smooth_angles(random: np.random.Generator, size: float) -> FloatArray:
     """(T,) a smooth random angle of at most about `size` rad."""
-    return size * np.sin(random.uniform(3.0, 9.0) * TIME + random.uniform(0.0, 6.0))
+    return np.asarray(size * np.sin(random.uniform(3.0, 9.0) * TIME + random.uniform(0.0, 6.0)))
 
 
-def somersault(turn: np.ndarray, twist: np.ndarray) -> np.ndarray:
+def somersault(turn: FloatArray, twist: FloatArray) -> FloatArray:
     """Somersault about y with a twist about the body's own z, tilting a little on the way."""
     tilt = axis_rotation(0, 0.2 * np.sin(2.0 * np.pi * TIME))
     return tilt @ axis_rotation(1, turn) @ axis_rotation(2, twist)
 
 
-def check_ball(axes: Axes, R: np.ndarray, largest_middle: float) -> np.ndarray:
+def check_ball(axes: JointAxes, R: FloatArray, largest_middle: float) -> FloatArray:
     angles = axes.angles(R)
     assert np.abs(axes.rotation(angles) - R).max() < 1e-9
     assert np.abs(angles[:, 1]).max() < np.radians(largest_middle)
@@ -152,5 +154,17 @@ def test_angles_of_a_joint_s_own_rotations_come_back(seed: int, dofs: int) -> No
     random = np.random.default_rng(seed)
     before, after = rotation_matrix(random.normal(size=(2, 3)))
     angles = np.stack([smooth_angles(random, 1.2) for _ in range(dofs)], axis=1)
-    axes = Axes(dofs, before, after)
+    axes = JointAxes(dofs, before, after)
     assert axes.angles(axes.rotation(angles)) == pytest.approx(angles, abs=1e-9)
+
+
+@pytest.mark.parametrize("dofs", [1, 2, 3])
+def test_angles_do_not_depend_on_where_arrays_lie_in_memory(dofs: int) -> None:
+    random = np.random.default_rng(0)
+    R = rotation_matrix(random.normal(0.0, 0.4, (271, 3)))
+    axes = JointAxes(dofs, *rotation_matrix(random.normal(size=(2, 3))))
+    first = axes.angles(R)
+    memory = [np.empty(0)] * 50  # other arrays, made and freed, so that the heap is ever another
+    for size in random.integers(1, 4000, 500):
+        memory[random.integers(len(memory))] = np.empty(size)
+        assert np.array_equal(axes.angles(R), first)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hangtime.solver.analysis.performance import Performance, perform
 from hangtime.solver.body.character import Character, build_character
-from hangtime.solver.body.kinematics import BodyPoint, pose
+from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.toy_problems import figure
 
@@ -36,8 +36,10 @@ def test_point_jacobians(make: type) -> None:
     random = np.random.default_rng(8)
     q, d = random.normal(size=(2, 4, character.n_angles))
     step = 1e-6
-    ahead, behind = (pose(character, q + s * step * d).points(points) for s in (1.0, -1.0))
-    ours = np.einsum("npij,nj->npi", pose(character, q).point_jacobian(points), d)
+    ahead, behind = (
+        forward_kinematics(character, q + s * step * d).points(points) for s in (1.0, -1.0)
+    )
+    ours = np.einsum("npij,nj->npi", forward_kinematics(character, q).point_jacobian(points), d)
     assert ours == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-7)
 
 
@@ -46,14 +48,16 @@ def test_everything_is_relative_to_the_centre_of_mass(make: type) -> None:
     character = make()
     q = np.random.default_rng(9).normal(size=(5, character.n_angles))
     masses = np.array([b.mass for b in character.bodies])
-    centre = np.einsum("b,nbi->ni", masses, pose(character, q).body_coms)
+    centre = np.einsum("b,nbi->ni", masses, forward_kinematics(character, q).body_coms)
     assert centre == pytest.approx(np.zeros((5, 3)), abs=1e-10)
 
 
 @pytest.mark.parametrize("make", [figure, human])
 def test_rotations_are_proper_and_bones_keep_their_lengths(make: type) -> None:
     character = make()
-    posed = pose(character, np.random.default_rng(10).normal(size=(5, character.n_angles)))
+    posed = forward_kinematics(
+        character, np.random.default_rng(10).normal(size=(5, character.n_angles))
+    )
     R = posed.rotations
     unity = np.broadcast_to(np.eye(3), R.shape)
     assert R @ np.swapaxes(R, -1, -2) == pytest.approx(unity, abs=1e-12)
@@ -66,7 +70,7 @@ def test_rotations_are_proper_and_bones_keep_their_lengths(make: type) -> None:
 
 def test_the_figure_follows_its_recording() -> None:
     seen = performance()
-    posed = pose(seen.character, seen.angles)
+    posed = forward_kinematics(seen.character, seen.angles)
     off = np.linalg.norm(posed.centres + seen.com[:, None] - seen.centres, axis=-1)
     assert np.sqrt((off**2).mean()) < 0.01
     masses = np.array([b.mass for b in seen.character.bodies])

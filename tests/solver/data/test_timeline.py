@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.faults import BadTiming, UnknownPhaseIn
-from hangtime.solver.data.requests import Hold, Moment, PhaseTiming, When
-from hangtime.solver.data.timeline import Timeline, interval, timeline
+from hangtime.solver.data.requests import ALWAYS, Hold, Moment, PhaseTiming, When
+from hangtime.solver.data.timeline import Timeline, active_interval, timeline
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -55,7 +56,7 @@ def held(seconds: dict[int, float]) -> tuple[Hold, ...]:
 
 
 @given(TIMES)
-def test_nothing_asked_changes_nothing(times: np.ndarray) -> None:
+def test_nothing_asked_changes_nothing(times: FloatArray) -> None:
     line = made()
     assert line.unchanged
     assert line.duration == pytest.approx(DURATION)
@@ -64,7 +65,7 @@ def test_nothing_asked_changes_nothing(times: np.ndarray) -> None:
 
 
 @given(FACTORS, TIMES)
-def test_without_holds_there_is_a_way_back(factors: dict[str, float], times: np.ndarray) -> None:
+def test_without_holds_there_is_a_way_back(factors: dict[str, float], times: FloatArray) -> None:
     line = made(timings=retimed(factors))
     assert line.to_old(line.to_new(times)) == pytest.approx(times, abs=1e-8)
     assert (np.diff(line.to_new(np.sort(times))) >= 0.0).all()
@@ -87,7 +88,7 @@ def test_seconds_are_seconds() -> None:
 
 @given(HOLDS, TIMES)
 def test_holds_insert_their_seconds_and_nothing_else(
-    seconds: dict[int, float], times: np.ndarray
+    seconds: dict[int, float], times: FloatArray
 ) -> None:
     line = made(holds=held(seconds))
     assert line.duration == pytest.approx(DURATION + sum(seconds.values()), abs=1e-7)
@@ -149,19 +150,21 @@ def test_who_stands_at_the_end_stands_through_a_hold_of_it() -> None:
 # -- when -----------------------------------------------------------------------------------
 
 
-def when(*, line: Timeline | None = None, **asked: object) -> tuple[float, float]:
+def when(asked: When = ALWAYS, line: Timeline | None = None) -> tuple[float, float]:
     line = line or made()
     apex = np.stack([np.linspace(0.0, 1.2, 121), np.linspace(0.0, 1.2, 121)], axis=1)
     apex[:, 1] = -((apex[:, 1] - 0.52) ** 2)
-    return interval("asked", When(**asked), line, line.schedule(schedule()).phases, apex)
+    return active_interval("asked", asked, line, line.schedule(schedule()).phases, apex)
 
 
 def test_when_is_the_whole_clip_a_phase_frames_or_what_they_share() -> None:
     assert when() == (0.0, DURATION)
-    assert when(phase="flight 1") == pytest.approx((0.4, 0.7))
-    assert when(frames=(frame(0.2), frame(0.5))) == pytest.approx((0.2, 0.5))
-    assert when(phase="flight 1", frames=(frame(0.2), frame(0.5))) == pytest.approx((0.4, 0.5))
-    assert when(frames=(frame(0.2), frame(0.2))) == pytest.approx((0.2, 0.2))
+    assert when(When(phase="flight 1")) == pytest.approx((0.4, 0.7))
+    assert when(When(frames=(frame(0.2), frame(0.5)))) == pytest.approx((0.2, 0.5))
+    assert when(When(phase="flight 1", frames=(frame(0.2), frame(0.5)))) == pytest.approx(
+        (0.4, 0.5)
+    )
+    assert when(When(frames=(frame(0.2), frame(0.2)))) == pytest.approx((0.2, 0.2))
 
 
 @pytest.mark.parametrize(
@@ -169,14 +172,14 @@ def test_when_is_the_whole_clip_a_phase_frames_or_what_they_share() -> None:
     [(Moment.START, 0.4), (Moment.MIDDLE, 0.55), (Moment.APEX, 0.52), (Moment.END, 0.7)],
 )
 def test_moments_are_single_instants(moment: Moment, expected: float) -> None:
-    start, end = when(phase="flight 1", moment=moment)
+    start, end = when(When(phase="flight 1", moment=moment))
     assert start == end == pytest.approx(expected)
 
 
 def test_a_hold_is_a_phase_by_its_name() -> None:
     line = made(holds=(Hold("hang", frame(0.5), 0.4),))
-    assert when(line=line, phase="hang") == pytest.approx((0.5, 0.9))
-    assert when(line=line, phase="ground 2") == pytest.approx((1.1, 1.6))
+    assert when(When(phase="hang"), line) == pytest.approx((0.5, 0.9))
+    assert when(When(phase="ground 2"), line) == pytest.approx((1.1, 1.6))
 
 
 # -- faults ---------------------------------------------------------------------------------
@@ -189,7 +192,7 @@ def test_unknown_phases_are_named_with_those_there_are() -> None:
     assert caught.value.known == ("ground 1", "flight 1", "ground 2")
     line = made(holds=(Hold("hang", frame(0.5), 0.4),))
     with pytest.raises(UnknownPhaseIn) as caught:
-        when(line=line, phase="swing")
+        when(When(phase="swing"), line)
     assert (caught.value.request, caught.value.known[-1]) == ("asked", "hang")
 
 
@@ -225,7 +228,7 @@ def test_holds_outside_the_clip_or_of_no_time_are_refused_by_name(hold: Hold) ->
 
 def test_frames_outside_a_phase_are_no_time_at_all() -> None:
     with pytest.raises(BadTiming) as caught:
-        when(phase="flight 1", frames=(frame(0.9), frame(1.0)))
+        when(When(phase="flight 1", frames=(frame(0.9), frame(1.0))))
     assert caught.value.request == "asked"
 
 

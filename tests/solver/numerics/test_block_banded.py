@@ -2,23 +2,24 @@
 
 import numpy as np
 import pytest
-from hangtime.solver.numerics.block_banded import BAND, BlockBanded
+from hangtime.solver.arrays import FloatArray
+from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-WINDOW = BAND + 1
+WINDOW = BANDWIDTH + 1
 
 
-def random_matrix(seed: int, blocks: int, size: int) -> tuple[BlockBanded, np.ndarray]:
+def random_matrix(seed: int, blocks: int, size: int) -> tuple[BlockBanded, FloatArray]:
     """A positive definite matrix of windows, banded and dense."""
     random = np.random.default_rng(seed)
     n = WINDOW * size
-    half = random.normal(size=(blocks - BAND, n, n + 2))
+    half = random.normal(size=(blocks - BANDWIDTH, n, n + 2))
     windows = half @ np.swapaxes(half, 1, 2)
     extra = random.uniform(0.1, 1.0, (blocks, size))
     banded = BlockBanded(blocks, size)
     shaped = windows.reshape(-1, WINDOW, size, WINDOW, size)
-    banded.add_windows(np.arange(blocks - BAND), shaped)
+    banded.add_windows(np.arange(blocks - BANDWIDTH), shaped)
     banded.add_diagonal(extra)
     dense = np.diag(extra.ravel())
     for k, window in enumerate(windows):
@@ -68,7 +69,7 @@ def test_another_basis_of_every_block() -> None:
     """A reduced figure's matrix: T'AT."""
     banded, dense = random_matrix(5, 6, 4)
     T = np.random.default_rng(7).normal(size=(4, 2))
-    changed = banded.changed(T)
+    changed = banded.congruent(T)
     whole = np.kron(np.eye(6), T)
     x = np.random.default_rng(8).normal(size=(6, 2))
     assert changed.times(x).ravel() == pytest.approx(whole.T @ dense @ whole @ x.ravel())

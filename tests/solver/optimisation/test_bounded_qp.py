@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray, IntArray
-from hangtime.solver.numerics.block_banded import BAND, BlockBanded
+from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
 from hangtime.solver.optimisation.bounded_qp import BoundedStep, solve_dual_qp
 from hangtime.solver.transcription.rows import violation
 from hypothesis import given, settings
@@ -15,7 +15,7 @@ from scipy.optimize import lsq_linear
 
 SEED = st.integers(0, 2**31)
 SIZE = 3
-WINDOW = BAND + 1
+WINDOW = BANDWIDTH + 1
 
 
 def random_root(random: np.random.Generator, m: int) -> np.ndarray:
@@ -77,11 +77,11 @@ class Problem:
     def __init__(self, seed: int, blocks: int, rows: int) -> None:
         random = np.random.default_rng(seed)
         n = WINDOW * SIZE
-        half = random.normal(size=(blocks - BAND, n, n + 1))
+        half = random.normal(size=(blocks - BANDWIDTH, n, n + 1))
         windows = half @ np.swapaxes(half, 1, 2)
         banded = BlockBanded(blocks, SIZE)
         banded.add_windows(
-            np.arange(blocks - BAND), windows.reshape(-1, WINDOW, SIZE, WINDOW, SIZE)
+            np.arange(blocks - BANDWIDTH), windows.reshape(-1, WINDOW, SIZE, WINDOW, SIZE)
         )
         banded.add_diagonal(np.full((blocks, SIZE), 0.5))
         self.factor = banded.factor()
@@ -89,7 +89,7 @@ class Problem:
         self.A = np.stack([banded.times(unit).ravel() for unit in units])
         self.G = np.zeros((rows, blocks, SIZE))
         for row in self.G:
-            first = random.integers(0, blocks - BAND)
+            first = random.integers(0, blocks - BANDWIDTH)
             row[first : first + WINDOW] = random.normal(size=(WINDOW, SIZE))
         self.z = random.normal(size=rows)
         self.lower, self.upper = random_bounds(random, rows)

@@ -8,8 +8,8 @@ import pytest
 from hangtime.solver.analysis.performance import Performance, perform
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Character, build_character
-from hangtime.solver.body.joint_axes import Axes
-from hangtime.solver.body.kinematics import pose
+from hangtime.solver.body.joint_axes import JointAxes
+from hangtime.solver.body.kinematics import forward_kinematics
 from hangtime.solver.data.faults import (
     BadDimensions,
     DependentRows,
@@ -256,14 +256,14 @@ def mirrored_figure(turns: tuple[int, ...]) -> Character:
             half = rotation_matrix(np.pi * np.eye(4, 3)[turns[knee]])
             before, after = ACROSS @ before @ ACROSS @ half, half.T @ ACROSS @ after @ ACROSS
         dofs = 2 if knee else 3
-        joints.append(replace(joint, axes=Axes(dofs, before, after), first=first))
+        joints.append(replace(joint, axes=JointAxes(dofs, before, after), first=first))
         first += dofs
     return Character(toy.bodies, tuple(joints), toy.height)
 
 
 def from_pelvis(character: Character, angles: np.ndarray) -> np.ndarray:
     """(B, 2, 3) joint centres and tips as the pelvis sees them."""
-    posed = pose(character, angles[None])
+    posed = forward_kinematics(character, angles[None])
     tips = np.stack([body.tip for body in character.bodies])
     ends = posed.centres[0] + np.einsum("bij,bj->bi", posed.rotations[0], tips)
     places = np.stack([posed.centres[0], ends], axis=1) - posed.centres[0, 0]

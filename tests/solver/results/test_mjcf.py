@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import check_motion, check_npz
 from hangtime.solver.analysis.analyse import analyse
-from hangtime.solver.body.dynamics import GRAVITY
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.results.mjcf import hinge_order, mjcf, qacc, qpos, qvel
 from hangtime.solver.results.npz_export import sample
@@ -41,7 +41,7 @@ def test_the_model_is_the_character() -> None:
     assert made.nbody == len(character.bodies) + 1
     assert made.ngeom == 0
     np.testing.assert_allclose(made.body_mass.sum(), character.mass)
-    np.testing.assert_allclose(made.opt.gravity, [0.0, 0.0, -GRAVITY])
+    np.testing.assert_allclose(made.opt.gravity, [0.0, 0.0, -STANDARD_GRAVITY])
     names = [made.joint(j).name for j in range(1, made.njnt)]
     assert names == [f"angle {i}" for i in hinge_order(character)]
 

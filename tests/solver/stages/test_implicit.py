@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.pinned_places import pinned_places
-from hangtime.solver.data.problem import Axes3, MotionProblem, Pin
+from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.status import Status
 from hangtime.solver.optimisation.sqp import Step
 from hangtime.solver.stages.fit import fit
@@ -69,7 +69,7 @@ def test_without_pins_the_fit_comes_back() -> None:
 def test_a_pin_on_both_phases_carries_the_whole_hop() -> None:
     """Nothing but the place changes, so nothing else may."""
     shift = (0.5, 0.3, 0.0)
-    pins = [Pin(p, p, offset=shift, axes=Axes3.WORLD) for p in ("ground 1", LANDING)]
+    pins = [Pin(p, p, offset=shift, axes=OffsetAxes.WORLD) for p in ("ground 1", LANDING)]
     adaptation = adapted(*pins)
     assert adaptation.solved
     times = np.linspace(0.0, adaptation.motion.duration, 100)

@@ -21,7 +21,7 @@ def moved(forward: float, up: float = 0.0) -> MotionProblem:
 def settled(follower: Follower, problem: MotionProblem, most: int = 20) -> int:
     """Updates until the pin is reached."""
     for update in range(1, most + 1):
-        if follower.follow(problem) is DragStatus.ARRIVED:
+        if follower.follow(problem) is DragStatus.CONVERGED:
             return update
     raise AssertionError(f"not there after {most} updates")
 
@@ -42,7 +42,7 @@ def test_the_ghost_is_near_the_solve() -> None:
 
 def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
     follower = Follower(fitted_hop(), moved(0.0))
-    assert follower.follow(moved(0.9)) is DragStatus.ON_ITS_WAY
+    assert follower.follow(moved(0.9)) is DragStatus.CONVERGING
     assert 1 < settled(follower, moved(0.9)) < 20
 
 
@@ -50,7 +50,7 @@ def test_where_nobody_can_jump_the_motion_stays_where_it_last_could_follow() -> 
     follower = Follower(fitted_hop(), moved(0.0))
     settled(follower, moved(0.1))
     for _ in range(60):
-        if follower.follow(moved(30.0)) is DragStatus.LOST:
+        if follower.follow(moved(30.0)) is DragStatus.DIVERGED:
             break
     else:
         raise AssertionError("thirty metres were reached")
@@ -74,7 +74,7 @@ def test_it_begins_at_an_adaptation_of_the_same_problem() -> None:
     fit = fitted_hop()
     last = adapt(fit, moved(0.2))
     follower = Follower(fit, moved(0.2), last)
-    assert follower.follow(moved(0.2)) is DragStatus.ARRIVED
+    assert follower.follow(moved(0.2)) is DragStatus.CONVERGED
     np.testing.assert_allclose(follower.motion.x, last.motion.x, atol=1e-3)
     settled(follower, moved(0.22))
 

@@ -6,8 +6,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hangtime.solver.body.dynamics import GRAVITY
 from hangtime.solver.body.kinematics import BodyPoint
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
@@ -242,7 +242,7 @@ def test_a_fixed_elbow_reads_its_angle() -> None:
 
 def test_a_soft_landing_is_under_its_peak() -> None:
     motion = adapted("peak").motion
-    weight = motion.transcription.character.mass * GRAVITY
+    weight = motion.transcription.character.mass * STANDARD_GRAVITY
     times = np.linspace(TOUCH_DOWN, motion.duration, 300)
     for each, most in ((adapted("peak").motion, 2.01), (fitted_hop().motion, np.inf)):
         total = np.linalg.norm(each.forces(times).sum(axis=1), axis=1).max() / weight
@@ -254,7 +254,7 @@ def test_a_soft_landing_is_under_its_peak() -> None:
 def test_feet_do_not_push_more_sideways_than_friction_lets_them(name: str) -> None:
     motion = adapted(name).motion
     mu = 0.7 if name == "friction" else 0.9
-    weight = motion.transcription.character.mass * GRAVITY
+    weight = motion.transcription.character.mass * STANDARD_GRAVITY
     forces = motion.forces(np.linspace(0.0, motion.duration, 800)) / weight
     sideways = np.linalg.norm(forces[..., :2], axis=-1)
     if name == "pyramid":
@@ -271,7 +271,7 @@ def test_a_briefcase_is_carried_by_the_ground() -> None:
     assert masses[1] == pytest.approx(1.1 * masses[0])
     times = np.linspace(0.0, after.duration, 2000)
     impulse = after.forces(times).sum(axis=1)[:, 2].mean() * after.duration
-    gained = np.diff(after.com(times[[0, -1]], 1)[:, 2])[0] + GRAVITY * after.duration
+    gained = np.diff(after.com(times[[0, -1]], 1)[:, 2])[0] + STANDARD_GRAVITY * after.duration
     assert impulse == pytest.approx(masses[1] * gained, rel=2e-3)
 
 

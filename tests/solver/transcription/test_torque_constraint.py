@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.solver.body.dynamics import GRAVITY
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
+from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.status import Status
 from hangtime.solver.transcription.constraint import Bounds, Constraint, dense_violation
 from hangtime.solver.transcription.motion import Motion, motion_inverse_dynamics
@@ -43,7 +43,7 @@ def test_they_are_inverse_dynamics_torques(angles: tuple[int, ...]) -> None:
     x = random_state(0)
     motion = Motion(standing(), x, places())
     efforts = motion_inverse_dynamics(InverseDynamics(figure(), standing().points), motion, TIMES)
-    weight = figure().mass * GRAVITY
+    weight = figure().mass * STANDARD_GRAVITY
     expected = efforts.torques[:, np.array(angles) - 3] / weight
     found = torques(standing(), x, angles)
     assert np.abs(expected).max() > 0.01
@@ -70,7 +70,7 @@ def test_gravity_is_the_character_s() -> None:
     pose = still(figure(), np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
     here, there = (TorqueFunction(c, (), ALL).value(pose) for c in (figure(), moon))
     assert np.abs(here).max() > 0.01
-    assert there == pytest.approx(1.62 / GRAVITY * here)
+    assert there == pytest.approx(1.62 / STANDARD_GRAVITY * here)
 
 
 def test_a_bound_is_kept_between_its_rows_too() -> None:

@@ -19,7 +19,7 @@ from hangtime.solver.data.scaling import (
     scaled_track,
 )
 from hangtime.solver.data.status import DragStatus
-from hangtime.solver.data.traces import Flight, Traces
+from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.solver.worker.protocol import (
     LARGEST,
     PROTOCOL,
@@ -76,7 +76,7 @@ TRACES = Traces(
     weight=700.0,
     joints=(),
     torques=NONE[:, :, 0],
-    flights=(Flight("flight 1", 1.0, 2.0, np.ones((3, 3))),),
+    flights=(FlightParabola("flight 1", 1.0, 2.0, np.ones((3, 3))),),
 )
 MESSAGES: tuple[Message, ...] = (
     Hello(PROTOCOL, ("somewhere",)),
@@ -89,7 +89,7 @@ MESSAGES: tuple[Message, ...] = (
     Fitted(1, {"joint_centres_rms_cm": 1.0}, 2.0, TRACES),
     Adapted(1, TRACK, {"status": "solved", "none": None}, SCHEDULE, TRACES, None),
     Adapted(1, TRACK, {}, SCHEDULE, TRACES, faults.NoSolution("stopped", (("pin", 1.0, "mm"),))),
-    Followed(1, TRACES, DragStatus.ARRIVED, {"moved_cm": 3.0}),
+    Followed(1, TRACES, DragStatus.CONVERGED, {"moved_cm": 3.0}),
     Cancelled(1),
     Failed(1, faults.NoFlight(lowest_cm=1.5)),
 )

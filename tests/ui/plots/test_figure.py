@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hangtime.bridge.plots.curves import Cap, Chart, Curve, Take
 from hangtime.bridge.plots.screen import Axis, Rect, round_range
-from hangtime.bridge.properties.phases import phases
+from hangtime.bridge.rows.phases import phases
 from hangtime.ui.plots import looks
 from hangtime.ui.plots.drawing import playhead, readings, still
-from hangtime.ui.plots.figure import Figure, figure
+from hangtime.ui.plots.figure import PlotFigure, lay_out
 from hangtime.ui.plots.layout import Overlap, cards, free_room
 from hangtime.ui.plots.numbers import number, thinned
 
@@ -29,13 +29,13 @@ def chart(*caps: Cap, values: np.ndarray = FALL) -> Chart:
     return Chart("Contact Force", "body weights", (curve,), 2, caps=caps)
 
 
-def laid_out(*charts: Chart, card: Rect = CARD, scale: float = 1.0) -> Figure:
+def laid_out(*charts: Chart, card: Rect = CARD, scale: float = 1.0) -> PlotFigure:
     spans = phases([(60.0, 175.0), (231.0, 330.0)], 60.0, 330.0)
     beside = [
         Rect(card.left + i * 400.0, card.bottom, card.right + i * 400.0, card.top)
         for i in range(len(charts))
     ]
-    made = figure(charts, spans, tuple(beside), scale, measure)
+    made = lay_out(charts, spans, tuple(beside), scale, measure)
     assert made is not None
     return made
 
@@ -173,7 +173,7 @@ def test_one_shift_moves_the_playheads_of_all_charts() -> None:
         assert np.abs(lines[:, 0] + shift - panel.frames.at(200.0)).min() < 0.01
 
 
-def dashes(made: Figure) -> np.ndarray:
+def dashes(made: PlotFigure) -> np.ndarray:
     picture = still(made, measure)
     return picture.lines[(picture.strokes == np.float32(looks.CAP)).all(axis=1)]
 
@@ -199,4 +199,4 @@ def test_a_chart_without_curves_says_why() -> None:
     made = laid_out(chart(), empty)
     words = [text.words for text in still(made, measure).texts]
     assert "Select a bone in Pose Mode" in words
-    assert figure((empty,), (), (CARD,), 1.0, measure) is None
+    assert lay_out((empty,), (), (CARD,), 1.0, measure) is None

@@ -1,1 +1,1 @@
-"""What a redraw looks at, read once, and what is cached between redraws."""
+"""Context of a redraw, read once, and traced figures cached between redraws."""

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from mathutils import Matrix
+from mathutils import Matrix, Vector
 
 from ..geometry.shapes import Label, Shape
 
 IDENTITY = Matrix.Identity(4).freeze()
+
+
+def xyz(vector: Vector | Sequence[float]) -> tuple[float, float, float]:
+    """Three numbers, whatever they came in."""
+    return vector[0], vector[1], vector[2]
 
 
 class Part(Enum):
@@ -39,4 +44,4 @@ class Layer:
     part: Part
     content: Hashable
     build: Callable[[], Iterable[Shape | Label]]
-    matrix: Matrix = IDENTITY
+    matrix: Matrix

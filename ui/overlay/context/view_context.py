@@ -1,4 +1,4 @@
-"""All that an overlay looks at, read once for each redraw."""
+"""Context of a redraw: everything that overlays and handles look at, read once."""
 
 from __future__ import annotations
 
@@ -9,34 +9,39 @@ from functools import cached_property
 import bpy
 from mathutils import Matrix
 
-from ....bridge.armature.actions import current_action
-from ....bridge.armature.bone_keys import current_name
+from ....bridge.accessors import current_action, present
 from ....bridge.armature.poses import metres_per_unit
-from ....bridge.armature.traces_store import Kept, kept
-from ....bridge.properties.kinds import Span
+from ....bridge.armature.traces_store import StoredTraces, kept
+from ....bridge.properties.constraint import HangtimeConstraint
+from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ....bridge.properties.view import HangtimeView
+from ....bridge.rows.bone_keys import current_name
+from ....bridge.rows.choices import Span
+from ....bridge.rows.times import Frames, Spans, interval_of, named_frames
 from ....operators.solve.common import chosen_armature
 from ....operators.solve.live import live
 from ....solver.data.traces import Traces
-from . import spans
+from ...drawing.editor import view_3d
 
 USUAL = 1.7  # m, the height at which sizes are meant
+NEAR = 0.5  # frames; what holds at one frame holds as long as that is shown
 
 
 @dataclass(frozen=True, eq=False)
-class Same:
+class TracesKey:
     """Traces as a key: equal to itself only, and alive as long as it is a key."""
 
     traces: Traces
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.traces is self.traces
+        return isinstance(other, TracesKey) and other.traces is self.traces
 
     def __hash__(self) -> int:
         return id(self.traces)
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownMotion:
     """A motion. key: another for another motion; matrix: from its metres to the world now, frozen.
 
     stood: the armature's world matrix when it was traced.
@@ -49,12 +54,12 @@ class Shown:
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What a viewport is about."""
+class ViewContext:
+    """The armature that a viewport shows, its settings and motions."""
 
     armature: bpy.types.Object
-    settings: bpy.types.PropertyGroup
-    view: bpy.types.PropertyGroup
+    settings: HangtimeSettings
+    options: HangtimeView
     frame: float
     metres: float  # of a Blender unit
 
@@ -70,21 +75,23 @@ class Seen:
         return self.size / self.metres
 
     @cached_property
-    def recorded(self) -> Shown | None:
+    def recorded(self) -> ShownMotion | None:
         return self._of(kept(self.armature))
 
     @cached_property
-    def adapted(self) -> Shown | None:
+    def adapted(self) -> ShownMotion | None:
         """The adapted motion; while a pin is dragged, its forerunner."""
         return self.live or self._of(kept(self.settings.adapted))
 
     @cached_property
-    def live(self) -> Shown | None:
+    def live(self) -> ShownMotion | None:
         traces = live().ghost(self.armature)
         if traces is None or not len(traces.frames):
             return None
         stood = self.armature.matrix_world.copy()
-        return Shown(traces, Same(traces), Matrix.Scale(1.0 / self.metres, 4).freeze(), stood)
+        return ShownMotion(
+            traces, TracesKey(traces), Matrix.Scale(1.0 / self.metres, 4).freeze(), stood
+        )
 
     @cached_property
     def performs_adapted(self) -> bool:
@@ -93,15 +100,15 @@ class Seen:
         return self.live is None and action is not None and action == self.settings.adapted
 
     @cached_property
-    def phases(self) -> dict[str, spans.Frames]:
-        return spans.named(self.settings)
+    def phases(self) -> Spans:
+        return named_frames(self.settings)
 
-    def span(self, row: bpy.types.PropertyGroup) -> spans.Frames:
+    def span(self, row: HangtimeConstraint) -> Frames:
         """From which frame to which a constraint holds."""
         known = self.phases if row.span == Span.PHASE.name else {}
-        return spans.span_of(row, known, self.recorded.traces if self.recorded else None)
+        return interval_of(row, known, self.recorded.traces if self.recorded else None)
 
-    def bone(self, row: bpy.types.PropertyGroup) -> bpy.types.PoseBone | None:
+    def bone(self, row: HangtimeConstraint) -> bpy.types.PoseBone | None:
         """The bone that a single-bone constraint is about, where the armature has it."""
         if not len(row.bones) or self.armature.pose is None:
             return None
@@ -110,33 +117,35 @@ class Seen:
         # it may have been renamed since the name was looked at
         return found or bones.get(current_name(self.armature, named.key, named.name))
 
-    def rows(self, *kinds: str) -> Iterator[tuple[bpy.types.PropertyGroup, bool]]:
+    def rows(self, *kinds: str) -> Iterator[tuple[HangtimeConstraint, bool]]:
         """The constraints of these kinds, and whether each is the one chosen in the list."""
         chosen = self.settings.active_constraint
         for index, row in enumerate(self.settings.constraints):
             if row.kind in kinds:
                 yield row, index == chosen
 
-    def _of(self, found: Kept | None) -> Shown | None:
+    def _of(self, found: StoredTraces | None) -> ShownMotion | None:
         if found is None or not len(found.traces.frames):
             return None
         matrix = found.moved(self.armature) @ Matrix.Scale(1.0 / self.metres, 4)
-        return Shown(found.traces, found.key, matrix.freeze(), found.stood)
+        return ShownMotion(found.traces, found.key, matrix.freeze(), found.stood)
 
 
-def look_at(context: bpy.types.Context) -> Seen | None:
-    """What the viewport that is being drawn shows; None where overlays are off or none is due."""
-    space, view = context.space_data, context.scene.hangtime.view
-    if space is None or space.type != "VIEW_3D" or not space.overlay.show_overlays:
-        return None
-    if not view.show:
+def holds(span: Frames, frame: float) -> bool:
+    """Whether a constraint holds at the frame that is shown."""
+    return span[0] - NEAR <= frame <= span[1] + NEAR
+
+
+def read_view(context: bpy.types.Context) -> ViewContext | None:
+    """Reads the viewport that is being drawn; None where overlays are off or none is due."""
+    space, scene = view_3d(context), present(context.scene)
+    options = scene_settings(scene).view
+    if space is None or not (space.overlay.show_overlays and options.show):
         return None
     armature = chosen_armature(context)
     if armature is None or armature.type != "ARMATURE":
         return None
     if not armature.visible_get(view_layer=context.view_layer, viewport=space):
         return None
-    scene = context.scene
-    return Seen(
-        armature, armature.hangtime, view, scene.frame_current_final, metres_per_unit(scene)
-    )
+    frame, metres = scene.frame_current_final, metres_per_unit(scene)
+    return ViewContext(armature, settings_of(armature), options, frame, metres)

@@ -1,55 +1,39 @@
-"""Cones around limbs, and arcs at joints, each in axes of its own: numpy only. Angles in rad.
-
-A cone opens along x, its first stretch is along y. An arc counts from x towards y.
-"""
+"""Cones around limbs, and arcs at joints, in the axes of bridge/shapes/limits.py. Angles in rad."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, pi, sin
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .shapes import Colour, FloatArray, Look, Shape, faded, lines, polyline
+from ....bridge.shapes.limits import cone_rim, directions
+from ....bridge.shapes.mesh import band
+from ....solver.arrays import FloatArray
+from ...drawing.sketch import Colour
+from .shapes import Look, Shape, faded, lines, polyline, triangles_of
 
-AROUND = 32  # faces of a cone
+CONE_AROUND = 32  # faces of a cone
 STEP = 0.1  # rad between the corners of an arc
 OPEN = 0.7  # rad of an arc that has no end there
 GLASS = 0.26  # a pane's opacity, as a share of its rim's
 RIBS = 4  # lines from a cone's apex to its rim
 
 
-def cone_rim(half_angle: float, stretch: tuple[float, float], length: float) -> FloatArray:
-    """(AROUND + 1, 3) where a limb of this length may lean at most; closed.
-
-    stretch: how many times as wide along y and z.
-    """
-    turn = np.linspace(0.0, 2 * pi, AROUND + 1)
-    wide, deep = stretch
-    along = np.stack(
-        [
-            np.full_like(turn, cos(half_angle)),
-            sin(half_angle) * wide * np.cos(turn),
-            sin(half_angle) * deep * np.sin(turn),
-        ],
-        axis=1,
-    )
-    return np.asarray(along * length / np.linalg.norm(along, axis=1, keepdims=True))
-
-
-def cone(rim: FloatArray, colour: Colour) -> Iterator[Shape]:
+def cone(
+    half_angle: float, stretch: tuple[float, float], length: float, colour: Colour
+) -> Iterator[Shape]:
     """A see-through cone with its rim (see `cone_rim`)."""
+    rim = cone_rim(half_angle, stretch, length, CONE_AROUND)
     yield _pane(np.zeros_like(rim), rim, np.ones(len(rim)), colour)
     yield polyline(rim, colour, Look.BOLD)
-    ribs = rim[:-1][:: AROUND // RIBS]
+    ribs = rim[:-1][:: CONE_AROUND // RIBS]
     yield lines(np.stack([np.zeros_like(ribs), ribs], axis=1), faded(colour, 0.4))
 
 
 def arc(
     lower: float | None, upper: float | None, radius: float, colour: Colour, hole: float = 0.0
 ) -> Iterator[Shape]:
-    """How far something may turn.
+    """An arc from limit to limit.
 
     A limit that is None is open: the arc fades away on that side. hole: share of the radius that
     is left free about the centre.
@@ -58,7 +42,7 @@ def arc(
     high = upper if upper is not None else (lower or 0.0) + OPEN
     low, high = min(low, high), max(low, high)
     angles = np.linspace(low, high, max(int((high - low) / STEP), 1) + 1)
-    rim = radius * spoke(angles)
+    rim = radius * directions(angles)
     inner = hole * rim
     strength = np.ones(len(angles))
     if lower is None:
@@ -73,20 +57,9 @@ def arc(
     yield lines([[inner[k], rim[k]] for k in ends] or np.zeros((0, 2, 3)), colour, Look.BOLD)
 
 
-def spoke(angles: ArrayLike) -> FloatArray:
-    """(..., 3) unit vectors at angles (...)."""
-    turn = np.asarray(angles, dtype=float)
-    return np.stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)], axis=-1)
-
-
 def _pane(inner: FloatArray, rim: FloatArray, strength: FloatArray, colour: Colour) -> Shape:
     """Glass between two lines (N, 3), as opaque as `strength` (N,) says."""
-    n = len(rim)
-    k = np.arange(n - 1, dtype=np.int32)
-    faces = np.concatenate(
-        [np.stack([k, k + n, k + n + 1], axis=1), np.stack([k, k + n + 1, k + 1], axis=1)]
-    )
-    colours = np.tile(np.asarray(faded(colour, GLASS), np.float32), (2 * n, 1))
+    mesh = band(inner, rim)
+    colours = np.tile(np.asarray(faded(colour, GLASS), np.float32), (len(mesh.points), 1))
     colours[:, 3] *= np.tile(strength, 2)
-    points = np.concatenate([inner, rim]).astype(np.float32)
-    return Shape(Look.GLASS, points, colours, faces)
+    return Shape(Look.GLASS, mesh.points.astype(np.float32), colours, triangles_of(mesh.faces))

@@ -1,4 +1,4 @@
-"""How the bodies of a traced figure are turned, from where its joints are: numpy only.
+"""Rotations of a traced figure's bodies, from the positions of its joints: numpy only.
 
 Traces know bones' ends but not how the bones are turned. A body that joins three or more joints
 is turned as these are; one that joins two is taken not to twist against its parent. Limits that
@@ -11,17 +11,16 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ....bridge.shapes.vectors import unit
+from ....solver.arrays import FloatArray
+from ....solver.body.human_limits import MIN_BEND_SINE
 
 FLAT = 0.15  # joints whose second extent is a smaller share of the first lie on a line
-SHORTEST = 1e-9
-LEAST_BEND = 0.05  # one that bends less does not tell its direction; as in constraint_builder.py
 
 
 @dataclass(frozen=True)
-class Figure:
+class TracedFigure:
     """A motion of a figure in its armature's space. B bodies, parents first, -1 for the root.
 
     frames: (T,). rest: (B, 3) heads in the rest pose. heads, tails: (T, B, 3).
@@ -56,7 +55,7 @@ class Figure:
     def leans(self) -> FloatArray:
         """(T, B, 3) unit vectors along the bodies in their parents' rest frames."""
         above = self.turns[:, [max(parent, 0) for parent in self.parents]]
-        return np.einsum("tbji,tbj->tbi", above, unit(self.tails - self.heads))
+        return np.asarray(np.einsum("tbji,tbj->tbi", above, unit(self.tails - self.heads)))
 
     def lean(self, body: int, first: float, last: float) -> FloatArray:
         """(3,) a body's mean direction from frame to frame in its parent's rest frame."""
@@ -71,7 +70,7 @@ class Figure:
         straight = self.along[[max(parent, 0) for parent in self.parents]]
         ahead = unit(self.leans.mean(axis=0))
         bent = ahead - straight * (ahead * straight).sum(axis=1, keepdims=True)
-        tells = np.linalg.norm(bent, axis=1, keepdims=True) > LEAST_BEND
+        tells = np.linalg.norm(bent, axis=1, keepdims=True) > MIN_BEND_SINE
         return np.where(tells, unit(bent), np.nan)
 
     @cached_property
@@ -83,23 +82,17 @@ class Figure:
         apart = joints[:, None] - joints[None]
         return unit(apart.reshape(-1, 3)[np.linalg.norm(apart, axis=2).argmax()])
 
-    def resting(self) -> Figure:
+    def resting(self) -> TracedFigure:
         """The same figure in its rest pose, for one instant."""
         # a body without joints of its own is not known to turn: it lies along its parent's turn
         tips = self.along * np.linalg.norm(self.tails[0] - self.heads[0], axis=1, keepdims=True)
         turns = np.broadcast_to(np.eye(3), (1, len(self.bones), 3, 3))
         one = self.frames[:1], self.bones, self.parents, self.rest
-        return Figure(*one, self.rest[None], (self.rest + tips)[None], turns)
-
-
-def unit(vectors: FloatArray) -> FloatArray:
-    """Vectors (..., 3) of length 1; those without a length stay."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, SHORTEST))
+        return TracedFigure(*one, self.rest[None], (self.rest + tips)[None], turns)
 
 
 def body_turns(parents: tuple[int, ...], rest: FloatArray, heads: FloatArray) -> FloatArray:
-    """(T, B, 3, 3) how each body is turned against the rest pose; see the module.
+    """(T, B, 3, 3) each body's rotation from the rest pose; see the module.
 
     rest: (B, 3) heads at rest. heads: (T, B, 3).
     """
@@ -150,7 +143,7 @@ def shortest(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def posed(
-    source: Figure, instant: int, target: Figure, then: int, chosen: tuple[int, ...]
+    source: TracedFigure, instant: int, target: TracedFigure, then: int, chosen: tuple[int, ...]
 ) -> tuple[FloatArray, FloatArray]:
     """Heads and tails (N, 3) of bodies posed as the source is, hung where the target is.
 

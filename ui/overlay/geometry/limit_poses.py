@@ -1,4 +1,4 @@
-"""How joints are bent, leaned and twisted now, and the axes that this is seen in: numpy only.
+"""Bend, lean and twist angles of joints, and the axes in which they are measured: numpy only.
 
 Everything is of N joints at once, in the armature's space; angles in rad.
 """
@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import spoke
-from .body_rotations import unit
-from .shapes import FloatArray
-from .solids import across, cross
+from ....bridge.shapes.limits import directions
+from ....bridge.shapes.vectors import across, cross, unit
+from ....solver.arrays import FloatArray
 
 SURE = 0.7  # cosine up to which the bend that is seen may differ from the one expected
 BENT = 0.15  # sine of the bend from which on its direction is seen
@@ -37,8 +36,8 @@ class Joints:
 
 
 @dataclass(frozen=True)
-class Seen:
-    """Axes as columns (N, 3, 3), where they are (N, 3), and the angles now (N,).
+class LimitFrames:
+    """Axes of limits and the angles measured in them: columns (N, 3, 3), origins (N, 3), now (N,).
 
     hands: (N, 3) unit vectors that show the angles, like a clock's hand.
     """
@@ -60,7 +59,7 @@ def rotations(matrices: FloatArray) -> FloatArray:
     return np.asarray(linear / np.maximum(np.linalg.norm(linear, axis=1, keepdims=True), 1e-12))
 
 
-def cones(joints: Joints, axis: FloatArray, side: FloatArray, stretch: FloatArray) -> Seen:
+def cones(joints: Joints, axis: FloatArray, side: FloatArray, stretch: FloatArray) -> LimitFrames:
     """Cones about axes (N, 3) in their parents' rest frames; the solver's measure of the lean.
 
     side: (N, 3) at right angles to them, along which the cones are stretch[:, 0] times as wide.
@@ -68,10 +67,10 @@ def cones(joints: Joints, axis: FloatArray, side: FloatArray, stretch: FloatArra
     axes = _columns(turned(joints.turns, axis), turned(joints.turns, side))
     parts = turned(np.swapaxes(axes, 1, 2), joints.ahead)
     out = np.hypot(parts[:, 1] / stretch[:, 0], parts[:, 2] / stretch[:, 1])
-    return Seen(axes, joints.heads, np.arctan2(out, parts[:, 0]), joints.ahead)
+    return LimitFrames(axes, joints.heads, np.arctan2(out, parts[:, 0]), joints.ahead)
 
 
-def bends(joints: Joints, straight: FloatArray, flexion: FloatArray) -> Seen:
+def bends(joints: Joints, straight: FloatArray, flexion: FloatArray) -> LimitFrames:
     """Bends from straight limbs (N, 3) towards flexion (N, 3), in the parents' rest frames.
 
     Where a flexion is not known (NaN), it is what is seen now.
@@ -89,10 +88,10 @@ def bends(joints: Joints, straight: FloatArray, flexion: FloatArray) -> Seen:
     towards = np.where(np.isnan(expected), shown, towards)
     now = np.arctan2((ahead * towards).sum(axis=1), (ahead * zero).sum(axis=1))
     axes = _columns(zero, towards)
-    return Seen(axes, joints.heads, now, turned(axes, spoke(now)))
+    return LimitFrames(axes, joints.heads, now, turned(axes, directions(now)))
 
 
-def twists(joints: Joints, at: FloatArray) -> Seen:
+def twists(joints: Joints, at: FloatArray) -> LimitFrames:
     """Turns of bones about themselves against their parents (swing-twist decomposition).
 
     at: (N,) how far along the bones they are seen.
@@ -110,7 +109,7 @@ def twists(joints: Joints, at: FloatArray) -> Seen:
     zero, quarter = c * one - s * other, s * one + c * other
     ahead = joints.ahead
     axes = np.stack([turned(joints.owns, zero), turned(joints.owns, quarter), ahead], axis=2)
-    return Seen(axes, joints.heads + at[:, None] * ahead, now, turned(axes, spoke(now)))
+    return LimitFrames(axes, joints.heads + at[:, None] * ahead, now, turned(axes, directions(now)))
 
 
 def _columns(one: FloatArray, two: FloatArray) -> FloatArray:

@@ -10,14 +10,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....bridge.properties.kinds import ConstraintKind
+from ....bridge.constraint_kinds import cone, joint_limit, twist_limit
+from ....bridge.rows.times import Frames
+from ....bridge.shapes.vectors import across, unit
+from ....solver.arrays import FloatArray
+from ...drawing.sketch import Colour
 from . import arcs, limit_poses, palette
-from .body_rotations import Figure, unit
+from .body_rotations import TracedFigure
 from .limit_poses import Joints
 from .shapes import (
-    Colour,
-    FloatArray,
-    Frames,
     Label,
     Look,
     Shape,
@@ -27,11 +28,8 @@ from .shapes import (
     merged,
     placed,
 )
-from .solids import across
 
-CONE, ANGLE, TWIST = (
-    kind.name for kind in (ConstraintKind.CONE, ConstraintKind.ANGLE, ConstraintKind.TWIST)
-)
+CONE, ANGLE, TWIST = (kind.KIND.name for kind in (cone, joint_limit, twist_limit))
 ARC, RING = 0.55, 0.42  # radii, as shares of the bone's length
 RING_AT, RING_HOLE = 0.45, 0.62  # where along the bone a twist is drawn, and its hole
 HAND = 1.1  # how much farther the line of the present angle reaches
@@ -69,20 +67,20 @@ class Limit(NamedTuple):
 
 
 def limit_shapes(
-    limits: Iterable[Limit], figure: Figure | None, pose: Pose
+    limits: Iterable[Limit], figure: TracedFigure | None, pose: Pose
 ) -> Iterator[Shape | Label]:
     """figure: of the recording, which tells mean directions; None where there is none."""
     by_kind: dict[str, list[Limit]] = {}
     for limit in limits:
         by_kind.setdefault(limit.kind, []).append(limit)
     for kind, same in by_kind.items():
-        _, seen = seen_of(same, figure, pose)
-        for limit, axes, origin in zip(same, seen.axes, seen.origins, strict=True):
+        _, measured = limit_frames(same, figure, pose)
+        for limit, axes, origin in zip(same, measured.axes, measured.origins, strict=True):
             for shape in template(
                 kind, limit.lower, limit.upper, limit.stretch, limit.length, colour_of(limit)
             ):
                 yield placed(shape, axes, origin)
-        yield from _present(same, seen)
+        yield from _present(same, measured)
 
 
 @lru_cache(maxsize=TEMPLATES)
@@ -96,7 +94,7 @@ def template(
 ) -> tuple[Shape, ...]:
     """A limit in axes of its own; see arcs.py."""
     if kind == CONE:
-        return merged(arcs.cone(arcs.cone_rim(upper or 0.0, stretch, length), colour))
+        return merged(arcs.cone(upper or 0.0, stretch, length, colour))
     if kind == ANGLE:
         return merged(arcs.arc(lower, upper, ARC * length, colour))
     return merged(arcs.arc(lower, upper, RING * length, colour, RING_HOLE))
@@ -112,15 +110,15 @@ def colour_of(limit: Limit) -> Colour:
 # ---------------------------------------------------------------- where they are
 
 
-def seen_of(
-    limits: Sequence[Limit], figure: Figure | None, pose: Pose
-) -> tuple[Joints, limit_poses.Seen]:
+def limit_frames(
+    limits: Sequence[Limit], figure: TracedFigure | None, pose: Pose
+) -> tuple[Joints, limit_poses.LimitFrames]:
     """Limits of one kind: their joints, and the axes in which they are drawn."""
     joints = joints_of(limits, figure, pose)
     return joints, _SEEN[limits[0].kind](limits, joints, figure, pose)
 
 
-def joints_of(limits: Sequence[Limit], figure: Figure | None, pose: Pose) -> Joints:
+def joints_of(limits: Sequence[Limit], figure: TracedFigure | None, pose: Pose) -> Joints:
     """The limits' joints as the armature is posed."""
 
     def rotations(matrices: Mapping[str, FloatArray], bones: Iterable[str]) -> FloatArray:
@@ -141,13 +139,13 @@ def joints_of(limits: Sequence[Limit], figure: Figure | None, pose: Pose) -> Joi
     )
 
 
-def _body(bone: str, figure: Figure | None) -> int | None:
+def _body(bone: str, figure: TracedFigure | None) -> int | None:
     return figure.bones.index(bone) if figure is not None and bone in figure.bones else None
 
 
 def _cones(
-    limits: Sequence[Limit], joints: Joints, figure: Figure | None, _pose: Pose
-) -> limit_poses.Seen:
+    limits: Sequence[Limit], joints: Joints, figure: TracedFigure | None, _pose: Pose
+) -> limit_poses.LimitFrames:
     axis = joints.along.copy()
     for k, limit in enumerate(limits):
         body = _body(limit.bone, figure)
@@ -166,8 +164,8 @@ def _cones(
 
 
 def _bends(
-    limits: Sequence[Limit], joints: Joints, figure: Figure | None, pose: Pose
-) -> limit_poses.Seen:
+    limits: Sequence[Limit], joints: Joints, figure: TracedFigure | None, pose: Pose
+) -> limit_poses.LimitFrames:
     rest = [(pose.rest[limit.bone], pose.rest[limit.parent_bone]) for limit in limits]
     straight = unit(np.array([own[:3, 3] - parent[:3, 3] for own, parent in rest]))
     flexion = np.full_like(straight, np.nan)
@@ -179,8 +177,8 @@ def _bends(
 
 
 def _twists(
-    limits: Sequence[Limit], joints: Joints, _figure: Figure | None, _pose: Pose
-) -> limit_poses.Seen:
+    limits: Sequence[Limit], joints: Joints, _figure: TracedFigure | None, _pose: Pose
+) -> limit_poses.LimitFrames:
     return limit_poses.twists(joints, RING_AT * np.array([limit.length for limit in limits]))
 
 
@@ -190,19 +188,19 @@ _SEEN = {CONE: _cones, ANGLE: _bends, TWIST: _twists}
 # ---------------------------------------------------------------- how it is now
 
 
-def _present(limits: Sequence[Limit], seen: limit_poses.Seen) -> Iterator[Shape | Label]:
+def _present(limits: Sequence[Limit], measured: limit_poses.LimitFrames) -> Iterator[Shape | Label]:
     """A line where each limb is now, and the angle in words where it matters."""
     for look in (Look.THIN, Look.BOLD):
         pairs, colours = [], []
         for k, limit in enumerate(limits):
-            missed = _missed(limit, float(seen.now[k]))
+            missed = _missed(limit, float(measured.now[k]))
             if limit.standing is not Standing.NOW or (look is Look.BOLD) != missed:
                 continue
-            tip = seen.origins[k] + HAND * _reach(limit) * seen.hands[k]
-            pairs.append((seen.origins[k], tip))
+            tip = measured.origins[k] + HAND * _reach(limit) * measured.hands[k]
+            pairs.append((measured.origins[k], tip))
             colours.append(palette.BEYOND if missed else palette.WITHIN)
             if limit.chosen or missed:
-                yield Label(f"{round(degrees(seen.now[k]))}°", tuple(tip.tolist()), colours[-1])
+                yield Label(f"{round(degrees(measured.now[k]))}°", tuple(tip.tolist()), colours[-1])
         if pairs:
             yield lines(pairs, colours, look)
 
@@ -213,5 +211,5 @@ def _missed(limit: Limit, now: float) -> bool:
 
 
 def _reach(limit: Limit) -> float:
-    """How far a limit's shape reaches."""
+    """Radius of a limit's shape."""
     return {CONE: 1.0, ANGLE: ARC, TWIST: RING}[limit.kind] * limit.length

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .shapes import Colour
+from ...drawing.sketch import Colour
 
 PIN: Colour = (0.90, 0.13, 0.16, 1.0)
 PIN_OFF: Colour = (0.62, 0.62, 0.62, 0.30)

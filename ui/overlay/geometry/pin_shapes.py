@@ -8,8 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from mathutils import Matrix
 
+from ....bridge.shapes.solids import box
+from ...drawing.sketch import Colour
 from . import palette, solids
-from .shapes import Colour, Look, Shape, Standing, box_edges, dotted, faded, lines, rings
+from .shapes import Look, Shape, Standing, dotted, faded, lines, rings
 
 RADIUS, MOVED, FOUND = 0.022, 1.4, 0.6  # m, of a figure of usual size; times as large
 HALO = 1.7  # radius about the chosen one, times its own
@@ -69,8 +71,8 @@ def shapes(pins: Sequence[Pin], units: float) -> Iterator[Shape]:
     for pin in pins:
         if pin.box is not None:
             axes = np.array(pin.box.axes.copy())  # numpy cannot look into frozen ones
-            edges = box_edges(pin.box.low, pin.box.high) @ axes.T + np.array(pin.place)
-            yield lines(edges, pin.colour)
+            bounds = box(pin.box.low, pin.box.high).placed(axes, np.array(pin.place))
+            yield lines(bounds.edges, pin.colour)
 
 
 def _spread(pins: Sequence[Pin], radius: float) -> tuple[list[Place], list[float], list[Colour]]:

@@ -10,19 +10,20 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-FloatArray = NDArray[np.float64]
+from ....bridge.shapes.limits import directions
+from ....solver.arrays import FloatArray, IntArray
+from ...drawing.sketch import Colour
+
 Points = NDArray[np.float32]
 Faces = NDArray[np.int32]
-Colour = tuple[float, float, float, float]
-Frames = tuple[float, float]  # the first and the last
 
 LIGHT = np.array([0.32, -0.48, 0.82])  # towards the lamp, world
 AMBIENT, AIRY = 0.55, 0.75  # share of a colour that is there without the lamp; of ghosts
-AROUND = 16  # lines of a ring
+RING_AROUND = 16  # lines of a ring
 
 
 class Look(Enum):
-    """How a shape is drawn; one batch each."""
+    """Render style of a shape; one batch each."""
 
     SOLID = auto()  # triangles that hide what is behind them
     THIN = auto()  # lines
@@ -36,7 +37,7 @@ class Look(Enum):
 
 
 class Standing(float, Enum):
-    """How much something counts at the frame that is shown: its opacity."""
+    """Opacity by when something counts: at the frame that is shown, at others, or not at all."""
 
     NOW = 1.0
     LATER = 0.4  # at other frames
@@ -63,6 +64,11 @@ class Label:
     words: str
     place: tuple[float, float, float]
     colour: Colour
+
+
+def triangles_of(faces: IntArray) -> Faces:
+    """(2 F, 3) triangles of quadrilaterals (F, 4)."""
+    return faces[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3).astype(np.int32)
 
 
 def merged(shapes: Iterable[Shape]) -> tuple[Shape, ...]:
@@ -112,12 +118,9 @@ def painted(colours: ArrayLike, shade: FloatArray) -> Points:
 def lines(pairs: ArrayLike, colours: ArrayLike, look: Look = Look.THIN) -> Shape:
     """Separate lines, (N, 2, 3), in one colour or in one each (N, 4)."""
     points = np.asarray(pairs, np.float32).reshape(-1, 3)
-    each = np.broadcast_to(np.asarray(colours, np.float32).reshape(-1, 1, 4), _pairs_of(points))
+    shape = (len(points) // 2, 2, 4)
+    each = np.broadcast_to(np.asarray(colours, np.float32).reshape(-1, 1, 4), shape)
     return Shape(look, points, each.reshape(-1, 4))
-
-
-def _pairs_of(points: Points) -> tuple[int, int, int]:
-    return len(points) // 2, 2, 4
 
 
 def polyline(points: ArrayLike, colour: ArrayLike, look: Look = Look.THIN) -> Shape:
@@ -159,22 +162,12 @@ def rings(
     r = np.broadcast_to(np.asarray(radii, dtype=float).reshape(-1, 1, 1), (len(c), 1, 1))
     points = (c + r * _circles()).reshape(-1, 2, 3)
     each = np.asarray(colours, dtype=float).reshape(-1, 4)
-    return lines(points, np.repeat(each, 3 * AROUND, axis=0) if len(each) > 1 else each, look)
+    return lines(points, np.repeat(each, 3 * RING_AROUND, axis=0) if len(each) > 1 else each, look)
 
 
 @lru_cache(maxsize=1)
 def _circles() -> FloatArray:
-    """(3 * AROUND * 2, 3) lines of three unit circles."""
-    turn = np.linspace(0.0, 2 * np.pi, AROUND + 1)
-    flat = np.stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)], axis=1)
+    """(3 * RING_AROUND * 2, 3) lines of three unit circles."""
+    flat = directions(np.linspace(0.0, 2 * np.pi, RING_AROUND + 1))
     circles = np.stack([flat, flat[:, [2, 0, 1]], flat[:, [1, 2, 0]]])
-    return np.stack([circles[:, :-1], circles[:, 1:]], axis=2).reshape(-1, 3)
-
-
-def box_edges(low: Sequence[float], high: Sequence[float]) -> FloatArray:
-    """(12, 2, 3) the edges of a box between two corners."""
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-    a, b = np.triu_indices(8, 1)
-    edge = np.abs(corners[a] - corners[b]).sum(axis=1) == 1.0
-    p = np.asarray(low) + corners * (np.asarray(high, dtype=float) - np.asarray(low))
-    return np.stack([p[a[edge]], p[b[edge]]], axis=1)
+    return np.asarray(np.stack([circles[:, :-1], circles[:, 1:]], axis=2).reshape(-1, 3))

@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ....bridge.properties.kinds import ConstraintKind, PoseSource
-from ..context.figure_cache import Figures
+from ....bridge.constraint_kinds import pose
+from ....bridge.properties.constraint import HangtimeConstraint
+from ....bridge.rows.times import Frames
+from ....solver.arrays import FloatArray, IntArray
+from ...drawing.sketch import Colour
+from ..context.figure_cache import FigureCache
 from ..context.layer import Layer, Part
-from ..context.spans import holds
-from ..context.view_context import Seen, Shown
+from ..context.view_context import ShownMotion, ViewContext, holds
 from ..geometry import palette, solids
-from ..geometry.body_rotations import Figure, posed
-from ..geometry.shapes import Colour, Frames, Shape, faded
+from ..geometry.body_rotations import TracedFigure, posed
+from ..geometry.shapes import Shape, faded
 from .motion import interpolated, within
-
-if TYPE_CHECKING:
-    from ....bridge.properties.constraint import HangtimeConstraint
-
-FloatArray = NDArray[np.float64]
 
 ROW, RECORDED_ROW, LIVE_ROW = 0.34, 0.24, 0.18  # opacities
 NOW, LIVE_NOW = 0.5, 0.85
@@ -31,10 +27,10 @@ MOST = 200  # ghosts of a motion at most
 TELLING = 0.2  # m, by which some joint must have moved since the ghost before
 
 
-def row(seen: Seen, shown: Shown, part: Part) -> Layer:
+def row(view: ViewContext, shown: ShownMotion, part: Part) -> Layer:
     """A motion every few frames."""
-    step, size = seen.view.ghost_step, seen.size
-    colour = _row_colour(seen, part)
+    step, size = view.options.ghost_step, view.size
+    colour = _row_colour(view, part)
     plump = RECORDED_PLUMP if part is Part.RECORDED_GHOSTS else 1.0
     content = shown.key, step, size, colour
 
@@ -46,22 +42,22 @@ def row(seen: Seen, shown: Shown, part: Part) -> Layer:
     return Layer(part, content, build, shown.matrix)
 
 
-def _row_colour(seen: Seen, part: Part) -> Colour:
+def _row_colour(view: ViewContext, part: Part) -> Colour:
     if part is Part.RECORDED_GHOSTS:
         return faded(palette.RECORDED, RECORDED_ROW)
-    if seen.live is not None:
+    if view.live is not None:
         return faded(palette.LIVE, LIVE_ROW)
     return faded(palette.ADAPTED, ROW)
 
 
-def instants(frames: FloatArray, step: int) -> NDArray[np.int64]:
+def instants(frames: FloatArray, step: int) -> IntArray:
     """Indices of every `step`th frame, counted from the first; fewer where that is too many."""
     wide = max(float(step), (frames[-1] - frames[0]) / MOST)
     wished = np.arange(frames[0], frames[-1] + 1e-6, wide)
-    return np.unique(np.searchsorted(frames, wished - 1e-6).clip(max=len(frames) - 1))
+    return np.asarray(np.unique(np.searchsorted(frames, wished - 1e-6).clip(max=len(frames) - 1)))
 
 
-def telling(heads: FloatArray, chosen: NDArray[np.int64], least: float) -> NDArray[np.int64]:
+def telling(heads: FloatArray, chosen: IntArray, least: float) -> IntArray:
     """Those of the chosen instants that differ from the one kept before; standing still is shown
     once. heads: (T, B, 3). least: how far one of them must have moved."""
     kept = [int(chosen[0])]
@@ -71,9 +67,9 @@ def telling(heads: FloatArray, chosen: NDArray[np.int64], least: float) -> NDArr
     return np.array(kept)
 
 
-def now(seen: Seen, shown: Shown, colour: Colour) -> Layer:
+def now(view: ViewContext, shown: ShownMotion, colour: Colour) -> Layer:
     """A motion at the frame that is shown."""
-    frame, traces, size = seen.frame, shown.traces, seen.size
+    frame, traces, size = view.frame, shown.traces, view.size
 
     def build() -> Iterator[Shape]:
         if within(traces, frame):
@@ -83,36 +79,36 @@ def now(seen: Seen, shown: Shown, colour: Colour) -> Layer:
     return Layer(Part.GHOST_NOW, (shown.key, frame, size, colour), build, shown.matrix)
 
 
-def other_now(seen: Seen) -> Layer | None:
-    """What the armature does not show: the live ghost, the adapted motion or the recording."""
-    if seen.live is not None:
-        return now(seen, seen.live, faded(palette.LIVE, LIVE_NOW))
-    if seen.performs_adapted:
-        recording = seen.recorded if seen.view.recording_too else None
-        return now(seen, recording, faded(palette.RECORDED, NOW)) if recording else None
-    return now(seen, seen.adapted, faded(palette.ADAPTED, NOW)) if seen.adapted else None
+def other_now(view: ViewContext) -> Layer | None:
+    """The motion that the armature does not show: live ghost, adapted motion or recording."""
+    if view.live is not None:
+        return now(view, view.live, faded(palette.LIVE, LIVE_NOW))
+    if view.performs_adapted:
+        recording = view.recorded if view.options.recording_too else None
+        return now(view, recording, faded(palette.RECORDED, NOW)) if recording else None
+    return now(view, view.adapted, faded(palette.ADAPTED, NOW)) if view.adapted else None
 
 
 # ---------------------------------------------------------------- poses
 
 
-def poses(seen: Seen, figures: Figures) -> Layer | None:
+def poses(view: ViewContext, figures: FigureCache) -> Layer | None:
     """The poses that are asked for, hung where the figure is then; in the armature's space."""
-    recorded = seen.recorded
-    wanted = tuple(w for r, _ in seen.rows(ConstraintKind.POSE.name) for w in _wanted(seen, r))
+    recorded = view.recorded
+    wanted = tuple(w for r, _ in view.rows(pose.KIND.name) for w in _wanted(view, r))
     if recorded is None or not wanted:
         return None
-    target = seen.adapted or recorded
-    size = seen.units / max(seen.armature.matrix_world.median_scale, 1e-9)
+    target = view.adapted or recorded
+    size = view.units / max(view.armature.matrix_world.median_scale, 1e-9)
     content = wanted, recorded.key, target.key, size
 
     def build() -> Iterator[Shape]:
-        source, hung = figures.of(seen, recorded), figures.of(seen, target)
+        source, hung = figures.of(view, recorded), figures.of(view, target)
         if source is not None and hung is not None:
-            for pose in wanted:
-                yield from pose_shapes(pose, source, hung, size)
+            for each in wanted:
+                yield from pose_shapes(each, source, hung, size)
 
-    return Layer(Part.POSES, content, build, seen.armature.matrix_world.copy().freeze())
+    return Layer(Part.POSES, content, build, view.armature.matrix_world.copy().freeze())
 
 
 Wanted = tuple[
@@ -120,14 +116,14 @@ Wanted = tuple[
 ]  # frame, pose's frame, bones, whether now
 
 
-def _wanted(seen: Seen, row: HangtimeConstraint) -> Iterator[Wanted]:
+def _wanted(view: ViewContext, row: HangtimeConstraint) -> Iterator[Wanted]:
     """A pose at the frame that is shown if it holds then, else at the ends of when it holds."""
     if not row.used:
         return
-    span = seen.span(row)
+    span = view.span(row)
     bones = tuple(bone.name for bone in row.bones)
-    for frame, held in _frames(span, seen.frame):
-        if row.source == PoseSource.REST.name:
+    for frame, held in _frames(span, view.frame):
+        if row.source == pose.PoseSource.REST.name:
             yield frame, None, bones, held
         else:
             yield frame, row.pose_frame if row.use_pose_frame else frame, bones, held
@@ -141,9 +137,11 @@ def _frames(span: Frames, frame: float) -> list[tuple[float, bool]]:
     return [(f, False) for f in sorted(set(span)) if np.isfinite(f)]
 
 
-def pose_shapes(pose: Wanted, source: Figure, target: Figure, size: float) -> Iterator[Shape]:
+def pose_shapes(
+    wanted: Wanted, source: TracedFigure, target: TracedFigure, size: float
+) -> Iterator[Shape]:
     """In the armature's space; nothing where the bones are not the figure's."""
-    frame, pose_frame, bones, held = pose
+    frame, pose_frame, bones, held = wanted
     names = set(bones)
     chosen = tuple(i for i, b in enumerate(source.bones) if b in names or not names)
     if not chosen or source.bones != target.bones:

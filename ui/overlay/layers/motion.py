@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....solver.arrays import FloatArray
+from ....solver.data.constants import STANDARD_GRAVITY
 from ....solver.data.traces import Traces
+from ...drawing.sketch import Colour
 from ..context.layer import Layer, Part
-from ..context.view_context import Seen, Shown
+from ..context.view_context import ShownMotion, ViewContext
 from ..geometry import palette, solids
-from ..geometry.shapes import Colour, Label, Look, Shape, dashed, faded, polyline, rings
-
-FloatArray = NDArray[np.float64]
+from ..geometry.shapes import Label, Look, Shape, dashed, faded, polyline, rings
 
 PER_WEIGHT = 0.32  # m an arrow is long for one body weight
 LEAST_FORCE = 0.03  # body weights; less is not drawn
 LEAST_SAID = 0.1  # body weights; less is not written
 SHAFT = 0.011  # m, radius of an arrow
 PER_MOMENTUM = 1.6  # s, an arrow's length per angular momentum and kg
-GRAVITY = 9.81  # m/s², of which a weight is
 DASH, GAP = 0.05, 0.035  # m, of a parabola
 CORNERS = 80  # of a path at most
 CENTRE = 0.03  # m, radius of the centre of mass
@@ -28,9 +27,9 @@ CENTRE = 0.03  # m, radius of the centre of mass
 # Sizes are those of a grown person's figure; each is drawn as many times larger as its figure is.
 
 
-def forces(seen: Seen, shown: Shown) -> Layer:
+def forces(view: ViewContext, shown: ShownMotion) -> Layer:
     """Of the contacts at this frame."""
-    traces, frame, size = shown.traces, seen.frame, seen.size
+    traces, frame, size = shown.traces, view.frame, view.size
     content = shown.key, frame, size
     return Layer(Part.FORCES, content, lambda: force_shapes(traces, frame, size), shown.matrix)
 
@@ -52,17 +51,17 @@ def force_shapes(traces: Traces, frame: float, size: float) -> Iterator[Shape | 
         yield Label(words, tuple(tip.tolist()), palette.FORCE)
 
 
-def path(seen: Seen, shown: Shown, part: Part) -> Layer:
+def path(view: ViewContext, shown: ShownMotion, part: Part) -> Layer:
     """Way of the centre of mass; flights as parabolas."""
-    colour = _colour_of(seen, part)
-    content = shown.key, seen.size, colour
-    return Layer(part, content, lambda: path_shapes(shown.traces, colour, seen.size), shown.matrix)
+    colour = _colour_of(view, part)
+    content = shown.key, view.size, colour
+    return Layer(part, content, lambda: path_shapes(shown.traces, colour, view.size), shown.matrix)
 
 
-def _colour_of(seen: Seen, part: Part) -> Colour:
+def _colour_of(view: ViewContext, part: Part) -> Colour:
     if part is Part.RECORDED_PATH:
         return faded(palette.RECORDED, 0.6)
-    return palette.LIVE if seen.live is not None else palette.ADAPTED
+    return palette.LIVE if view.live is not None else palette.ADAPTED
 
 
 def path_shapes(traces: Traces, colour: Colour, size: float) -> Iterator[Shape]:
@@ -87,10 +86,10 @@ def on_ground(traces: Traces) -> list[tuple[float, float]]:
     return list(zip(edges[::2], edges[1::2], strict=True))
 
 
-def centre(seen: Seen, shown: Shown) -> Layer:
-    """Where the centre of mass is at this frame, and the angular momentum about it."""
-    traces, frame, size = shown.traces, seen.frame, seen.size
-    marks, spin = seen.view.path, seen.view.momentum
+def centre(view: ViewContext, shown: ShownMotion) -> Layer:
+    """The centre of mass at this frame, and the angular momentum about it."""
+    traces, frame, size = shown.traces, view.frame, view.size
+    marks, spin = view.options.path, view.options.momentum
     content = shown.key, frame, size, marks, spin
 
     def build() -> Iterator[Shape | Label]:
@@ -112,7 +111,7 @@ def centre_shapes(
         yield rings(at, CENTRE * size, faded(colour, 0.6))
     momentum = interpolated(traces, traces.momentum, frame)
     if spin:
-        along = momentum * PER_MOMENTUM * GRAVITY / max(traces.weight, 1e-9) * size
+        along = momentum * PER_MOMENTUM * STANDARD_GRAVITY / max(traces.weight, 1e-9) * size
         yield solids.arrows(at, along, 0.9 * SHAFT * size, palette.MOMENTUM)
         words = f"{np.linalg.norm(momentum):.1f} N·m·s"
         yield Label(words, tuple((at + along).tolist()), palette.MOMENTUM)
@@ -124,7 +123,7 @@ def within(traces: Traces, frame: float) -> bool:
 
 
 def interpolated(traces: Traces, values: FloatArray, frame: float) -> FloatArray:
-    """What (T, ...) values are at a frame."""
+    """Linear interpolation of values (T, ...) at a frame."""
     frames = traces.frames
     after = int(np.clip(np.searchsorted(frames, frame), 0, len(frames) - 1))
     before = max(after - 1, 0)

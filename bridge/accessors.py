@@ -1,0 +1,47 @@
+"""Typed access to Blender's data where its stubs are wider than what is there, or know nothing.
+
+Settings as a whole: `settings_of` and its like in properties/settings.py.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import bpy
+
+ATTRIBUTE = "hangtime"  # under which scenes, objects, actions and bones carry what is stored
+
+T = TypeVar("T")
+
+
+def present(value: T | None) -> T:
+    """What the stubs say may be missing though it is there: `context.scene`, an active object."""
+    assert value is not None
+    return value
+
+
+def attached(owner: bpy.types.bpy_struct | None) -> Any:
+    """The property group that ui/registration.py attaches to data-blocks and bones."""
+    return getattr(owner, ATTRIBUTE)
+
+
+def armature_data(armature: bpy.types.Object) -> bpy.types.Armature:
+    """The armature's bones at rest, and how they are shown."""
+    assert isinstance(armature.data, bpy.types.Armature)
+    return armature.data
+
+
+def pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
+    """The armature's pose bones."""
+    return present(armature.pose)
+
+
+def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
+    """The action that animates the armature now."""
+    data = armature.animation_data
+    return data.action if data is not None else None
+
+
+def current_scene() -> bpy.types.Scene:
+    """The scene of Blender's context."""
+    return present(bpy.context.scene)

@@ -1,0 +1,219 @@
+"""Point: a point of a bone is held at, or within bounds of, a place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from ...solver.data.faults import AsksNothing
+from ...solver.data.requests import Bound, PointAxes, PointRequest
+from ..recipe_syntax.items import BONE, WHEN, Kind, vector
+from ..recipe_syntax.points import ENVIRONMENT, PATH, POINT_AXES
+from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
+from ..rows.row_parts import RowContext, bone_of, direction_of, offset_of, ordered_bound, scaled
+from ..rows.stored import boolean, booleans, choice, target
+from ..rows.stored import vector as stored_vector
+from ..rows.times import when_of
+
+if TYPE_CHECKING:
+    import bpy
+
+
+class AxesLabel(Enum):
+    """The axes of bounds, as the artist reads them; the names are PointAxes'."""
+
+    WORLD = "World"
+    TRAVEL = "Travel"
+    SURFACE = "Surface"
+
+
+AXIS_LABELS = {
+    PointAxes.WORLD.name: ("X", "Y", "Z"),
+    PointAxes.TRAVEL.name: ("Forward", "Left", "Up"),
+    PointAxes.SURFACE.name: ("Along", "Across", "Out"),
+}
+
+
+def _record(row: Row, context: RowContext) -> PointRequest:
+    path = context.paths.get(row.name)
+    own_place = row.use_place and path is None
+    return PointRequest(
+        row.name,
+        bone_of(row, context),
+        when_of(row, context.clip),
+        offset=offset_of(row, context),
+        place=scaled(row.place, context.metres) if own_place else None,
+        path=path,
+        axes=PointAxes[row.axes],
+        normal=direction_of(row, row.normal),
+        bounds=_bounds(row, context) if row.use_bounds else None,
+        environment=row.environment,
+        grip=row.environment and row.grip,
+    )
+
+
+def _bounds(row: Row, context: RowContext) -> tuple[Bound, Bound, Bound]:
+    sides = zip(
+        row.bound_axes, row.bound_below, row.bound_above, row.at_least, row.at_most, strict=True
+    )
+    x, y, z = (
+        ordered_bound(
+            row,
+            context.metres * low if bounded and below else None,
+            context.metres * high if bounded and above else None,
+        )
+        for bounded, below, above, low, high in sides
+    )
+    if (x, y, z) == ((None, None),) * 3:
+        raise AsksNothing(row.name)
+    return x, y, z
+
+
+def _draw(fields: FieldDrawing, row: Row) -> None:
+    layout = fields.layout
+    fields.bone()
+    layout.prop(row, "use_offset")
+    if row.use_offset:
+        layout.column(align=True).prop(row, "offset")
+    layout.prop(row, "target")
+    place = layout.column()
+    place.active = row.target is None
+    place.prop(row, "use_place")
+    if row.use_place and row.target is None:
+        place.column(align=True).prop(row, "place")
+        fields.place_button(place)
+    fields.when()
+    layout.prop(row, "use_bounds")
+    if row.use_bounds:
+        _draw_bounds(layout, row)
+    layout.prop(row, "environment")
+    if row.environment:
+        layout.prop(row, "grip")
+
+
+def _draw_bounds(layout: bpy.types.UILayout, row: Row) -> None:
+    layout.prop(row, "axes")
+    if row.axes == PointAxes.SURFACE.name:
+        layout.column(align=True).prop(row, "normal")
+    table = layout.column(align=True)
+    table.use_property_split = False
+    head = table.row(align=True)
+    for text in ("", "At Least", "At Most"):
+        head.label(text=text)
+    for axis, name in enumerate(AXIS_LABELS[row.axes]):
+        line = table.row(align=True)
+        line.prop(row, "bound_axes", index=axis, text=name, toggle=True)
+        for use, value in (("bound_below", "at_least"), ("bound_above", "at_most")):
+            cell = line.row(align=True)
+            cell.active = row.bound_axes[axis]
+            cell.prop(row, use, index=axis, text="")
+            field = cell.row(align=True)
+            field.active = getattr(row, use)[axis]
+            field.prop(row, value, index=axis, text="")
+    if not row.use_place and row.target is None and not row.environment:
+        layout.label(text="From the floor and the world's origin", icon="INFO")
+
+
+def put_where_shown(armature: bpy.types.Object, row: Row, *, keep_offset: bool = False) -> None:
+    """Lets a point be at the place where it is shown now: the middle of its bone.
+
+    keep_offset: where the artist chose the point in the bone, that one.
+    """
+    import bpy  # late: kinds load without Blender
+    from mathutils import Vector
+
+    graph = bpy.context.evaluated_depsgraph_get()
+    posed = armature.evaluated_get(graph)
+    assert posed.pose is not None
+    bone = posed.pose.bones[row.bones[0].name]
+    if not (keep_offset and row.use_offset):
+        # Said as an offset, because the solver's own middle is that of the body, not of the bone.
+        row.use_offset, row.offset = True, (0.0, 0.5 * bone.bone.length, 0.0)
+    row.use_place = True
+    row.place = posed.matrix_world @ bone.matrix @ Vector(row.offset)
+
+
+def _added(armature: bpy.types.Object, row: Row, bones: Sequence[str]) -> None:
+    if bones:
+        put_where_shown(armature, row)
+
+
+KIND = ConstraintKind(
+    name="POINT",
+    number=0,
+    label="Point",
+    description="Hold a point of a bone at a place, or within bounds of one",
+    icon="PINNED",
+    menu=MenuGroup.POSES,
+    requests="points",
+    record=_record,
+    draw=_draw,
+    recipe=Kind(
+        "point",
+        PointRequest,
+        (BONE, WHEN, vector("offset"), vector("place"), PATH, POINT_AXES, ENVIRONMENT),
+        needs=(("bone",),),
+        excludes=(("place", "path"),),
+    ),
+    range=NewRange.FRAME,
+    added=_added,
+    fields={
+        "use_place": boolean(
+            "Own Place", "Hold the point at a place of yours instead of where the recording has it"
+        ),
+        "place": stored_vector(
+            "Place",
+            "Where the point shall be, in the world",
+            subtype="TRANSLATION",
+            unit="LENGTH",
+        ),
+        "use_offset": boolean("Own Point", "Choose the point of the bone instead of its middle"),
+        "offset": stored_vector(
+            "Offset",
+            "From the bone's head, in the bone's axes and the armature's own scale",
+            subtype="TRANSLATION",
+            unit="LENGTH",
+        ),
+        "target": target("Target", "An object that the point follows, wherever it moves"),
+        "environment": boolean(
+            "Pushes Back",
+            "Something is there that pushes back with a force, such as a bar or a wall",
+        ),
+        "grip": boolean("Grip", "It can be held on to, so that it pulls too"),
+        "axes": choice("Axes", AxesLabel, "The axes of the bounds"),
+        "normal": stored_vector(
+            "Normal", "Out of the surface", subtype="DIRECTION", default=(0.0, 0.0, 1.0)
+        ),
+        "use_bounds": boolean(
+            "Bounds", "Keep the point within bounds about the place instead of exactly there"
+        ),
+        "bound_axes": booleans(
+            "Bounded",
+            "Along which axes the point is bounded; it is free along the others",
+            default=(True, True, True),
+        ),
+        "bound_below": booleans(
+            "Bounded Below",
+            "Along which axes there is a least value",
+            default=(True, True, True),
+        ),
+        "bound_above": booleans(
+            "Bounded Above",
+            "Along which axes there is a greatest value",
+            default=(True, True, True),
+        ),
+        "at_least": stored_vector(
+            "At Least",
+            "Least distance from the place along each axis",
+            unit="LENGTH",
+            subtype="XYZ",
+        ),
+        "at_most": stored_vector(
+            "At Most",
+            "Greatest distance from the place along each axis",
+            unit="LENGTH",
+            subtype="XYZ",
+        ),
+    },
+)

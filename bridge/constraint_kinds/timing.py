@@ -1,0 +1,74 @@
+"""Timing: a phase lasts longer or shorter (thesis 6.2)."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from ...solver.data.requests import PhaseTiming
+from ..recipe_syntax.items import Kind, number, word
+from ..recipe_syntax.table import ABOVE_ZERO
+from ..rows.kind import (
+    BoneUse,
+    ConstraintKind,
+    FieldDrawing,
+    MenuGroup,
+    NewRange,
+    Row,
+    phase_text,
+)
+from ..rows.row_parts import RowContext
+from ..rows.stored import choice
+from ..rows.stored import number as stored_number
+from ..rows.times import phase_of
+
+
+class TimingBy(Enum):
+    """How a phase's duration is given."""
+
+    FACTOR = "Factor"
+    SECONDS = "Seconds"
+
+
+SECONDS = stored_number("Seconds", min=0.0, soft_max=5.0, default=0.5)
+
+
+def _record(row: Row, context: RowContext) -> PhaseTiming:
+    phase = phase_of(row, context.clip)
+    if TimingBy[row.timing_by] is TimingBy.FACTOR:
+        return PhaseTiming(row.name, phase, factor=row.factor)
+    return PhaseTiming(row.name, phase, seconds=row.seconds)
+
+
+def _draw(fields: FieldDrawing, row: Row) -> None:
+    fields.phase()
+    fields.layout.prop(row, "timing_by")
+    by_factor = TimingBy[row.timing_by] is TimingBy.FACTOR
+    fields.layout.prop(row, "factor" if by_factor else "seconds")
+
+
+KIND = ConstraintKind(
+    name="TIMING",
+    number=9,
+    label="Timing",
+    description="Let a phase last longer or shorter",
+    icon="TIME",
+    menu=MenuGroup.TIME,
+    requests="timings",
+    record=_record,
+    draw=_draw,
+    recipe=Kind(
+        "timing",
+        PhaseTiming,
+        (word("phase"), number("factor", ABOVE_ZERO), number("seconds", ABOVE_ZERO)),
+        needs=(("phase",), ("factor", "seconds")),
+        excludes=(("factor", "seconds"),),
+    ),
+    bones=BoneUse.NONE,
+    range=NewRange.PHASE_ALWAYS,
+    told=phase_text,
+    fields={
+        "timing_by": choice("By", TimingBy),
+        "factor": stored_number("Times", min=0.1, max=10.0, default=1.0),
+        "seconds": SECONDS,
+    },
+)

@@ -1,0 +1,86 @@
+"""Phases of a clip for those who draw them: ground and flight in turn, in scene frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ...solver.data.contacts import PhaseKind, gaps
+from .choices import HOLD
+from .protocols import Settings
+
+SAME = 1e-3  # frames; single precision keeps frames
+
+
+@dataclass(frozen=True)
+class PhaseSpan:
+    """From when to when a phase lasts, scene frames; number counts from 1 in each kind."""
+
+    kind: PhaseKind
+    number: int
+    start: float
+    end: float
+
+    @property
+    def name(self) -> str:
+        """Such as "flight 1", as the analysis calls it."""
+        return f"{self.kind.value} {self.number}"
+
+    @property
+    def is_ground(self) -> bool:
+        return self.kind is PhaseKind.GROUND
+
+
+def phases(
+    carried: Iterable[tuple[float, float]], first: float, last: float
+) -> tuple[PhaseSpan, ...]:
+    """Phases of the clip [first, last] that is carried during some intervals."""
+    inside = [(max(a, first) - first, min(b, last) - first) for a, b in carried]
+    flights = [g for g in gaps(inside, last - first) if g.end - g.start > SAME]
+    ground = gaps(((g.start, g.end) for g in flights), last - first)
+    kinds = ((PhaseKind.FLIGHT, flights), (PhaseKind.GROUND, ground))
+    spans = [
+        PhaseSpan(kind, number, first + gap.start, first + gap.end)
+        for kind, several in kinds
+        for number, gap in enumerate(several, start=1)
+    ]
+    return tuple(sorted(spans, key=lambda span: span.start))
+
+
+def carried(settings: Settings) -> list[tuple[float, float]]:
+    """When contacts that count touch, as the artist has them."""
+    return [(row.start_frame, row.end_frame) for row in settings.contacts if row.used]
+
+
+def clip_ends(settings: Settings) -> tuple[float, float] | None:
+    """First and last frame of the analysed clip; None before an analysis."""
+    if not settings.contacts:
+        return None
+    first = min(row.found_start for row in settings.contacts)
+    last = max(row.found_end for row in settings.contacts)
+    if settings.use_range:
+        return min(first, settings.first_frame), max(last, settings.last_frame)
+    action = recorded_span(settings)
+    return (first, last) if action is None else (min(first, action[0]), max(last, action[1]))
+
+
+def recorded_span(settings: Settings) -> tuple[float, float] | None:
+    """First and last frame of the recording's action, where there is one."""
+    data = settings.id_data.animation_data
+    action = data.action if data is not None else None
+    if action is None:
+        return None
+    first, last = (action.hangtime.recording or action).frame_range
+    return float(first), float(last)
+
+
+def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:
+    """The phases of the analysed clip as the artist's contacts have them; none before."""
+    ends = clip_ends(settings)
+    return phases(carried(settings), *ends) if ends is not None else ()
+
+
+def names(settings: Settings) -> tuple[str, ...]:
+    """What a constraint may be about: the phases and the frames that are held, in time."""
+    holds = (row.name for row in settings.constraints if row.kind == HOLD)
+    return (*(phase.name for phase in phases_of(settings)), *holds)

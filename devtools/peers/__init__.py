@@ -1,0 +1,1 @@
+"""An adaptation's problem as other solvers take it, and IPOPT's solution of it."""

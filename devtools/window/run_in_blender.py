@@ -1,0 +1,55 @@
+"""Entry point within the Blender that has the window: runs the chosen scenarios, then quits.
+
+The extension was installed there from its zip. Each scenario acts as a person would and then says
+what must be true.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+import bpy
+
+from . import scenarios_latency, scenarios_robustness, scenarios_workflow
+from .actions import PACKAGE
+from .driver import Driver, Scenario, drive_by_timer, run_scenarios
+from .input_device import InputDevice
+from .profiler import Profiler
+from .screen import Screen
+
+OUT = Path("/mnt/out")
+SCENARIOS = (
+    *scenarios_workflow.SCENARIOS,
+    *scenarios_latency.SCENARIOS,
+    *scenarios_robustness.SCENARIOS,
+    *scenarios_workflow.LAST,
+    *scenarios_robustness.LAST,
+)
+
+
+def start() -> None:
+    """Begin once Blender's window is there; Blender is quit at its end."""
+    preferences = bpy.context.preferences
+    assert preferences is not None
+    preferences.view.show_splash = False
+    preferences.system.viewport_aa = "OFF"  # drawn once; the others draw again and again
+    preferences.view.filebrowser_display_type = "SCREEN"  # the dialog in the window that is there
+    ending = ExitStack()
+    device = ending.enter_context(InputDevice())
+    driver = Driver(OUT, device, Screen(device), Profiler(PACKAGE))
+    ending.callback(bpy.ops.wm.quit_blender)
+    ending.callback(driver.keep)
+    wanted = chosen(os.environ.get("SCENARIOS", "").split())
+    drive_by_timer(run_scenarios(driver, wanted), ending.close)
+
+
+def chosen(names: Sequence[str]) -> list[Scenario]:
+    """The scenarios of those names and whatever they need, in order; all where no name is given."""
+    wanted = set(names) or {scenario.name for scenario in SCENARIOS}
+    for scenario in reversed(SCENARIOS):
+        if scenario.name in wanted:
+            wanted.update(scenario.needs)
+    return [scenario for scenario in SCENARIOS if scenario.name in wanted]

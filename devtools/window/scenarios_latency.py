@@ -1,0 +1,131 @@
+"""Latency: updates of the ghost that follows a dragged pin, and cost of overlays per redraw."""
+
+from __future__ import annotations
+
+import math
+import re
+import time
+from dataclasses import dataclass, field
+from itertools import cycle, islice
+
+import bpy
+from mathutils import Vector
+
+from .actions import (
+    LANDING,
+    armature,
+    extension_module,
+    idle,
+    scene_settings,
+    settings,
+    shown_action,
+)
+from .driver import Actions, Driver, Scenario, Until
+from .input_device import Place
+
+DRAG = 4.0  # s that the pin is dragged about while the ghost's updates are counted
+LEGS = 4
+CONSTRAINTS = 20
+REDRAWS = 2.0  # s of redraws that are measured
+OF_SIDEBAR = re.compile(r"(Panel|Operator|List|Menu)\.")
+BONES = ("LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm", "LeftLeg")
+
+
+@dataclass
+class GhostCounter:
+    """Counts the ghosts of a live drag that came to be drawn: (time, version) of each new one."""
+
+    seen: list[tuple[float, int]] = field(default_factory=list)
+
+    def look(self) -> None:
+        """Called at each redraw of a viewport."""
+        live = extension_module("operators.solve.live").live()
+        if live.seen is not None and (not self.seen or self.seen[-1][1] != live.version):
+            self.seen.append((time.monotonic(), live.version))
+
+    def rate(self, since: float, until: float) -> float:
+        """Per second."""
+        return sum(since <= at <= until for at, _ in self.seen) / (until - since)
+
+
+def drags_landing(driver: Driver) -> Actions:
+    """Grips the chosen pin, moves it about while the ghost follows, lets go 0.2 m further."""
+    own = settings()
+    before = shown_action()
+    row = own.contacts[own.active_contact]
+    pin = Vector(row.at)
+    start = driver.screen.place_of(pin)
+    end = driver.screen.place_of(pin + 0.2 * Vector(own.stances[LANDING].forward_axis))
+    ghosts = GhostCounter()
+    space = bpy.types.SpaceView3D
+    handler = space.draw_handler_add(ghosts.look, (), "WINDOW", "POST_PIXEL")
+    try:
+        yield driver.input.press(start, "the landing's pin")
+        yield driver.input.move(end, 0.5)
+        assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
+        yield Until("the ghost", lambda: len(ghosts.seen) > 0, 40)
+        begun, first = time.monotonic(), extension_module("operators.solve.live").live().version
+        driver.profiler.start(lambda: "drag")
+        for place in islice(cycle(about(end)), LEGS):
+            yield driver.input.move(place, DRAG / LEGS)
+        driver.profiler.stop()
+        rate = ghosts.rate(begun, time.monotonic())
+        last = extension_module("operators.solve.live").live().version
+        made = (last - first) / (time.monotonic() - begun)
+        yield from driver.picture("ghost_follows")
+        yield driver.input.move(end, 0.5)
+        yield driver.input.let_go()
+    finally:
+        space.draw_handler_remove(handler, "WINDOW")
+    driver.figures["ghost updates per second during a drag"] = rate
+    driver.figures["ghost updates per second during a drag, drawn or not"] = made
+    yield Until("an adapted action", lambda: idle() and shown_action() != before, 60)
+    went = (Vector(row.at) - pin).length
+    assert 0.1 < went < 0.3, f"the pin went {went:.3f} m, not about 0.2 m"
+
+
+def about(place: Place) -> list[Place]:
+    """Places around one, some 60 pixels away."""
+    x, y = place
+    turns = [math.tau * i / LEGS for i in range(LEGS)]
+    return [(x + 60 * math.cos(turn), y + 30 * math.sin(turn)) for turn in turns]
+
+
+def overlays(driver: Driver) -> Actions:
+    """Measures the cost of drawing with many constraints, in our code and as a whole."""
+    own, view = settings(), scene_settings().view
+    kinds = extension_module("bridge.constraint_kinds").KINDS
+    drawn = [kinds[name] for name in ("POINT", "CONE", "ANGLE", "POSE", "TWIST")]
+    add = extension_module("bridge.constraints.rows").add_constraint
+    for i in range(CONSTRAINTS):
+        add(armature(), drawn[i % len(drawn)], [BONES[i // len(drawn)]], 200.0)
+    area = driver.screen.area()
+
+    def redraw(label: str) -> str:
+        area.tag_redraw()
+        return label
+
+    yield 1.0
+    yield from driver.picture("overlays_of_constraints")
+    driver.profiler.start(lambda: redraw("overlays"))
+    yield REDRAWS
+    view.show = False
+    driver.profiler.start(lambda: redraw("no overlays"))
+    yield REDRAWS
+    driver.profiler.stop()
+    view.show = True
+    own.constraints.clear()
+    calls = driver.profiler.profiles["overlays"].calls
+    # all that is drawn in the viewport: overlays and handles, but not the sidebar
+    ours = {name: spans for name, spans in calls.items() if not OF_SIDEBAR.search(name)}
+    assert "Overlay.draw_view" in ours, f"no overlay was drawn: {list(calls)}"
+    redraws = ours["Overlay.draw_view"].count
+    assert redraws > 2, f"only {redraws} redraws were measured"
+    name = "overlay per redraw with 20 constraints"
+    driver.figures[name] = 1000 * sum(spans.busy_total for spans in ours.values()) / redraws
+    driver.figures[f"{name}, by the clock"] = (
+        1000 * sum(spans.total for spans in ours.values()) / redraws
+    )
+
+
+SCENARIOS = (Scenario("overlays", overlays, ("analyses",)),)

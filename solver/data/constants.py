@@ -1,0 +1,7 @@
+"""Physical constants and directions of the world frame (Z up)."""
+
+import numpy as np
+
+STANDARD_GRAVITY = 9.81  # m/s²; the unit of "body weights" also where a problem's gravity differs
+UP = np.array([0.0, 0.0, 1.0])
+UP.flags.writeable = False
