@@ -22,7 +22,7 @@ from .bounded_qp import BoundedStep
 # Velocities are weighed against positions by the time in which they would move as far.
 ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
 PENALTY = 1e4
-SPANS_PER_BATCH = 32
+NORMAL_BATCH = 32  # spans
 MIN_SPANS_PER_THREAD = 8
 MAX_SWEEPS = 8
 SWEEP_REDUCTION = 1e-3  # of the equality residual, at which sweeps end
@@ -71,15 +71,15 @@ class _SpanRows:
         """Adds weight * J'J, a few spans at a time so that they stay in the processor's cache."""
         wide = self.J.shape[2]
         scaled = np.sqrt(weight) * self.J
-        squares = np.empty((SPANS_PER_BATCH, wide, wide))
+        squares = np.empty((NORMAL_BATCH, wide, wide))
 
         def square(part: slice) -> None:
             for i in range(part.start, part.stop):  # numpy knows that a.T @ a is symmetric
                 rows = scaled[first + i, : self.counts[first + i]]
                 np.matmul(rows.T, rows, out=squares[i])
 
-        for first in range(0, len(self.J), SPANS_PER_BATCH):
-            count = min(SPANS_PER_BATCH, len(self.J) - first)
+        for first in range(0, len(self.J), NORMAL_BATCH):
+            count = min(NORMAL_BATCH, len(self.J) - first)
             in_threads(square, count, MIN_SPANS_PER_THREAD)
             shape = (count, ORDER, self.size, ORDER, self.size)
             system.add_windows(self.first[first : first + count], squares[:count].reshape(shape))

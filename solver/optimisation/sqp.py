@@ -28,7 +28,7 @@ MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
 NEAR_FEASIBLE = 1e3  # times the tolerances: the end of a solve
-MIN_RELATIVE_DECREASE = 0.05  # of the objective: what a further step must gain
+MIN_PROJECTION_DECREASE = 0.05  # of the objective: what a further step must gain
 
 
 @dataclass(frozen=True)
@@ -285,7 +285,7 @@ def project(
         if progress is not None:
             progress(steps[-1], feasible.motion(x))
         before, value = value, objective.value(x)
-        little = abs(before - value) < MIN_RELATIVE_DECREASE * before
+        little = abs(before - value) < MIN_PROJECTION_DECREASE * before
         if length == 0.0 or (len(steps) > 1 and little):
             status = Status.SOLVED
             break

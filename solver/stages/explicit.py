@@ -34,7 +34,7 @@ MAX_GAUSS_NEWTON_STEPS = 12
 DAMPING_SHARE = 0.02  # of what REFERENCE_DRIFT costs: Levenberg damping of the steps
 REFERENCE_DRIFT = 0.05  # m, rms; its tracking cost weighs like the whole objective at the start
 MIN_OBJECTIVE = 1e-9  # by which terms are divided at least
-MIN_RELATIVE_DECREASE = 0.02  # of the objective: what a further step must gain
+MIN_EXPLICIT_DECREASE = 0.02  # of the objective: what a further step must gain
 MIN_STEP_LENGTH = 0.05
 MAX_CORRECTIONS = 4  # second-order, a trial point
 CORRECTION_TOLERANCE = 20.0  # times the tolerances: near enough to compare objectives
@@ -107,7 +107,7 @@ def minimise(
         before, (x, value, _) = value, found
         if progress is not None:
             progress(steps[-1], feasible.motion(x))
-        if before - value < MIN_RELATIVE_DECREASE * before:
+        if before - value < MIN_EXPLICIT_DECREASE * before:
             break
     return feasible.outcome(x, Status.SOLVED, steps, violation)
 

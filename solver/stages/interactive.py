@@ -23,9 +23,9 @@ from .setup import Setup, find_target_places, set_up
 from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
 
 CHORD_STEPS = 2  # an update, on the same factor
-MAX_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
-DIVERGED = 1e5  # times the tolerances (1 m)
-NEAR_FEASIBLE = 100.0  # times the tolerances (1 mm): where the last factor still serves
+MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
+DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
+KEPT_FACTOR_VIOLATION = 100.0  # times the tolerances (1 mm): where the last factor still serves
 
 
 class Follower:
@@ -64,7 +64,7 @@ class Follower:
         if not self._step(x, target):
             self.motion, self._linearised = self._held, None
             return DragStatus.DIVERGED
-        if self.violation < NEAR_FEASIBLE:
+        if self.violation < KEPT_FACTOR_VIOLATION:
             self._held = self.motion
         there = steps == 1 and self.violation <= 1.0
         return DragStatus.CONVERGED if there else DragStatus.CONVERGING
@@ -92,12 +92,12 @@ class Follower:
             x = x + linearised.step(value)[0]
             value = feasible.values(x)
             after = linearised.violation(value)
-            if after <= 1.0 or after > MAX_CHORD_RATIO * before:
+            if after <= 1.0 or after > MAX_DRAG_CHORD_RATIO * before:
                 break
-        if not after < DIVERGED:
+        if not after < DIVERGED_VIOLATION:
             return False
         self.violation = after
-        self._linearised = linearised if after < NEAR_FEASIBLE else None
+        self._linearised = linearised if after < KEPT_FACTOR_VIOLATION else None
         self.motion = feasible.motion(x)
         return True
 

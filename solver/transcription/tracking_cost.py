@@ -18,7 +18,7 @@ from ..numerics.splines import ORDER
 from .rows import FORCE_BLOCKS
 from .transcription import GAUSS_NODES, Transcription
 
-SPANS_PER_BATCH = 16
+POSE_BATCH = 16  # spans
 
 
 @dataclass(frozen=True)
@@ -98,8 +98,8 @@ class TrackingCost:
 
     def _batches(self) -> Iterator[slice]:
         """Spans a few at a time: what they need then stays in the processor's cache."""
-        for first in range(0, self.transcription.basis.n_spans, SPANS_PER_BATCH):
-            yield slice(first, min(first + SPANS_PER_BATCH, self.transcription.basis.n_spans))
+        for first in range(0, self.transcription.basis.n_spans, POSE_BATCH):
+            yield slice(first, min(first + POSE_BATCH, self.transcription.basis.n_spans))
 
     def _at_nodes(self, x: FloatArray, spans: slice) -> _NodeErrors:
         t = self.transcription

@@ -71,7 +71,7 @@ def body(bone: str) -> int:
 
 @dataclass(frozen=True)
 class Case:
-    """What is asked, and how many of the conditions that makes there are."""
+    """What is asked, and how many constraints that makes."""
 
     make: Callable[[], Requests]
     constraints: int = 1

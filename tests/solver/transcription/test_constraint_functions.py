@@ -1,4 +1,4 @@
-"""What conditions measure: the truth of it on an arm, and slopes on figures small and real."""
+"""Constraint functions: their values on an arm, and Jacobians on figures small and real."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The distance between motions: its slope and its metric against finite differences."""
+"""Tracking cost: its gradient and Hessian against finite differences."""
 
 import numpy as np
 import pytest

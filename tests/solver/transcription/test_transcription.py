@@ -65,7 +65,7 @@ def carried() -> Transcription:
 
 @cache
 def discretised() -> Transcription:
-    """One condition of every kind."""
+    """One constraint of every kind."""
     return asked(
         Requests(
             points=(PointRequest("place", "trunk", ALWAYS, offset=(0.0, 0.1, 0.2)),),
