@@ -16,7 +16,7 @@ from scipy.sparse import csc_matrix
 
 from ..devtools.peers.task import Equations, FloatArray, Task, metric_entries
 from ..solver.body.character import Character
-from ..solver.optimisation.kkt_step import Linearised
+from ..solver.optimisation.kkt_step import LinearisedProblem
 from ..solver.results.mjcf import mjcf, motion_state
 from ..solver.transcription.motion import Motion
 
@@ -31,7 +31,7 @@ def our_rows(task: Task) -> None:
 def our_iteration(task: Task) -> FloatArray:
     """The rows, the factor and the step; (K, n_block)."""
     rows = task.transcription.rows(task.start, task.places)
-    return Linearised(task.transcription, rows, task.metric).step(rows.value)[0]
+    return LinearisedProblem(task.transcription, rows, task.metric).step(rows.value)[0]
 
 
 def pinocchio_model(character: Character) -> pinocchio.Model:

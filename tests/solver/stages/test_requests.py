@@ -35,9 +35,9 @@ from hangtime.solver.data.requests import (
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.stages.implicit import Adaptation, adapt
-from hangtime.solver.transcription.constraint import missed
-from hangtime.solver.transcription.constraint_functions import Bend
-from hangtime.solver.transcription.friction_cones import ForceCones
+from hangtime.solver.transcription.constraint import dense_violation
+from hangtime.solver.transcription.constraint_functions import BendAngle
+from hangtime.solver.transcription.friction_cones import FrictionCones
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
@@ -71,10 +71,10 @@ def body(bone: str) -> int:
 
 @dataclass(frozen=True)
 class Case:
-    """What is asked, and how many of the conditions that makes there are."""
+    """What is asked, and how many constraints that makes."""
 
     make: Callable[[], Requests]
-    conditions: int = 1
+    constraints: int = 1
     pins: tuple[Pin, ...] = field(default_factory=tuple)
 
 
@@ -98,11 +98,11 @@ CASES = {
         lambda: Requests(
             points=(PointRequest("bar", "lhand", LANDING, environment=True, grip=True),)
         ),
-        conditions=0,
+        constraints=0,
     ),
     "lift": Case(
         lambda: Requests(lifts=(Lift("one leg", "ground 2", ("lfoot", "ltoes")),)),
-        conditions=0,
+        constraints=0,
     ),
     "angle": Case(lambda: Requests(angles=(AngleLimit("knee", "ltibia", *degrees(15.0, 70.0)),))),
     "fixed angle": Case(
@@ -163,9 +163,9 @@ def test_it_is_solved_and_met_everywhere(name: str) -> None:
     assert adaptation.outcome.status is Status.SOLVED
     assert adaptation.outcome.violation <= 1.0
     t, x = adaptation.motion.transcription, adaptation.motion.x
-    assert len(t.conditions) == CASES[name].conditions
-    for condition in t.conditions:
-        found = missed(condition, t.character, t.basis, t.layout, x)
+    assert len(t.constraints) == CASES[name].constraints
+    for constraint in t.constraints:
+        found = dense_violation(constraint, t.character, t.basis, t.layout, x)
         assert found.amount <= found.kind.tolerance, found
 
 
@@ -189,9 +189,9 @@ def height(adaptation: Adaptation, bone: str, time: float) -> float:
 
 
 def apex(adaptation: Adaptation) -> float:
-    (condition,) = adaptation.motion.transcription.conditions
-    assert condition.start == condition.end
-    return condition.start
+    (constraint,) = adaptation.motion.transcription.constraints
+    assert constraint.start == constraint.end
+    return constraint.start
 
 
 def test_the_toe_is_up_at_the_apex() -> None:
@@ -216,7 +216,7 @@ def test_a_grip_holds_its_hand_still_and_may_pull() -> None:
     contact = t.contacts[index]
     times = np.linspace(contact.pin_start, contact.pin_end, 60)
     assert motion.drift(index, times).max() < 0.001
-    cones = ForceCones(t.basis, t.layout, t.contacts)
+    cones = FrictionCones(t.basis, t.layout, t.contacts)
     assert index not in set(cones.rows(motion.x)[0].owner)
 
 
@@ -229,8 +229,8 @@ def test_a_lifted_foot_carries_nothing_and_comes_off_the_other_only() -> None:
 
 def test_a_fixed_elbow_reads_its_angle() -> None:
     motion = adapted("fixed angle").motion
-    (condition,) = motion.transcription.conditions
-    assert isinstance(condition.measure, Bend)
+    (constraint,) = motion.transcription.constraints
+    assert isinstance(constraint.function, BendAngle)
     character = motion.transcription.character
     elbow = body("lradius")
     upper, fore = (character.bodies[body(b)].tip for b in ("lhumerus", "lradius"))
@@ -299,7 +299,7 @@ def test_a_longer_flight_lasts_longer_and_rises_higher() -> None:
     assert longer.motion.duration == pytest.approx(
         fitted_hop().motion.duration + 0.15 * (TOUCH_DOWN - TAKE_OFF), abs=0.001
     )
-    assert [p.name for p in longer.plan.schedule.phases] == ["ground 1", "flight 1", "ground 2"]
+    assert [p.name for p in longer.setup.schedule.phases] == ["ground 1", "flight 1", "ground 2"]
     times = np.linspace(0.0, longer.motion.duration, 400)
     was = fitted_hop().motion.com(np.linspace(0.0, fitted_hop().motion.duration, 400))
     assert np.ptp(longer.motion.com(times)[:, 2]) > np.ptp(was[:, 2])
@@ -309,7 +309,7 @@ def test_a_hold_is_a_pause() -> None:
     """The pose hardly moves during it, and the feet stay where they were."""
     held = adapted("hold")
     assert held.motion.duration == pytest.approx(fitted_hop().motion.duration + 0.3, abs=1e-6)
-    (span,) = held.plan.scene.timeline.holds
+    (span,) = held.setup.context.timeline.holds
     speeds = np.abs(held.motion.angles(np.linspace(span.start, span.end, 30), 1))
     recorded = np.abs(fitted_hop().motion.angles(np.array([1.28]), 1))
     assert speeds.mean() < recorded.mean()
