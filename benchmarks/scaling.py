@@ -6,8 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from ..devtools.peers.task import IntArray, Task
+from ..devtools.peers.task import Task
+from ..devtools.recordings import HOPS
+from ..solver.analysis.analyse import analyse
 from ..solver.analysis.performance import Performance
+from ..solver.arrays import IntArray
 from ..solver.body.anatomy import Part
 from ..solver.body.character import Character, Joint
 from ..solver.body.dynamics import MomentFunction
@@ -17,7 +20,7 @@ from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
 from ..solver.stages.fit import ADAPT_COST_WEIGHTS, Fit, fit, motion_metric
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
-from .recordings import HOPS, analysed, hops
+from .recordings import hops, recording
 from .timing import in_turns, timed
 
 FIRST = 0.99  # s, where the windows of the hops begin
@@ -47,7 +50,7 @@ def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Cost]:
     """Windows of the hops, each fitted and its first landing moved."""
     for length in seconds:
         problem = hops(FIRST, length)
-        analysis = analysed(HOPS, problem)
+        analysis = analyse(recording(HOPS), problem)
         fitted, fit_s = timed(partial(fit, analysis.performance, analysis.schedule))
         _ = fitted.metric  # part of the stored fit
         adaptation, adapt_s = in_turns({"": partial(adapt, fitted, problem)}, 3)[""]
