@@ -79,6 +79,3 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
     def _aim(self, context: bpy.types.Context, at: Pixel) -> rays.Vector | None:
         """On the plane through the tip that faces the viewer."""
         return rays.on_plane(ray_at(context, at), self.tip, self._sight)
-
-
-CLASSES = (AimConeOperator,)

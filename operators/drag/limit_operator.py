@@ -95,6 +95,3 @@ def bounds(row: HangtimeConstraint, end: str) -> tuple[float, float]:
     if end == "upper" and row.use_lower:
         low = max(low, row.lower)
     return low, high
-
-
-CLASSES = (DragLimitOperator,)

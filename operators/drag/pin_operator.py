@@ -190,6 +190,3 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             distance = rays.along_line(ray, start, axis)
             return start + distance * axis if distance is not None else None
         return rays.on_plane(ray, start, self._normal.to_tuple(), FARTHEST)
-
-
-CLASSES = (DragPinOperator,)

@@ -79,6 +79,3 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
     def _stance(self) -> HangtimeStance:
         stance: HangtimeStance = settings_of(self._armature).stances[self._name]
         return stance
-
-
-CLASSES = (TurnStanceOperator,)

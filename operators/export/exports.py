@@ -28,12 +28,10 @@ class _Export(FaultyOperator):
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
         result = result_of(chosen_armature(context))
-        if result is None or not action_settings(result).accepted:
-            cls.poll_message_set(NOT_ACCEPTED)
-            return False
-        return True
+        accepted = result is not None and action_settings(result).accepted
+        return None if accepted else NOT_ACCEPTED
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
@@ -78,6 +76,3 @@ class ExportGltfOperator(_Export, bpy.types.Operator):
 
     def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
         export_gltf(armature, action, path)
-
-
-CLASSES = (ExportFbxOperator, ExportGltfOperator)

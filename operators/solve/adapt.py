@@ -41,17 +41,20 @@ from .task import Task, TaskOperator, answered, take_best
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
 
+def unanalysed(context: bpy.types.Context) -> str | None:
+    """Precondition: why there is nothing to adapt, in a sentence; None where there is."""
+    why = hindrance(context)
+    if why is None and not settings_of(required_armature(context)).contacts:
+        return NOT_ANALYSED
+    return why
+
+
 class _Adapting(TaskOperator):
     """Base of Adapt and Refine."""
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = hindrance(context)
-        if why is None and not settings_of(required_armature(context)).contacts:
-            why = NOT_ANALYSED
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return unanalysed(context)
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         """Solver options; asked: those of a recipe."""
@@ -129,12 +132,10 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
+    def obstacle(cls, _context: bpy.types.Context) -> str | None:
         solving = session().solving
-        if session().best is None and (solving is None or not solving.can_stop):
-            cls.poll_message_set("No solve is under way, and none has failed")
-            return False
-        return True
+        possible = session().best is not None or (solving is not None and solving.can_stop)
+        return None if possible else "No solve is under way, and none has failed"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         return {"FINISHED"} if take_best() else super().invoke(context, event)
@@ -240,6 +241,3 @@ def _held(constraint: ConstraintReport) -> str:
     if constraint.met:
         return "held"
     return f"missed by {constraint.worst_violation:.0f} {constraint.kind.reported_unit}"
-
-
-CLASSES = (AdaptOperator, RefineOperator, UseBestOperator)

@@ -26,7 +26,7 @@ from ...solver.worker.protocol import Analysed, Failed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from .adapt import ask_for
-from .common import FaultyOperator, chosen_armature, hindrance, required_armature, said
+from .common import FaultyOperator, chosen_armature, required_armature, said
 from .session import session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered
@@ -45,11 +45,8 @@ class FindBonesOperator(FaultyOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        armature = chosen_armature(context)
-        if armature is None:
-            cls.poll_message_set("Choose or select an armature first")
-        return armature is not None
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return "Choose or select an armature first" if chosen_armature(context) is None else None
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
@@ -60,16 +57,7 @@ class FindBonesOperator(FaultyOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class _OnRecording(TaskOperator):
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = hindrance(context)
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
-
-
-class AnalyzeOperator(_OnRecording, bpy.types.Operator):
+class AnalyzeOperator(TaskOperator, bpy.types.Operator):
     bl_idname = OperatorId.ANALYZE
     bl_label = "Analyze"
     bl_description = (
@@ -125,7 +113,7 @@ def _odd_height(armature: str, height: float) -> OddHeight | None:
     return None if low < height < high else OddHeight(armature, height, USUAL_HEIGHT / height)
 
 
-class FitOperator(_OnRecording, bpy.types.Operator):
+class FitOperator(TaskOperator, bpy.types.Operator):
     bl_idname = OperatorId.FIT
     bl_label = "Fit"
     bl_description = (
@@ -162,6 +150,3 @@ def quality(fit: FitQuality) -> str:
         f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
         f"apex {fit.pelvis_apex_difference_cm:+.1f} cm"
     )
-
-
-CLASSES = (FindBonesOperator, AnalyzeOperator, FitOperator)

@@ -12,7 +12,7 @@ from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import Fault
 from ...solver.worker.protocol import Answer, Progress
 from ..operator_types import OperatorResult
-from .common import FaultyOperator, said
+from .common import FaultyOperator, hindrance, said
 from .session import session
 from .solving import SolveState, Solving
 
@@ -35,6 +35,10 @@ def answered(job: PendingRequest) -> Generator[PendingRequest, None, Answer]:
 
 class TaskOperator(FaultyOperator):
     """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return hindrance(context)
 
     def task(self, context: bpy.types.Context) -> Task:
         """The work. Raises any Fault, having changed nothing."""

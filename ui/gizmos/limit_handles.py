@@ -86,6 +86,3 @@ def _show_tip(
     put(gizmo, Vector(tip.at.tolist()))
     aim.constraint, aim.centre, aim.tip = chosen, tip.centre, tip.at
     aim.turn = Matrix(tip.turn.tolist())
-
-
-CLASSES = (LimitHandles,)

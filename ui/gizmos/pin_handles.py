@@ -119,6 +119,3 @@ class PinHandles(bpy.types.GizmoGroup):
         lift.release_confirm = lift.whole = True
         lift.axis = "Z"
         return arrow, lift
-
-
-CLASSES = (PinHandles,)

@@ -84,6 +84,3 @@ class BodyChangeList(_RowList):
         if row.kind == BodyKind.LIMB.name:
             return f"× {row.length:.2g}" if row.length != 1.0 else ""
         return f"{100.0 * row.share:.0f} %" if row.by_share else f"{row.mass:.3g} kg"
-
-
-CLASSES = (ConstraintList, BodyChangeList)

@@ -73,6 +73,3 @@ class AddBodyChangeMenu(bpy.types.Menu):
                 OperatorId.ADD_BODY_CHANGE, text=kind.value, icon=ICONS[kind.name]
             )
             entry.kind = kind.name
-
-
-CLASSES = (AddConstraintMenu, PresetsMenu, ConstraintMoreMenu, AddBodyChangeMenu)

@@ -138,6 +138,3 @@ def _chosen(armature: bpy.types.Object, of: RowList) -> Row:
 def _is_own(armature: bpy.types.Object, of: RowList) -> bool:
     """Whether the chosen row is the artist's, not a linked file's."""
     return of.chosen(settings_of(armature)) >= of.linked(armature)
-
-
-CLASSES = (ConstraintsPanel, ConstraintPanel, BodyChangesPanel)

@@ -38,6 +38,3 @@ class ContactList(bpy.types.UIList):
         if wide:
             line.label(text=row.phase)
         line.label(text=f"{row.start_frame:.0f} – {row.end_frame:.0f}")
-
-
-CLASSES = (ContactList,)

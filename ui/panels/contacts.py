@@ -86,6 +86,3 @@ class ContactPanel(_ActivePanel):
         layout.column(align=True).prop(row, "place")
         layout.prop(row, "empty")
         layout.operator(OperatorId.PLACE_BY_EMPTY, icon="EMPTY_AXIS")
-
-
-CLASSES = (ContactsPanel, StancePanel, ContactPanel)

@@ -70,6 +70,3 @@ def _draw_plots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     else:
         column.prop_search(view, "plot_bone", armature_data(armature), "bones")
     layout.operator(OperatorId.SAVE_PLOTS, icon="EXPORT")
-
-
-CLASSES = (DisplayPanel,)

@@ -48,6 +48,3 @@ def _draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     layout = present(menu.layout)
     layout.separator()
     layout.menu(MenuId.HANGTIME)
-
-
-CLASSES = (HangtimeMenu,)

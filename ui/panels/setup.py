@@ -88,6 +88,3 @@ class RecordingPanel(ArmaturePanel):
         buttons.operator(OperatorId.FIT, icon="CON_FOLLOWPATH")
         if settings.fit_quality:
             lines(layout, settings.fit_quality, icon="CHECKMARK")
-
-
-CLASSES = (CharacterPanel, BonesPanel, RecordingPanel)

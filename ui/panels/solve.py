@@ -92,6 +92,3 @@ class ExportPanel(ArmaturePanel):
         row = present(self.layout).row(align=True)
         row.operator(OperatorId.EXPORT_FBX, text="FBX", icon="EXPORT")
         row.operator(OperatorId.EXPORT_GLTF, text="glTF", icon="EXPORT")
-
-
-CLASSES = (SolvePanel, AdvancedPanel, ResultPanel, ExportPanel)
