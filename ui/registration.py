@@ -21,7 +21,7 @@ from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
-from .panels import constraint_lists, constraint_menus, contact_list, display, menu, setup, solve
+from .panels import constraint_menus, display, lists, menu, setup, solve
 from .panels import constraints as constraint_panels
 from .panels import contacts as contact_panels
 from .plots import handler as plots
@@ -31,8 +31,8 @@ from .timeline import handler as timeline
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, presets, results, exports),
     *(pin_operator, turn_stance, limit_operator, aim_cone, contact_edge_operator, save_plots),
-    *(contact_list, menu, setup, contact_panels, constraint_lists, constraint_menus),
-    *(constraint_panels, solve, display, pin_handles, limit_handles),
+    *(lists, menu, constraint_menus, setup, contact_panels, constraint_panels, solve, display),
+    *(pin_handles, limit_handles),
 )
 
 
@@ -100,4 +100,4 @@ def _follow_empties(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
 def _run_command(arguments: list[str]) -> int:
     from ..operators.headless import cli  # most sessions never run it
 
-    return int(cli.command(arguments))
+    return cli.main(arguments)

@@ -28,7 +28,7 @@ from ...solver.data.recording import Recording
 from ...solver.data.report import ConstraintReport
 from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
-from ...solver.worker.protocol import Adapted, Failed, RequestKind
+from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import as_text
@@ -64,14 +64,10 @@ class _Adapting(TaskOperator):
         present(context.view_layer).update()  # empties that a script moved
         try:
             asked = yield from self._asked(context)
-            answer = yield from answered(
-                shared().ask(RequestKind.ADAPT, asked.recording, asked.problem)
-            )
+            job = shared().ask(RequestKind.ADAPT, asked.recording, asked.problem)
+            answer = yield from answered(job, Adapted)
         finally:
             live().clear()  # a drag's ghost stays until there is something better, or nothing
-        if isinstance(answer, Failed):
-            raise answer.fault
-        assert isinstance(answer, Adapted)
         session().best = None
         if answer.fault is not None and answer.fault.reason is not Status.STOPPED:
             session().best = Best(asked, answer)
@@ -80,9 +76,7 @@ class _Adapting(TaskOperator):
 
     def _asked(self, context: bpy.types.Context) -> Incremental[Asked]:
         asked = yield from ask_for(context)
-        solving = session().solving
-        assert solving is not None
-        solving.advance(SolveState.SOLVING)
+        session().advance(SolveState.SOLVING)
         settings, requests = settings_of(required_armature(context)), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
         return replace(asked, problem=replace(asked.problem, requests=requests))
@@ -141,9 +135,7 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
         return {"FINISHED"} if take_best() else super().invoke(context, event)
 
     def task(self, _context: bpy.types.Context) -> Task:
-        best, solving = session().best, session().solving
-        assert best is not None
-        assert solving is not None
+        best = present(session().best)
         done = yield from write_answer(best.asked, best.answer)
         session().best = None
         return done
@@ -165,11 +157,9 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
-    solving = session().solving
-    assert solving is not None
-    solving.advance(SolveState.CHECKING)
+    session().advance(SolveState.CHECKING)
     armature = yield from _unchanged(asked)
-    solving.advance(SolveState.WRITING)
+    session().advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
         return _write_other(changed_recording(asked.recording, limbs), answer, armature)

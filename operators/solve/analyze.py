@@ -22,7 +22,7 @@ from ...solver.data.faults import (
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.report import FitQuality
-from ...solver.worker.protocol import Analysed, Failed, Fitted, RequestKind
+from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from .adapt import ask_for
@@ -74,13 +74,12 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         for missing in missing_parts(settings):
             raise MissingPart(missing)
         problem = problem_of(settings, recording, with_contacts=False)
-        solving = session().solving
-        assert solving is not None
-        solving.advance(SolveState.SOLVING)
-        answer = yield from answered(shared().ask(RequestKind.ANALYSE, recording, problem))
-        if isinstance(answer, Failed):
-            raise _telling(answer.fault, armature, recording, problem)
-        assert isinstance(answer, Analysed)
+        session().advance(SolveState.SOLVING)
+        job = shared().ask(RequestKind.ANALYSE, recording, problem)
+        try:
+            answer = yield from answered(job, Analysed)
+        except Fault as fault:
+            raise _telling(fault, armature, recording, problem) from None
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
         scene_settings(context.scene).armature = armature
@@ -124,14 +123,10 @@ class FitOperator(TaskOperator, bpy.types.Operator):
 
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
-        solving = session().solving
-        assert solving is not None
         asked = yield from ask_for(context)
-        solving.advance(SolveState.SOLVING)
-        answer = yield from answered(shared().ask(RequestKind.FIT, asked.recording, asked.problem))
-        if isinstance(answer, Failed):
-            raise answer.fault
-        assert isinstance(answer, Fitted)
+        session().advance(SolveState.SOLVING)
+        job = shared().ask(RequestKind.FIT, asked.recording, asked.problem)
+        answer = yield from answered(job, Fitted)
         settings_of(armature).fit_quality = quality(answer.quality)
         return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.quality)}"
 

@@ -9,7 +9,7 @@ from typing import Protocol
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.worker.protocol import Adapted
-from .solving import Solving
+from .solving import SolveState, Solving
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,11 @@ class Session:
     failure: str = ""
     best: Best | None = None
     running: list[Running] = field(default_factory=list)
+
+    def advance(self, to: SolveState) -> None:
+        """The solve under way goes on to its next part."""
+        assert self.solving is not None
+        self.solving.advance(to)
 
     def end(self) -> None:
         """Ends what runs, without a word; for when the extension goes."""

@@ -10,6 +10,7 @@ from ...bridge.rows.phases import carried, clip_ends, phases
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import chosen_armature, required_armature
+from ..solve.live import redraw
 from .contact_bars import Grip
 from .contact_edge_state import Edge, EdgeDrag, Touch, contact_drag, phase_drag
 from .timeline_bars import bars_in, frames_axis
@@ -20,7 +21,7 @@ FIELDS = {Edge.START: "start_frame", Edge.END: "end_frame"}
 VERBS = {Edge.START: "starts", Edge.END: "ends"}
 GIVES_UP = {"ESC", "RIGHTMOUSE"}
 MOVES = {"MOUSEMOVE", "LEFT_CTRL", "RIGHT_CTRL", "LEFT_SHIFT", "RIGHT_SHIFT"}
-EDITORS = {"DOPESHEET_EDITOR", "VIEW_3D"}  # in which contacts are seen
+EDITORS = ("DOPESHEET_EDITOR", "VIEW_3D")  # in which contacts are seen
 
 
 class _OfKnownContacts(PolledOperator):
@@ -131,12 +132,12 @@ class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
         drag = self._drag
         text = f"{self.contact} {VERBS[drag.edge]} at frame {drag.frame:g} ({drag.change:+.3g})"
         present(context.area).header_text_set(f"{text}    Ctrl: tenths of a frame    Esc: cancel")
-        redraw(context)
+        redraw(*EDITORS)
 
     def _end(self, context: bpy.types.Context) -> None:
         if context.window is not None:
             context.window.cursor_modal_restore()
-            redraw(context)
+            redraw(*EDITORS)
         if context.area is not None:
             context.area.header_text_set(None)
 
@@ -156,7 +157,7 @@ class PickContactOperator(_OfKnownContacts, bpy.types.Operator):
             self.report({"ERROR"}, f"There is no contact called “{self.contact}”")
             return {"CANCELLED"}
         settings.active_contact = index
-        redraw(context)
+        redraw(*EDITORS)
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
@@ -192,11 +193,3 @@ def write(settings: HangtimeSettings, edge: Edge, frames: dict[str, float]) -> N
         row = settings.contacts.get(name)
         if row is not None and getattr(row, FIELDS[edge]) != frame:
             setattr(row, FIELDS[edge], frame)
-
-
-def redraw(context: bpy.types.Context) -> None:
-    """Everywhere contacts are seen."""
-    for window in present(context.window_manager).windows:
-        for area in window.screen.areas:
-            if area.type in EDITORS:
-                area.tag_redraw()

@@ -9,7 +9,7 @@ from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
 from ...bridge.rows.choices import BodyKind
 from ...bridge.rows.kind import Icon, MenuGroup
 from ...operators.names import MenuId, OperatorId
-from .constraint_lists import ICONS
+from .lists import ICONS
 
 
 class AddConstraintMenu(bpy.types.Menu):

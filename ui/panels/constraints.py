@@ -13,8 +13,8 @@ from ...operators.lists.row_lists import RowList
 from ...operators.names import ListId, MenuId, OperatorId, PanelId
 from ...operators.solve.common import chosen_armature
 from .constraint_fields import draw_bone, draw_bones, draw_constraint
-from .constraint_lists import MET_ICONS
-from .sidebar import ArmaturePanel, settings_in, split
+from .lists import MET_ICONS
+from .sidebar import ArmaturePanel, optional, settings_in, split
 
 
 class ConstraintsPanel(ArmaturePanel):
@@ -55,8 +55,7 @@ class ConstraintPanel(ArmaturePanel):
         present(self.layout).label(text=kind.label, icon=kind.icon)
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         armature = present(chosen_armature(context))
         row = _chosen(armature, RowList.CONSTRAINTS)
         _draw_status(layout, row)
@@ -73,15 +72,10 @@ class BodyChangesPanel(ArmaturePanel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         armature = present(chosen_armature(context))
         settings = settings_of(armature)
-        mass = layout.row(heading="New Mass (kg)")
-        mass.prop(settings, "use_new_mass", text="")
-        value = mass.row()
-        value.active = settings.use_new_mass
-        value.prop(settings, "new_mass", text="")
+        optional(layout, settings, "use_new_mass", "New Mass (kg)", "new_mass")
         layout.prop(settings, "gravity")
         hint = layout.row()
         hint.active, hint.alignment = False, "RIGHT"

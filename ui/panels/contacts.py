@@ -33,20 +33,10 @@ class ContactsPanel(ArmaturePanel):
         layout.prop(settings, "whole_stance")
 
 
-class _ActivePanel(ArmaturePanel):
-    """Base: a subpanel about the chosen contact."""
-
+class StancePanel(ArmaturePanel):
+    bl_idname = PanelId.STANCE
     bl_parent_id = PanelId.CONTACTS
     bl_label = ""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        armature = chosen_armature(context)
-        return armature is not None and active_contact(settings_of(armature)) is not None
-
-
-class StancePanel(_ActivePanel):
-    bl_idname = PanelId.STANCE
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -57,8 +47,7 @@ class StancePanel(_ActivePanel):
         present(self.layout).label(text=f"Move {present(active_stance(settings_in(context))).name}")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         stance = present(active_stance(settings_in(context)))
         column = layout.column(align=True)
         for name in ("forward", "left", "up", "turn"):
@@ -68,17 +57,23 @@ class StancePanel(_ActivePanel):
         buttons.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
 
 
-class ContactPanel(_ActivePanel):
+class ContactPanel(ArmaturePanel):
     bl_idname = PanelId.CONTACT
+    bl_parent_id = PanelId.CONTACTS
+    bl_label = ""
     bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and active_contact(settings_of(armature)) is not None
 
     def draw_header(self, context: bpy.types.Context) -> None:
         row = present(active_contact(settings_in(context)))
         present(self.layout).label(text=f"{row.name} ({row.bone})")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         row = present(active_contact(settings_in(context)))
         frames = layout.column(align=True)
         frames.prop(row, "start_frame")

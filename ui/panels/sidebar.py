@@ -8,6 +8,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ...bridge.rows.kind import Row
 from ...operators.names import CATEGORY
 from ...operators.solve.common import chosen_armature
 
@@ -35,10 +36,24 @@ def settings_in(context: bpy.types.Context) -> HangtimeSettings:
     return settings_of(present(chosen_armature(context)))
 
 
-def split(layout: bpy.types.UILayout) -> None:
-    """Labels left, values right, as in Blender's own panels."""
+def split(panel: bpy.types.Panel) -> bpy.types.UILayout:
+    """A panel's layout with labels left and values right, as in Blender's own panels."""
+    layout = present(panel.layout)
     layout.use_property_split = True
     layout.use_property_decorate = False
+    return layout
+
+
+def optional(
+    layout: bpy.types.UILayout, owner: HangtimeSettings | Row, use: str, heading: str, *values: str
+) -> None:
+    """Values in one line behind the tick `use` that switches them on."""
+    line = layout.row(heading=heading)
+    line.prop(owner, use, text="")
+    fields = line.row(align=True)
+    fields.active = getattr(owner, use)
+    for value in values:
+        fields.prop(owner, value, text="")
 
 
 def lines(layout: bpy.types.UILayout, text: str, icon: Icon = "NONE") -> None:

@@ -48,8 +48,7 @@ class AdvancedPanel(ArmaturePanel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         settings = settings_in(context)
         layout.prop(settings, "method")
         refine = layout.column(heading="Refine")
