@@ -54,9 +54,8 @@ def register() -> Callable[[], None]:
     with ExitStack() as undo:
         _add_worker(undo)
         for cls in classes():
-            # the stubs leave out groups of gizmos
-            bpy.utils.register_class(cls)  # type: ignore[arg-type]
-            undo.callback(bpy.utils.unregister_class, cls)  # type: ignore[arg-type]
+            bpy.utils.register_class(cls)
+            undo.callback(bpy.utils.unregister_class, cls)
         for carrier, group in settings.CARRIERS.items():
             # a property until it is assigned; the stubs say nothing
             group_of = bpy.props.PointerProperty(  # type: ignore[func-returns-value]

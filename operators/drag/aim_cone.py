@@ -13,10 +13,9 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
 from . import rays
+from .drag_state import ANGLE_STEP, PinDrag
 from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import Pixel, pixel, ray_at
-from .pin_state import PinDrag
-from .value_state import ANGLE_STEP
 
 
 class AimConeOperator(LimitDrag, bpy.types.Operator):

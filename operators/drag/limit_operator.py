@@ -11,10 +11,10 @@ from ...bridge.properties.constraint import HangtimeConstraint
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
+from .drag_state import ANGLE_STEP, ValueDrag
 from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about, scaled
-from .value_state import ANGLE_STEP, ValueDrag
 
 END_LABELS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
 

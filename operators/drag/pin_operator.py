@@ -15,9 +15,9 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
 from . import rays
+from .drag_state import Axis, PinDrag
 from .follow_mixin import FollowedDrag
 from .mouse import Pixel, pixel, pixel_of, ray_at
-from .pin_state import Axis, PinDrag
 
 FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
 FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon

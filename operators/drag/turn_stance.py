@@ -13,10 +13,10 @@ from ...bridge.properties.stances import active_stance, stance_contacts, stance_
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
+from .drag_state import ANGLE_STEP, ValueDrag
 from .follow_mixin import FollowedDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about
-from .value_state import ANGLE_STEP, ValueDrag
 
 NO_STANCE = "Choose a contact of the stance first"
 

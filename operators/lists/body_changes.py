@@ -31,6 +31,7 @@ DESCRIPTIONS = {
     BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
     BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",
 }
+KIND_ITEMS = [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
 
 
 class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
@@ -38,9 +39,7 @@ class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
     bl_label = "Add Body Change"
     bl_description = "Add a weight or a limb of the selected pose bones"
 
-    kind: bpy.props.EnumProperty(
-        name="Kind", items=[(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
-    )
+    kind: bpy.props.EnumProperty(name="Kind", items=KIND_ITEMS)
 
     @classmethod
     def description(
