@@ -1,7 +1,5 @@
 """Everything that enabling the extension adds to Blender, in order, and how it is taken back."""
 
-from __future__ import annotations
-
 import atexit
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack

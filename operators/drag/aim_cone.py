@@ -1,7 +1,5 @@
 """Aim Cone: where a cone about a limb points, by the handle on its axis."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector

@@ -1,7 +1,5 @@
 """State machines of dragging a pin, or one number such as an angle; without Blender."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from enum import Enum
 from math import hypot, radians

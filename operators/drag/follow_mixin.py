@@ -1,7 +1,5 @@
 """Modal drag of contacts and points: the motion follows as a ghost; letting go adapts."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import bpy

@@ -3,8 +3,6 @@
 The handles (ui/gizmos) say where a limit is drawn; what the mouse does there is the same for all.
 """
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present

@@ -1,7 +1,5 @@
 """Drag Joint Limit: an end of a joint's limit, or how wide a cone is, by its handle."""
 
-from __future__ import annotations
-
 from math import degrees, radians
 
 import bpy

@@ -1,7 +1,5 @@
 """Drag Pin: a contact's or a point's place by the mouse, while the motion follows as a ghost."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Vector

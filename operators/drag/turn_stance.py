@@ -1,7 +1,5 @@
 """Turn Stance: about the vertical by the mouse, while the motion follows as a ghost."""
 
-from __future__ import annotations
-
 from math import degrees, inf
 
 import bpy

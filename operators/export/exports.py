@@ -1,7 +1,5 @@
 """Export: the accepted action alone, as FBX or glTF."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import bpy

@@ -1,7 +1,5 @@
 """Save Plots: the plotted curves as a table that spreadsheets and scripts read."""
 
-from __future__ import annotations
-
 import csv
 from io import StringIO
 from pathlib import Path

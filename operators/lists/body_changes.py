@@ -1,7 +1,5 @@
 """The list of body changes: add and remove weights and limbs; and the bones of either list."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.constraint_kinds import KINDS

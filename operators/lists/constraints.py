@@ -1,7 +1,5 @@
 """The list of constraints: add, remove, copy, move, aim at frames and place."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import pose_of, present

@@ -1,7 +1,5 @@
 """The list of contacts: add what the analysis has missed, remove, place, and put back."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 

@@ -4,8 +4,6 @@ Where the ranges and the torques come from is said in solver/body/human_limits.p
 solver/body/human_strength.py.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from math import degrees
 

@@ -1,7 +1,5 @@
 """Adapt and Refine: a new action in which the contacts are where the artist put them."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from dataclasses import replace
 

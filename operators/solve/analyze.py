@@ -1,7 +1,5 @@
 """Analyze and Fit: what touches when in a recording, and how near physics comes to it."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present

@@ -1,7 +1,5 @@
 """The operators' common base: target armature, preconditions, fault reporting."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import current_action, present

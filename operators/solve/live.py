@@ -1,7 +1,5 @@
 """Live preview: the motion that follows a dragged pin, shown as a ghost, never written."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Operators on the result: show it or the recording, Accept, Discard, Show Report, Cancel."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import current_action, present

@@ -1,7 +1,5 @@
 """Cooperative multitasking of long operators: parts and a worker, so that Blender never freezes."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from time import perf_counter
 from typing import TypeVar

@@ -3,8 +3,6 @@
 Knows nothing of Blender. Frames are the scene's; places px from the region's lower left corner.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Drag Contact Edge: retimes a contact or a phase by its bar in the timeline."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present

@@ -1,7 +1,5 @@
 """Handles of the chosen joint limit: its ends, and a cone's axis."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector

@@ -1,7 +1,5 @@
 """Handles of contacts and points, and of the stance of the chosen contact."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import bpy

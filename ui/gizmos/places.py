@@ -3,8 +3,6 @@
 A limit's angles count on a circle about its joint; its ends are points of that circle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The viewport's draw handlers, and what they keep between redraws."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy

@@ -1,7 +1,5 @@
 """The fields of a constraint, drawn in the sidebar; its kind says which."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import bpy

@@ -1,7 +1,5 @@
 """The menus of the lists: kinds to add, presets, and what else can be done with a row."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present

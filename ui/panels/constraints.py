@@ -1,7 +1,5 @@
 """Constraints and Body Changes: what the artist asks for beside moved contacts."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import armature_data, present

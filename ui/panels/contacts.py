@@ -1,7 +1,5 @@
 """Panels of contacts: what touches when and where, and where it shall touch instead."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present

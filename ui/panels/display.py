@@ -1,7 +1,5 @@
 """The panel of what the viewport and the timeline show."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import armature_data, present

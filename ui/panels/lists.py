@@ -1,7 +1,5 @@
 """The lists of contacts, constraints and body changes, and what their kinds look like."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present

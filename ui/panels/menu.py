@@ -1,7 +1,5 @@
 """The menu *Hangtime* in the 3D viewport's Object and Pose menus: F3 finds what is in a menu."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy

@@ -1,7 +1,5 @@
 """Character and Recording: whose motion it is, and which frames of it."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import armature_data, present

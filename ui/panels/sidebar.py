@@ -1,7 +1,5 @@
 """Bases and helpers of the sidebar's panels."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import bpy

@@ -1,7 +1,5 @@
 """Solve, Result and Export."""
 
-from __future__ import annotations
-
 from textwrap import fill
 
 import bpy

@@ -1,7 +1,5 @@
 """Draw handler of the plots: looks up what is stored, paints what has been prepared."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy

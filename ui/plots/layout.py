@@ -1,7 +1,5 @@
 """Layout of plots in a viewport: the room that bars and the sidebar leave, and the cards in it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

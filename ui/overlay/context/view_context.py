@@ -1,7 +1,5 @@
 """Context of a redraw: everything that overlays and handles look at, read once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Words beside places of the world, drawn over the viewport."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import blf
