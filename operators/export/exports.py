@@ -1,5 +1,6 @@
 """Export: the accepted action alone, as FBX or glTF."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -21,6 +22,7 @@ class _Export(FaultyOperator):
     """Mixin: asks for a file, and writes the accepted action to it."""
 
     extension = ""
+    write: Callable[[bpy.types.Object, bpy.types.Action, str], None]
 
     filepath: bpy.props.StringProperty(subtype="FILE_PATH")
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
@@ -47,21 +49,15 @@ class _Export(FaultyOperator):
         self.report({"INFO"}, f"Exported {Path(path).name}")
         return {"FINISHED"}
 
-    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
-        """Writes the file. Raises OutputNotWritable."""
-        raise NotImplementedError
-
 
 class ExportFbxOperator(_Export, bpy.types.Operator):
     bl_idname = OperatorId.EXPORT_FBX
     bl_label = "Export FBX"
     bl_description = "Write the armature with the accepted action, a key on every frame, as FBX"
     extension = ".fbx"
+    write = staticmethod(export_fbx)
 
     filter_glob: bpy.props.StringProperty(default="*.fbx", options={"HIDDEN"})
-
-    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
-        export_fbx(armature, action, path)
 
 
 class ExportGltfOperator(_Export, bpy.types.Operator):
@@ -69,8 +65,6 @@ class ExportGltfOperator(_Export, bpy.types.Operator):
     bl_label = "Export glTF"
     bl_description = "Write the armature with the accepted action as one binary glTF file"
     extension = ".glb"
+    write = staticmethod(export_gltf)
 
     filter_glob: bpy.props.StringProperty(default="*.glb", options={"HIDDEN"})
-
-    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
-        export_gltf(armature, action, path)

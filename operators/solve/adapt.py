@@ -32,7 +32,7 @@ from ..operator_types import OperatorResult
 from ..words.report_text import as_text
 from .common import hindrance, required_armature
 from .live import live
-from .session import Asked, Best, session
+from .session import Asked, session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered, take_best
 
@@ -68,7 +68,7 @@ class _Adapting(TaskOperator):
             live().clear()  # a drag's ghost stays until there is something better, or nothing
         session().best = None
         if answer.fault is not None and answer.fault.reason is not Status.STOPPED:
-            session().best = Best(asked, answer)
+            session().best = (asked, answer)
             raise answer.fault
         return (yield from write_answer(asked, answer))
 
@@ -133,8 +133,7 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
         return {"FINISHED"} if take_best() else super().invoke(context, event)
 
     def task(self, _context: bpy.types.Context) -> Task:
-        best = present(session().best)
-        done = yield from write_answer(best.asked, best.answer)
+        done = yield from write_answer(*present(session().best))
         session().best = None
         return done
 

@@ -29,9 +29,6 @@ class Bar:
     is_phase: bool = False
     firm: bool = False  # a phase that has no edges of its own: a flight
 
-    def frame(self, edge: Edge) -> float:
-        return self.start if edge is Edge.START else self.end
-
 
 @dataclass(frozen=True)
 class Row:

@@ -8,38 +8,33 @@ from ...bridge.properties.settings import settings_of
 from ...bridge.rows.choices import BodyKind
 from ...bridge.rows.kind import Row
 from ...operators.lists.row_lists import RowList
-from ...operators.names import ListId, MenuId, OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from .constraint_fields import draw_bone, draw_bones, draw_constraint
-from .lists import MET_ICONS
-from .sidebar import ArmaturePanel, optional, settings_in, split
+from .constraint_menus import AddBodyChangeMenu, AddConstraintMenu, ConstraintMoreMenu
+from .lists import MET_ICONS, BodyChangeList, ConstraintList
+from .sidebar import ArmaturePanel, draw_list, optional, settings_in, split
 
 
 class ConstraintsPanel(ArmaturePanel):
-    bl_idname = PanelId.CONSTRAINTS
+    bl_idname = "HANGTIME_PT_constraints"
     bl_label = "Constraints"
     bl_order = 3
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        settings = settings_in(context)
-        row = layout.row()
-        row.template_list(
-            ListId.CONSTRAINTS, "", settings, "constraints", settings, "active_constraint", rows=5
-        )
-        side = row.column(align=True)
-        side.menu(MenuId.ADD_CONSTRAINT, text="", icon="ADD")
+        side = draw_list(present(self.layout), ConstraintList, settings_in(context), "constraints")
+        side.menu(AddConstraintMenu.bl_idname, text="", icon="ADD")
         side.operator(OperatorId.REMOVE_CONSTRAINT, text="", icon="REMOVE")
         side.separator()
-        side.menu(MenuId.CONSTRAINT_MORE, text="", icon="DOWNARROW_HLT")
+        side.menu(ConstraintMoreMenu.bl_idname, text="", icon="DOWNARROW_HLT")
         side.separator()
         side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_UP").direction = "UP"
         side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_DOWN").direction = "DOWN"
 
 
 class ConstraintPanel(ArmaturePanel):
-    bl_idname = PanelId.CONSTRAINT
-    bl_parent_id = PanelId.CONSTRAINTS
+    bl_idname = "HANGTIME_PT_constraint"
+    bl_parent_id = ConstraintsPanel.bl_idname
     bl_label = ""
 
     @classmethod
@@ -64,7 +59,7 @@ class ConstraintPanel(ArmaturePanel):
 
 
 class BodyChangesPanel(ArmaturePanel):
-    bl_idname = PanelId.BODY_CHANGES
+    bl_idname = "HANGTIME_PT_body_changes"
     bl_label = "Body Changes"
     bl_order = 4
     bl_options = {"DEFAULT_CLOSED"}
@@ -78,19 +73,8 @@ class BodyChangesPanel(ArmaturePanel):
         hint = layout.row()
         hint.active, hint.alignment = False, "RIGHT"
         hint.label(text="Moon 1.62, Mars 3.73")
-        row = layout.row()
-        row.use_property_split = False
-        row.template_list(
-            ListId.BODY_CHANGES,
-            "",
-            settings,
-            "body_changes",
-            settings,
-            "active_body_change",
-            rows=3,
-        )
-        side = row.column(align=True)
-        side.menu(MenuId.ADD_BODY_CHANGE, text="", icon="ADD")
+        side = draw_list(layout, BodyChangeList, settings, "body_changes", rows=3)
+        side.menu(AddBodyChangeMenu.bl_idname, text="", icon="ADD")
         side.operator(OperatorId.REMOVE_BODY_CHANGE, text="", icon="REMOVE")
         if RowList.BODY_CHANGES.chosen(settings) >= 0:
             _draw_body_change(layout, armature)

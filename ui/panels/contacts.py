@@ -5,13 +5,14 @@ import bpy
 from ...bridge.accessors import present
 from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import active_contact, active_stance
-from ...operators.names import ListId, OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .sidebar import ArmaturePanel, settings_in, split
+from .lists import ContactList
+from .sidebar import ArmaturePanel, draw_list, settings_in, split
 
 
 class ContactsPanel(ArmaturePanel):
-    bl_idname = PanelId.CONTACTS
+    bl_idname = "HANGTIME_PT_contacts"
     bl_label = "Contacts"
     bl_order = 2
 
@@ -21,19 +22,15 @@ class ContactsPanel(ArmaturePanel):
         if not settings.contacts:
             layout.label(text="Press Analyze to find them", icon="INFO")
             return
-        row = layout.row()
-        row.template_list(
-            ListId.CONTACTS, "", settings, "contacts", settings, "active_contact", rows=5
-        )
-        side = row.column(align=True)
+        side = draw_list(layout, ContactList, settings, "contacts")
         side.operator(OperatorId.ADD_CONTACT, text="", icon="ADD")
         side.operator(OperatorId.REMOVE_CONTACT, text="", icon="REMOVE")
         layout.prop(settings, "whole_stance")
 
 
 class StancePanel(ArmaturePanel):
-    bl_idname = PanelId.STANCE
-    bl_parent_id = PanelId.CONTACTS
+    bl_idname = "HANGTIME_PT_stance"
+    bl_parent_id = ContactsPanel.bl_idname
     bl_label = ""
 
     @classmethod
@@ -56,8 +53,8 @@ class StancePanel(ArmaturePanel):
 
 
 class ContactPanel(ArmaturePanel):
-    bl_idname = PanelId.CONTACT
-    bl_parent_id = PanelId.CONTACTS
+    bl_idname = "HANGTIME_PT_contact"
+    bl_parent_id = ContactsPanel.bl_idname
     bl_label = ""
     bl_options = {"DEFAULT_CLOSED"}
 

@@ -5,7 +5,7 @@ import bpy
 from ...bridge.accessors import armature_data, present
 from ...bridge.properties.settings import scene_settings
 from ...bridge.properties.view import HangtimeView
-from ...operators.names import OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from .sidebar import SidebarPanel, split
 
@@ -17,7 +17,7 @@ _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
 
 class DisplayPanel(SidebarPanel):
-    bl_idname = PanelId.DISPLAY
+    bl_idname = "HANGTIME_PT_display"
     bl_label = "Display"
     bl_order = 8
     bl_options = {"DEFAULT_CLOSED"}

@@ -8,7 +8,6 @@ from ...bridge.constraints.linked_rows import linked_count
 from ...bridge.properties.settings import HangtimeContact, HangtimeSettings
 from ...bridge.rows.choices import BodyKind, Met
 from ...bridge.rows.kind import Icon, Row
-from ...operators.names import ListId
 from ..drawing.editor import ui_scale
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
@@ -68,7 +67,7 @@ class _RowList(bpy.types.UIList):
 
 
 class ConstraintList(_RowList):
-    bl_idname = ListId.CONSTRAINTS
+    bl_idname = "HANGTIME_UL_constraints"
     rows = "constraints"
 
     def told(self, row: Row) -> str:
@@ -76,7 +75,7 @@ class ConstraintList(_RowList):
 
 
 class BodyChangeList(_RowList):
-    bl_idname = ListId.BODY_CHANGES
+    bl_idname = "HANGTIME_UL_body_changes"
     rows = "body_changes"
 
     def told(self, row: Row) -> str:
@@ -86,7 +85,7 @@ class BodyChangeList(_RowList):
 
 
 class ContactList(bpy.types.UIList):
-    bl_idname = ListId.CONTACTS
+    bl_idname = "HANGTIME_UL_contacts"
 
     def draw_item(
         self,

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 import bpy
 
 from ...bridge.accessors import present
-from ...operators.names import MenuId, OperatorId
+from ...operators.names import OperatorId
 
 GROUPS = (
     (OperatorId.FIND_BONES, OperatorId.ANALYZE, OperatorId.FIT),
@@ -24,7 +24,7 @@ GROUPS = (
 
 
 class HangtimeMenu(bpy.types.Menu):
-    bl_idname = MenuId.HANGTIME
+    bl_idname = "HANGTIME_MT_hangtime"
     bl_label = "Hangtime"
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -45,4 +45,4 @@ def add(undo: ExitStack) -> None:
 def _draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     layout = present(menu.layout)
     layout.separator()
-    layout.menu(MenuId.HANGTIME)
+    layout.menu(HangtimeMenu.bl_idname)

@@ -5,13 +5,13 @@ import bpy
 from ...bridge.accessors import armature_data, present
 from ...bridge.armature.actions import recorded_action
 from ...bridge.properties.settings import scene_settings, settings_of
-from ...operators.names import OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from .sidebar import ArmaturePanel, SidebarPanel, lines, optional, settings_in, split
 
 
 class CharacterPanel(SidebarPanel):
-    bl_idname = PanelId.CHARACTER
+    bl_idname = "HANGTIME_PT_character"
     bl_label = "Character"
     bl_order = 0
 
@@ -30,8 +30,8 @@ class CharacterPanel(SidebarPanel):
 
 
 class BonesPanel(ArmaturePanel):
-    bl_idname = PanelId.BONES
-    bl_parent_id = PanelId.CHARACTER
+    bl_idname = "HANGTIME_PT_bones"
+    bl_parent_id = CharacterPanel.bl_idname
     bl_label = "Bones"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -55,7 +55,7 @@ class BonesPanel(ArmaturePanel):
 
 
 class RecordingPanel(ArmaturePanel):
-    bl_idname = PanelId.RECORDING
+    bl_idname = "HANGTIME_PT_recording"
     bl_label = "Recording"
     bl_order = 1
 

@@ -60,3 +60,18 @@ def lines(layout: bpy.types.UILayout, text: str, icon: Icon = "NONE") -> None:
     column.scale_y = 0.8
     for index, line in enumerate(text.splitlines()):
         column.label(text=line, icon=icon if index == 0 or icon == "NONE" else "BLANK1")
+
+
+def draw_list(
+    layout: bpy.types.UILayout,
+    kind: type[bpy.types.UIList],
+    settings: HangtimeSettings,
+    name: str,
+    rows: int = 5,
+) -> bpy.types.UILayout:
+    """A list of the settings' collection of this name; returns the column of buttons beside it."""
+    line = layout.row()
+    line.use_property_split = False
+    active = f"active_{name.removesuffix('s')}"
+    line.template_list(kind.bl_idname, "", settings, name, settings, active, rows=rows)
+    return line.column(align=True)
