@@ -1,7 +1,5 @@
 """Aim Cone: where a cone about a limb points, by the handle on its axis."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
@@ -13,10 +11,9 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
 from . import rays
+from .drag_state import ANGLE_STEP, PinDrag
 from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import Pixel, pixel, ray_at
-from .pin_state import PinDrag
-from .value_state import ANGLE_STEP
 
 
 class AimConeOperator(LimitDrag, bpy.types.Operator):
@@ -79,6 +76,3 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
     def _aim(self, context: bpy.types.Context, at: Pixel) -> rays.Vector | None:
         """On the plane through the tip that faces the viewer."""
         return rays.on_plane(ray_at(context, at), self.tip, self._sight)
-
-
-CLASSES = (AimConeOperator,)

@@ -1,7 +1,5 @@
 """Modal drag of contacts and points: the motion follows as a ghost; letting go adapts."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import bpy
@@ -14,9 +12,9 @@ from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
-from ..operator_types import OperatorMixin, OperatorResult
-from ..solve.adapt import NOT_ANALYSED, ask_for
-from ..solve.common import hindrance, required_armature, said
+from ..operator_types import OperatorResult, PolledOperator
+from ..solve.adapt import ask_for, unanalysed
+from ..solve.common import required_armature, said
 from ..solve.live import live, redraw_viewports
 from ..solve.session import session
 from ..solve.task import LOOK_EVERY
@@ -28,7 +26,7 @@ LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 
 
-class FollowedDrag(OperatorMixin):
+class FollowedDrag(PolledOperator):
     """Mixin of modal operators that drag contacts or points in a 3D viewport."""
 
     release_confirm: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
@@ -38,13 +36,8 @@ class FollowedDrag(OperatorMixin):
     key_hints = ""  # what the header says of keys
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = hindrance(context)
-        if why is None and not settings_of(required_armature(context)).contacts:
-            why = NOT_ANALYSED
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return unanalysed(context)
 
     # -- what is dragged -----------------------------------------------------------------------
 

@@ -3,14 +3,12 @@
 The handles (ui/gizmos) say where a limit is drawn; what the mouse does there is the same for all.
 """
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.settings import settings_of
-from ..operator_types import OperatorMixin, OperatorResult
+from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import EDIT_MODE, chosen_armature, required_armature
 from ..solve.live import redraw_viewports
 from .mouse import Press
@@ -21,7 +19,7 @@ BY_HANDLES = "Drag the limit's handles in a 3D viewport"
 CONFIRM, BACK = {"RET", "NUMPAD_ENTER"}, {"ESC", "RIGHTMOUSE"}
 
 
-class LimitDrag(OperatorMixin):
+class LimitDrag(PolledOperator):
     """Mixin of modal operators that change a limit of a joint."""
 
     constraint: bpy.props.IntProperty(
@@ -32,16 +30,11 @@ class LimitDrag(OperatorMixin):
     )
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
         armature = chosen_armature(context)
-        why = None
         if armature is None or not len(settings_of(armature).constraints):
-            why = NO_LIMIT
-        elif armature.mode == "EDIT":
-            why = EDIT_MODE
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+            return NO_LIMIT
+        return EDIT_MODE if armature.mode == "EDIT" else None
 
     # -- what is dragged -----------------------------------------------------------------------
 

@@ -1,7 +1,5 @@
 """Drag Joint Limit: an end of a joint's limit, or how wide a cone is, by its handle."""
 
-from __future__ import annotations
-
 from math import degrees, radians
 
 import bpy
@@ -11,10 +9,10 @@ from ...bridge.properties.constraint import HangtimeConstraint
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
+from .drag_state import ANGLE_STEP, ValueDrag
 from .limit_mixin import NO_LIMIT, LimitDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about, scaled
-from .value_state import ANGLE_STEP, ValueDrag
 
 END_LABELS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
 
@@ -95,6 +93,3 @@ def bounds(row: HangtimeConstraint, end: str) -> tuple[float, float]:
     if end == "upper" and row.use_lower:
         low = max(low, row.lower)
     return low, high
-
-
-CLASSES = (DragLimitOperator,)

@@ -1,7 +1,5 @@
 """Drag Pin: a contact's or a point's place by the mouse, while the motion follows as a ghost."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Vector
@@ -15,9 +13,9 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
 from . import rays
+from .drag_state import Axis, PinDrag
 from .follow_mixin import FollowedDrag
 from .mouse import Pixel, pixel, pixel_of, ray_at
-from .pin_state import Axis, PinDrag
 
 FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
 FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon
@@ -190,6 +188,3 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             distance = rays.along_line(ray, start, axis)
             return start + distance * axis if distance is not None else None
         return rays.on_plane(ray, start, self._normal.to_tuple(), FARTHEST)
-
-
-CLASSES = (DragPinOperator,)

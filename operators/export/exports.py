@@ -1,7 +1,6 @@
 """Export: the accepted action alone, as FBX or glTF."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -23,17 +22,16 @@ class _Export(FaultyOperator):
     """Mixin: asks for a file, and writes the accepted action to it."""
 
     extension = ""
+    write: Callable[[bpy.types.Object, bpy.types.Action, str], None]
 
     filepath: bpy.props.StringProperty(subtype="FILE_PATH")
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
         result = result_of(chosen_armature(context))
-        if result is None or not action_settings(result).accepted:
-            cls.poll_message_set(NOT_ACCEPTED)
-            return False
-        return True
+        accepted = result is not None and action_settings(result).accepted
+        return None if accepted else NOT_ACCEPTED
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
@@ -51,21 +49,15 @@ class _Export(FaultyOperator):
         self.report({"INFO"}, f"Exported {Path(path).name}")
         return {"FINISHED"}
 
-    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
-        """Writes the file. Raises OutputNotWritable."""
-        raise NotImplementedError
-
 
 class ExportFbxOperator(_Export, bpy.types.Operator):
     bl_idname = OperatorId.EXPORT_FBX
     bl_label = "Export FBX"
     bl_description = "Write the armature with the accepted action, a key on every frame, as FBX"
     extension = ".fbx"
+    write = staticmethod(export_fbx)
 
     filter_glob: bpy.props.StringProperty(default="*.fbx", options={"HIDDEN"})
-
-    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
-        export_fbx(armature, action, path)
 
 
 class ExportGltfOperator(_Export, bpy.types.Operator):
@@ -73,11 +65,6 @@ class ExportGltfOperator(_Export, bpy.types.Operator):
     bl_label = "Export glTF"
     bl_description = "Write the armature with the accepted action as one binary glTF file"
     extension = ".glb"
+    write = staticmethod(export_gltf)
 
     filter_glob: bpy.props.StringProperty(default="*.glb", options={"HIDDEN"})
-
-    def write(self, armature: bpy.types.Object, action: bpy.types.Action, path: str) -> None:
-        export_gltf(armature, action, path)
-
-
-CLASSES = (ExportFbxOperator, ExportGltfOperator)

@@ -1,7 +1,5 @@
 """Save Plots: the plotted curves as a table that spreadsheets and scripts read."""
 
-from __future__ import annotations
-
 import csv
 from io import StringIO
 from pathlib import Path
@@ -33,12 +31,9 @@ class SavePlotsOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  # ty
     filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
         armature = chosen_armature(context)
-        possible = armature is not None and bool(kept_takes(armature))
-        if not possible:
-            cls.poll_message_set(NOTHING_TO_PLOT)
-        return possible
+        return NOTHING_TO_PLOT if armature is None or not kept_takes(armature) else None
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:  # type: ignore[override]
         if not self.filepath:  # type: ignore[has-type]
@@ -63,6 +58,3 @@ def _csv(headings: list[str], lines: list[list[float | None]]) -> str:
     for line in lines:
         writer.writerow("" if v is None else f"{v:.{DIGITS}g}" for v in line)
     return text.getvalue()
-
-
-CLASSES = (SavePlotsOperator,)

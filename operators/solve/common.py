@@ -1,14 +1,12 @@
 """The operators' common base: target armature, preconditions, fault reporting."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.properties.settings import scene_settings
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
-from ..operator_types import OperatorMixin, OperatorResult
+from ..operator_types import OperatorResult, PolledOperator
 from ..words.wording import sentence
 from .session import session
 
@@ -55,7 +53,7 @@ def said(fault: Fault) -> str:
     return sentence(fault, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
 
 
-class FaultyOperator(OperatorMixin):
+class FaultyOperator(PolledOperator):
     """Mixin: `run` may raise what an artist can mend; that is reported, and nothing finished."""
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:

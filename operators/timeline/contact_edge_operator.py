@@ -1,15 +1,14 @@
 """Drag Contact Edge: retimes a contact or a phase by its bar in the timeline."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.rows.phases import carried, clip_ends, phases
 from ..names import OperatorId
-from ..operator_types import OperatorResult
+from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import chosen_armature, required_armature
+from ..solve.live import redraw
 from .contact_bars import Grip
 from .contact_edge_state import Edge, EdgeDrag, Touch, contact_drag, phase_drag
 from .timeline_bars import bars_in, frames_axis
@@ -20,10 +19,20 @@ FIELDS = {Edge.START: "start_frame", Edge.END: "end_frame"}
 VERBS = {Edge.START: "starts", Edge.END: "ends"}
 GIVES_UP = {"ESC", "RIGHTMOUSE"}
 MOVES = {"MOUSEMOVE", "LEFT_CTRL", "RIGHT_CTRL", "LEFT_SHIFT", "RIGHT_SHIFT"}
-EDITORS = {"DOPESHEET_EDITOR", "VIEW_3D"}  # in which contacts are seen
+EDITORS = ("DOPESHEET_EDITOR", "VIEW_3D")  # in which contacts are seen
 
 
-class DragContactEdgeOperator(bpy.types.Operator):
+class _OfKnownContacts(PolledOperator):
+    """Mixin: needs contacts."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        armature = chosen_armature(context)
+        known = armature is not None and len(settings_of(armature).contacts) > 0
+        return None if known else NOTHING_TO_RETIME
+
+
+class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
     bl_idname = OperatorId.DRAG_CONTACT_EDGE
     bl_label = "Drag Contact Edge"
     bl_description = (
@@ -38,10 +47,6 @@ class DragContactEdgeOperator(bpy.types.Operator):
         name="Edge", description="Which end moves", items=[(e.name, e.value, "") for e in Edge]
     )
     frame: bpy.props.FloatProperty(name="Frame", description="Where the end goes")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return contacts_known(cls, context)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = settings_of(required_armature(context))
@@ -125,27 +130,23 @@ class DragContactEdgeOperator(bpy.types.Operator):
         drag = self._drag
         text = f"{self.contact} {VERBS[drag.edge]} at frame {drag.frame:g} ({drag.change:+.3g})"
         present(context.area).header_text_set(f"{text}    Ctrl: tenths of a frame    Esc: cancel")
-        redraw(context)
+        redraw(*EDITORS)
 
     def _end(self, context: bpy.types.Context) -> None:
         if context.window is not None:
             context.window.cursor_modal_restore()
-            redraw(context)
+            redraw(*EDITORS)
         if context.area is not None:
             context.area.header_text_set(None)
 
 
-class PickContactOperator(bpy.types.Operator):
+class PickContactOperator(_OfKnownContacts, bpy.types.Operator):
     bl_idname = OperatorId.PICK_CONTACT
     bl_label = "Pick Contact"
     bl_description = "Choose a contact in the list by its bar in the timeline"
     bl_options = {"UNDO"}
 
     contact: bpy.props.StringProperty(name="Contact", description="Name of the contact")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return contacts_known(cls, context)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = settings_of(required_armature(context))
@@ -154,7 +155,7 @@ class PickContactOperator(bpy.types.Operator):
             self.report({"ERROR"}, f"There is no contact called “{self.contact}”")
             return {"CANCELLED"}
         settings.active_contact = index
-        redraw(context)
+        redraw(*EDITORS)
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
@@ -166,15 +167,6 @@ class PickContactOperator(bpy.types.Operator):
             return {"PASS_THROUGH"}
         self.contact = bar.name
         return self.execute(context) | {"PASS_THROUGH"}
-
-
-def contacts_known(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Poll: true if the armature has contacts; else says what to do."""
-    armature = chosen_armature(context)
-    known = armature is not None and len(settings_of(armature).contacts) > 0
-    if not known:
-        operator.poll_message_set(NOTHING_TO_RETIME)
-    return known
 
 
 def drag_of(settings: HangtimeSettings, name: str, edge: Edge) -> EdgeDrag | None:
@@ -199,14 +191,3 @@ def write(settings: HangtimeSettings, edge: Edge, frames: dict[str, float]) -> N
         row = settings.contacts.get(name)
         if row is not None and getattr(row, FIELDS[edge]) != frame:
             setattr(row, FIELDS[edge], frame)
-
-
-def redraw(context: bpy.types.Context) -> None:
-    """Everywhere contacts are seen."""
-    for window in present(context.window_manager).windows:
-        for area in window.screen.areas:
-            if area.type in EDITORS:
-                area.tag_redraw()
-
-
-CLASSES = (DragContactEdgeOperator, PickContactOperator)

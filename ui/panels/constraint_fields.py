@@ -1,7 +1,5 @@
 """The fields of a constraint, drawn in the sidebar; its kind says which."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import bpy
@@ -10,6 +8,7 @@ from ...bridge.constraint_kinds import KINDS
 from ...bridge.rows.choices import Span
 from ...bridge.rows.kind import Row
 from ...operators.names import OperatorId
+from .sidebar import optional
 
 Layout = bpy.types.UILayout
 
@@ -50,11 +49,7 @@ class RowDrawing:
             column.prop(self.row, "first_frame", text="Frame")
 
     def optional(self, layout: Layout, use: str, value: str, heading: str) -> None:
-        line = layout.row(heading=heading)
-        line.prop(self.row, use, text="")
-        field = line.row()
-        field.active = getattr(self.row, use)
-        field.prop(self.row, value, text="")
+        optional(layout, self.row, use, heading, value)
 
     def place_button(self, layout: Layout) -> None:
         layout.operator(OperatorId.PLACE_CONSTRAINT, icon="CON_LOCLIKE")

@@ -1,19 +1,17 @@
 """The menus of the lists: kinds to add, presets, and what else can be done with a row."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
 from ...bridge.rows.choices import BodyKind
 from ...bridge.rows.kind import Icon, MenuGroup
-from ...operators.names import MenuId, OperatorId
-from .constraint_lists import ICONS
+from ...operators.names import OperatorId
+from .lists import ICONS
 
 
 class AddConstraintMenu(bpy.types.Menu):
-    bl_idname = MenuId.ADD_CONSTRAINT
+    bl_idname = "HANGTIME_MT_add_constraint"
     bl_label = "Add Constraint"
     bl_description = "Add a constraint about the selected pose bones and the current frame"
 
@@ -24,11 +22,11 @@ class AddConstraintMenu(bpy.types.Menu):
                 entry = layout.operator(OperatorId.ADD_CONSTRAINT, text=kind.label, icon=kind.icon)
                 entry.kind = kind.name
             layout.separator()
-        layout.menu(MenuId.PRESETS, icon="PRESET")
+        layout.menu(PresetsMenu.bl_idname, icon="PRESET")
 
 
 class PresetsMenu(bpy.types.Menu):
-    bl_idname = MenuId.PRESETS
+    bl_idname = "HANGTIME_MT_presets"
     bl_label = "Add Preset"
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -42,7 +40,7 @@ class PresetsMenu(bpy.types.Menu):
 
 
 class ConstraintMoreMenu(bpy.types.Menu):
-    bl_idname = MenuId.CONSTRAINT_MORE
+    bl_idname = "HANGTIME_MT_constraint_more"
     bl_label = "Constraint Specials"
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -59,11 +57,11 @@ class ConstraintMoreMenu(bpy.types.Menu):
         for to, text, icon in ranges:
             layout.operator(OperatorId.SET_CONSTRAINT_RANGE, text=text, icon=icon).to = to
         layout.separator()
-        layout.menu(MenuId.PRESETS, icon="PRESET")
+        layout.menu(PresetsMenu.bl_idname, icon="PRESET")
 
 
 class AddBodyChangeMenu(bpy.types.Menu):
-    bl_idname = MenuId.ADD_BODY_CHANGE
+    bl_idname = "HANGTIME_MT_add_body_change"
     bl_label = "Add Body Change"
     bl_description = "Add a weight or a limb of the selected pose bones"
 
@@ -73,6 +71,3 @@ class AddBodyChangeMenu(bpy.types.Menu):
                 OperatorId.ADD_BODY_CHANGE, text=kind.value, icon=ICONS[kind.name]
             )
             entry.kind = kind.name
-
-
-CLASSES = (AddConstraintMenu, PresetsMenu, ConstraintMoreMenu, AddBodyChangeMenu)

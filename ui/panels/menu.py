@@ -1,13 +1,11 @@
 """The menu *Hangtime* in the 3D viewport's Object and Pose menus: F3 finds what is in a menu."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy
 
 from ...bridge.accessors import present
-from ...operators.names import MenuId, OperatorId
+from ...operators.names import OperatorId
 
 GROUPS = (
     (OperatorId.FIND_BONES, OperatorId.ANALYZE, OperatorId.FIT),
@@ -26,7 +24,7 @@ GROUPS = (
 
 
 class HangtimeMenu(bpy.types.Menu):
-    bl_idname = MenuId.HANGTIME
+    bl_idname = "HANGTIME_MT_hangtime"
     bl_label = "Hangtime"
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -47,7 +45,4 @@ def add(undo: ExitStack) -> None:
 def _draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     layout = present(menu.layout)
     layout.separator()
-    layout.menu(MenuId.HANGTIME)
-
-
-CLASSES = (HangtimeMenu,)
+    layout.menu(HangtimeMenu.bl_idname)

@@ -1,7 +1,5 @@
 """Contacts' and phases' bars as a drawing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...bridge.plots.screen import Array, Rect

@@ -1,7 +1,5 @@
 """The bars' draw handler, and the mouse's way to their edges."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy

@@ -1,7 +1,5 @@
 """Limits of joints as shapes, in the armature's space."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
