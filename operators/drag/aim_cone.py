@@ -13,7 +13,7 @@ from ..solve.common import required_armature
 from . import rays
 from .drag_state import ANGLE_STEP, PinDrag
 from .limit_mixin import NO_LIMIT, LimitDrag
-from .mouse import Pixel, pixel, ray_at
+from .mouse import GIVEN, Pixel, pixel, ray_at
 
 
 class AimConeOperator(LimitDrag, bpy.types.Operator):
@@ -23,13 +23,13 @@ class AimConeOperator(LimitDrag, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "INTERNAL"}
 
     tip: bpy.props.FloatVectorProperty(
-        description="A point on the cone's axis, world", options={"HIDDEN", "SKIP_SAVE"}
+        description="A point on the cone's axis, world", options=GIVEN
     )
     turn: bpy.props.FloatVectorProperty(
         description="From directions in the world now to the constraint's axis",
         size=(3, 3),
         subtype="MATRIX",
-        options={"HIDDEN", "SKIP_SAVE"},
+        options=GIVEN,
     )
     axis: bpy.props.FloatVectorProperty(name="Axis", subtype="DIRECTION", default=(0.0, 0.0, -1.0))
 

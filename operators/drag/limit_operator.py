@@ -11,7 +11,7 @@ from ..operator_types import OperatorResult
 from ..solve.common import required_armature
 from .drag_state import ANGLE_STEP, ValueDrag
 from .limit_mixin import NO_LIMIT, LimitDrag
-from .mouse import pixel, ray_at
+from .mouse import GIVEN, pixel, ray_at
 from .rays import Circle, angle_about, scaled
 
 END_LABELS = {"lower": "At least", "upper": "At most", "half_angle": "Half angle"}
@@ -26,19 +26,15 @@ class DragLimitOperator(LimitDrag, bpy.types.Operator):
     end: bpy.props.EnumProperty(
         name="End",
         items=[("lower", "At Least", ""), ("upper", "At Most", ""), ("half_angle", "Cone", "")],
-        options={"HIDDEN", "SKIP_SAVE"},
+        options=GIVEN,
     )
     zero: bpy.props.FloatVectorProperty(
-        description="Where the angle is zero, unit vector, world", options={"HIDDEN", "SKIP_SAVE"}
+        description="Where the angle is zero, unit vector, world", options=GIVEN
     )
-    ahead: bpy.props.FloatVectorProperty(
-        description="Where it is a right angle", options={"HIDDEN", "SKIP_SAVE"}
-    )
-    radius: bpy.props.FloatProperty(default=1.0, options={"HIDDEN", "SKIP_SAVE"})
+    ahead: bpy.props.FloatVectorProperty(description="Where it is a right angle", options=GIVEN)
+    radius: bpy.props.FloatProperty(default=1.0, options=GIVEN)
     narrow: bpy.props.FloatProperty(
-        description="How much narrower a stretched cone is there",
-        default=1.0,
-        options={"HIDDEN", "SKIP_SAVE"},
+        description="How much narrower a stretched cone is there", default=1.0, options=GIVEN
     )
     angle: bpy.props.FloatProperty(name="Angle", subtype="ANGLE")
 

@@ -171,8 +171,7 @@ class PickContactOperator(_OfKnownContacts, bpy.types.Operator):
 
 def drag_of(settings: HangtimeSettings, name: str, edge: Edge) -> EdgeDrag | None:
     """Of the edge of a contact that counts or of a ground phase; None where there is none such."""
-    clip = clip_ends(settings)
-    assert clip is not None
+    clip = present(clip_ends(settings))
     touches = [
         Touch(row.name, row.point, row.start_frame, row.end_frame)
         for row in settings.contacts

@@ -1,7 +1,5 @@
 """A cache of the whole picture by its content, and of its layers by theirs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,18 +23,14 @@ class OverlayPicture(Generic[T]):
     labels: tuple[Label, ...]
 
 
-@dataclass(frozen=True)
-class BuiltLayer:
-    """A layer's shapes and labels, in its own space."""
+BuiltLayer = tuple[tuple[Shape, ...], tuple[Label, ...]]
 
-    shapes: tuple[Shape, ...]
-    labels: tuple[Label, ...]
 
-    @staticmethod
-    def of(layer: Layer) -> BuiltLayer:
-        parts = list(layer.build())
-        shapes = merged(part for part in parts if isinstance(part, Shape))
-        return BuiltLayer(shapes, tuple(part for part in parts if isinstance(part, Label)))
+def build(layer: Layer) -> BuiltLayer:
+    """A layer's shapes, one for each look, and its labels, in its own space."""
+    parts = list(layer.build())
+    shapes = merged(part for part in parts if isinstance(part, Shape))
+    return shapes, tuple(part for part in parts if isinstance(part, Label))
 
 
 class PictureCache(Generic[T]):
@@ -59,11 +53,8 @@ class PictureCache(Generic[T]):
     def _picture(self, layers: Sequence[Layer]) -> OverlayPicture[T]:
         shapes, labels = [], []
         for layer in layers:
-            built = self._layers.get(layer.part, layer.content, partial(BuiltLayer.of, layer))
+            made, named = self._layers.get(layer.part, layer.content, partial(build, layer))
             matrix = np.array(layer.matrix.copy())  # numpy cannot look into frozen ones
-            shapes += [placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in built.shapes]
-            labels += [
-                replace(label, place=xyz(layer.matrix @ Vector(label.place)))
-                for label in built.labels
-            ]
+            shapes += [placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in made]
+            labels += [replace(n, place=xyz(layer.matrix @ Vector(n.place))) for n in named]
         return OverlayPicture(self._upload(merged(shapes)), tuple(labels))
