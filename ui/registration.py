@@ -11,7 +11,7 @@ from ..bridge import worker_client
 from ..bridge.accessors import ATTRIBUTE, present
 from ..bridge.properties import settings, stances
 from ..operators import names
-from ..operators.drag import aim_cone, limit_operator, pin_operator, turn_stance
+from ..operators.drag import limit_operator, pin_operator, turn_stance
 from ..operators.export import exports
 from ..operators.lists import body_changes, constraints, contacts, presets
 from ..operators.solve import adapt, analyze, results, session
@@ -28,7 +28,7 @@ from .timeline import handler as timeline
 # A panel comes after the one that it is part of.
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, presets, results, exports),
-    *(pin_operator, turn_stance, limit_operator, aim_cone, contact_edge_operator),
+    *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
     *(lists, menu, constraint_menus, setup, contact_panels, constraint_panels, solve, display),
     *(pin_handles, limit_handles),
 )

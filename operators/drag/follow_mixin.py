@@ -74,8 +74,7 @@ class FollowedDrag(PolledOperator):
         self._press = Press.of(context, event, click=self.release_confirm)
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
-            self.report({"ERROR"}, why)
-            return {"CANCELLED"}
+            return self.refuse(why)
         self._moved, self._share = True, 0.0
         self._fault = self._shown = ""
         self._task = self._follow(context)

@@ -62,8 +62,7 @@ class LimitDrag(PolledOperator):
         self._press = Press.of(context, event, click=True)
         row = self.find_row()
         if row is None or context.region_data is None or not self.take(context):
-            self.report({"ERROR"}, NO_LIMIT if row is None else BY_HANDLES)
-            return {"CANCELLED"}
+            return self.refuse(NO_LIMIT if row is None else BY_HANDLES)
         self._found = (row.met, row.status)
         self._area = present(context.area)
         present(context.window_manager).modal_handler_add(self)

@@ -65,8 +65,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         """In scripts and for redo: the pin moves by `shift`."""
         self._armature = required_armature(context)
         if self._find_row() is None:
-            self.report({"ERROR"}, NO_PIN)
-            return {"CANCELLED"}
+            return self.refuse(NO_PIN)
         self._put(Vector(self._place) + Vector(self.shift))
         return {"FINISHED"}
 
