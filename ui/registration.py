@@ -19,9 +19,9 @@ from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
-from .panels import constraint_menus, display, lists, menu, setup, solve
 from .panels import constraints as constraint_panels
 from .panels import contacts as contact_panels
+from .panels import display, lists, menus, setup, solve
 from .plots import handler as plots
 from .timeline import handler as timeline
 
@@ -29,7 +29,7 @@ from .timeline import handler as timeline
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, presets, results, exports),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
-    *(lists, menu, constraint_menus, setup, contact_panels, constraint_panels, solve, display),
+    *(lists, menus, setup, contact_panels, constraint_panels, solve, display),
     *(pin_handles, limit_handles),
 )
 
@@ -67,7 +67,7 @@ def register() -> Callable[[], None]:
         # Keys are pairs, whatever the stubs say.
         bpy.app.translations.register(__package__, TRANSLATIONS)  # type: ignore[arg-type]
         undo.callback(bpy.app.translations.unregister, __package__)
-        menu.add(undo)
+        menus.add(undo)
         overlay.add(undo)
         plots.add(undo)
         timeline.add(undo)

@@ -1,7 +1,7 @@
 """A cache of the whole picture by its content, and of its layers by theirs."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Generic, TypeVar
 
@@ -13,14 +13,6 @@ from .context.layer import Layer, xyz
 from .geometry.shapes import Label, Shape, merged, placed
 
 T = TypeVar("T")
-
-
-@dataclass(frozen=True)
-class OverlayPicture(Generic[T]):
-    """batches: the shapes, as `upload` made them. labels: in the world."""
-
-    batches: T
-    labels: tuple[Label, ...]
 
 
 BuiltLayer = tuple[tuple[Shape, ...], tuple[Label, ...]]
@@ -39,10 +31,13 @@ class PictureCache(Generic[T]):
     def __init__(self, upload: Callable[[Sequence[Shape]], T]) -> None:
         self._upload = upload
         self._layers: ContentCache[BuiltLayer] = ContentCache()
-        self._pictures: ContentCache[OverlayPicture[T]] = ContentCache()
+        self._pictures: ContentCache[tuple[T, tuple[Label, ...]]] = ContentCache()
 
-    def of(self, layers: Sequence[Layer]) -> OverlayPicture[T]:
-        """Layers in one picture: few and large things are drawn sooner than many small ones."""
+    def of(self, layers: Sequence[Layer]) -> tuple[T, tuple[Label, ...]]:
+        """Layers in one picture: its shapes as uploaded, and the labels in the world.
+
+        Few and large things are drawn sooner than many small ones.
+        """
         content = tuple((layer.part, layer.content, layer.matrix) for layer in layers)
         return self._pictures.get("picture", content, lambda: self._picture(layers))
 
@@ -50,11 +45,11 @@ class PictureCache(Generic[T]):
         self._layers.clear()
         self._pictures.clear()
 
-    def _picture(self, layers: Sequence[Layer]) -> OverlayPicture[T]:
+    def _picture(self, layers: Sequence[Layer]) -> tuple[T, tuple[Label, ...]]:
         shapes, labels = [], []
         for layer in layers:
             made, named = self._layers.get(layer.part, layer.content, partial(build, layer))
             matrix = np.array(layer.matrix.copy())  # numpy cannot look into frozen ones
             shapes += [placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in made]
             labels += [replace(n, place=xyz(layer.matrix @ Vector(n.place))) for n in named]
-        return OverlayPicture(self._upload(merged(shapes)), tuple(labels))
+        return self._upload(merged(shapes)), tuple(labels)

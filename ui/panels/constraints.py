@@ -11,8 +11,8 @@ from ...operators.lists.row_lists import RowList
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from .constraint_fields import RowDrawing
-from .constraint_menus import AddBodyChangeMenu, AddConstraintMenu, ConstraintMoreMenu
 from .lists import MET_ICONS, BodyChangeList, ConstraintList
+from .menus import AddBodyChangeMenu, AddConstraintMenu, ConstraintMoreMenu
 from .sidebar import ArmaturePanel, draw_list, optional, settings_in, split
 
 
