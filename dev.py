@@ -25,8 +25,10 @@ import sys
 
 from devtools.environment import pythons, virtual_environment
 from devtools.environment.problem import SetUpError
+from solver.one_thread import ONE_THREAD
 
 PEERS = "benchmark"  # has an environment of its own
+MEASURED = ("figures", "gallery", PEERS)  # with one thread of linear algebra
 # command: module of the package, arguments before the user's, whether it needs dev.txt
 COMMANDS = {
     "demo": ("devtools.demo", [], False),
@@ -71,13 +73,9 @@ def main(argv: list[str]) -> int:
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2
-    return run(env, [module, *leading, *rest])
-
-
-def run(env: virtual_environment.VirtualEnvironment, arguments: list[str]) -> int:
-    """Run a module of the package in the environment; its exit code."""
+    variables = env.variables() | (ONE_THREAD if command in MEASURED else {})
     launcher = os.path.join(virtual_environment.ROOT, "devtools", "package.py")
-    code = subprocess.call([env.python, launcher, *arguments], env=env.variables())
+    code = subprocess.call([env.python, launcher, module, *leading, *rest], env=variables)
     return code if code >= 0 else 128 - code  # a signal, the way shells count it
 
 

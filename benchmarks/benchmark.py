@@ -4,15 +4,14 @@ Everything runs in one process with one thread of linear algebra, one after the 
 """
 
 import argparse
-import os
-import subprocess
 import sys
 from pathlib import Path
 
 from ..devtools.environment.problem import SetUpError
 from ..devtools.environment.virtual_environment import ROOT
 from ..devtools.recordings import HOPS, find
-from ..solver.one_thread import ONE_THREAD
+from .measure import Benchmark, Extent
+from .tables import Table, write_json
 
 DOCUMENT = ROOT / "docs" / "benchmark.md"
 HEAD = """# The benchmark
@@ -38,11 +37,6 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="10 s a peer, short clips")
     parser.add_argument("--write-docs", action="store_true", help="rewrite docs/benchmark.md")
     options = parser.parse_args(argv)
-    if any(os.environ.get(name) != "1" for name in ONE_THREAD):
-        return _in_one_thread(argv)
-    from .measure import Benchmark, Extent
-    from .tables import Table, write_json
-
     try:
         find(HOPS)  # before anything is measured
     except SetUpError as problem:
@@ -64,10 +58,3 @@ def main(argv: list[str]) -> int:
         DOCUMENT.write_text("\n".join(parts), encoding="utf-8")
         print(f"Written: {DOCUMENT.relative_to(ROOT)}")
     return 0
-
-
-def _in_one_thread(argv: list[str]) -> int:
-    """The same in a process whose linear algebra keeps to one thread: set before numpy loads."""
-    launcher = ROOT / "devtools" / "package.py"
-    command = [sys.executable, str(launcher), "benchmarks.benchmark", *argv]
-    return subprocess.call(command, env={**os.environ, **ONE_THREAD})

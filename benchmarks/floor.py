@@ -12,11 +12,12 @@ from pathlib import Path
 import numpy as np
 import pinocchio
 from scipy.linalg import cholesky_banded
-from scipy.sparse import csc_matrix
+from scipy.spatial.transform import Rotation
 
-from ..devtools.peers.task import Equations, FloatArray, Task, metric_entries
+from ..devtools.peers.task import Equations, Task, metric_matrix
+from ..solver.arrays import FloatArray
 from ..solver.body.character import Character
-from ..solver.optimisation.kkt_step import Linearised
+from ..solver.optimisation.kkt_step import LinearisedProblem
 from ..solver.results.mjcf import mjcf, motion_state
 from ..solver.transcription.motion import Motion
 
@@ -31,7 +32,7 @@ def our_rows(task: Task) -> None:
 def our_iteration(task: Task) -> FloatArray:
     """The rows, the factor and the step; (K, n_block)."""
     rows = task.transcription.rows(task.start, task.places)
-    return Linearised(task.transcription, rows, task.metric).step(rows.value)[0]
+    return LinearisedProblem(task.transcription, rows, task.metric).step(rows.value)[0]
 
 
 def pinocchio_model(character: Character) -> pinocchio.Model:
@@ -58,12 +59,12 @@ class Nodes:
         t = task.transcription
         motion = Motion(t, task.start, task.places)
         qpos, qvel, qacc = (np.array(part) for part in motion_state(motion, t.node_times))
-        turn = _rotations(qpos[:, 3:7])
+        back = Rotation.from_quat(qpos[:, 3:7], scalar_first=True).inv()
         q = np.concatenate([qpos[:, :3], qpos[:, 4:7], qpos[:, 3:4], qpos[:, 7:]], axis=1)
         # MuJoCo's linear velocity is the world's; Pinocchio's is the root's own, which turns.
         v, a = qvel.copy(), qacc.copy()
-        v[:, :3] = np.einsum("nji,nj->ni", turn, qvel[:, :3])
-        a[:, :3] = np.einsum("nji,nj->ni", turn, qacc[:, :3]) - np.cross(qvel[:, 3:6], v[:, :3])
+        v[:, :3] = back.apply(qvel[:, :3])
+        a[:, :3] = back.apply(qacc[:, :3]) - np.cross(qvel[:, 3:6], v[:, :3])
         model = pinocchio_model(t.character)
         return Nodes(model, model.createData(), q, v, a)
 
@@ -86,27 +87,12 @@ class Nodes:
             pinocchio.computeRNEADerivatives(self.model, self.data, *state)
 
 
-def _rotations(quaternions: FloatArray) -> FloatArray:
-    """(N, 3, 3) of unit quaternions (N, 4), wxyz."""
-    w, x, y, z = quaternions.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), -1, 0)
-
-
 def band_matrix(task: Task) -> FloatArray:
     """(half-bandwidth + 1, n) lower bands of W + ρ J'J over the unknowns, in order of time."""
     equations = Equations(task)
     n = equations.size
-    entries, values = metric_entries(task)
-    metric = csc_matrix((values, (entries.row, entries.column)), (n, n))
-    _, slopes = equations.jacobian(task.start[task.transcription.active])
-    where = equations.entries
-    jacobian = csc_matrix((slopes, (where.row, where.column)), (equations.count, n))
-    system = (metric + RIDGE * jacobian.T @ jacobian).tocoo()
+    _, jacobian = equations.jacobian(task.start[task.transcription.active])
+    system = (metric_matrix(task) + RIDGE * jacobian.T @ jacobian).tocoo()
     low = system.row >= system.col
     row, column = system.row[low], system.col[low]
     bands = np.zeros((int((row - column).max()) + 1, n))

@@ -6,12 +6,14 @@ from functools import cached_property, partial
 
 from ..devtools.peers import ipopt_peer
 from ..devtools.peers.task import PeerResult, Task
+from ..devtools.recordings import JUMP
+from ..solver.analysis.analyse import analyse
 from ..solver.stages.fit import Fit, fit
 from ..solver.stages.implicit import Adaptation, adapt
 from . import floor, naive_peer, scaling, snopt_peer
-from .recordings import JUMP, analysed, jump
+from .recordings import jump, recording
 from .solutions import IMPLICIT, SOLUTIONS, with_solution
-from .tables import Table, Value
+from .tables import Row, Table, Value
 from .timing import REPEATS, in_turns
 
 Peer = Callable[[Task, float], PeerResult]
@@ -42,7 +44,7 @@ class Benchmark:
 
     @cached_property
     def fitted(self) -> Fit:
-        analysis = analysed(JUMP, self.problem)
+        analysis = analyse(recording(JUMP), self.problem)
         fitted = fit(analysis.performance, analysis.schedule)
         _ = fitted.metric  # part of the stored fit
         return fitted
@@ -80,8 +82,7 @@ class Benchmark:
             peer = solve(self.task, self.extent.limit_s)
             apart = None if distance is None else peer.distance / distance
             times = (peer.seconds, peer.seconds / one, peer.setup / one)
-            end = (peer.iterations, peer.solved, peer.violation, apart)
-            rows.append((name, *times, *end))
+            rows.append((name, *times, peer.iterations, peer.solved, peer.violation, apart))
         columns = (
             "solver",
             "time (s)",
@@ -92,7 +93,8 @@ class Benchmark:
             "worst violation / tolerance",
             "distance / ours",
         )
-        return Table("Solutions and peers", caption, columns, tuple(rows))
+        named = [dict(zip(columns, row, strict=True)) for row in rows]
+        return Table("Solutions and peers", caption, named)
 
     def _adapting(self, name: str) -> Callable[[], Adaptation]:
         problem = with_solution(self.problem, SOLUTIONS[name])
@@ -122,42 +124,33 @@ class Benchmark:
             "derivatives at all of them plus one banded Cholesky of the same size and band "
             f"({bands.shape[1]} unknowns, half-bandwidth {len(bands) - 1})."
         )
-        rows = tuple((name, s, s / least) for name, s in found.items())
-        return Table("One iteration", caption, ("work", "time (s)", "times the floor"), rows)
+        rows = [
+            {"work": name, "time (s)": s, "times the floor": s / least} for name, s in found.items()
+        ]
+        return Table("One iteration", caption, rows)
 
     def _lengths(self) -> Table:
         costs = list(scaling.lengths(self.extent.lengths))
         first = costs[0]
-        rows = tuple(
-            (
-                f"{c.length:g} s",
-                c.unknowns,
-                c.unknowns / first.unknowns,
-                c.fit_s,
-                c.fit_s / first.fit_s,
-                c.adapt_s,
-                c.adapt_s / first.adapt_s,
-                c.steps,
-                c.solved,
-            )
+        rows = [
+            {
+                "window": f"{c.length:g} s",
+                "unknowns": c.unknowns,
+                "unknowns / first": c.unknowns / first.unknowns,
+                "fit (s)": c.fit_s,
+                "fit / first": c.fit_s / first.fit_s,
+                "adaptation (s)": c.adapt_s,
+                "adaptation / first": c.adapt_s / first.adapt_s,
+                "steps": c.steps,
+                "solved": c.solved,
+            }
             for c in costs
-        )
-        columns = (
-            "window",
-            "unknowns",
-            "unknowns / first",
-            "fit (s)",
-            "fit / first",
-            "adaptation (s)",
-            "adaptation / first",
-            "steps",
-            "solved",
-        )
+        ]
         caption = (
             f"Windows of the ten hops, CMU 01_01, from {scaling.FIRST:g} s on, each fitted, then "
             "its first landing moved 0.3 m forward."
         )
-        return Table("Cost against length", caption, columns, rows)
+        return Table("Cost against length", caption, rows)
 
     def _dofs(self) -> Table:
         tasks = {
@@ -171,34 +164,23 @@ class Benchmark:
             self.extent.repeats,
         )
         first = next(iter(tasks))
-        rows: list[tuple[Value, ...]] = []
+        rows: list[Row] = []
         for name, small in tasks.items():
-            t, (outcome, seconds) = small.transcription, whole[name]
+            t, seconds, (outcome, solve) = small.transcription, one[name][1], whole[name]
             rows.append(
-                (
-                    name,
-                    t.character.n_dofs,
-                    t.n_unknowns,
-                    one[name][1],
-                    one[name][1] / one[first][1],
-                    seconds,
-                    seconds / whole[first][1],
-                    len(outcome.steps),
-                    outcome.violation <= 1.0,
-                )
+                {
+                    "figure": name,
+                    "DOFs": t.character.n_dofs,
+                    "unknowns": t.n_unknowns,
+                    "iteration (s)": seconds,
+                    "iteration / all DOFs": seconds / one[first][1],
+                    "solve (s)": solve,
+                    "solve / all DOFs": solve / whole[first][1],
+                    "steps": len(outcome.steps),
+                    "solved": outcome.violation <= 1.0,
+                }
             )
-        columns = (
-            "figure",
-            "DOFs",
-            "unknowns",
-            "iteration (s)",
-            "iteration / all DOFs",
-            "solve (s)",
-            "solve / all DOFs",
-            "steps",
-            "solved",
-        )
         caption = (
             "The jump's edit with joints made rigid at their mean over the clip, at the same knots."
         )
-        return Table("Cost against degrees of freedom", caption, columns, tuple(rows))
+        return Table("Cost against degrees of freedom", caption, rows)

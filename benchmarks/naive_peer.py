@@ -8,25 +8,17 @@ own, so that both are the same problem; `Graph.rows` lists them in the same orde
 
 import time
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
+from scipy.sparse import csc_matrix
 
-from ..devtools.peers.ipopt_peer import sparse
-from ..devtools.peers.task import (
-    Entries,
-    FloatArray,
-    IntArray,
-    PeerResult,
-    Task,
-    judged,
-    metric_entries,
-)
+from ..devtools.peers.ipopt_peer import run, sparse
+from ..devtools.peers.task import PeerResult, Task, metric_matrix
+from ..solver.arrays import FloatArray, IntArray
 from ..solver.body.dynamics import BodyMotion, body_frames, momentum_rate, point_motion
 from ..solver.data.constants import STANDARD_GRAVITY
 from ..solver.data.row_kinds import RowKind
-from ..solver.numerics.splines import ORDER
 from ..solver.transcription.rows import Rows
 from ..solver.transcription.transcription import Transcription
 
@@ -39,19 +31,10 @@ def solve(task: Task, limit_s: float) -> PeerResult:
     begun = time.perf_counter()
     x = ca.MX.sym("x", task.transcription.n_unknowns)
     graph = Graph(task, x)
-    equations: dict[str, Any] = {"x": x, "f": graph.distance(), "g": graph.rows()}
+    problem = {"x": x, "f": graph.distance(), "g": graph.rows()}
     # IPOPT looks at its clock after every iteration; CasADi's set-up alone may outlast the limit.
-    quiet: dict[str, Any] = {"print_level": 0, "sb": "yes", "max_wall_time": limit_s}
-    options: dict[str, Any] = {"print_time": False, "error_on_fail": False, "ipopt": quiet}
-    solver = ca.nlpsol("naive", "ipopt", equations, options)
-    ready = time.perf_counter()
-    start = task.start[task.transcription.active]
-    found = solver(x0=start, lbg=graph.lower, ubg=graph.upper)
-    seconds = time.perf_counter() - ready
-    stats = solver.stats()
-    last = task.unpack(np.asarray(found["x"]).ravel())
-    iterations, status = int(stats["iter_count"]), str(stats["return_status"])
-    return judged(task, last, seconds, ready - begun, iterations, status)
+    quiet = {"print_level": 0, "sb": "yes", "max_wall_time": limit_s}
+    return run(task, problem, {"ipopt": quiet}, (graph.lower, graph.upper), begun)
 
 
 @dataclass(frozen=True)
@@ -77,9 +60,8 @@ class Graph:
         t = self.t = task.transcription
         blocks, width = t.active.shape
         where = np.flatnonzero(t.active)
-        spread = sparse(
-            Entries(where, np.arange(len(where))), np.ones(len(where)), t.active.size, len(where)
-        )
+        places = np.ones(len(where)), (where, np.arange(len(where)))
+        spread = sparse(csc_matrix(places, (t.active.size, len(where))))
         full = ca.reshape(spread @ x, width, blocks).T
         layout = t.layout
         self.com = full[:, layout.com.start : layout.com.stop]
@@ -91,9 +73,8 @@ class Graph:
 
     def distance(self) -> ca.MX:
         """Half the squared distance to the start, in the metric."""
-        n = self.t.n_unknowns
         away = self.x - self.task.start[self.t.active]
-        return 0.5 * ca.dot(away, sparse(*metric_entries(self.task), n, n) @ away)
+        return 0.5 * ca.dot(away, sparse(metric_matrix(self.task)) @ away)
 
     def rows(self) -> ca.MX:
         """(R,) in the order of the transcription's. Raises ValueError for rows it cannot write."""
@@ -176,11 +157,10 @@ def _linear(t: Transcription, when: _When) -> ca.DM:
 
 def _matrix(values: FloatArray, first: IntArray, t: Transcription) -> ca.DM:
     """(U, K) with the row's values (U, m) from its first column (U,) on."""
-    assert values.shape[1] <= ORDER
     row = np.repeat(np.arange(len(values)), values.shape[1])
     column = (first[:, None] + np.arange(values.shape[1])).ravel()
-    entries, order = Entries.sorted(row, column)
-    return sparse(entries, values.ravel()[order], len(values), t.basis.n_coefficients)
+    entries = values.ravel(), (row, column)
+    return sparse(csc_matrix(entries, (len(values), t.basis.n_coefficients)))
 
 
 def _summed(pushes: ca.MX, points: int) -> ca.MX:

@@ -6,18 +6,21 @@ from functools import partial
 
 import numpy as np
 
-from ..devtools.peers.task import IntArray, Task
+from ..devtools.peers.task import Task
+from ..devtools.recordings import HOPS
+from ..solver.analysis.analyse import analyse
 from ..solver.analysis.performance import Performance
+from ..solver.arrays import IntArray
 from ..solver.body.anatomy import Part
 from ..solver.body.character import Character, Joint
 from ..solver.body.dynamics import MomentFunction
 from ..solver.body.joint_axes import JointAxes
 from ..solver.numerics.rotations import mean_rotation
-from ..solver.optimisation.sqp import Outcome, restore
-from ..solver.stages.fit import ADAPT_PRICES, Fit, fit, motion_metric
+from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
+from ..solver.stages.fit import ADAPT_COST_WEIGHTS, Fit, fit, motion_metric
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
-from .recordings import HOPS, analysed, hops
+from .recordings import hops, recording
 from .timing import in_turns, timed
 
 FIRST = 0.99  # s, where the windows of the hops begin
@@ -47,7 +50,7 @@ def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Cost]:
     """Windows of the hops, each fitted and its first landing moved."""
     for length in seconds:
         problem = hops(FIRST, length)
-        analysis = analysed(HOPS, problem)
+        analysis = analyse(recording(HOPS), problem)
         fitted, fit_s = timed(partial(fit, analysis.performance, analysis.schedule))
         _ = fitted.metric  # part of the stored fit
         adaptation, adapt_s = in_turns({"": partial(adapt, fitted, problem)}, 3)[""]
@@ -87,10 +90,14 @@ def with_fewer(fitted: Fit, task: Task, parts: tuple[Part, ...]) -> Task:
     new = replace(old, character=character, moment=MomentFunction(character))
     forces = np.arange(old.layout.forces.start, old.layout.n_block)
     columns = np.concatenate([np.arange(3), 3 + kept, forces])
-    metric = motion_metric(Motion(new, fitted.motion.x[:, columns], fitted.places), ADAPT_PRICES)
+    metric = motion_metric(
+        Motion(new, fitted.motion.x[:, columns], fitted.places), ADAPT_COST_WEIGHTS
+    )
     return Task(new, task.places, task.start[:, columns], metric)
 
 
 def finished(task: Task) -> Outcome:
     """The task solved by our steps."""
-    return restore(task.transcription, task.metric, task.start, task.places, stage="adapt")
+    return restore(
+        FeasibleSet(task.transcription, task.places), task.metric, task.start, stage="adapt"
+    )

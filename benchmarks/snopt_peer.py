@@ -17,20 +17,11 @@ from multiprocessing.sharedctypes import SynchronizedArray
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydrake.autodiffutils import ExtractValue, InitializeAutoDiff
 from pydrake.solvers import MathematicalProgram, SnoptSolver, SolverOptions
-from scipy.sparse import csc_matrix
 
-from ..devtools.peers.task import (
-    Entries,
-    Equations,
-    FloatArray,
-    PeerResult,
-    Task,
-    judged,
-    metric_entries,
-)
+from ..devtools.peers.task import Equations, PeerResult, Task, judged, metric_matrix
+from ..solver.arrays import BoolArray, FloatArray
 from ..solver.data.row_kinds import RowKind
 
 LINEAR = (RowKind.BALANCE, RowKind.PUSH)
@@ -79,9 +70,7 @@ def _work(
 ) -> None:
     program = MathematicalProgram()
     x = program.NewContinuousVariables(equations.size)
-    metric = np.zeros((equations.size, equations.size))
-    entries, values = metric_entries(task)
-    metric[entries.row, entries.column] = values
+    metric = metric_matrix(task).toarray()
     slope = metric @ start
     program.AddQuadraticCost(metric, -slope, 0.5 * start @ slope, x, True)
     _constrain(program, x, equations, start, board)
@@ -104,10 +93,7 @@ def _constrain(
     program: Any, x: Any, equations: Equations, start: FloatArray, board: _Board
 ) -> None:
     """Linear rows as linear constraints, the others as a function."""
-    value, entries = equations.jacobian(start)
-    where = equations.entries
-    shape = (equations.count, equations.size)
-    jacobian = csc_matrix((entries, (where.row, where.column)), shape)
+    value, jacobian = equations.jacobian(start)
     linear = np.array([kind in LINEAR for kind in equations.kind])
     constant = (value - jacobian @ start)[linear]
     lower, upper = equations.lower, equations.upper
@@ -116,19 +102,16 @@ def _constrain(
     )
     curved = Curved(equations, ~linear, board)
     binding = program.AddConstraint(curved, lower[~linear], upper[~linear], x)
-    pairs = zip(curved.entries.row.tolist(), curved.entries.column.tolist(), strict=True)
+    pattern = equations.pattern[~linear].tocoo()
+    pairs = zip(pattern.row.tolist(), pattern.col.tolist(), strict=True)
     binding.evaluator().SetGradientSparsityPattern(list(pairs))
 
 
 class Curved:
     """Some of the rows for Drake: values of numbers, derivatives of AutoDiff numbers."""
 
-    def __init__(self, equations: Equations, which: NDArray[np.bool_], board: _Board) -> None:
+    def __init__(self, equations: Equations, which: BoolArray, board: _Board) -> None:
         self.equations, self.which, self.board = equations, which, board
-        where = equations.entries
-        self._used = which[where.row]
-        number = np.cumsum(which) - 1
-        self.entries = Entries(number[where.row[self._used]], where.column[self._used])
 
     def __call__(self, x: Any) -> Any:
         if x.dtype != object:
@@ -136,8 +119,6 @@ class Curved:
         packed = np.asarray(ExtractValue(x)).ravel()
         self.board.x[:] = packed.tolist()
         self.board.times[1] += 1
-        values, entries = self.equations.jacobian(packed)
-        jacobian = np.zeros((int(self.which.sum()), self.equations.size))
-        jacobian[self.entries.row, self.entries.column] = entries[self._used]
+        values, jacobian = self.equations.jacobian(packed)
         # Drake's SNOPT asks with the identity as derivative, so the chain rule is done already.
-        return InitializeAutoDiff(values[self.which], jacobian)
+        return InitializeAutoDiff(values[self.which], jacobian[self.which].toarray())

@@ -1,40 +1,41 @@
 """Tables of measurements: as text, as Markdown and as JSON."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 Value = str | int | float | bool | None
+Row = Mapping[str, Value]
 SECONDS = "(s)"  # ends the names of columns that say more of the machine than of the method
 
 
 @dataclass(frozen=True)
 class Table:
-    """caption: what was measured, in a sentence or two. rows: one value a column; None where
-    there is none."""
+    """caption: what was measured, in a sentence or two. rows: their values by column, alike in all;
+    None where there is none."""
 
     title: str
     caption: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    rows: Sequence[Row]
 
     def without_seconds(self) -> "Table":
         """The columns that mean the same on any machine."""
-        kept = [i for i, name in enumerate(self.columns) if not name.endswith(SECONDS)]
-        rows = tuple(tuple(row[i] for i in kept) for row in self.rows)
-        return Table(self.title, self.caption, tuple(self.columns[i] for i in kept), rows)
+        rows = [{k: v for k, v in row.items() if not k.endswith(SECONDS)} for row in self.rows]
+        return Table(self.title, self.caption, rows)
+
+    def cells(self) -> list[list[str]]:
+        """The columns' names and every row, as they are shown."""
+        return [list(self.rows[0]), *([shown(v) for v in row.values()] for row in self.rows)]
 
     def text(self) -> str:
-        cells = [self.columns, *([shown(v) for v in row] for row in self.rows)]
-        widths = [max(len(row[i]) for row in cells) for i in range(len(self.columns))]
-        lines = [_line(row, widths) for row in cells]
-        return "\n".join([f"{self.title}", self.caption, "", *lines])
+        cells = self.cells()
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        return "\n".join([self.title, self.caption, "", *(_line(row, widths) for row in cells)])
 
     def markdown(self) -> str:
-        head = "| " + " | ".join(self.columns) + " |"
-        rule = "|" + "---|" * len(self.columns)
-        body = ["| " + " | ".join(shown(v) for v in row) + " |" for row in self.rows]
+        head, *body = ("| " + " | ".join(row) + " |" for row in self.cells())
+        rule = "|" + "---|" * len(self.rows[0])
         return "\n".join([f"## {self.title}", "", self.caption, "", head, rule, *body])
 
 
@@ -57,8 +58,5 @@ def _line(row: Sequence[str], widths: Sequence[int]) -> str:
 
 def write_json(tables: Sequence[Table], path: Path) -> None:
     """Every table with full digits."""
-    found = [
-        {**asdict(t), "rows": [dict(zip(t.columns, row, strict=True)) for row in t.rows]}
-        for t in tables
-    ]
+    found = [{**asdict(t), "columns": list(t.rows[0])} for t in tables]
     path.write_text(json.dumps(found, indent=1, ensure_ascii=False))

@@ -25,11 +25,12 @@ def main(argv: list[str]) -> int:
     for check in checks:
         print("$", *check, flush=True)
         codes.append(subprocess.call([sys.executable, "-m", *check], cwd=ROOT, env=variables))
-    print("$ lint-imports", flush=True)
-    codes.append(check_contracts())
+    print("$ lint-imports", flush=True)  # the package as it is loaded here
+    codes.append(lint_imports(str(ROOT / "pyproject.toml"), no_cache=True, no_logo=True))
     print("$ house", flush=True)
-    codes.append(check_house())
-    return int(any(codes))
+    problems = list(house.problems(ROOT))
+    print(*problems or ["Every folder, chain and class name is within its limit."], sep="\n")
+    return int(any(codes) or bool(problems))
 
 
 def named_folder() -> Path:
@@ -40,15 +41,3 @@ def named_folder() -> Path:
     if not link.exists():
         link.symlink_to(ROOT, target_is_directory=True)
     return folder
-
-
-def check_contracts() -> int:
-    """import-linter over the contracts of pyproject.toml, on the package as it is loaded here."""
-    return lint_imports(str(ROOT / "pyproject.toml"), no_cache=True, no_logo=True)
-
-
-def check_house() -> int:
-    """The limits of house.py."""
-    found = list(house.problems(ROOT))
-    print(*found or ["Every folder, chain and class name is within its limit."], sep="\n")
-    return int(bool(found))

@@ -58,15 +58,9 @@ def inverse_dynamics(
         mujoco.mj_inverse(model, data)
         pushed = np.zeros(model.nv)
         for s in sites:
-            mujoco.mj_applyFT(
-                model,
-                data,
-                forces[i, point[s]],
-                np.zeros(3),
-                data.site_xpos[s],
-                int(model.site_bodyid[s]),
-                pushed,
-            )
+            place, body = data.site_xpos[s], int(model.site_bodyid[s])
+            force, moment = forces[i, point[s]], np.zeros(3)
+            mujoco.mj_applyFT(model, data, force, moment, place, body, pushed)
         out[i] = data.qfrc_inverse - pushed
         com[i] = data.subtree_com[1]
     return out, com

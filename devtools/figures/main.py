@@ -5,32 +5,38 @@ Each clip goes through Blender (import, read), the solver (contacts, fit, adapta
 """
 
 import argparse
-import os
-import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING
 
-from ...solver.one_thread import ONE_THREAD
+import bpy
+import numpy as np
+
+from ...solver.data.recording import Recording
+from ...solver.results.npz_export import save
+from ...solver.stages.fit import Fit
+from ...solver.stages.implicit import Adaptation
+from ...solver.transcription.motion import Motion
+from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
+from ..checks.mujoco_check import check_motion, check_npz
 from ..environment.problem import SetUpError
-from ..environment.virtual_environment import ROOT
+from ..peers import ipopt_peer
+from ..peers.task import Task
+from .blender import drifts, open_clip
+from .clips import CLIPS, EDITS, Clip
 from .limits import Figure, figure, table, write
 
-if TYPE_CHECKING:  # loaded in functions, once the environment keeps numpy to one thread
-    import bpy
-
-    from ...solver.data.recording import Recording
-    from ...solver.stages.fit import Fit
-    from ...solver.stages.implicit import Adaptation
-    from ...solver.transcription.motion import Motion
-    from ...solver.worker.pipeline import Subject
-    from .clips import Clip
-
 RUNS = 7  # adaptations timed; the median counts
+PEER_LIMIT = 60.0  # s
+RESIDUALS = [
+    (f"{where}: root {part} not explained", part, flying)
+    for where, flying in (("flight", True), ("ground", False))
+    for part in ("force", "moment")
+]
 
 
 def main(argv: list[str]) -> int:
@@ -39,10 +45,6 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--clip", metavar="WORD", help="only clips with this in their name")
     parser.add_argument("--no-peer", action="store_true", help="leave out IPOPT, which is slow")
     options = parser.parse_args(argv)
-    if any(os.environ.get(name) != "1" for name in ONE_THREAD):
-        return _in_one_thread(argv)
-    from .clips import CLIPS
-
     chosen = [clip for clip in CLIPS if options.clip is None or options.clip in clip.name]
     if not chosen:
         print(f"No clip has '{options.clip}' in its name.")
@@ -52,10 +54,7 @@ def main(argv: list[str]) -> int:
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2
-    figures: list[Figure] = []
-    for clip in chosen:
-        for found in measure_clip(clip, peer=not options.no_peer):
-            figures.append(found)
+    figures = [f for clip in chosen for f in measure_clip(clip, peer=not options.no_peer)]
     options.out.mkdir(parents=True, exist_ok=True)
     write(figures, options.out / "figures.json")
     print(table(figures))
@@ -66,19 +65,8 @@ def main(argv: list[str]) -> int:
     return 1 if missed else 0
 
 
-def _in_one_thread(argv: list[str]) -> int:
-    """The same in a process whose linear algebra keeps to one thread: set before numpy loads."""
-    launcher = ROOT / "devtools" / "package.py"
-    command = [sys.executable, str(launcher), "devtools.figures", *argv]
-    return subprocess.call(command, env={**os.environ, **ONE_THREAD})
-
-
-def measure_clip(clip: "Clip", *, peer: bool) -> Iterator[Figure]:
+def measure_clip(clip: Clip, *, peer: bool) -> Iterator[Figure]:
     """Every figure of one clip."""
-    from ...solver.worker.pipeline import StageClock, fit_subject, measure
-    from .blender import open_clip
-    from .clips import EDITS
-
     armature, recording = open_clip(clip)
     subject = measure(recording, clip.problem(next(iter(EDITS))))
     busy, clock = time.process_time(), StageClock()
@@ -88,30 +76,18 @@ def measure_clip(clip: "Clip", *, peer: bool) -> Iterator[Figure]:
     _say(clip.name, f"fitted in {seconds:.2f} s")
     yield figure("fit", seconds, clip.name, "fit")
     yield figure("fit, processor's time", busy, clip.name, "fit")
-    for part in (
-        closeness(fitted),
-        physics(fitted.motion),
-        still(armature, recording, fitted.motion),
-    ):
-        for name, value in part:
-            yield figure(name, value, clip.name, "fit")
+    parts = closeness(fitted), physics(fitted.motion), still(armature, recording, fitted.motion)
+    for name, value in chain(*parts):
+        yield figure(name, value, clip.name, "fit")
     for edit in EDITS:
         for name, value in measure_edit(clip, edit, subject, fitted, armature, peer=peer):
             yield figure(name, value, clip.name, edit)
 
 
 def measure_edit(
-    clip: "Clip",
-    edit: str,
-    subject: "Subject",
-    fitted: "Fit",
-    armature: "bpy.types.Object",
-    *,
-    peer: bool,
+    clip: Clip, edit: str, subject: Subject, fitted: Fit, armature: bpy.types.Object, *, peer: bool
 ) -> Iterator[tuple[str, float]]:
     """Every figure of one edit of a fitted clip."""
-    from ...solver.worker.pipeline import StageClock, adapt_fit
-
     asked = subject.asked(clip.problem(edit))
     _ = fitted.metric  # part of the stored fit
     busy, clock = time.process_time(), StageClock()
@@ -129,10 +105,8 @@ def measure_edit(
         yield from beside_ipopt(clip, edit, fitted, adaptation, seconds)
 
 
-def closeness(fitted: "Fit") -> Iterator[tuple[str, float]]:
+def closeness(fitted: Fit) -> Iterator[tuple[str, float]]:
     """Distance of the fit from the recording: joint centres at every frame, and the apex."""
-    import numpy as np
-
     performance, flights = fitted.performance, fitted.schedule.flights
     times = performance.times
     centres = fitted.motion.joint_centres(times)
@@ -143,34 +117,24 @@ def closeness(fitted: "Fit") -> Iterator[tuple[str, float]]:
     yield "fit to recording: pelvis at the apex", 100 * abs(apexes[0] - apexes[1])
 
 
-def physics(motion: "Motion") -> Iterator[tuple[str, float]]:
+def physics(motion: Motion) -> Iterator[tuple[str, float]]:
     """Dynamics residual by MuJoCo on a dense grid and by the arrays that anybody gets."""
-    import numpy as np
-
-    from ...solver.results.npz_export import save
-    from ..checks.mujoco_check import check_motion, check_npz
-
     residual, torques = check_motion(motion)
-    for where, flying in (("flight", True), ("ground", False)):
-        for part in ("force", "moment"):
-            name = f"{where}: root {part} not explained"
-            yield f"{name}, rms", residual.rms(part, flying)
-            yield f"{name}, max", residual.worst(part, flying)
+    for name, part, flying in RESIDUALS:
+        yield f"{name}, rms", residual.rms(part, flying)
+        yield f"{name}, max", residual.worst(part, flying)
     yield "largest joint torque", float(np.abs(torques).max())
     with tempfile.TemporaryDirectory() as folder:
         save(motion, Path(folder) / "trajectory.npz")
         residual = check_npz(Path(folder) / "trajectory.npz")
-    for where, flying in (("flight", True), ("ground", False)):
-        for part in ("force", "moment"):
-            yield f"npz: {where}: root {part} not explained, rms", residual.rms(part, flying)
+    for name, part, flying in RESIDUALS:
+        yield f"npz: {name}, rms", residual.rms(part, flying)
 
 
 def still(
-    armature: "bpy.types.Object", recording: "Recording", motion: "Motion"
+    armature: bpy.types.Object, recording: Recording, motion: Motion
 ) -> Iterator[tuple[str, float]]:
     """Drift of pinned points in Blender."""
-    from .blender import drifts
-
     with tempfile.TemporaryDirectory() as folder:
         written, back = drifts(armature, recording, motion, Path(folder) / "measured.fbx")
     for where, drift in (("in Blender", written), ("after FBX", back)):
@@ -179,19 +143,17 @@ def still(
 
 
 def beside_ipopt(
-    clip: "Clip", edit: str, fitted: "Fit", adaptation: "Adaptation", seconds: float
+    clip: Clip, edit: str, fitted: Fit, adaptation: Adaptation, seconds: float
 ) -> Iterator[tuple[str, float]]:
     """The same problem by IPOPT; a peer that fails or runs out of time has no ratio worth much,
     which its violation tells."""
-    from ..peers.ipopt_peer import distance, solve_by_ipopt
-
-    problem = clip.problem(edit)
-    peer = solve_by_ipopt(fitted, problem)
+    task = Task.of(fitted, clip.problem(edit))
+    peer = ipopt_peer.solve(task, PEER_LIMIT)
     _say(clip.name, f"{edit}: IPOPT {peer.status} in {peer.seconds:.1f} s")
     yield "IPOPT peer", peer.seconds
     yield "IPOPT peer: iterations", peer.iterations
     yield "IPOPT peer: worst violation over tolerance", peer.violation
-    ours = distance(fitted, problem, adaptation.outcomes[0].x)
+    ours = task.distance(adaptation.outcomes[0].x)
     yield "IPOPT peer: distance over ours", peer.distance / ours
     yield "times faster than the IPOPT peer", peer.seconds / seconds
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from .jobs import Json
-from .limits import METHODS, seconds
+from .limits import METHODS, of_method
 
 Rows = Mapping[str, Json]
 SEEN = 0.02  # m; an arm that moves less is not seen to move
@@ -21,13 +21,7 @@ class Claim:
 
 def claims(rows: Rows) -> list[Claim]:
     """Every claim that the results at hand speak of."""
-    makers: tuple[Callable[[Rows], Iterator[Claim]], ...] = (
-        _order,
-        _crouch,
-        _briefcase,
-        _limp_arm,
-        _pca,
-    )
+    makers: tuple[Callable[[Rows], Iterator[Claim]], ...] = (_order, _crouch, _arms, _pca)
     return [claim for make in makers for claim in make(rows)]
 
 
@@ -37,7 +31,7 @@ def _order(rows: Rows) -> Iterator[Claim]:
     )
     timed: list[list[float]] = []
     for row in rows.values():
-        times = [s for method in METHODS if (s := seconds(row, method)) is not None]
+        times = [s for method in METHODS if (s := of_method(row, method, "seconds")) is not None]
         if len(times) == len(METHODS) and not row["name"].endswith("_fit"):
             timed.append(times)
     if not timed:
@@ -50,27 +44,23 @@ def _order(rows: Rows) -> Iterator[Claim]:
 
 
 def _crouch(rows: Rows) -> Iterator[Claim]:
-    pairs = [("jump_fit", ("diagonal", "step_landing")), ("run_fit", ("run_hurdle",))]
-    for start, names in pairs:
-        for name in names:
-            was, now = (_shape(rows, n, "crouch_m") for n in (start, name))
-            if was is not None and now is not None:
-                words = f"{name}: {100 * (was - now):+.1f} cm deeper"
-                yield Claim("a longer or higher jump crouches deeper", words, now < was)
+    pairs = (("jump_fit", "diagonal"), ("jump_fit", "step_landing"), ("run_fit", "run_hurdle"))
+    for start, name in pairs:
+        rise = _change(rows, start, name, "crouch_m")
+        if rise is not None:
+            words = f"{name}: {-100 * rise:+.1f} cm deeper"
+            yield Claim("a longer or higher jump crouches deeper", words, rise < 0.0)
 
 
-def _briefcase(rows: Rows) -> Iterator[Claim]:
-    was, now = (_shape(rows, n, "left_hand_out_m") for n in ("jump_fit", "briefcase"))
-    if was is not None and now is not None:
-        words = f"left hand {100 * (now - was):+.1f} cm further from the centre of mass in flight"
-        yield Claim("briefcase: the left arm extends far out", words, now > was + SEEN)
-
-
-def _limp_arm(rows: Rows) -> Iterator[Claim]:
-    was, now = (_shape(rows, n, "left_arm_raised_m") for n in ("jump_fit", "limp_arm"))
-    if was is not None and now is not None:
-        words = f"left hand {100 * (now - was):+.1f} cm higher above its shoulder in flight"
-        yield Claim("limp arm: the other arm rises much higher", words, now > was + SEEN)
+def _arms(rows: Rows) -> Iterator[Claim]:
+    out = _change(rows, "jump_fit", "briefcase", "left_hand_out_m")
+    if out is not None:
+        words = f"left hand {100 * out:+.1f} cm further from the centre of mass in flight"
+        yield Claim("briefcase: the left arm extends far out", words, out > SEEN)
+    rise = _change(rows, "jump_fit", "limp_arm", "left_arm_raised_m")
+    if rise is not None:
+        words = f"left hand {100 * rise:+.1f} cm higher above its shoulder in flight"
+        yield Claim("limp arm: the other arm rises much higher", words, rise > SEEN)
 
 
 def _pca(rows: Rows) -> Iterator[Claim]:
@@ -78,7 +68,7 @@ def _pca(rows: Rows) -> Iterator[Claim]:
         full, reduced = rows.get(name), rows.get(f"{name}_pca")
         if not full or not reduced or "from_fit" not in full or "from_fit" not in reduced:
             continue
-        times = [seconds(row, "implicit") for row in (full, reduced)]
+        times = [of_method(row, "implicit", "seconds") for row in (full, reduced)]
         away = [row["from_fit"]["angles_rms_deg"] for row in (full, reduced)]
         if None in times:
             continue
@@ -90,6 +80,7 @@ def _pca(rows: Rows) -> Iterator[Claim]:
         yield Claim("PCA is slower and no better than the full figure", words, slower and further)
 
 
-def _shape(rows: Rows, name: str, key: str) -> float | None:
-    value: float | None = rows.get(name, {}).get("shape", {}).get(key)
-    return value
+def _change(rows: Rows, start: str, name: str, key: str) -> float | None:
+    """Change of a measure of shape from one result to another; None where either lacks it."""
+    was, now = (rows.get(n, {}).get("shape", {}).get(key) for n in (start, name))
+    return None if was is None or now is None else float(now - was)

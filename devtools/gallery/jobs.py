@@ -5,7 +5,6 @@ solver's memory and any crash are each one's own.
 """
 
 import json
-import os
 import pickle
 import re
 import subprocess
@@ -16,7 +15,6 @@ from typing import Any
 
 from ...bridge.recipe.problem import parse_recipe, read_recipe_text
 from ...solver.data.problem import MotionProblem
-from ...solver.one_thread import ONE_THREAD
 from ..environment.virtual_environment import ROOT
 
 GALLERY = ROOT / "examples" / "gallery"
@@ -91,7 +89,6 @@ def _run(module: str, arguments: list[str]) -> str | None:
     try:
         done = subprocess.run(
             command,
-            env={**os.environ, **ONE_THREAD},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from statistics import median
 
 from .jobs import Json
@@ -99,27 +99,35 @@ def _ugly(looks: Json) -> Iterator[str]:
 def figures(rows: Sequence[Json]) -> list[GalleryFigure]:
     """Every number of every result, and over all of them what has a limit."""
     found = [figure for row in rows for figure in _of(row)]
-    adapted = [row for row in rows if not row["name"].endswith("_fit")]
-    good = sum(not faults(row) for row in adapted)
-    count = len(adapted)
+    adapted = adaptations(rows)
+    good, count = sum(not faults(row) for row in adapted), len(adapted)
     found.append(GalleryFigure("results in order", good, "1", count, count, good == count, "all"))
     for method, limit in SECONDS.items():
-        times = [s for row in adapted if (s := seconds(row, method)) is not None]
-        if times:
-            found.append(_figure(f"{method}, median", median(times), limit, "all"))
+        if taken := times(adapted, method):
+            found.append(_figure(f"{method}, median", median(taken), limit, "all"))
     return found
 
 
-def seconds(row: Json, method: str) -> float | None:
-    value: float | None = row.get("methods", {}).get(method, {}).get("seconds")
+def adaptations(rows: Sequence[Json]) -> list[Json]:
+    """The results that are no fits."""
+    return [row for row in rows if not row["name"].endswith("_fit")]
+
+
+def times(rows: Sequence[Json], method: str) -> list[float]:
+    """Seconds by a method, of the results that have them."""
+    return [s for row in rows if (s := of_method(row, method, "seconds")) is not None]
+
+
+def of_method(row: Json, method: str, key: str) -> float | None:
+    """What a method's solve of a result took or had; None where it has none."""
+    value: float | None = row.get("methods", {}).get(method, {}).get(key)
     return value
 
 
 def _of(row: Json) -> Iterator[GalleryFigure]:
     name = row["name"]
-    yield GalleryFigure(
-        "in order", float(not faults(row)), "1 = yes", 1.0, 1.0, not faults(row), name
-    )
+    good = not faults(row)
+    yield GalleryFigure("in order", float(good), "1 = yes", 1.0, 1.0, good, name)
     for key, limit in RESIDUALS.items():
         if key in row.get("residuals", {}):
             yield _figure(key.replace("_", " "), row["residuals"][key], limit, name)
@@ -148,7 +156,3 @@ def _figure(name: str, value: float, limit: GalleryLimit, result: str) -> Galler
 
 def _told(name: str, value: float, unit: str, result: str) -> GalleryFigure:
     return GalleryFigure(name, float(value), unit, None, None, True, result)
-
-
-def as_json(found: Sequence[GalleryFigure]) -> list[Json]:
-    return [asdict(figure) for figure in found]

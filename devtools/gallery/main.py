@@ -6,13 +6,13 @@ where a result is not as it should be.
 """
 
 import argparse
-import json
+from dataclasses import asdict
 from pathlib import Path
 
 from ...solver.data.faults import BadRecipe
 from ..environment.virtual_environment import ROOT
-from .jobs import Json, load, names, work
-from .limits import as_json, faults, figures
+from .jobs import Json, load, names, work, write_json
+from .limits import faults, figures
 from .table import line, page
 
 PAGE = ROOT / "docs" / "gallery.md"
@@ -50,9 +50,8 @@ def main(argv: list[str]) -> int:
 def tell(rows: list[Json], out: Path, *, whole: bool) -> int:
     """Writes the figures, and the page of the whole gallery; 1 where anything failed."""
     found = figures(rows)
-    content = {"figures": as_json(found), "results": rows}
-    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-    (out / "figures.json").write_text(text, encoding="utf-8")
+    content = {"figures": [asdict(figure) for figure in found], "results": rows}
+    write_json(content, out / "figures.json")
     if whole:
         PAGE.write_text(page(rows), encoding="utf-8")
     bad = [row["name"] for row in rows if faults(row)]

@@ -5,7 +5,17 @@ from statistics import median
 
 from .claims import claims
 from .jobs import Json
-from .limits import MEMORY, METHODS, RESIDUALS, SECONDS, faults, worst
+from .limits import (
+    MEMORY,
+    METHODS,
+    RESIDUALS,
+    SECONDS,
+    adaptations,
+    faults,
+    of_method,
+    times,
+    worst,
+)
 
 # Table 6.1: total unknowns and constraints of the thesis's adaptations, by motion. The scan
 # has lost its columns; its text tells which is which: 42 DOFs x 24 control points are 1008 unknowns
@@ -39,7 +49,7 @@ def page(rows: Sequence[Json]) -> str:
 
 
 def _limits(rows: Sequence[Json]) -> Iterator[str]:
-    adapted = [row for row in rows if not row["name"].endswith("_fit")]
+    adapted = adaptations(rows)
     good = sum(not faults(row) for row in adapted)
     yield "| figure | found | must | aim |"
     yield "|---|---|---|---|"
@@ -50,8 +60,8 @@ def _limits(rows: Sequence[Json]) -> Iterator[str]:
             name = f"{key.replace('_', ', ')} ({limit.unit}), worst"
             yield f"| {name} | {max(values):.2g} | {limit.must:g} | {limit.aim:g} |"
     for method, limit in SECONDS.items():
-        times = [s for row in adapted if (s := _of(row, method, "seconds")) is not None]
-        found = f"{median(times):.2f}" if times else "not measured"
+        taken = times(adapted, method)
+        found = f"{median(taken):.2f}" if taken else "not measured"
         yield f"| {method} (s), median | {found} | {limit.must:g} | {limit.aim:g} |"
     memory = [
         m["peak_memory_gb"] for r in rows for m in r.get("methods", {}).values() if "rows" in m
@@ -72,7 +82,7 @@ def _rows(rows: Sequence[Json]) -> Iterator[str]:
 
 def _cells(row: Json) -> Iterator[str]:
     yield f"[{row['title'].partition(':')[0]}](../examples/gallery/{row['name']}.toml)"
-    unknowns, count = (_of(row, "implicit", key) for key in ("unknowns", "rows"))
+    unknowns, count = (of_method(row, "implicit", key) for key in ("unknowns", "rows"))
     yield "" if unknowns is None else f"{unknowns:.0f}; {count:.0f}"
     for method in METHODS:
         yield _solution(row, method)
@@ -93,8 +103,6 @@ def _solution(row: Json, method: str) -> str:
     solved = row.get("methods", {}).get(method)
     if solved is None:
         return ""
-    if "skipped" in solved:
-        return f"– ({solved['skipped']})"
     return f"{solved['seconds']:.2f} s; {solved['iterations']}"
 
 
@@ -104,7 +112,7 @@ def _sizes(rows: Sequence[Json]) -> Iterator[str]:
     for motion, (unknowns, constraints) in TABLE_6_1.items():
         mine = [row for row in rows if _motion(row["name"]) == motion]
         ours = [
-            [v for row in mine if (v := _of(row, "implicit", key)) is not None]
+            [v for row in mine if (v := of_method(row, "implicit", key)) is not None]
             for key in ("unknowns", "rows")
         ]
         if all(ours):
@@ -123,11 +131,6 @@ def _claims(rows: Sequence[Json]) -> Iterator[str]:
     for claim in claims({row["name"]: row for row in rows}):
         mark = {True: "found again", False: "not found", None: "open"}[claim.holds]
         yield f"| {claim.thesis} | {claim.found} | {mark} |"
-
-
-def _of(row: Json, method: str, key: str) -> float | None:
-    value: float | None = row.get("methods", {}).get(method, {}).get(key)
-    return value
 
 
 def line(row: Json) -> str:

@@ -6,13 +6,14 @@ squared distance to the start in the adaptation's metric, so its Hessian is cons
 """
 
 import time
+from typing import Any
 
 import casadi as ca
 import numpy as np
+from scipy.sparse import csc_matrix
 
-from ...solver.data.problem import MotionProblem
-from ...solver.stages.fit import Fit
-from .task import Entries, Equations, FloatArray, PeerResult, Task, judged, metric_entries
+from ...solver.arrays import FloatArray
+from .task import Equations, PeerResult, Task, judged, metric_matrix
 
 Buffers = tuple[memoryview, ...]
 # The best of about thirty settings tried on this problem: with a fixed plan for mu instead, or
@@ -32,42 +33,39 @@ OPTIONS: dict[str, str | int | float] = {
 }
 
 
-def solve_by_ipopt(fit: Fit, problem: MotionProblem, *, limit_s: float = 60.0) -> PeerResult:
-    """Adapts a fit by IPOPT in one go."""
-    return solve(Task.of(fit, problem), limit_s)
-
-
-def distance(fit: Fit, problem: MotionProblem, x: FloatArray) -> float:
-    """How far unknowns x (K, n_block) are from where both begin, in the adaptation's metric."""
-    return Task.of(fit, problem).distance(x)
-
-
 def solve(task: Task, limit_s: float) -> PeerResult:
     """Solves a task by IPOPT; its `seconds` leave out the set-up, which ours has in the fit."""
     begun = time.perf_counter()
     equations = Equations(task)
-    n = equations.size
-    x = ca.MX.sym("x", n)
-    x0 = task.start[task.transcription.active]
-    metric = sparse(*metric_entries(task), n, n)
-    away = x - x0
+    x = ca.MX.sym("x", equations.size)
+    metric = sparse(metric_matrix(task))
+    away = x - task.start[task.transcription.active]
     objective = 0.5 * ca.dot(away, ca.mtimes(metric, away))
     values, jacobian = _Values(equations), _Jacobian(equations)
-    solver = ca.nlpsol(
-        "peer",
-        "ipopt",
-        {"x": x, "f": objective, "g": values(x)},
-        {
-            "jac_g": jacobian,
-            "hess_lag": _hessian(metric, n, equations.count),
-            "no_nlp_grad": True,
-            "print_time": False,
-            "error_on_fail": False,
-            "ipopt": {**OPTIONS, "max_wall_time": limit_s},
-        },
-    )
+    options = {
+        "jac_g": jacobian,
+        "hess_lag": _hessian(metric, equations.size, equations.count),
+        "no_nlp_grad": True,
+        "ipopt": {**OPTIONS, "max_wall_time": limit_s},
+    }
+    bounds = equations.lower, equations.upper
+    return run(task, {"x": x, "f": objective, "g": values(x)}, options, bounds, begun)
+
+
+def run(
+    task: Task,
+    problem: dict[str, ca.MX],
+    options: dict[str, Any],
+    bounds: tuple[FloatArray, FloatArray],
+    begun: float,
+) -> PeerResult:
+    """Runs IPOPT from the task's start. bounds: (R,) each, of the problem's rows; begun: when the
+    set-up began, by the performance counter."""
+    quiet = {"print_time": False, "error_on_fail": False}
+    solver = ca.nlpsol("peer", "ipopt", problem, {**quiet, **options})
     ready = time.perf_counter()
-    found = solver(x0=x0, lbg=equations.lower, ubg=equations.upper)
+    start = task.start[task.transcription.active]
+    found = solver(x0=start, lbg=bounds[0], ubg=bounds[1])
     seconds = time.perf_counter() - ready
     stats = solver.stats()
     last = task.unpack(np.asarray(found["x"]).ravel())
@@ -75,13 +73,14 @@ def solve(task: Task, limit_s: float) -> PeerResult:
     return judged(task, last, seconds, ready - begun, iterations, status)
 
 
-def sparse(entries: Entries, values: FloatArray, rows: int, columns: int) -> ca.DM:
-    """A sparse matrix of CasADi's."""
-    return ca.DM(_sparsity(entries, rows, columns), values)
+def sparse(matrix: csc_matrix) -> ca.DM:
+    """The matrix as CasADi's."""
+    return ca.DM(_sparsity(matrix), matrix.data)
 
 
-def _sparsity(entries: Entries, rows: int, columns: int) -> ca.Sparsity:
-    return ca.Sparsity(rows, columns, entries.starts(columns), entries.row.tolist())
+def _sparsity(matrix: csc_matrix) -> ca.Sparsity:
+    rows, columns = matrix.shape
+    return ca.Sparsity(rows, columns, matrix.indptr.tolist(), matrix.indices.tolist())
 
 
 class _Values(ca.Callback):
@@ -112,7 +111,7 @@ class _Jacobian(ca.Callback):
     def __init__(self, equations: Equations) -> None:
         super().__init__()
         self.equations = equations
-        self.sparsity = _sparsity(equations.entries, equations.count, equations.size)
+        self.sparsity = _sparsity(equations.pattern)
         self.construct("jac_g", {})
 
     def get_n_in(self) -> int:
@@ -131,9 +130,9 @@ class _Jacobian(ca.Callback):
         return True
 
     def eval_buffer(self, arg: Buffers, res: Buffers) -> int:
-        values, entries = self.equations.jacobian(_array(arg[0]))
+        values, jacobian = self.equations.jacobian(_array(arg[0]))
         _put(res[0], values)
-        _put(res[1], entries)
+        _put(res[1], jacobian.data)
         return 0
 
 

@@ -8,8 +8,9 @@ with our rows C, and bounds widened by the violation that our own solver lets st
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.sparse import csc_matrix
 
+from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.problem import MotionProblem
 from ...solver.numerics.block_banded import BlockBanded
 from ...solver.numerics.splines import ORDER
@@ -19,10 +20,6 @@ from ...solver.stages.setup import set_up
 from ...solver.stages.warm_start import stance_moves, warm_start
 from ...solver.transcription.rows import Rows
 from ...solver.transcription.transcription import Transcription
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int_]
-
 
 SOLVED = 1.1  # a solver meets the bounds within a tolerance of its own: a tenth of ours
 
@@ -40,10 +37,10 @@ class Task:
     @staticmethod
     def of(fit: Fit, problem: MotionProblem) -> "Task":
         """The adaptation of a fit to a problem, in one stage."""
-        plan = set_up(fit, problem)
-        moves = stance_moves(plan.schedule, plan.start.places, plan.goal, plan.turns)
-        start = warm_start(plan.start, moves)
-        return Task(plan.start.transcription, plan.goal, start, plan.metric)
+        setup = set_up(fit, problem)
+        moves = stance_moves(setup.schedule, setup.start.places, setup.target_places, setup.turns)
+        start = warm_start(setup.start, moves)
+        return Task(setup.start.transcription, setup.target_places, start, setup.metric)
 
     def rows(self, x: FloatArray) -> Rows:
         """The rows at x (K, n_block)."""
@@ -91,26 +88,10 @@ def judged(
     return PeerResult(seconds, setup, iterations, status, task.violation(x), task.distance(x), x)
 
 
-@dataclass(frozen=True)
-class Entries:
-    """Where a sparse matrix may differ from zero: row and column (nnz,), columns first."""
-
-    row: IntArray
-    column: IntArray
-
-    @staticmethod
-    def sorted(row: IntArray, column: IntArray) -> tuple["Entries", IntArray]:
-        """Entries in order, and the order that the values must take."""
-        order = np.lexsort((row, column))
-        return Entries(row[order], column[order]), order
-
-    def starts(self, columns: int) -> list[int]:
-        """(columns + 1,) where each column begins."""
-        return [int(i) for i in np.searchsorted(self.column, np.arange(columns + 1))]
-
-
 class Equations:
-    """The task's rows as a function of the packed unknowns (n,), with a sparse Jacobian."""
+    """The task's rows as a function of the packed unknowns (n,), with a sparse Jacobian.
+
+    pattern: the Jacobian's entries (count, size), each with its number from one on."""
 
     def __init__(self, task: Task) -> None:
         self.task = task
@@ -122,11 +103,12 @@ class Equations:
         number = np.full(t.active.shape, -1)
         number[t.active] = np.arange(self.size)
         columns = number[t.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)]
-        self._used = self._pattern() & (columns >= 0)
+        self._used = self._nonzero() & (columns >= 0)
         row = np.broadcast_to(np.arange(self.count)[:, None, None], columns.shape)[self._used]
-        self.entries, self._order = Entries.sorted(row, columns[self._used])
+        entries = (1 + np.arange(len(row)), (row, columns[self._used]))
+        self.pattern = csc_matrix(entries, (self.count, self.size))
 
-    def _pattern(self) -> NDArray[np.bool_]:
+    def _nonzero(self) -> BoolArray:
         """Entries that differ from zero at some of a few random places."""
         random = np.random.default_rng(0)
         start = self.task.start
@@ -141,27 +123,25 @@ class Equations:
         task = self.task
         return task.transcription.values(task.unpack(packed), task.places)
 
-    def jacobian(self, packed: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Values (count,) and the Jacobian's entries in the order of `entries`."""
-        rows = self.task.rows(self.task.unpack(packed))
-        return rows.value, rows.jacobian[self._used][self._order]
+    def jacobian(self, packed: FloatArray) -> tuple[FloatArray, csc_matrix]:
+        """Values (count,) and the Jacobian (count, size), its entries those of the pattern."""
+        rows, pattern = self.task.rows(self.task.unpack(packed)), self.pattern
+        entries = rows.jacobian[self._used][pattern.data - 1]
+        return rows.value, csc_matrix((entries, pattern.indices, pattern.indptr), pattern.shape)
 
 
-def metric_entries(task: Task) -> tuple[Entries, FloatArray]:
-    """The metric over the unknowns that exist: where, and its values."""
-    active, lower = task.transcription.active, task.metric.lower
-    count, n = active.shape
-    band = len(lower) - 1
-    wide = np.zeros((count, n, 2 * band + 1, n))
-    for j in range(band + 1):
-        blocks = lower[j][: count - j]
-        wide[j:, :, band - j] = blocks
-        wide[: count - j, :, band + j] = np.swapaxes(blocks, 1, 2)
-    at = np.argwhere(wide != 0.0)
-    row = at[:, 0] * n + at[:, 1]
-    column = (at[:, 0] + at[:, 2] - band) * n + at[:, 3]
-    inside = (column >= 0) & (column < count * n)
-    inside[inside] &= active.ravel()[row[inside]] & active.ravel()[column[inside]]
-    number = np.cumsum(active.ravel()) - 1
-    entries, order = Entries.sorted(number[row[inside]], number[column[inside]])
-    return entries, wide[tuple(at[inside].T)][order]
+def metric_matrix(task: Task) -> csc_matrix:
+    """The metric over the unknowns that exist, (n, n)."""
+    active = task.transcription.active
+    count = len(active)
+    number = np.arange(active.size).reshape(active.shape)
+    matrix = csc_matrix((active.size, active.size))
+    for j, blocks in enumerate(task.metric.lower):
+        row, column = np.broadcast_arrays(number[j:, :, None], number[: count - j, None, :])
+        where = row.ravel(), column.ravel()
+        part = csc_matrix((blocks[: count - j].ravel(), where), matrix.shape)
+        matrix += part + part.T if j else part
+    kept = np.flatnonzero(active)
+    found = matrix[kept][:, kept]
+    found.eliminate_zeros()
+    return found

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from .driver import Actions, Driver, Until
-from .screen import window_manager
+from .screen import present, window_manager
 
 if TYPE_CHECKING:  # the Blender with the window sees devtools and the installed zip alone
     from ...bridge.properties.settings import (
@@ -19,8 +19,10 @@ if TYPE_CHECKING:  # the Blender with the window sees devtools and the installed
         HangtimeSettings,
         HangtimeStance,
     )
+    from ...operators.solve.solving import Solving
 
 PACKAGE = "bl_ext.user_default.hangtime"
+FOLDER = "/user_default/hangtime/"  # in the path of each of its files
 CATEGORY = "Hangtime"
 CLIP = Path("/mnt/recordings/forward_jump_116cm.bvh")
 SCALE = 0.05644  # metres per unit of the recording
@@ -43,24 +45,17 @@ def armature() -> bpy.types.Object:
 
 def shown_action() -> bpy.types.Action:
     """The action that the armature performs."""
-    animation = armature().animation_data
-    assert animation is not None
-    assert animation.action is not None
-    return animation.action
+    return present(present(armature().animation_data).action)
 
 
 def show_action(action: bpy.types.Action) -> None:
     """Have the armature perform an action."""
-    animation = armature().animation_data
-    assert animation is not None
-    animation.action = action
+    present(armature().animation_data).action = action
 
 
 def pose_bone(name: str) -> bpy.types.PoseBone:
     """A bone of the armature in its pose."""
-    pose = armature().pose
-    assert pose is not None
-    return pose.bones[name]
+    return present(armature().pose).bones[name]
 
 
 def active_bone() -> str | None:
@@ -72,9 +67,7 @@ def active_bone() -> str | None:
 
 def current_scene() -> bpy.types.Scene:
     """Blender's scene."""
-    scene = bpy.context.scene
-    assert scene is not None
-    return scene
+    return present(bpy.context.scene)
 
 
 def settings() -> HangtimeSettings:
@@ -106,21 +99,26 @@ def landing_field(name: str) -> str:
     return f"stances[{settings().stances.find(LANDING)}].{name}"
 
 
+def solving() -> Solving | None:
+    """The extension's solve under way."""
+    found: Solving | None = extension_module("operators.solve.session").session().solving
+    return found
+
+
 def idle() -> bool:
     """Neither the worker nor an operator of ours has anything under way."""
     modal = window_manager().windows[0].modal_operators
     ours = [operator for operator in modal if operator.bl_idname.startswith("HANGTIME_OT")]
-    solving = extension_module("operators.solve.session").session().solving
     worker = extension_module("bridge.worker_client").shared()
-    return not (ours or solving is not None or worker.busy)
+    return not (ours or solving() is not None or worker.busy)
 
 
 def solve_stage() -> str:
     """Stage of the solve under way: "fit", "solve", "write-back"; "" while there is none."""
-    solving = extension_module("operators.solve.session").session().solving
-    if solving is None:
+    now = solving()
+    if now is None:
         return ""
-    state, progress = solving.state.name, solving.progress
+    state, progress = now.state.name, now.progress
     if state in ("CHECKING", "WRITING", "ENDED"):
         return "write-back"
     early = progress is None or progress.stage in ("fit", "refine")
@@ -207,12 +205,11 @@ def dialog(driver: Driver, path: Path, **values: object) -> Actions:
     yield 0.5
     browser = driver.screen.area("FILE_BROWSER").spaces[0]
     assert isinstance(browser, bpy.types.SpaceFileBrowser)
-    assert browser.params is not None
-    assert browser.active_operator is not None
-    browser.params.directory = str(path.parent).encode()
-    browser.params.filename = path.name
+    file, operator = present(browser.params), present(browser.active_operator)
+    file.directory = str(path.parent).encode()
+    file.filename = path.name
     for name, value in values.items():
-        setattr(browser.active_operator.properties, name, value)
+        setattr(operator.properties, name, value)
     yield 0.3
     yield driver.input.move(driver.screen.middle(area="FILE_BROWSER"))
     yield driver.input.key("Return")

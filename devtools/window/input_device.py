@@ -11,8 +11,6 @@ import os
 import subprocess
 import time
 from dataclasses import dataclass, field
-from types import TracebackType
-from typing import IO
 
 Place = tuple[float, float]
 STEP = 1 / 60  # s between the places of a smooth move
@@ -47,26 +45,15 @@ class InputDevice:
     _free_at: float = 0.0  # when the last action will have been done
     _told: int = 0  # actions
     _done: int = 0
-    _xdotool: subprocess.Popen[bytes] | None = None
 
-    def __enter__(self) -> InputDevice:
+    def __post_init__(self) -> None:
         self._xdotool = subprocess.Popen(
             ["xdotool", "-"], stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
-        os.set_blocking(self._output.fileno(), False)
-        return self
-
-    @property
-    def _input(self) -> IO[bytes]:
-        assert self._xdotool is not None
         assert self._xdotool.stdin is not None
-        return self._xdotool.stdin
-
-    @property
-    def _output(self) -> IO[bytes]:
-        assert self._xdotool is not None
         assert self._xdotool.stdout is not None
-        return self._xdotool.stdout
+        self._input, self._output = self._xdotool.stdin, self._xdotool.stdout
+        os.set_blocking(self._output.fileno(), False)
 
     @property
     def busy(self) -> bool:
@@ -74,13 +61,8 @@ class InputDevice:
         self._done += (self._output.read() or b"").count(b"\n")
         return self._done < self._told
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        fault: BaseException | None,
-        at: TracebackType | None,
-    ) -> None:
-        assert self._xdotool is not None
+    def close(self) -> None:
+        """Drop the mouse and the keyboard."""
         self._input.close()
         self._xdotool.terminate()
         self._xdotool.wait(timeout=5)
@@ -89,27 +71,22 @@ class InputDevice:
         """Move there by a straight and smooth path."""
         return self._act(smooth_path(self.place, to, seconds), to)
 
-    def click(self, to: Place, on: str, *, button: int = 1, times: int = 1) -> float:
+    def click(self, to: Place, on: str) -> float:
         """Move there and click; `on` says what lies there."""
-        self.clicks += [Click(time.monotonic(), to, on, self.task)] * times
-        press = [f"mousedown {button}", f"sleep {PRESS}", f"mouseup {button}", "sleep 0.02"]
-        return self._act([*smooth_path(self.place, to), "sleep 0.05", *press * times], to)
+        self.clicks.append(Click(time.monotonic(), to, on, self.task))
+        press = ["sleep 0.05", "mousedown 1", f"sleep {PRESS}", "mouseup 1", "sleep 0.02"]
+        return self._act([*smooth_path(self.place, to), *press], to)
 
     def forget(self, on: str) -> None:
         """Drop the last clicks from the record, as far as they were on this."""
         while self.clicks and self.clicks[-1].on == on:
             self.clicks.pop()
 
-    def drag(self, start: Place, end: Place, on: str, seconds: float) -> float:
-        """Press at `start`, move to `end` in that time, and let go."""
-        return self.press(start, on) + self.move(end, seconds) + self.let_go()
-
     def press(self, to: Place, on: str) -> float:
         """Move there and press the left button."""
         self.clicks.append(Click(time.monotonic(), to, on, self.task))
-        return self._act(
-            [*smooth_path(self.place, to), "sleep 0.1", "mousedown 1", "sleep 0.05"], to
-        )
+        press = ["sleep 0.1", "mousedown 1", "sleep 0.05"]
+        return self._act([*smooth_path(self.place, to), *press], to)
 
     def let_go(self) -> float:
         """Let go of the left button."""
@@ -118,9 +95,8 @@ class InputDevice:
     def wheel(self, to: Place, notches: int) -> float:
         """Turn the wheel there, downwards where positive."""
         button = 5 if notches > 0 else 4
-        return self._act(
-            [*smooth_path(self.place, to), *[f"click {button}", "sleep 0.02"] * abs(notches)], to
-        )
+        turn = [f"click {button}", "sleep 0.02"] * abs(notches)
+        return self._act([*smooth_path(self.place, to), *turn], to)
 
     def key(self, *names: str) -> float:
         """Press keys one after another, each by its X name, such as `ctrl+z`."""

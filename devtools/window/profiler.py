@@ -10,15 +10,16 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from inspect import CO_GENERATOR
 from threading import get_ident
-from types import CodeType, FunctionType, ModuleType
+from types import CodeType
 
 import bpy
 
 TOOL = 3  # one of the numbers that Python leaves free for tools
-GENERATOR = 0x20  # of a code's flags: its calls are told by other events, and are never Blender's
+MONITORING = vars(sys)["monitoring"]  # Python 3.12, which Debian's Blender has
 
 
 @dataclass(frozen=True)
@@ -66,15 +67,15 @@ class Profile:
 
 @dataclass
 class Profiler:
-    """Measures between `start` and `stop`. label: says what goes on; asked at each free moment."""
+    """Measures between `start` and `stop`. folder: part of the path of the package's
+    files; label: says what goes on; asked at each free moment."""
 
-    package: str
+    folder: str
     profiles: dict[str, Profile] = field(default_factory=dict)
     _label: Callable[[], str] | None = None
     _now: str = ""  # the label as it was at the last free moment
     _free_since: ClockReading = NEVER
     _running: bool = False  # the timer is on
-    _codes: set[CodeType] = field(default_factory=set)
     _depth: int = 0
     _entered: ClockReading = NEVER
     _fresh: set[str] = field(default_factory=set)
@@ -110,59 +111,39 @@ class Profiler:
         return 0.0
 
     def _watch(self) -> None:
-        """Trace calls of the package's functions that are loaded by now (sys.monitoring)."""
-        monitoring = vars(sys)["monitoring"]  # Python 3.12, which Debian's Blender has
-        events = monitoring.events
-        if monitoring.get_tool(TOOL) is None:
-            monitoring.use_tool_id(TOOL, "window")
-            monitoring.register_callback(TOOL, events.PY_START, self._enter)
-            monitoring.register_callback(TOOL, events.PY_RETURN, self._leave)
-            monitoring.register_callback(TOOL, events.PY_UNWIND, self._leave)
-            monitoring.set_events(TOOL, events.PY_UNWIND)  # Python offers it for all code only
-        for code in set(codes(self.package)) - self._codes:
-            monitoring.set_local_events(TOOL, code, events.PY_START | events.PY_RETURN)
-            self._codes.add(code)
+        """Trace calls of the package's functions (sys.monitoring)."""
+        events = MONITORING.events
+        if MONITORING.get_tool(TOOL) is None:
+            MONITORING.use_tool_id(TOOL, "window")
+            MONITORING.register_callback(TOOL, events.PY_START, self._enter)
+            MONITORING.register_callback(TOOL, events.PY_RETURN, self._leave)
+            MONITORING.register_callback(TOOL, events.PY_UNWIND, self._unwind)
+            MONITORING.set_events(TOOL, events.PY_START | events.PY_RETURN | events.PY_UNWIND)
 
-    def _enter(self, _code: CodeType, _offset: int) -> None:
+    def _foreign(self, code: CodeType) -> bool:
+        """True for functions that are not the package's, and for generators."""
+        return self.folder not in code.co_filename or bool(code.co_flags & CO_GENERATOR)
+
+    def _enter(self, code: CodeType, _offset: int) -> object:
+        if self._foreign(code):
+            return MONITORING.DISABLE  # be not asked again for this code
         if get_ident() != self._thread:
-            return
+            return None
         if self._depth == 0:
             self._entered = ClockReading.now()
         self._depth += 1
+        return None
 
-    def _leave(self, code: CodeType, _offset: int, _result: object) -> None:
-        if code not in self._codes or get_ident() != self._thread or self._depth == 0:
-            return
+    def _leave(self, code: CodeType, _offset: int, _result: object) -> object:
+        if self._foreign(code):
+            return MONITORING.DISABLE
+        if get_ident() != self._thread or self._depth == 0:
+            return None
         self._depth -= 1
         if self._depth == 0 and self._label is not None:
             spans = self._profile().calls.setdefault(code.co_qualname, Durations())
             spans.add(self._entered, ClockReading.now())
+        return None
 
-
-def codes(package: str) -> Iterator[CodeType]:
-    """The code of every function of the package's loaded modules, inner functions included."""
-    for name, module in list(sys.modules.items()):
-        if name == package or name.startswith(f"{package}."):
-            for function in functions(module):
-                yield from nested(function.__code__)
-
-
-def functions(owner: ModuleType | type) -> Iterator[FunctionType]:
-    """The functions that a module or class defines itself, its classes' included."""
-    name = owner.__name__ if isinstance(owner, ModuleType) else owner.__module__
-    for member in list(vars(owner).values()):
-        plain = getattr(member, "__func__", None) or getattr(member, "__wrapped__", member)
-        for each in (plain, getattr(member, "fget", None)):
-            if isinstance(each, FunctionType) and each.__module__ == name:
-                yield each
-            elif isinstance(each, type) and each.__module__ == name and each is not owner:
-                yield from functions(each)
-
-
-def nested(code: CodeType) -> Iterator[CodeType]:
-    """A code and those of the functions made in it; generators left out."""
-    if not code.co_flags & GENERATOR:
-        yield code
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            yield from nested(constant)
+    def _unwind(self, code: CodeType, offset: int, fault: BaseException) -> None:
+        self._leave(code, offset, fault)  # of an exception Python always tells

@@ -142,18 +142,16 @@ def missed(figure: Figure | None) -> str | None:
 
 def junit(found: list[Verdict]) -> str:
     """The verdicts as pytest would report them."""
-    suite = ElementTree.Element("testsuite", name="window")
+    skipped = sum(verdict.skipped for verdict in found)
+    failed = sum(verdict.failure is not None for verdict in found) - skipped
+    counts = {"tests": len(found), "failures": failed, "errors": 0, "skipped": skipped}
+    attributes = {name: str(count) for name, count in counts.items()}
+    suites = ElementTree.Element("testsuites")
+    suite = ElementTree.SubElement(suites, "testsuite", attributes, name="window")
     for verdict in found:
-        case = ElementTree.SubElement(
-            suite, "testcase", name=verdict.name, time=f"{verdict.seconds:.3f}"
-        )
+        attributes = {"name": verdict.name, "time": f"{verdict.seconds:.3f}"}
+        case = ElementTree.SubElement(suite, "testcase", attributes)
         if verdict.failure is not None:
             kind = "skipped" if verdict.skipped else "failure"
             ElementTree.SubElement(case, kind, message=verdict.failure)
-    failures, skipped = (len(suite.findall(f".//{kind}")) for kind in ("failure", "skipped"))
-    counts = {"tests": len(found), "failures": failures, "errors": 0, "skipped": skipped}
-    for name, count in counts.items():
-        suite.set(name, str(count))
-    suites = ElementTree.Element("testsuites")
-    suites.append(suite)
     return ElementTree.tostring(suites, encoding="unicode")

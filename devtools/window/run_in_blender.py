@@ -14,11 +14,11 @@ from pathlib import Path
 import bpy
 
 from . import scenarios_latency, scenarios_robustness, scenarios_workflow
-from .actions import PACKAGE
+from .actions import FOLDER
 from .driver import Driver, Scenario, drive_by_timer, run_scenarios
 from .input_device import InputDevice
 from .profiler import Profiler
-from .screen import Screen
+from .screen import Screen, present
 
 OUT = Path("/mnt/out")
 SCENARIOS = (
@@ -32,14 +32,14 @@ SCENARIOS = (
 
 def start() -> None:
     """Begin once Blender's window is there; Blender is quit at its end."""
-    preferences = bpy.context.preferences
-    assert preferences is not None
+    preferences = present(bpy.context.preferences)
     preferences.view.show_splash = False
     preferences.system.viewport_aa = "OFF"  # drawn once; the others draw again and again
     preferences.view.filebrowser_display_type = "SCREEN"  # the dialog in the window that is there
     ending = ExitStack()
-    device = ending.enter_context(InputDevice())
-    driver = Driver(OUT, device, Screen(device), Profiler(PACKAGE))
+    device = InputDevice()
+    ending.callback(device.close)
+    driver = Driver(OUT, device, Screen(device), Profiler(FOLDER))
     ending.callback(bpy.ops.wm.quit_blender)
     ending.callback(driver.keep)
     wanted = chosen(os.environ.get("SCENARIOS", "").split())

@@ -8,40 +8,25 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import shlex
 import shutil
-import signal
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..environment.libraries import install
 from ..environment.problem import SetUpError
 from ..environment.progress import run_quietly
 from ..environment.virtual_environment import CACHE
-from . import apt_sources
 
 SUITE = "trixie"  # of Debian: Blender 4.3
-PACKAGES = (
-    "blender",
-    "imagemagick",
-    "libgl1-mesa-dri",
-    "python3-numpy",
-    "xdotool",
-    "xvfb",
-)
+PACKAGES = ("blender", "imagemagick", "libgl1-mesa-dri", "python3-numpy", "xdotool", "xvfb")
 # Ends with whoever started it, and then ends all that it started itself.
-ALONE = (
-    "setpriv",
-    "--pdeathsig",
-    "KILL",
-    "unshare",
-    "--mount",
-    "--pid",
-    "--fork",
-    "--kill-child",
-    "--mount-proc",
+ALONE = shlex.split(
+    "setpriv --pdeathsig KILL unshare --mount --pid --fork --kill-child --mount-proc"
 )
 # dpkg waits for the disk after each file otherwise, and the pages are for people who read here.
 FAST = "force-unsafe-io\npath-exclude=/usr/share/doc/*\npath-exclude=/usr/share/man/*\n"
@@ -100,20 +85,17 @@ class Sandbox:
         """
         command = [*ALONE, "--net", "sh", "-ec", self.entry_script(script, mounts, variables)]
         with log.open("wb") as output:
-            process = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-            )
-            try:
-                return process.wait(timeout=limit)
+            try:  # past the limit it is killed, and so, by --kill-child, all that it started
+                return subprocess.run(
+                    command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=output,
+                    stderr=subprocess.STDOUT,
+                    start_new_session=True,
+                    timeout=limit,
+                ).returncode
             except subprocess.TimeoutExpired:
                 return 124
-            finally:
-                process.send_signal(signal.SIGKILL)  # and so, by --kill-child, all that it started
-                process.wait()
 
     def entry_script(
         self, script: str, mounts: Sequence[Mount], variables: Mapping[str, str]
@@ -131,9 +113,12 @@ class Sandbox:
             lines += [f"mkdir -p {there}", f"mount --bind {shlex.quote(str(mount.folder))} {there}"]
             if not mount.writable:
                 lines.append(f"mount -o remount,bind,ro {there}")
+        return "\n".join([*lines, f"exec {shlex.join(self.entry(script, variables))}"])
+
+    def entry(self, script: str, variables: Mapping[str, str]) -> list[str]:
+        """Command that runs a shell script in the sandbox, with no other variables than these."""
         settings = [f"{name}={value}" for name, value in {**VARIABLES, **variables}.items()]
-        inner = ["chroot", str(self.folder), "env", "-i", *settings, "sh", "-ec", script]
-        return "\n".join([*lines, f"exec {shlex.join(inner)}"])
+        return ["chroot", str(self.folder), "env", "-i", *settings, "sh", "-ec", script]
 
 
 def prepare(suite: str = SUITE) -> Sandbox:
@@ -145,7 +130,8 @@ def prepare(suite: str = SUITE) -> Sandbox:
     begun = time.monotonic()
     sandbox.folder.parent.mkdir(parents=True, exist_ok=True)
     sandbox.log.unlink(missing_ok=True)
-    have_debootstrap(sandbox.log)
+    if shutil.which("debootstrap") is None:
+        install("The window's sandbox is made by debootstrap", ("debootstrap",), sandbox.log)
     make(sandbox, suite)
     print(f"The sandbox with Blender was made in {time.monotonic() - begun:.0f} s", flush=True)
     return sandbox
@@ -163,32 +149,31 @@ def check_rights() -> None:
         raise SetUpError(f"The window's sandbox needs the right to mount, not had here: {problem}")
 
 
-def have_debootstrap(log: Path) -> None:
-    """Install debootstrap where it is missing."""
-    if shutil.which("debootstrap") is not None:
-        return
-    variables = {**os.environ, **VARIABLES}
-    run_quietly("Reading Debian's package lists", ["apt-get", "update"], log, variables)
-    install = ["apt-get", "install", "-y", "--no-install-recommends", "debootstrap"]
-    run_quietly("Installing debootstrap", install, log, variables)
-
-
 def make(sandbox: Sandbox, suite: str) -> None:
     """A new sandbox in place of whatever lies there."""
     sandbox.stamp.unlink(missing_ok=True)
     remove(sandbox.folder)
-    source = apt_sources.mirror()
+    source = mirror()
     bootstrap = ["debootstrap", "--variant=minbase", suite, str(sandbox.folder)]
     bootstrap += [source] if source else []
     run_quietly(f"Fetching Debian {suite}", [*ALONE, *bootstrap], sandbox.log)
     (sandbox.folder / "etc/dpkg/dpkg.cfg.d/fast").write_text(FAST)
     (sandbox.folder / "etc/apt/apt.conf.d/99machine").write_text(fetch_settings())
-    install = "apt-get install -y --no-install-recommends " + " ".join(PACKAGES)
-    inner = [f"{name}={value}" for name, value in VARIABLES.items()]
-    chroot = ["chroot", str(sandbox.folder), "env", "-i", *inner, "sh", "-ec"]
-    chroot.append(f"mount -t proc proc /proc; apt-get update; {install}; apt-get clean")
-    run_quietly("Installing Blender in it (400 MB to fetch)", [*ALONE, *chroot], sandbox.log)
+    line = "apt-get install -y --no-install-recommends " + " ".join(PACKAGES)
+    script = f"mount -t proc proc /proc; apt-get update; {line}; apt-get clean"
+    command = [*ALONE, *sandbox.entry(script, {})]
+    run_quietly("Installing Blender in it (400 MB to fetch)", command, sandbox.log)
     sandbox.stamp.write_text(json.dumps(PACKAGES))
+
+
+def mirror() -> str | None:
+    """The place that this machine's own release of Debian comes from; None where apt has none."""
+    own = platform.freedesktop_os_release().get("VERSION_CODENAME", "")
+    command = ["apt-get", "indextargets", "--no-release-info", "Identifier: Packages"]
+    command += ["--format", "$(RELEASE) $(COMPONENT) $(REPO_URI)"]
+    told = subprocess.run(command, capture_output=True, text=True).stdout.splitlines()
+    start = f"{own} main "
+    return next((line.removeprefix(start) for line in told if line.startswith(start)), None)
 
 
 def fetch_settings() -> str:

@@ -7,6 +7,7 @@ import re
 import time
 from dataclasses import dataclass, field
 from itertools import cycle, islice
+from typing import TYPE_CHECKING
 
 import bpy
 from mathutils import Vector
@@ -23,12 +24,21 @@ from .actions import (
 from .driver import Actions, Driver, Scenario, Until
 from .input_device import Place
 
+if TYPE_CHECKING:  # as in actions.py
+    from ...operators.solve.live import Live
+
 DRAG = 4.0  # s that the pin is dragged about while the ghost's updates are counted
 LEGS = 4
 CONSTRAINTS = 20
 REDRAWS = 2.0  # s of redraws that are measured
 OF_SIDEBAR = re.compile(r"(Panel|Operator|List|Menu)\.")
 BONES = ("LeftUpLeg", "RightUpLeg", "LeftArm", "RightArm", "LeftLeg")
+
+
+def live() -> Live:
+    """The extension's solves of the pin that is dragged."""
+    found: Live = extension_module("operators.solve.live").live()
+    return found
 
 
 @dataclass
@@ -39,9 +49,9 @@ class GhostCounter:
 
     def look(self) -> None:
         """Called at each redraw of a viewport."""
-        live = extension_module("operators.solve.live").live()
-        if live.seen is not None and (not self.seen or self.seen[-1][1] != live.version):
-            self.seen.append((time.monotonic(), live.version))
+        drag = live()
+        if drag.seen is not None and (not self.seen or self.seen[-1][1] != drag.version):
+            self.seen.append((time.monotonic(), drag.version))
 
     def rate(self, since: float, until: float) -> float:
         """Per second."""
@@ -64,13 +74,13 @@ def drags_landing(driver: Driver) -> Actions:
         yield driver.input.move(end, 0.5)
         assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
         yield Until("the ghost", lambda: len(ghosts.seen) > 0, 40)
-        begun, first = time.monotonic(), extension_module("operators.solve.live").live().version
+        begun, first = time.monotonic(), live().version
         driver.profiler.start(lambda: "drag")
         for place in islice(cycle(about(end)), LEGS):
             yield driver.input.move(place, DRAG / LEGS)
         driver.profiler.stop()
         rate = ghosts.rate(begun, time.monotonic())
-        last = extension_module("operators.solve.live").live().version
+        last = live().version
         made = (last - first) / (time.monotonic() - begun)
         yield from driver.picture("ghost_follows")
         yield driver.input.move(end, 0.5)
@@ -123,9 +133,8 @@ def overlays(driver: Driver) -> Actions:
     assert redraws > 2, f"only {redraws} redraws were measured"
     name = "overlay per redraw with 20 constraints"
     driver.figures[name] = 1000 * sum(spans.busy_total for spans in ours.values()) / redraws
-    driver.figures[f"{name}, by the clock"] = (
-        1000 * sum(spans.total for spans in ours.values()) / redraws
-    )
+    by_clock = 1000 * sum(spans.total for spans in ours.values()) / redraws
+    driver.figures[f"{name}, by the clock"] = by_clock
 
 
 SCENARIOS = (Scenario("overlays", overlays, ("analyses",)),)

@@ -38,15 +38,14 @@ from .actions import (
 )
 from .driver import Actions, Driver, Scenario, Until
 from .scenarios_latency import drags_landing
+from .screen import present
 
 SHIFT = 0.3  # m that the landing goes forward
 SAVED = Path("/tmp/artist.blend")
 
 
 def installed(_: Driver) -> Actions:
-    preferences = bpy.context.preferences
-    assert preferences is not None
-    assert PACKAGE in preferences.addons, "the extension is not enabled"
+    assert PACKAGE in present(bpy.context.preferences).addons, "the extension is not enabled"
     assert not Path("/mnt/checkout/solver").exists(), "the sandbox sees more than devtools"
     yield 0.1
 
@@ -197,9 +196,8 @@ def accepts(driver: Driver) -> Actions:
 
 def exports_fbx(driver: Driver) -> Actions:
     yield from open_panel(driver, "ExportPanel")
-    yield from export(
-        driver, "hangtime.export_fbx", Path("/tmp/accepted.fbx"), b"Kaydara FBX Binary"
-    )
+    path = Path("/tmp/accepted.fbx")
+    yield from export(driver, "hangtime.export_fbx", path, b"Kaydara FBX Binary")
 
 
 def exports_gltf(driver: Driver) -> Actions:

@@ -19,6 +19,7 @@ from mathutils import Vector
 from .input_device import InputDevice, Place
 
 Result = TypeVar("Result")
+Value = TypeVar("Value")
 Waits = Generator[float, None, Result]
 
 LINE = 12  # pixels between the places looked at; the smallest button is 18 high
@@ -30,11 +31,15 @@ MARGIN = 12  # pixels beside lists and buttons
 SEARCH = "a tab of the sidebar"
 
 
+def present(value: Value | None) -> Value:
+    """What the stubs say may be missing though it is there."""
+    assert value is not None
+    return value
+
+
 def window_manager() -> bpy.types.WindowManager:
     """Blender's one window manager."""
-    manager = bpy.context.window_manager
-    assert manager is not None
-    return manager
+    return present(bpy.context.window_manager)
 
 
 class NotFound(Exception):
@@ -94,21 +99,19 @@ class Screen:
         region = self.region()
         space = self.area().spaces[0]
         assert isinstance(space, bpy.types.SpaceView3D)
-        assert space.region_3d is not None
-        seen = location_3d_to_region_2d(region, space.region_3d, point)
+        seen = location_3d_to_region_2d(region, present(space.region_3d), point)
         if seen is None or not (0 <= seen.x < region.width and 0 <= seen.y < region.height):
-            raise NotFound(
-                f"the point ({point.x:g}, {point.y:g}, {point.z:g}) is not in the viewport"
-            )
+            words = f"({point.x:g}, {point.y:g}, {point.z:g})"
+            raise NotFound(f"the point {words} is not in the viewport")
         return self.on_screen(region.x + seen.x, region.y + seen.y)
 
-    def under(self, kind: str = "UI", area: str = "VIEW_3D") -> str:
-        """Element under the pointer: `bpy.ops.a.b(...)`, a data path, or nothing."""
+    def under(self) -> str:
+        """Element of the sidebar under the pointer: `bpy.ops.a.b(...)`, a data path, or nothing."""
         manager = window_manager()
         kept = manager.clipboard
-        over = self.region(kind, area)
+        area, over = self.area(), self.region("UI")
         try:
-            with bpy.context.temp_override(window=self.window, area=self.area(area), region=over):
+            with bpy.context.temp_override(window=self.window, area=area, region=over):
                 manager.clipboard = ""
                 # The stubs ask poll() for an argument that Blender does not take.
                 if bpy.ops.ui.copy_python_command_button.poll():  # type: ignore[call-arg]

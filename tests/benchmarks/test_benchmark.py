@@ -13,10 +13,10 @@ from hangtime.benchmarks.solutions import SOLUTIONS, with_solution
 from hangtime.benchmarks.tables import Table, write_json
 from hangtime.benchmarks.timing import in_turns
 from hangtime.devtools.peers import ipopt_peer
-from hangtime.devtools.peers.task import Equations, Task, metric_entries
+from hangtime.devtools.peers.task import Equations, Task, metric_matrix
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.stages.fit import ADAPT_PRICES, motion_metric
+from hangtime.solver.stages.fit import ADAPT_COST_WEIGHTS, motion_metric
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.toy_problems import places, random_state, standing
@@ -28,7 +28,7 @@ LIMIT = 60.0  # s
 def toy() -> Task:
     """Two legs that stand, from a guess that is in balance but for its moment."""
     start = random_state(3, 0.0)
-    metric = motion_metric(Motion(standing(), start, places()), ADAPT_PRICES)
+    metric = motion_metric(Motion(standing(), start, places()), ADAPT_COST_WEIGHTS)
     return Task(standing(), places(), start, metric)
 
 
@@ -84,16 +84,12 @@ def test_the_sparse_rows_and_metric_are_the_task_s() -> None:
     random = np.random.default_rng(1)
     packed = packed + 0.02 * random.normal(size=packed.shape)  # away from the cones' tips
     step = 1e-6 * random.normal(size=packed.shape)
-    value, entries = equations.jacobian(packed)
-    jacobian = np.zeros((equations.count, equations.size))
-    jacobian[equations.entries.row, equations.entries.column] = entries
+    value, jacobian = equations.jacobian(packed)
     ahead, behind = (equations.values(packed + s * step) for s in (1, -1))
     assert jacobian @ step == pytest.approx(0.5 * (ahead - behind), abs=1e-10)
-    where, values = metric_entries(task)
-    metric = np.zeros((equations.size, equations.size))
-    metric[where.row, where.column] = values
+    metric = metric_matrix(task)
     away = packed - task.start[task.transcription.active]
-    assert np.sqrt(away @ metric @ away) == pytest.approx(task.distance(task.unpack(packed)))
+    assert np.sqrt(away @ (metric @ away)) == pytest.approx(task.distance(task.unpack(packed)))
     assert value == pytest.approx(equations.values(packed))
 
 
@@ -152,7 +148,11 @@ def test_quick_works_take_turns_and_long_ones_run_once(monkeypatch: pytest.Monke
 
 
 def test_tables_are_told_with_and_without_the_machine_s_seconds(tmp_path: Path) -> None:
-    table = Table("T", "C", ("who", "took (s)", "ok"), (("a", 1.23456, True), ("b", None, False)))
+    rows = [
+        {"who": "a", "took (s)": 1.23456, "ok": True},
+        {"who": "b", "took (s)": None, "ok": False},
+    ]
+    table = Table("T", "C", rows)
     assert "took" not in table.without_seconds().markdown()
     assert "| a | 1.23 | yes |" in table.markdown()
     assert table.text().splitlines()[-1].split() == ["b", "–", "no"]

@@ -3,46 +3,17 @@
 import itertools
 import json
 import math
+import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 from hangtime.devtools.checks import summary
 from hangtime.devtools.environment.problem import SetUpError
-from hangtime.devtools.window import apt_sources, results, sandbox
-from hangtime.devtools.window.apt_sources import Source
+from hangtime.devtools.window import results, sandbox
 from hangtime.devtools.window.input_device import duration, quoted, smooth_path
 from hangtime.devtools.window.results import RunRecord
 
-STANZAS = """\
-# what came with the machine
-Types: deb deb-src
-URIs: http://mirror.example/debian
-Suites: bookworm bookworm-updates
-Components: main
- contrib
-Signed-By: /usr/share/keyrings/some.gpg
-
-Types: deb-src
-URIs: http://source.example/debian
-Suites: bookworm
-Components: main
-
-Enabled: no
-Types: deb
-URIs: http://off.example/debian
-Suites: bookworm
-Components: main
-"""
-LINES = """\
-# deb http://old.example/debian bookworm main
-deb [signed-by=/usr/share/some.gpg arch=amd64] http://shop.example/apt stable main # a shop's
-deb http://mirror.example/debian-security bookworm-security main
-
-deb-src http://mirror.example/debian bookworm main
-deb http://mirror.example/debian bookworm main contrib
-"""
-RELEASE = 'PRETTY_NAME="Debian"\nVERSION_CODENAME=bookworm\n'
 PICTURES = ["01_adapts.png"]
 
 
@@ -51,37 +22,22 @@ def scenario(name: str, failure: str | None = None, skipped: bool = False) -> di
     return {**record, "pictures": PICTURES}
 
 
-def test_stanzas_name_their_place_for_each_enabled_binary_source() -> None:
-    found = list(apt_sources.stanza_sources(STANZAS))
-    suites, components = ("bookworm", "bookworm-updates"), ("main", "contrib")
-    assert found == [Source("http://mirror.example/debian", suites, components)]
-
-
-def test_lines_may_have_options_and_comments() -> None:
-    assert list(apt_sources.one_line_sources(LINES)) == [
-        Source("http://shop.example/apt", ("stable",), ("main",)),
-        Source("http://mirror.example/debian-security", ("bookworm-security",), ("main",)),
-        Source("http://mirror.example/debian", ("bookworm",), ("main", "contrib")),
-    ]
-
-
 @pytest.mark.parametrize(
-    ("file", "text"), [("sources.list", LINES), ("sources.list.d/debian.sources", STANZAS)]
+    ("release", "place"), [("bookworm", "http://m.example/debian/"), ("forky", None)]
 )
 def test_the_mirror_is_where_the_own_release_comes_from(
-    tmp_path: Path, file: str, text: str
+    monkeypatch: pytest.MonkeyPatch, release: str, place: str | None
 ) -> None:
-    (tmp_path / "sources.list.d").mkdir()
-    (tmp_path / file).write_text(text)
-    release = tmp_path / "os-release"
-    release.write_text(RELEASE)
-    assert apt_sources.mirror(tmp_path, release) == "http://mirror.example/debian"
-    release.write_text("VERSION_CODENAME=forky\n")
-    assert apt_sources.mirror(tmp_path, release) is None
-
-
-def test_a_machine_without_apt_has_no_mirror(tmp_path: Path) -> None:
-    assert apt_sources.mirror(tmp_path, tmp_path / "os-release") is None
+    told = """stable main http://shop.example/apt/
+bookworm-security main http://m.example/debian-security/
+bookworm contrib http://other.example/debian/
+bookworm main http://m.example/debian/
+"""
+    answer = subprocess.CompletedProcess([], 0, stdout=told)
+    monkeypatch.setattr(sandbox.subprocess, "run", lambda *_, **__: answer)
+    own = {"VERSION_CODENAME": release}
+    monkeypatch.setattr(sandbox.platform, "freedesktop_os_release", lambda: own)
+    assert sandbox.mirror() == place
 
 
 def test_a_sandbox_with_something_mounted_in_it_is_not_removed() -> None:
