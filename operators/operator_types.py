@@ -28,3 +28,8 @@ class PolledOperator(OperatorMixin):
         if why is not None:
             cls.poll_message_set(why)
         return why is None
+
+    def refuse(self, why: str, level: Literal["WARNING", "ERROR"] = "ERROR") -> OperatorResult:
+        """Reports why nothing is done."""
+        self.report({level}, why)
+        return {"CANCELLED"}

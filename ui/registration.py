@@ -11,25 +11,25 @@ from ..bridge import worker_client
 from ..bridge.accessors import ATTRIBUTE, present
 from ..bridge.properties import settings, stances
 from ..operators import names
-from ..operators.drag import aim_cone, limit_operator, pin_operator, turn_stance
-from ..operators.export import exports, save_plots
+from ..operators.drag import limit_operator, pin_operator, turn_stance
+from ..operators.export import exports
 from ..operators.lists import body_changes, constraints, contacts, presets
 from ..operators.solve import adapt, analyze, results, session
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
-from .panels import constraint_menus, display, lists, menu, setup, solve
 from .panels import constraints as constraint_panels
 from .panels import contacts as contact_panels
+from .panels import display, lists, menus, setup, solve
 from .plots import handler as plots
 from .timeline import handler as timeline
 
 # A panel comes after the one that it is part of.
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, presets, results, exports),
-    *(pin_operator, turn_stance, limit_operator, aim_cone, contact_edge_operator, save_plots),
-    *(lists, menu, constraint_menus, setup, contact_panels, constraint_panels, solve, display),
+    *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
+    *(lists, menus, setup, contact_panels, constraint_panels, solve, display),
     *(pin_handles, limit_handles),
 )
 
@@ -67,7 +67,7 @@ def register() -> Callable[[], None]:
         # Keys are pairs, whatever the stubs say.
         bpy.app.translations.register(__package__, TRANSLATIONS)  # type: ignore[arg-type]
         undo.callback(bpy.app.translations.unregister, __package__)
-        menu.add(undo)
+        menus.add(undo)
         overlay.add(undo)
         plots.add(undo)
         timeline.add(undo)

@@ -18,10 +18,8 @@ from ..solve.common import required_armature, said
 from ..solve.live import live, redraw_viewports
 from ..solve.session import session
 from ..solve.task import LOOK_EVERY
-from .mouse import Press
+from .mouse import BACK, CONFIRM, GIVEN, Press
 
-CONFIRM = {"RET", "NUMPAD_ENTER"}
-BACK = {"ESC", "RIGHTMOUSE"}
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 
@@ -29,7 +27,7 @@ ELSEWHERE = "Drag in a 3D viewport"
 class FollowedDrag(PolledOperator):
     """Mixin of modal operators that drag contacts or points in a 3D viewport."""
 
-    release_confirm: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+    release_confirm: bpy.props.BoolProperty(options=GIVEN)
     adapt: bpy.props.BoolProperty(
         name="Adapt", description="Adapt the motion once the mouse lets go", default=True
     )
@@ -76,8 +74,7 @@ class FollowedDrag(PolledOperator):
         self._press = Press.of(context, event, click=self.release_confirm)
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
-            self.report({"ERROR"}, why)
-            return {"CANCELLED"}
+            return self.refuse(why)
         self._moved, self._share = True, 0.0
         self._fault = self._shown = ""
         self._task = self._follow(context)

@@ -37,8 +37,7 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         """In scripts and for redo."""
         stance = active_stance(settings_of(required_armature(context)))
         if stance is None:
-            self.report({"ERROR"}, NO_STANCE)
-            return {"CANCELLED"}
+            return self.refuse(NO_STANCE)
         stance.turn += self.by
         return {"FINISHED"}
 

@@ -84,12 +84,11 @@ class Outputs:
         recording's on a copy beside it. Returns who performs the action, and the action."""
         from mathutils import Vector
 
-        from ...bridge.accessors import current_action
+        from ...bridge.accessors import current_action, present
         from ...bridge.armature.reproportioned import build_reproportioned
         from ...bridge.armature.write import side_by_side, write_action
 
-        recorded = current_action(self.clip.armature)
-        assert recorded is not None
+        recorded = present(current_action(self.clip.armature))
         armature, track = self.clip.armature, self.result.track
         if self.result.subject.problem.requests.body.limbs:
             armature, track, _ = build_reproportioned(self.result.recording, track)
@@ -110,10 +109,9 @@ class Outputs:
 
 
 def _show_frames(first: int, last: int) -> None:
-    import bpy
+    from ...bridge.accessors import current_scene
 
-    scene = bpy.context.scene
-    assert scene is not None
+    scene = current_scene()
     scene.frame_start, scene.frame_end = first, last
     scene.frame_set(first)
 

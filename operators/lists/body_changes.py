@@ -29,6 +29,7 @@ DESCRIPTIONS = {
     BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
     BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",
 }
+BonedRow = HangtimeConstraint | HangtimeBodyChange
 KIND_ITEMS = [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
 
 
@@ -66,15 +67,17 @@ class _BonesOperator(AddingOperator):
 
     of: bpy.props.EnumProperty(name="List", items=[(each.name, each.label, "") for each in RowList])
 
-    def _row(self, context: bpy.types.Context) -> HangtimeConstraint | HangtimeBodyChange | None:
-        """None, reported, where there is none that can be changed."""
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, of = required_armature(context), RowList[self.of]
         index = of.chosen(settings_of(armature))
-        if index >= of.linked(armature):
-            row: HangtimeConstraint | HangtimeBodyChange = of.rows(settings_of(armature))[index]
-            return row
-        self.report({"WARNING"}, of.nothing_chosen if index < 0 else FROM_LIBRARY)
-        return None
+        if index < of.linked(armature):
+            return self.refuse(of.nothing_chosen if index < 0 else FROM_LIBRARY, "WARNING")
+        row = of.rows(settings_of(armature))[index]
+        return {"FINISHED"} if self.change(row, armature) else {"CANCELLED"}
+
+    def change(self, row: BonedRow, armature: bpy.types.Object) -> bool:
+        """Changes the bones of a row; whether it can."""
+        raise NotImplementedError
 
 
 class AssignBonesOperator(_BonesOperator, SelectedBonesOperator, bpy.types.Operator):
@@ -82,13 +85,10 @@ class AssignBonesOperator(_BonesOperator, SelectedBonesOperator, bpy.types.Opera
     bl_label = "Assign Selected Bones"
     bl_description = "Let the chosen row be about the bones that are selected in pose mode"
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        row = self._row(context)
-        if row is None:
-            return {"CANCELLED"}
-        bones = chosen_bones(required_armature(context))
+    def change(self, row: BonedRow, armature: bpy.types.Object) -> bool:
+        bones = chosen_bones(armature)
         set_bones(row, bones[:1] if row.kind in _OF_ONE_BONE else bones)
-        return {"FINISHED"}
+        return True
 
 
 class AddBoneOperator(_BonesOperator, bpy.types.Operator):
@@ -96,12 +96,9 @@ class AddBoneOperator(_BonesOperator, bpy.types.Operator):
     bl_label = "Add Bone"
     bl_description = "Add a field to choose one more bone in"
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        row = self._row(context)
-        if row is None:
-            return {"CANCELLED"}
+    def change(self, row: BonedRow, _armature: bpy.types.Object) -> bool:
         row.bones.add()
-        return {"FINISHED"}
+        return True
 
 
 class RemoveBoneOperator(_BonesOperator, bpy.types.Operator):
@@ -111,9 +108,8 @@ class RemoveBoneOperator(_BonesOperator, bpy.types.Operator):
 
     index: bpy.props.IntProperty(name="Index", min=0)
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        row = self._row(context)
-        if row is None or self.index >= len(row.bones):
-            return {"CANCELLED"}
+    def change(self, row: BonedRow, _armature: bpy.types.Object) -> bool:
+        if self.index >= len(row.bones):
+            return False
         row.bones.remove(self.index)
-        return {"FINISHED"}
+        return True

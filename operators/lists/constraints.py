@@ -150,7 +150,6 @@ class PlaceConstraintOperator(RowOperator, bpy.types.Operator):
         elif not row.bones or row.bones[0].name not in pose_of(armature).bones:
             why = NO_BONE
         if why is not None:
-            self.report({"WARNING"}, why)
-            return {"CANCELLED"}
+            return self.refuse(why, "WARNING")
         point.put_where_shown(armature, row, keep_offset=True)
         return {"FINISHED"}

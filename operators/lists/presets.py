@@ -53,8 +53,7 @@ class JointLimitsOperator(AddingOperator, bpy.types.Operator):
         armature = required_armature(context)
         found = joint_limits(armature)
         if not found.made:
-            self.report({"WARNING"}, NO_FIGURE)
-            return {"CANCELLED"}
+            return self.refuse(NO_FIGURE, "WARNING")
         told = [f"Added {len(found.made)} joint limits"]
         told += [f"no bone for {_listed(found.missing)}"] if found.missing else []
         beyond = sorted(
@@ -96,8 +95,7 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
             hold_throughout(row)
             told.append(f"{joint.lower()} {row.torque:.0f} N·m{_needed(settings, bones)}")
         if not told:
-            self.report({"WARNING"}, NO_FIGURE)
-            return {"CANCELLED"}
+            return self.refuse(NO_FIGURE, "WARNING")
         missing = f"; no bone for {_listed(lost)}" if lost else ""
         self.report({"WARNING" if lost else "INFO"}, f"Added {', '.join(told)}{missing}.")
         return {"FINISHED"}
@@ -142,8 +140,9 @@ class LimpLimbOperator(SelectedBonesOperator, bpy.types.Operator):
         jointed = jointed_bones(armature)
         bones = [bone for bone in limb if bone in jointed]
         if not bones:
-            self.report({"WARNING"}, "None of the selected bones has a joint that physics moves")
-            return {"CANCELLED"}
+            return self.refuse(
+                "None of the selected bones has a joint that physics moves", "WARNING"
+            )
         frame = present(context.scene).frame_current_final
         row = add_constraint(armature, torque_limit.KIND, bones, frame)
         row.name = free_name(settings_of(armature), f"Limp {title(chosen[0])}")

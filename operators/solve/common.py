@@ -60,8 +60,7 @@ class FaultyOperator(PolledOperator):
         try:
             return self.run(context)
         except Fault as fault:
-            self.report({"ERROR"}, said(fault))
-            return {"CANCELLED"}
+            return self.refuse(said(fault))
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         """Does the work. Raises any Fault, having changed nothing."""

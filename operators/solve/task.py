@@ -109,11 +109,9 @@ class TaskOperator(FaultyOperator):
             return {"FINISHED"}
         except Fault as fault:
             session().failure = said(fault)  # the report vanishes when the mouse moves
-            self.report({"ERROR"}, session().failure)
-            return {"CANCELLED"}
+            return self.refuse(session().failure)
         except ReferenceError:  # an undo took the armature away from under us
-            self.report({"ERROR"}, TAKEN_AWAY)
-            return {"CANCELLED"}
+            return self.refuse(TAKEN_AWAY)
         finally:
             if not goes_on:  # also after a mistake of ours, or every button stayed grey
                 self.leave()

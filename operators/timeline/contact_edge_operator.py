@@ -52,8 +52,7 @@ class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
         settings = settings_of(required_armature(context))
         drag = drag_of(settings, self.contact, Edge[self.edge])
         if drag is None:
-            self.report({"ERROR"}, f"There is no contact or ground phase called “{self.contact}”")
-            return {"CANCELLED"}
+            return self.refuse(f"There is no contact or ground phase called “{self.contact}”")
         drag.begin(drag.origin)
         drag.put(self.frame, fine=True)
         if abs(drag.frame - self.frame) > 0.5:
@@ -152,8 +151,7 @@ class PickContactOperator(_OfKnownContacts, bpy.types.Operator):
         settings = settings_of(required_armature(context))
         index = settings.contacts.find(self.contact)
         if index < 0:
-            self.report({"ERROR"}, f"There is no contact called “{self.contact}”")
-            return {"CANCELLED"}
+            return self.refuse(f"There is no contact called “{self.contact}”")
         settings.active_contact = index
         redraw(*EDITORS)
         return {"FINISHED"}
@@ -171,8 +169,7 @@ class PickContactOperator(_OfKnownContacts, bpy.types.Operator):
 
 def drag_of(settings: HangtimeSettings, name: str, edge: Edge) -> EdgeDrag | None:
     """Of the edge of a contact that counts or of a ground phase; None where there is none such."""
-    clip = clip_ends(settings)
-    assert clip is not None
+    clip = present(clip_ends(settings))
     touches = [
         Touch(row.name, row.point, row.start_frame, row.end_frame)
         for row in settings.contacts

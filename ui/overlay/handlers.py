@@ -30,9 +30,9 @@ class Overlay:
         view = read_view(context)
         if view is None:
             return
-        picture = self._pictures.of(list(layers(view, self._figures)))
-        draw(picture.batches, ui_scale(context))
-        self._labels = picture.labels if view.options.labels else ()
+        batches, named = self._pictures.of(list(layers(view, self._figures)))
+        draw(batches, ui_scale(context))
+        self._labels = named if view.options.labels else ()
 
     def draw_labels(self) -> None:
         """Over the picture (POST_PIXEL), which follows for the same region."""

@@ -10,9 +10,9 @@ from ...bridge.rows.kind import Row
 from ...operators.lists.row_lists import RowList
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .constraint_fields import draw_bone, draw_bones, draw_constraint
-from .constraint_menus import AddBodyChangeMenu, AddConstraintMenu, ConstraintMoreMenu
+from .constraint_fields import RowDrawing
 from .lists import MET_ICONS, BodyChangeList, ConstraintList
+from .menus import AddBodyChangeMenu, AddConstraintMenu, ConstraintMoreMenu
 from .sidebar import ArmaturePanel, draw_list, optional, settings_in, split
 
 
@@ -55,7 +55,7 @@ class ConstraintPanel(ArmaturePanel):
         body = layout.column()
         body.active = row.used
         own = _is_own(armature, RowList.CONSTRAINTS)
-        draw_constraint(body, row, armature_data(armature), own=own)
+        KINDS[row.kind].draw(RowDrawing(body, row, armature_data(armature), own), row)
 
 
 class BodyChangesPanel(ArmaturePanel):
@@ -85,15 +85,15 @@ def _draw_body_change(layout: bpy.types.UILayout, armature: bpy.types.Object) ->
     _draw_status(layout, row)
     body = layout.column()
     body.active = row.used
-    own = _is_own(armature, RowList.BODY_CHANGES)
+    of = RowList.BODY_CHANGES
+    fields = RowDrawing(body, row, armature_data(armature), _is_own(armature, of), of.name)
     if row.kind == BodyKind.LIMB.name:
-        none = "Select bones and assign them"
-        draw_bones(body, row, armature_data(armature), "BODY_CHANGES", none, own=own)
+        fields.bones("Select bones and assign them")
         factors = body.column(align=True)
         factors.prop(row, "length", text="Length ×")
         factors.prop(row, "mass_factor", text="Mass ×")
         return
-    draw_bone(body, row, armature_data(armature), own=own)
+    fields.bone()
     body.prop(row, "by_share")
     body.prop(row, "share" if row.by_share else "mass")
     body.prop(row, "use_offset")
