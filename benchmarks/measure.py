@@ -13,7 +13,7 @@ from ..solver.stages.implicit import Adaptation, adapt
 from . import floor, naive_peer, scaling, snopt_peer
 from .recordings import jump, recording
 from .solutions import IMPLICIT, SOLUTIONS, with_solution
-from .tables import Row, Table, Value
+from .tables import Row, Table, Value, with_ratios
 from .timing import REPEATS, in_turns
 
 Peer = Callable[[Task, float], PeerResult]
@@ -130,27 +130,17 @@ class Benchmark:
         return Table("One iteration", caption, rows)
 
     def _lengths(self) -> Table:
-        costs = list(scaling.lengths(self.extent.lengths))
-        first = costs[0]
-        rows = [
-            {
-                "window": f"{c.length:g} s",
-                "unknowns": c.unknowns,
-                "unknowns / first": c.unknowns / first.unknowns,
-                "fit (s)": c.fit_s,
-                "fit / first": c.fit_s / first.fit_s,
-                "adaptation (s)": c.adapt_s,
-                "adaptation / first": c.adapt_s / first.adapt_s,
-                "steps": c.steps,
-                "solved": c.solved,
-            }
-            for c in costs
-        ]
+        rows = list(scaling.lengths(self.extent.lengths))
+        ratios = {
+            "unknowns": "unknowns / first",
+            "fit (s)": "fit / first",
+            "adaptation (s)": "adaptation / first",
+        }
         caption = (
             f"Windows of the ten hops, CMU 01_01, from {scaling.FIRST:g} s on, each fitted, then "
             "its first landing moved 0.3 m forward."
         )
-        return Table("Cost against length", caption, rows)
+        return Table("Cost against length", caption, with_ratios(rows, ratios))
 
     def _dofs(self) -> Table:
         tasks = {
@@ -163,24 +153,20 @@ class Benchmark:
             {name: partial(scaling.finished, small) for name, small in tasks.items()},
             self.extent.repeats,
         )
-        first = next(iter(tasks))
-        rows: list[Row] = []
-        for name, small in tasks.items():
-            t, seconds, (outcome, solve) = small.transcription, one[name][1], whole[name]
-            rows.append(
-                {
-                    "figure": name,
-                    "DOFs": t.character.n_dofs,
-                    "unknowns": t.n_unknowns,
-                    "iteration (s)": seconds,
-                    "iteration / all DOFs": seconds / one[first][1],
-                    "solve (s)": solve,
-                    "solve / all DOFs": solve / whole[first][1],
-                    "steps": len(outcome.steps),
-                    "solved": outcome.violation <= 1.0,
-                }
-            )
+        rows: list[Row] = [
+            {
+                "figure": name,
+                "DOFs": small.transcription.character.n_dofs,
+                "unknowns": small.transcription.n_unknowns,
+                "iteration (s)": one[name][1],
+                "solve (s)": whole[name][1],
+                "steps": len(whole[name][0].steps),
+                "solved": whole[name][0].violation <= 1.0,
+            }
+            for name, small in tasks.items()
+        ]
+        ratios = {"iteration (s)": "iteration / all DOFs", "solve (s)": "solve / all DOFs"}
         caption = (
             "The jump's edit with joints made rigid at their mean over the clip, at the same knots."
         )
-        return Table("Cost against degrees of freedom", caption, rows)
+        return Table("Cost against degrees of freedom", caption, with_ratios(rows, ratios))

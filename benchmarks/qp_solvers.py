@@ -9,7 +9,8 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
+
+from ..solver.arrays import FloatArray
 
 SIZES = (30, 120, 300)
 REPEATS = 5
@@ -24,9 +25,7 @@ SOLVERS: dict[str, dict[str, Any]] = {
 }
 
 
-def program(
-    size: int,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def program(size: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Root and bounds of a random program with stiffnesses over six orders of magnitude."""
     random = np.random.default_rng(size)
     rows = random.normal(size=(size, 4000)) * np.exp(-6.0 * random.random(size))[:, None]

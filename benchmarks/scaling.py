@@ -1,7 +1,7 @@
 """What an adaptation costs against the clip's length and the figure's degrees of freedom."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -21,6 +21,7 @@ from ..solver.stages.fit import ADAPT_COST_WEIGHTS, Fit, fit, motion_metric
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
 from .recordings import hops, recording
+from .tables import Row
 from .timing import in_turns, timed
 
 FIRST = 0.99  # s, where the windows of the hops begin
@@ -34,19 +35,7 @@ WELDED: dict[str, tuple[Part, ...]] = {
 }
 
 
-@dataclass(frozen=True)
-class Cost:
-    """What one window took. steps: of the adaptation."""
-
-    length: float
-    unknowns: int
-    fit_s: float
-    adapt_s: float
-    steps: int
-    solved: bool
-
-
-def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Cost]:
+def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Row]:
     """Windows of the hops, each fitted and its first landing moved."""
     for length in seconds:
         problem = hops(FIRST, length)
@@ -54,14 +43,14 @@ def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Cost]:
         fitted, fit_s = timed(partial(fit, analysis.performance, analysis.schedule))
         _ = fitted.metric  # part of the stored fit
         adaptation, adapt_s = in_turns({"": partial(adapt, fitted, problem)}, 3)[""]
-        yield Cost(
-            length,
-            adaptation.motion.transcription.n_unknowns,
-            fit_s,
-            adapt_s,
-            sum(len(outcome.steps) for outcome in adaptation.outcomes),
-            fitted.solved and adaptation.solved,
-        )
+        yield {
+            "window": f"{length:g} s",
+            "unknowns": adaptation.motion.transcription.n_unknowns,
+            "fit (s)": fit_s,
+            "adaptation (s)": adapt_s,
+            "steps": sum(len(outcome.steps) for outcome in adaptation.outcomes),
+            "solved": fitted.solved and adaptation.solved,
+        }
 
 
 def welded(performance: Performance, parts: tuple[Part, ...]) -> tuple[Character, IntArray]:

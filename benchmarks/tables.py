@@ -39,6 +39,20 @@ class Table:
         return "\n".join([f"## {self.title}", "", self.caption, "", head, rule, *body])
 
 
+def with_ratios(rows: Sequence[Row], ratios: Mapping[str, str]) -> list[Row]:
+    """The rows with more columns: after each that `ratios` names, its values over the first row's
+    under the new name given there."""
+    found = []
+    for row in rows:
+        wider: dict[str, Value] = {}
+        for column, value in row.items():
+            wider[column] = value
+            if column in ratios:
+                wider[ratios[column]] = value / rows[0][column]
+        found.append(wider)
+    return found
+
+
 def shown(value: Value) -> str:
     """A value to three digits; yes and no; a dash for nothing."""
     if value is None:

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.results.mjcf import ROOT_SIZE, mjcf, motion_state
 from ...solver.transcription.motion import Motion
 
-FloatArray = NDArray[np.float64]
 RATE = 960.0  # Hz
 
 
@@ -24,7 +23,7 @@ class Residual:
     times: FloatArray
     force: FloatArray
     moment: FloatArray
-    flying: NDArray[np.bool_]
+    flying: BoolArray
 
     def rms(self, part: str, flying: bool) -> float:
         """Root mean square length of "force" or "moment" in flight or on the ground."""

@@ -1,13 +1,10 @@
 """Drift of pinned points in Blender: in the written action and after FBX and back."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
 from ...bridge.accessors import current_action
 from ...bridge.armature import fcurves
@@ -15,12 +12,12 @@ from ...bridge.armature.read import read_recording
 from ...bridge.armature.write import write_action
 from ...bridge.files.export import export_fbx, reimport_fbx
 from ...bridge.files.import_clip import import_clip
+from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.contacts import Contact
 from ...solver.data.recording import Recording
 from ...solver.transcription.motion import Motion
 from .clips import Clip
 
-FloatArray = NDArray[np.float64]
 SETTLING = 0.03  # s at either end of a contact, told apart
 
 
@@ -45,10 +42,11 @@ def drifts(
 ) -> tuple[Drift, Drift]:
     """Writes the motion as an action and as FBX, and reads both back on every frame."""
     first, last = recording.frames[[0, -1]]
-    with _own_action_afterwards(armature):
-        action = write_action(armature, motion.track(recording), name="measured")
-        written = read_recording(armature, first=first, last=last)
-        export_fbx(armature, action, fbx)
+    own, slot = current_action(armature), fcurves.slot_identifier(armature)
+    action = write_action(armature, motion.track(recording), name="measured")
+    written = read_recording(armature, first=first, last=last)
+    export_fbx(armature, action, fbx)
+    fcurves.assign(armature, own, slot)
     back = reimport_fbx(fbx, recording.frames)
     bpy.data.actions.remove(action)
     return drift(motion, written), drift(motion, back)
@@ -57,22 +55,18 @@ def drifts(
 def drift(motion: Motion, shown: Recording) -> Drift:
     """Of every contact's point, fixed in its bone, in what Blender shows."""
     contacts = [c.contact for c in motion.transcription.contacts]
-    held, ends = [0.0], [0.0]
+    held = ends = 0.0
     for contact, place in zip(contacts, motion.places, strict=True):
-        off = np.linalg.norm(_point(contact, shown) - place, axis=1)
+        bone = shown.index(contact.bone)  # keeps its own axes through FBX, though not its rest pose
+        point = shown.heads[:, bone] + shown.rotations[:, bone] @ contact.offset
+        off = np.linalg.norm(point - place, axis=1)
         inside, settling = _instants(contact, shown.times)
-        held.extend(off[inside])
-        ends.extend(off[settling])
-    return Drift(float(max(held)), float(max(ends)))
+        held = max(held, float(off[inside].max(initial=0.0)))
+        ends = max(ends, float(off[settling].max(initial=0.0)))
+    return Drift(held, ends)
 
 
-def _point(contact: Contact, shown: Recording) -> FloatArray:
-    """(T, 3) m. Bones keep their own axes through FBX, though not their rest pose."""
-    bone = shown.index(contact.bone)
-    return np.asarray(shown.heads[:, bone] + shown.rotations[:, bone] @ contact.offset)
-
-
-def _instants(contact: Contact, times: FloatArray) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _instants(contact: Contact, times: FloatArray) -> tuple[BoolArray, BoolArray]:
     """Frames in which the point is held, and those in which it may settle or roll."""
     slack = 1e-6
     touching = (times > contact.start - slack) & (times < contact.end + slack)
@@ -81,12 +75,3 @@ def _instants(contact: Contact, times: FloatArray) -> tuple[NDArray[np.bool_], N
     ends = contact.end - (SETTLING if contact.end < times[-1] else 0.0)
     inside = touching & (times > begins - slack) & (times < ends + slack)
     return inside, touching & ~inside
-
-
-@contextmanager
-def _own_action_afterwards(armature: bpy.types.Object) -> Iterator[None]:
-    action, slot = current_action(armature), fcurves.slot_identifier(armature)
-    try:
-        yield
-    finally:
-        fcurves.assign(armature, action, slot)

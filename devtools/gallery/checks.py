@@ -81,7 +81,7 @@ class BendCheck(Span):
         side = np.sign(np.einsum("ti,ti->t", np.cross(one, other), normal))
         bend = side * np.arccos(np.clip(np.einsum("ti,ti->t", one, other), -1.0, 1.0))
         out = np.maximum(bend - self.upper, self.lower - bend)
-        return float(np.degrees(np.clip(out, 0.0, None).max(initial=0.0)))
+        return float(np.degrees(out.max(initial=0.0)))
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ class ConeCheck(Span):
         local = np.einsum("ij,tjk,tk->ti", self.frame, back, directions(shown, self.bone)[at])
         across = np.linalg.norm(local[:, 1:] / self.stretch, axis=1)
         out = np.arctan2(across, local[:, 0]) - self.half_angle
-        return float(np.degrees(np.clip(out, 0.0, None).max(initial=0.0)))
+        return float(np.degrees(out.max(initial=0.0)))
 
 
 Check = PointCheck | BendCheck | ConeCheck
@@ -128,10 +128,11 @@ def turns(shown: Recording, bone: str) -> FloatArray:
 
 def checks(adaptation: Adaptation) -> list[Check]:
     """Of every contact, and of every condition on points, bends and cones."""
-    found: list[Check] = list(_contacts(adaptation))
-    for condition in adaptation.motion.transcription.constraints:
-        found += _condition(condition, adaptation)
-    return found
+    conditions = adaptation.motion.transcription.constraints
+    return [
+        *_contacts(adaptation),
+        *(c for each in conditions for c in _condition(each, adaptation)),
+    ]
 
 
 def _contacts(adaptation: Adaptation) -> Iterator[PointCheck]:
@@ -143,18 +144,9 @@ def _contacts(adaptation: Adaptation) -> Iterator[PointCheck]:
         if contact.track is not None:
             times, places = contact.track.times, place + contact.track.moves
         edges = np.zeros(axes.shape[1])
-        yield PointCheck(
-            contact.contact.name,
-            contact.pin_start,
-            contact.pin_end,
-            contact.contact.bone,
-            contact.contact.offset,
-            times,
-            places,
-            axes,
-            edges,
-            edges,
-        )
+        found = contact.contact
+        span = found.name, contact.pin_start, contact.pin_end
+        yield PointCheck(*span, found.bone, found.offset, times, places, axes, edges, edges)
 
 
 def _condition(condition: Constraint, adaptation: Adaptation) -> Iterator[Check]:

@@ -78,31 +78,25 @@ def compare(name: str, before: dict[str, Array], after: dict[str, Array]) -> Com
         return Comparison(name, fault=f"{alone[0]} is in one of them only")
     apart = {}
     for array, values in before.items():
-        fault = unlike(values, after[array])
-        if fault is not None:
-            return Comparison(name, fault=f"{array}: {fault}")
-        apart[array] = difference(values, after[array])
+        found = difference(values, after[array])
+        if isinstance(found, str):
+            return Comparison(name, fault=f"{array}: {found}")
+        apart[array] = found
     if not apart:
         return Comparison(name, fault="holds no arrays")
     worst = max(apart, key=apart.__getitem__)
     return Comparison(name, apart[worst], worst)
 
 
-def unlike(before: Array, after: Array) -> str | None:
-    """The reason why two arrays cannot be compared, or are other words; None otherwise."""
+def difference(before: Array, after: Array) -> float | str:
+    """The largest of all numbers, 0 for the same words; in words, why there is none. What is not a
+    number is like itself alone."""
     if before.shape != after.shape:
         return f"shape {before.shape}, then {after.shape}"
     kinds = [array.dtype.kind in NUMBERS for array in (before, after)]
-    if all(kinds):
-        return None
-    return "other words" if any(kinds) or not np.array_equal(before, after) else None
-
-
-def difference(before: Array, after: Array) -> float:
-    """The largest of all numbers, 0 for words. What is not a number is like itself alone."""
-    if before.dtype.kind not in NUMBERS or not before.size:
-        return 0.0
+    if not all(kinds):
+        return "other words" if any(kinds) or not np.array_equal(before, after) else 0.0
     a, b = before.astype(float), after.astype(float)
     with np.errstate(invalid="ignore"):
         apart = np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, np.abs(a - b))
-    return float(np.where(np.isnan(apart), np.inf, apart).max())
+    return float(np.where(np.isnan(apart), np.inf, apart).max(initial=0.0))

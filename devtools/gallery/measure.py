@@ -127,20 +127,15 @@ def shape(adaptation: Adaptation) -> Json:
     }
     if before:
         content["crouch_m"] = float(motion.joint_centres(_during(before[-1]))[:, 0, 2].min())
-    character = motion.transcription.character
-    for i, body in enumerate(character.bodies):
-        if body.part.value == "hand":
-            shoulder = next(
-                k
-                for k, b in enumerate(character.bodies)
-                if b.part.value == "upper arm" and b.side is body.side
-            )
-            arm = centres[:, i] - centres[:, shoulder]
-            content[f"{body.side.value}_hand_highest_m"] = float(centres[:, i, 2].max())
-            content[f"{body.side.value}_hand_out_m"] = float(
-                np.linalg.norm((centres[:, i] - com)[:, :2], axis=1).mean()
-            )
-            content[f"{body.side.value}_arm_raised_m"] = float(arm[:, 2].max())
+    bodies = motion.transcription.character.bodies
+    places = {(body.part.value, body.side): centres[:, i] for i, body in enumerate(bodies)}
+    for (part, side), place in places.items():
+        if part == "hand":
+            out = np.linalg.norm((place - com)[:, :2], axis=1)
+            arm = place - places["upper arm", side]
+            content[f"{side.value}_hand_highest_m"] = float(place[:, 2].max())
+            content[f"{side.value}_hand_out_m"] = float(out.mean())
+            content[f"{side.value}_arm_raised_m"] = float(arm[:, 2].max())
     return content
 
 

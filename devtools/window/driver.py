@@ -138,16 +138,16 @@ def in_steps(acting: Actions, device: InputDevice) -> Waits:
 def wait_in_steps(wait: float | Until, device: InputDevice) -> Waits:
     """Wait in short steps: for a condition, or for some time and until the device is done. Raises
     TimeoutError where that does not come."""
-    seconds, limit, what = 0.0, LONGEST_ACTION, "the end of what xdotool was told"
-    if isinstance(wait, Until):
-        limit, what = wait.limit, wait.what
-    else:
-        seconds = wait
+    seconds, until = 0.0, wait
+    if not isinstance(until, Until):
+        seconds = until
+        done = "the end of what xdotool was told"
+        until = Until(done, lambda: not device.busy, LONGEST_ACTION)
     yield seconds
-    end = time.monotonic() + limit
-    while not wait.holds() if isinstance(wait, Until) else device.busy:
+    end = time.monotonic() + until.limit
+    while not until.holds():
         if time.monotonic() > end:
-            raise TimeoutError(f"{what} did not come within {limit:g} s")
+            raise TimeoutError(f"{until.what} did not come within {until.limit:g} s")
         yield TICK
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hangtime.benchmarks import naive_peer, scaling
 from hangtime.benchmarks.solutions import SOLUTIONS, with_solution
-from hangtime.benchmarks.tables import Table, write_json
+from hangtime.benchmarks.tables import Table, with_ratios, write_json
 from hangtime.benchmarks.timing import in_turns
 from hangtime.devtools.peers import ipopt_peer
 from hangtime.devtools.peers.task import Equations, Task, metric_matrix
@@ -159,3 +159,11 @@ def test_tables_are_told_with_and_without_the_machine_s_seconds(tmp_path: Path) 
     write_json([table, replace(table, title="U")], tmp_path / "t.json")
     back = json.loads((tmp_path / "t.json").read_text(encoding="utf-8"))
     assert back[1]["rows"][0] == {"who": "a", "took (s)": 1.23456, "ok": True}
+
+
+def test_a_ratio_stands_after_its_column() -> None:
+    rows = with_ratios([{"n": 2, "took (s)": 0.5}, {"n": 4, "took (s)": 1.5}], {"n": "n / first"})
+    assert [list(row.items()) for row in rows] == [
+        [("n", 2), ("n / first", 1.0), ("took (s)", 0.5)],
+        [("n", 4), ("n / first", 2.0), ("took (s)", 1.5)],
+    ]
