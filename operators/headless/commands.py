@@ -13,7 +13,7 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
-from ..words.wording import recipe_place, sentence
+from ..words.messages import recipe_place, sentence
 from .clip import Clip, load
 from .outbox import Outbox, not_writable
 from .outputs import Outputs

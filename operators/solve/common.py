@@ -7,7 +7,7 @@ from ...bridge.properties.settings import scene_settings
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
 from ..operator_types import OperatorResult, PolledOperator
-from ..words.wording import sentence
+from ..words.messages import sentence
 from .session import session
 
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"

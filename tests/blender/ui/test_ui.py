@@ -157,7 +157,7 @@ def test_registering_five_times_leaves_nothing_behind(monkeypatch: pytest.Monkey
 ENABLE = """
 import runpy, sys
 runpy.run_path(sys.argv[1])["load"]().register()
-from hangtime.operators.words import report_text, wording
+from hangtime.operators.words import messages, report_text
 print("casadi" in sys.modules, flush=True)
 import os
 os._exit(0)

@@ -5,14 +5,7 @@ import pytest
 from hangtime.solver.data.faults import UnknownPhase
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.stages.fit import Fit
-from hangtime.solver.worker.pipeline import (
-    ADAPTING,
-    StageClock,
-    Subject,
-    adapt_fit,
-    measure,
-    solve,
-)
+from hangtime.solver.worker.pipeline import ADAPTING, StageClock, Subject, adapt_fit, measure, solve
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
 
