@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from ..devtools.peers.task import Equations, Task, metric_matrix
 from ..solver.arrays import FloatArray
 from ..solver.body.character import Character
-from ..solver.optimisation.kkt_step import Linearised
+from ..solver.optimisation.kkt_step import LinearisedProblem
 from ..solver.results.mjcf import mjcf, motion_state
 from ..solver.transcription.motion import Motion
 
@@ -27,7 +27,7 @@ RIDGE = 100.0  # weight of the rows beside the metric, as in our own steps
 def our_iteration(task: Task) -> FloatArray:
     """The rows, the factor and the step; (K, n_block)."""
     rows = task.rows(task.start)
-    return Linearised(task.transcription, rows, task.metric).step(rows.value)[0]
+    return LinearisedProblem(task.transcription, rows, task.metric).step(rows.value)[0]
 
 
 def pinocchio_model(character: Character) -> pinocchio.Model:

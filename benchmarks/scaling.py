@@ -16,8 +16,8 @@ from ..solver.body.character import Character, Joint
 from ..solver.body.dynamics import MomentFunction
 from ..solver.body.joint_axes import JointAxes
 from ..solver.numerics.rotations import mean_rotation
-from ..solver.optimisation.sqp import Outcome, restore
-from ..solver.stages.fit import ADAPT_PRICES, Fit, fit, motion_metric
+from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
+from ..solver.stages.fit import ADAPT_COST_WEIGHTS, Fit, fit, motion_metric
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
 from .recordings import hops, recording
@@ -79,10 +79,14 @@ def with_fewer(fitted: Fit, task: Task, parts: tuple[Part, ...]) -> Task:
     new = replace(old, character=character, moment=MomentFunction(character))
     forces = np.arange(old.layout.forces.start, old.layout.n_block)
     columns = np.concatenate([np.arange(3), 3 + kept, forces])
-    metric = motion_metric(Motion(new, fitted.motion.x[:, columns], fitted.places), ADAPT_PRICES)
+    metric = motion_metric(
+        Motion(new, fitted.motion.x[:, columns], fitted.places), ADAPT_COST_WEIGHTS
+    )
     return Task(new, task.places, task.start[:, columns], metric)
 
 
 def finished(task: Task) -> Outcome:
     """The task solved by our steps."""
-    return restore(task.transcription, task.metric, task.start, task.places, stage="adapt")
+    return restore(
+        FeasibleSet(task.transcription, task.places), task.metric, task.start, stage="adapt"
+    )

@@ -1,4 +1,4 @@
-"""Every name under which Blender knows a part of the extension."""
+"""Names under which Blender knows the extension and its operators."""
 
 from enum import StrEnum
 
@@ -51,47 +51,3 @@ class OperatorId(StrEnum):
     SOFT_LANDING = "hangtime.preset_soft_landing"
     LIMP_LIMB = "hangtime.preset_limp_limb"
     CARRY_WEIGHT = "hangtime.preset_carry_weight"
-
-
-class PanelId(StrEnum):
-    """bl_idname of each panel of the sidebar, from top to bottom."""
-
-    CHARACTER = "HANGTIME_PT_character"
-    BONES = "HANGTIME_PT_bones"
-    RECORDING = "HANGTIME_PT_recording"
-    CONTACTS = "HANGTIME_PT_contacts"
-    STANCE = "HANGTIME_PT_stance"
-    CONTACT = "HANGTIME_PT_contact"
-    CONSTRAINTS = "HANGTIME_PT_constraints"
-    CONSTRAINT = "HANGTIME_PT_constraint"
-    BODY_CHANGES = "HANGTIME_PT_body_changes"
-    SOLVE = "HANGTIME_PT_solve"
-    ADVANCED = "HANGTIME_PT_advanced"
-    RESULT = "HANGTIME_PT_result"
-    EXPORT = "HANGTIME_PT_export"
-    DISPLAY = "HANGTIME_PT_display"
-
-
-class ListId(StrEnum):
-    """bl_idname of each list."""
-
-    CONTACTS = "HANGTIME_UL_contacts"
-    CONSTRAINTS = "HANGTIME_UL_constraints"
-    BODY_CHANGES = "HANGTIME_UL_body_changes"
-
-
-class MenuId(StrEnum):
-    """bl_idname of each menu."""
-
-    HANGTIME = "HANGTIME_MT_hangtime"
-    ADD_CONSTRAINT = "HANGTIME_MT_add_constraint"
-    PRESETS = "HANGTIME_MT_presets"
-    CONSTRAINT_MORE = "HANGTIME_MT_constraint_more"
-    ADD_BODY_CHANGE = "HANGTIME_MT_add_body_change"
-
-
-class GizmoGroupId(StrEnum):
-    """bl_idname of each group of handles in the 3D viewport."""
-
-    PINS = "HANGTIME_GGT_pins"
-    LIMITS = "HANGTIME_GGT_limits"

@@ -1,5 +1,7 @@
 """Types of operators: what their methods return, and what their mixins are."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Literal
 
 import bpy
@@ -10,3 +12,24 @@ if TYPE_CHECKING:
     OperatorMixin = bpy.types.Operator
 else:  # Blender looks for properties in those bases only that are no types of its own
     OperatorMixin = object
+
+
+class PolledOperator(OperatorMixin):
+    """Mixin: an operator that is greyed out while there is an obstacle, which its tooltip tells."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        """A sentence why it cannot run now; None where it can."""
+        raise NotImplementedError
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        why = cls.obstacle(context)
+        if why is not None:
+            cls.poll_message_set(why)
+        return why is None
+
+    def refuse(self, why: str, level: Literal["WARNING", "ERROR"] = "ERROR") -> OperatorResult:
+        """Reports why nothing is done."""
+        self.report({level}, why)
+        return {"CANCELLED"}

@@ -1,9 +1,7 @@
 """Everything that enabling the extension adds to Blender, in order, and how it is taken back."""
 
-from __future__ import annotations
-
 import atexit
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 
 import bpy
@@ -13,51 +11,37 @@ from ..bridge import worker_client
 from ..bridge.accessors import ATTRIBUTE, present
 from ..bridge.properties import settings, stances
 from ..operators import names
-from ..operators.drag import aim_cone, limit_operator, pin_operator, turn_stance
-from ..operators.export import exports, save_plots
-from ..operators.lists import body_changes, constraints, contacts, place_by_empty, presets, put_back
-from ..operators.solve import adapt, analyze, results, session, show
+from ..operators.drag import limit_operator, pin_operator, turn_stance
+from ..operators.export import exports
+from ..operators.lists import body_changes, constraints, contacts, presets
+from ..operators.solve import adapt, analyze, results, session
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
-from .panels import constraint_lists, constraint_menus, contact_list, display, menu, setup, solve
 from .panels import constraints as constraint_panels
 from .panels import contacts as contact_panels
+from .panels import display, lists, menus, setup, solve
 from .plots import handler as plots
 from .timeline import handler as timeline
 
-CLASSES = (
-    *settings.CLASSES,
-    *analyze.CLASSES,
-    *adapt.CLASSES,
-    *place_by_empty.CLASSES,
-    *put_back.CLASSES,
-    *show.CLASSES,
-    *contacts.CLASSES,
-    *constraints.CLASSES,
-    *body_changes.CLASSES,
-    *presets.CLASSES,
-    *results.CLASSES,
-    *exports.CLASSES,
-    *pin_operator.CLASSES,
-    *turn_stance.CLASSES,
-    *limit_operator.CLASSES,
-    *aim_cone.CLASSES,
-    *contact_edge_operator.CLASSES,
-    *save_plots.CLASSES,
-    *contact_list.CLASSES,
-    *menu.CLASSES,
-    *setup.CLASSES,
-    *contact_panels.CLASSES,
-    *constraint_lists.CLASSES,
-    *constraint_menus.CLASSES,
-    *constraint_panels.CLASSES,
-    *solve.CLASSES,
-    *display.CLASSES,
-    *pin_handles.CLASSES,
-    *limit_handles.CLASSES,
+# A panel comes after the one that it is part of.
+MODULES = (
+    *(analyze, adapt, contacts, constraints, body_changes, presets, results, exports),
+    *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
+    *(lists, menus, setup, contact_panels, constraint_panels, solve, display),
+    *(pin_handles, limit_handles),
 )
+
+
+def classes() -> Iterator[type]:
+    """All that Blender is to know: the settings, and what the modules define under a bl_idname."""
+    yield from settings.CLASSES
+    for module in MODULES:
+        for each in vars(module).values():
+            own = isinstance(each, type) and each.__module__ == module.__name__
+            if own and "bl_idname" in vars(each):
+                yield each
 
 
 def register() -> Callable[[], None]:
@@ -67,10 +51,9 @@ def register() -> Callable[[], None]:
     """
     with ExitStack() as undo:
         _add_worker(undo)
-        for cls in CLASSES:
-            # the stubs leave out groups of gizmos
-            bpy.utils.register_class(cls)  # type: ignore[arg-type]
-            undo.callback(bpy.utils.unregister_class, cls)  # type: ignore[arg-type]
+        for cls in classes():
+            bpy.utils.register_class(cls)
+            undo.callback(bpy.utils.unregister_class, cls)
         for carrier, group in settings.CARRIERS.items():
             # a property until it is assigned; the stubs say nothing
             group_of = bpy.props.PointerProperty(  # type: ignore[func-returns-value]
@@ -84,7 +67,7 @@ def register() -> Callable[[], None]:
         # Keys are pairs, whatever the stubs say.
         bpy.app.translations.register(__package__, TRANSLATIONS)  # type: ignore[arg-type]
         undo.callback(bpy.app.translations.unregister, __package__)
-        menu.add(undo)
+        menus.add(undo)
         overlay.add(undo)
         plots.add(undo)
         timeline.add(undo)
@@ -114,4 +97,4 @@ def _follow_empties(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
 def _run_command(arguments: list[str]) -> int:
     from ..operators.headless import cli  # most sessions never run it
 
-    return int(cli.command(arguments))
+    return cli.main(arguments)

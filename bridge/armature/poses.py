@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 
 import bpy
@@ -51,7 +51,7 @@ def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
     world = np.empty((len(frames), 4, 4))
     matrices = np.empty((len(frames), len(bones), 4, 4))
     flat = np.empty(16 * len(bones), np.float32)
-    with evaluated(armature):
+    with evaluated([armature]):
         for t, frame in enumerate(frames):
             whole = int(np.floor(frame))
             scene.frame_set(whole, subframe=frame - whole)
@@ -64,28 +64,25 @@ def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
 
 
 @contextmanager
-def evaluated(armature: bpy.types.Object) -> Iterator[None]:
-    """Context in which Blender evaluates the armature's pose.
+def evaluated(objects: Iterable[bpy.types.Object]) -> Iterator[None]:
+    """Context in which Blender evaluates objects, and the poses of armatures.
 
     It skips what is hidden, excluded or at rest. On exit these and the scene's frame are what
     they were.
     """
-    scene, data = current_scene(), armature_data(armature)
-    frame, subframe = scene.frame_current, scene.frame_subframe
-    hidden, position = armature.hide_viewport, data.pose_position
-    linked = armature.name in scene.collection.objects
-    armature.hide_viewport = False
-    data.pose_position = "POSE"
-    if not linked:
-        scene.collection.objects.link(armature)
-    try:
+    scene = current_scene()
+    with ExitStack() as undo:
+        undo.callback(scene.frame_set, scene.frame_current, subframe=scene.frame_subframe)
+        for thing in objects:
+            undo.callback(setattr, thing, "hide_viewport", thing.hide_viewport)
+            thing.hide_viewport = False
+            if isinstance(thing.data, bpy.types.Armature):
+                undo.callback(setattr, thing.data, "pose_position", thing.data.pose_position)
+                thing.data.pose_position = "POSE"
+            if thing.name not in scene.collection.objects:
+                scene.collection.objects.link(thing)
+                undo.callback(scene.collection.objects.unlink, thing)
         yield
-    finally:
-        if not linked:
-            scene.collection.objects.unlink(armature)
-        data.pose_position = position
-        armature.hide_viewport = hidden
-        scene.frame_set(frame, subframe=subframe)
 
 
 def _parents_first(armature: bpy.types.Object) -> list[bpy.types.Bone]:

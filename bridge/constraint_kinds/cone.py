@@ -9,7 +9,8 @@ from ..recipe_syntax.items import BONE, WHEN, Kind, angle, direction, one
 from ..recipe_syntax.table import NumberRange, Table
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, Row
 from ..rows.row_parts import RowContext, bone_of, direction_of
-from ..rows.stored import boolean, number, vector
+from ..rows.stored import angle as stored_angle
+from ..rows.stored import boolean, vector
 from ..rows.times import when_of
 
 HALF_ANGLE = NumberRange("between 0 and 180 degrees", lambda value: 0.0 < value < 180.0)
@@ -54,7 +55,6 @@ KIND = ConstraintKind(
     description="Keep a bone's direction within a cone",
     icon="CONE",
     menu=MenuGroup.JOINTS,
-    requests="cones",
     record=_record,
     draw=_draw,
     recipe=Kind(
@@ -70,10 +70,9 @@ KIND = ConstraintKind(
         needs=(("bone",), ("half_angle",)),
     ),
     fields={
-        "half_angle": number(
+        "half_angle": stored_angle(
             "Half Angle",
             "How far the bone may lean from the cone's axis",
-            subtype="ANGLE",
             min=radians(1.0),
             max=radians(179.0),
             default=radians(40.0),

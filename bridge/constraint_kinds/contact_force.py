@@ -55,7 +55,6 @@ KIND = ConstraintKind(
     description="Cap contact forces, or set how slippery the ground is",
     icon="FORCE_FORCE",
     menu=MenuGroup.CONTACTS,
-    requests="forces",
     record=_record,
     draw=_draw,
     recipe=Kind(
@@ -78,11 +77,7 @@ KIND = ConstraintKind(
             "Limit Peak", "Cap the largest contact force, for a softer landing", default=True
         ),
         "peak": stored_number(
-            "Peak",
-            "Largest contact force, in body weights",
-            min=0.1,
-            soft_max=10.0,
-            default=3.0,
+            "Peak", "Largest contact force, in body weights", min=0.1, soft_max=10.0, default=3.0
         ),
         "use_friction": boolean("Own Friction", "Set how slippery the ground is; 1 otherwise"),
         "friction": stored_number("Friction", min=0.0, soft_max=1.5, default=0.8),

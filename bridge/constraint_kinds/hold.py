@@ -6,15 +6,7 @@ from ...solver.data.requests import Hold
 from ..recipe_syntax.items import Kind, flag, number
 from ..recipe_syntax.table import ABOVE_ZERO
 from ..rows.choices import HOLD
-from ..rows.kind import (
-    BoneUse,
-    ConstraintKind,
-    FieldDrawing,
-    MenuGroup,
-    NewRange,
-    Row,
-    frame_text,
-)
+from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row, frame_text
 from ..rows.row_parts import RowContext
 from ..rows.stored import boolean
 from .timing import SECONDS
@@ -38,7 +30,6 @@ KIND = ConstraintKind(
     description="Repeat a frame for some time",
     icon="PAUSE",
     menu=MenuGroup.TIME,
-    requests="holds",
     record=_record,
     draw=_draw,
     recipe=Kind(

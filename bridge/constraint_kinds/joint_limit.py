@@ -9,14 +9,14 @@ from ...solver.data.requests import AngleLimit, Bound
 from ..recipe_syntax.items import BONE, LIMIT_KEYS, LIMITS, WHEN, Kind
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, Row
 from ..rows.row_parts import RowContext, bone_of, ordered_bound
-from ..rows.stored import boolean, number
+from ..rows.stored import angle, boolean
 from ..rows.times import when_of
 
 LIMIT_FIELDS = {
     "use_lower": boolean("Use At Least", default=True),
-    "lower": number("At Least", subtype="ANGLE", soft_min=-pi, soft_max=pi),
+    "lower": angle("At Least", soft_min=-pi, soft_max=pi),
     "use_upper": boolean("Use At Most", default=True),
-    "upper": number("At Most", subtype="ANGLE", soft_min=-pi, soft_max=pi, default=radians(140.0)),
+    "upper": angle("At Most", soft_min=-pi, soft_max=pi, default=radians(140.0)),
 }
 
 
@@ -50,7 +50,6 @@ KIND = ConstraintKind(
     description="Keep how far a joint is bent between two angles",
     icon="DRIVER_ROTATIONAL_DIFFERENCE",
     menu=MenuGroup.JOINTS,
-    requests="angles",
     record=_record,
     draw=draw_limits,
     recipe=Kind("angle", AngleLimit, (BONE, LIMITS, WHEN), needs=(("bone",), LIMIT_KEYS)),

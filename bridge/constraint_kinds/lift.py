@@ -4,15 +4,7 @@ from __future__ import annotations
 
 from ...solver.data.requests import Lift
 from ..recipe_syntax.items import TOUCHING, Kind, word
-from ..rows.kind import (
-    BoneUse,
-    ConstraintKind,
-    FieldDrawing,
-    MenuGroup,
-    NewRange,
-    Row,
-    phase_text,
-)
+from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row, phase_text
 from ..rows.row_parts import RowContext, bones_of
 from ..rows.times import phase_of
 
@@ -33,7 +25,6 @@ KIND = ConstraintKind(
     description="Let feet or hands that touch in a phase touch no more",
     icon="TRIA_UP_BAR",
     menu=MenuGroup.CONTACTS,
-    requests="lifts",
     record=_record,
     draw=_draw,
     recipe=Kind("lift", Lift, (word("phase"), TOUCHING), needs=(("phase",),)),

@@ -6,7 +6,7 @@ from ...solver.data.requests import OrientationRequest
 from ..recipe_syntax.items import BONE, SLACK, WHEN, Kind, angle
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
 from ..rows.row_parts import RowContext, bone_of
-from ..rows.stored import number
+from ..rows.stored import angle as stored_angle
 from ..rows.times import when_of
 from .pose import STORED_SLACK
 
@@ -31,7 +31,6 @@ KIND = ConstraintKind(
     description="Turn or tilt a bone, such as the hips, in the world",
     icon="ORIENTATION_GIMBAL",
     menu=MenuGroup.POSES,
-    requests="orientations",
     record=_record,
     draw=_draw,
     recipe=Kind(
@@ -43,10 +42,8 @@ KIND = ConstraintKind(
     range=NewRange.FRAME,
     short="Turn",
     fields={
-        "turn": number(
-            "Turn", "About the vertical, counter-clockwise seen from above", subtype="ANGLE"
-        ),
-        "tilt": number("Tilt", "Forwards", subtype="ANGLE"),
+        "turn": stored_angle("Turn", "About the vertical, counter-clockwise seen from above"),
+        "tilt": stored_angle("Tilt", "Forwards"),
         "slack": STORED_SLACK,
     },
 )

@@ -12,7 +12,7 @@ from ..recipe_syntax.items import BONE, WHEN, Kind, vector
 from ..recipe_syntax.points import ENVIRONMENT, PATH, POINT_AXES
 from ..rows.kind import ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
 from ..rows.row_parts import RowContext, bone_of, direction_of, offset_of, ordered_bound, scaled
-from ..rows.stored import boolean, booleans, choice, target
+from ..rows.stored import OFFSET, Stored, boolean, booleans, choice, position, target
 from ..rows.stored import vector as stored_vector
 from ..rows.times import when_of
 
@@ -139,6 +139,10 @@ def _added(armature: bpy.types.Object, row: Row, bones: Sequence[str]) -> None:
         put_where_shown(armature, row)
 
 
+def _along_axes(name: str, description: str) -> Stored:
+    return stored_vector(name, description, unit="LENGTH", subtype="XYZ")
+
+
 KIND = ConstraintKind(
     name="POINT",
     number=0,
@@ -146,7 +150,6 @@ KIND = ConstraintKind(
     description="Hold a point of a bone at a place, or within bounds of one",
     icon="PINNED",
     menu=MenuGroup.POSES,
-    requests="points",
     record=_record,
     draw=_draw,
     recipe=Kind(
@@ -162,19 +165,9 @@ KIND = ConstraintKind(
         "use_place": boolean(
             "Own Place", "Hold the point at a place of yours instead of where the recording has it"
         ),
-        "place": stored_vector(
-            "Place",
-            "Where the point shall be, in the world",
-            subtype="TRANSLATION",
-            unit="LENGTH",
-        ),
+        "place": position("Place", "Where the point shall be, in the world"),
         "use_offset": boolean("Own Point", "Choose the point of the bone instead of its middle"),
-        "offset": stored_vector(
-            "Offset",
-            "From the bone's head, in the bone's axes and the armature's own scale",
-            subtype="TRANSLATION",
-            unit="LENGTH",
-        ),
+        "offset": OFFSET,
         "target": target("Target", "An object that the point follows, wherever it moves"),
         "environment": boolean(
             "Pushes Back",
@@ -189,31 +182,11 @@ KIND = ConstraintKind(
             "Bounds", "Keep the point within bounds about the place instead of exactly there"
         ),
         "bound_axes": booleans(
-            "Bounded",
-            "Along which axes the point is bounded; it is free along the others",
-            default=(True, True, True),
+            "Bounded", "Along which axes the point is bounded; it is free along the others"
         ),
-        "bound_below": booleans(
-            "Bounded Below",
-            "Along which axes there is a least value",
-            default=(True, True, True),
-        ),
-        "bound_above": booleans(
-            "Bounded Above",
-            "Along which axes there is a greatest value",
-            default=(True, True, True),
-        ),
-        "at_least": stored_vector(
-            "At Least",
-            "Least distance from the place along each axis",
-            unit="LENGTH",
-            subtype="XYZ",
-        ),
-        "at_most": stored_vector(
-            "At Most",
-            "Greatest distance from the place along each axis",
-            unit="LENGTH",
-            subtype="XYZ",
-        ),
+        "bound_below": booleans("Bounded Below", "Along which axes there is a least value"),
+        "bound_above": booleans("Bounded Above", "Along which axes there is a greatest value"),
+        "at_least": _along_axes("At Least", "Least distance from the place along each axis"),
+        "at_most": _along_axes("At Most", "Greatest distance from the place along each axis"),
     },
 )

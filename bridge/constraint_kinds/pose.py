@@ -10,7 +10,7 @@ from ..recipe_syntax.items import BONES, SLACK, WHEN, Kind, choice, number
 from ..recipe_syntax.table import ABOVE_ZERO
 from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row
 from ..rows.row_parts import RowContext, bones_of
-from ..rows.stored import boolean, frame
+from ..rows.stored import angle, boolean, frame
 from ..rows.stored import choice as stored_choice
 from ..rows.stored import number as stored_number
 from ..rows.times import when_of
@@ -23,9 +23,7 @@ class PoseSource(Enum):
     REST = "Rest Pose"
 
 
-STORED_SLACK = stored_number(
-    "Slack", "By how much each angle may miss it", subtype="ANGLE", min=0.0, max=pi
-)
+STORED_SLACK = angle("Slack", "By how much each angle may miss it", min=0.0, max=pi)
 
 
 def _record(row: Row, context: RowContext) -> PoseRequest:
@@ -59,7 +57,6 @@ KIND = ConstraintKind(
     description="Hold or prefer the recording's pose or the rest pose",
     icon="ARMATURE_DATA",
     menu=MenuGroup.POSES,
-    requests="poses",
     record=_record,
     draw=_draw,
     recipe=Kind(

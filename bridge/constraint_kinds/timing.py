@@ -7,15 +7,7 @@ from enum import Enum
 from ...solver.data.requests import PhaseTiming
 from ..recipe_syntax.items import Kind, number, word
 from ..recipe_syntax.table import ABOVE_ZERO
-from ..rows.kind import (
-    BoneUse,
-    ConstraintKind,
-    FieldDrawing,
-    MenuGroup,
-    NewRange,
-    Row,
-    phase_text,
-)
+from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row, phase_text
 from ..rows.row_parts import RowContext
 from ..rows.stored import choice
 from ..rows.stored import number as stored_number
@@ -53,7 +45,6 @@ KIND = ConstraintKind(
     description="Let a phase last longer or shorter",
     icon="TIME",
     menu=MenuGroup.TIME,
-    requests="timings",
     record=_record,
     draw=_draw,
     recipe=Kind(

@@ -54,7 +54,6 @@ KIND = ConstraintKind(
     description="Cap how strong joints are; zero makes them limp",
     icon="FORCE_MAGNETIC",
     menu=MenuGroup.JOINTS,
-    requests="torques",
     record=_record,
     draw=_draw,
     recipe=Kind(

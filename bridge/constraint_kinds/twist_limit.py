@@ -35,7 +35,6 @@ KIND = ConstraintKind(
     description="Keep how far a bone is turned about itself between two angles",
     icon="FORCE_VORTEX",
     menu=MenuGroup.JOINTS,
-    requests="twists",
     record=_record,
     draw=draw_limits,
     recipe=Kind("twist", TwistLimit, (BONE, LIMITS, WHEN), needs=(("bone",), LIMIT_KEYS)),

@@ -5,7 +5,7 @@ The solver's metres and seconds become Blender's units and scene frames here, an
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import bpy
@@ -149,46 +149,16 @@ def _ground_phase(schedule: ContactSchedule, contact: Contact) -> Phase | None:
     return next((p for p in ground if p.start < contact.end and p.end > contact.start), None)
 
 
-@dataclass(frozen=True)
-class _Edit:
-    """What the artist had made of a contact, to be found again after another analysis."""
-
-    point: str
-    found_start: float
-    found_at: tuple[float, ...]
-    at: tuple[float, ...]
-    used: bool
-    start_frame: float | None
-    end_frame: float | None
-    empty: bpy.types.Object | None
-
-    @staticmethod
-    def of(row: HangtimeContact) -> _Edit:
-        start = row.start_frame if row.start_frame != row.found_start else None
-        end = row.end_frame if row.end_frame != row.found_end else None
-        at, found = tuple(row.at), tuple(row.found_at)
-        return _Edit(row.point, row.found_start, found, at, row.used, start, end, row.empty)
-
-    def meant(self, row: HangtimeContact) -> bool:
-        """Whether the row is the contact that was edited."""
-        apart = max(abs(a - b) for a, b in zip(row.found_at, self.found_at, strict=True))
-        near = abs(row.found_start - self.found_start) < _SAME_START and apart < _SAME_PLACE
-        return bool(row.point == self.point and near)
+def _held(row: HangtimeContact) -> SimpleNamespace:
+    """What a contact's row holds, to be put into one again after another analysis."""
+    return SimpleNamespace(**{name: _plain(getattr(row, name)) for name in _KEPT})
 
 
-@dataclass(frozen=True)
-class _Added:
-    """A contact that the artist added, to be added again after another analysis."""
-
-    values: dict[str, object]
-
-    @staticmethod
-    def of(row: HangtimeContact) -> _Added:
-        return _Added({name: _plain(getattr(row, name)) for name in _KEPT})
-
-    def put(self, row: HangtimeContact) -> None:
-        for name, value in self.values.items():
-            setattr(row, name, value)
+def _same_contact(row: HangtimeContact, held: SimpleNamespace) -> bool:
+    """Whether the row is the contact that was edited."""
+    apart = max(abs(a - b) for a, b in zip(row.found_at, held.found_at, strict=True))
+    near = abs(row.found_start - held.found_start) < _SAME_START and apart < _SAME_PLACE
+    return bool(row.point == held.point and near)
 
 
 def _plain(value: object) -> object:
@@ -198,8 +168,8 @@ def _plain(value: object) -> object:
 
 def write_analysis(settings: HangtimeSettings, recording: Recording, found: Analysed) -> None:
     """Fills the settings' contacts and stances; contacts that are found again keep their edits."""
-    edits = [_Edit.of(row) for row in settings.contacts if not row.added]
-    added = [_Added.of(row) for row in settings.contacts if row.added]
+    edits = [_held(row) for row in settings.contacts if not row.added]
+    added = [_held(row) for row in settings.contacts if row.added]
     metres = metres_per_unit(current_scene())
     first, rate = float(recording.frames[0]), frames_per_second(current_scene())
     settings.measured_height = found.height
@@ -220,7 +190,8 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
         row.found_end = row.end_frame = first + contact.end * rate
         row.found_at = row.at = contact.place / metres
     for row, kept in zip(rows[len(contacts) :], added, strict=True):
-        kept.put(row)
+        for name, value in vars(kept).items():
+            setattr(row, name, value)
     settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
     _restore(settings, edits)
 
@@ -241,15 +212,17 @@ def _resized(rows: Any, count: int) -> list[Any]:
     return list(rows[:count])
 
 
-def _restore(settings: HangtimeSettings, edits: list[_Edit]) -> None:
+def _restore(settings: HangtimeSettings, edits: list[SimpleNamespace]) -> None:
     whole, settings.whole_stance = settings.whole_stance, False
     for row in settings.contacts:
-        edit = next((e for e in edits if e.meant(row)), None)
+        edit = next((e for e in edits if _same_contact(row, e)), None)
         if edit is None:
             continue
         row.used = edit.used
-        row.start_frame = row.start_frame if edit.start_frame is None else edit.start_frame
-        row.end_frame = row.end_frame if edit.end_frame is None else edit.end_frame
+        if edit.start_frame != edit.found_start:
+            row.start_frame = edit.start_frame
+        if edit.end_frame != edit.found_end:
+            row.end_frame = edit.end_frame
         row.empty = edit.empty
         by = [now - was for now, was in zip(edit.at, edit.found_at, strict=True)]
         place(settings, row, [a + b for a, b in zip(row.found_at, by, strict=True)])

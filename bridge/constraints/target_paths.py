@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterable, Sequence
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...solver.arrays import FloatArray
 from ...solver.data.requests import Path
 from ..accessors import current_scene
 from ..armature import fcurves
+from ..armature.poses import evaluated
 from ..constraint_kinds import point
 from ..properties.constraint import HangtimeConstraint
 from ..rows.times import Clip, followed_frames
-
-FloatArray = NDArray[np.float64]
 
 
 def paths_of(rows: Iterable[HangtimeConstraint], clip: Clip, metres: float) -> dict[str, Path]:
@@ -73,7 +71,7 @@ def _sampled(
     if not targets:
         return places
     scene = current_scene()
-    with _evaluated(targets):
+    with evaluated(targets):
         for t, frame in enumerate(frames):
             whole = int(np.floor(frame))
             scene.frame_set(whole, subframe=frame - whole)
@@ -81,20 +79,3 @@ def _sampled(
             for target in targets:
                 places[target][t] = target.evaluated_get(graph).matrix_world.translation
     return places
-
-
-@contextmanager
-def _evaluated(targets: Iterable[bpy.types.Object]) -> Iterator[None]:
-    """Have Blender evaluate objects: it skips what is hidden or excluded. Then as before."""
-    scene = current_scene()
-    frame, subframe = scene.frame_current, scene.frame_subframe
-    with ExitStack() as undo:
-        undo.callback(lambda: scene.frame_set(frame, subframe=subframe))
-        for target in targets:
-            if target.hide_viewport:
-                undo.callback(setattr, target, "hide_viewport", True)
-                target.hide_viewport = False
-            if target.name not in scene.collection.objects:
-                scene.collection.objects.link(target)
-                undo.callback(scene.collection.objects.unlink, target)
-        yield

@@ -25,23 +25,23 @@ def export_fbx(armature: bpy.types.Object, action: bpy.types.Action, path: str |
 
     Folders are made where missing. The scene is left as it was. Raises OutputNotWritable.
     """
-    target = Path(path)
-    with tempfile.TemporaryDirectory() as folder, _alone(armature, action):
-        made = Path(folder) / "export.fbx"
-        with bpy.context.temp_override(selected_objects=[armature]):
-            bpy.ops.export_scene.fbx(
-                filepath=str(made),
-                use_selection=True,
-                object_types={"ARMATURE"},
-                add_leaf_bones=False,
-                bake_anim=True,
-                bake_anim_use_all_bones=True,
-                bake_anim_use_nla_strips=False,
-                bake_anim_use_all_actions=False,
-                bake_anim_force_startend_keying=True,
-                bake_anim_simplify_factor=0.0,
-            )
-        _deliver(made, target)
+    with (
+        _delivered("export.fbx", Path(path)) as made,
+        _alone(armature, action),
+        bpy.context.temp_override(selected_objects=[armature]),
+    ):
+        bpy.ops.export_scene.fbx(
+            filepath=str(made),
+            use_selection=True,
+            object_types={"ARMATURE"},
+            add_leaf_bones=False,
+            bake_anim=True,
+            bake_anim_use_all_bones=True,
+            bake_anim_use_nla_strips=False,
+            bake_anim_use_all_actions=False,
+            bake_anim_force_startend_keying=True,
+            bake_anim_simplify_factor=0.0,
+        )
 
 
 def export_gltf(armature: bpy.types.Object, action: bpy.types.Action, path: str | Path) -> None:
@@ -49,13 +49,15 @@ def export_gltf(armature: bpy.types.Object, action: bpy.types.Action, path: str 
 
     Folders are made where missing. The scene is left as it was. Raises OutputNotWritable.
     """
-    target = Path(path)
     with (
-        tempfile.TemporaryDirectory() as folder,
+        _delivered("export.glb", Path(path)) as made,
         _alone(armature, action),
-        _selected_alone(armature),
+        _selection_kept() as layer,
     ):
-        made = Path(folder) / "export.glb"
+        # the exporter wants only the armature selected, and active
+        for thing in layer.objects:
+            thing.select_set(thing == armature)
+        layer.objects.active = armature
         bpy.ops.export_scene.gltf(
             filepath=str(made),
             export_format="GLB",
@@ -66,32 +68,31 @@ def export_gltf(armature: bpy.types.Object, action: bpy.types.Action, path: str 
             export_force_sampling=True,
             export_optimize_animation_size=False,
         )
-        _deliver(made, target)
-
-
-def _deliver(made: Path, target: Path) -> None:
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(made, target)
-    except OSError as error:
-        raise OutputNotWritable(str(target), error.strerror or type(error).__name__) from error
 
 
 @contextmanager
-def _selected_alone(armature: bpy.types.Object) -> Iterator[None]:
-    """Context in which only the armature is selected and active, as the exporter wants."""
+def _delivered(name: str, target: Path) -> Iterator[Path]:
+    """Context in which a file is made in a folder of its own, and then put in its place."""
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / name
+        yield made
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(made, target)
+        except OSError as error:
+            raise OutputNotWritable(str(target), error.strerror or type(error).__name__) from error
+
+
+@contextmanager
+def _selection_kept() -> Iterator[bpy.types.ViewLayer]:
+    """Context in a view layer after which as much is selected and active as before."""
     layer = present(bpy.context.view_layer)
     active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
-    for thing in selected:
-        thing.select_set(False)
-    armature.select_set(True)
-    layer.objects.active = armature
     try:
-        yield
+        yield layer
     finally:
-        armature.select_set(False)
-        for thing in selected:
-            thing.select_set(True)
+        for thing in filter(None, layer.objects):  # what was removed just now is None
+            thing.select_set(thing in selected)
         layer.objects.active = active
 
 
@@ -127,7 +128,7 @@ def _alone(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[Non
         data.use_nla = False
         first, last = action.frame_range[0], action.frame_range[1]
         scene.frame_start, scene.frame_end = round(first), round(last)
-        with evaluated(armature):
+        with evaluated([armature]):
             yield
     finally:
         scene.frame_start, scene.frame_end = start, end
@@ -140,12 +141,8 @@ def _alone(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[Non
 def _removed_afterwards() -> Iterator[None]:
     """Context that removes the data-blocks made inside; the selection comes back."""
     before = data_blocks()
-    layer = present(bpy.context.view_layer)
-    active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
-    try:
-        yield
-    finally:
-        remove_added(before)
-        layer.objects.active = active
-        for thing in selected:
-            thing.select_set(True)
+    with _selection_kept():
+        try:
+            yield
+        finally:
+            remove_added(before)

@@ -4,7 +4,7 @@ An ASF bone reaches from its parent's end to its own; its degrees of freedom tur
 start, measured in a frame that the file calls its axis.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import pi
 from pathlib import Path
@@ -13,14 +13,14 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import UnreadableClip
-from .euler import euler_matrices
 from .guess import likely_unit
-from .motion_clip import Joint, MotionClip
+from .motion_clip import Joint, MotionClip, euler_matrices
 from .text import Line, Reader, require_finite
 
 INCH = 0.0254
 USUAL_RATE = 120.0  # Hz; the files do not tell theirs
 ROOT = "root"
+_DOF = ("rx", "ry", "rz", "tx", "ty", "tz")
 
 
 @dataclass
@@ -183,7 +183,7 @@ def _root(reader: Reader, lines: list[Line], degree: float) -> _Part:
     order, turn = "XYZ", np.zeros(3)
     for line in lines[1:]:
         if line.starts("order"):
-            root.dof = _dof(reader, line)
+            root.dof = reader.channels(line.number, line.words[1:], _DOF)
         elif line.starts("axis"):
             order = _axis_order(reader, line, line.words[1:])
         elif line.starts("position"):
@@ -215,7 +215,9 @@ def _bones(reader: Reader, lines: list[Line], degree: float) -> dict[str, _Part]
         else:
             block.append(line)
     if block is not None:
-        reader.fail(_end(lines), f"the bone that begins at line {block[0].number} has no 'end'")
+        reader.fail(
+            lines[-1].number, f"the bone that begins at line {block[0].number} has no 'end'"
+        )
     return bones
 
 
@@ -236,7 +238,7 @@ def _bone(reader: Reader, block: list[Line], degree: float) -> _Part:
             turn = reader.numbers(line.number, values[:3], 3) * degree
             bone.axis = _axis_frame(_axis_order(reader, line, values[3:]), turn)
         elif keyword == "dof":
-            bone.dof = _dof(reader, line)
+            bone.dof = reader.channels(line.number, values, _DOF)
     if missing or not bone.name:
         reader.fail(block[0].number, f"a bone without {' and '.join(sorted(missing)) or 'name'}")
     return bone
@@ -246,15 +248,6 @@ def _direction(reader: Reader, line: Line) -> FloatArray:
     direction = reader.numbers(line.number, line.words[1:], 3)
     norm = float(np.linalg.norm(direction))
     return direction / (norm or 1.0)
-
-
-def _dof(reader: Reader, line: Line) -> list[str]:
-    names = [word.lower() for word in line.words[1:]]
-    known = ("rx", "ry", "rz", "tx", "ty", "tz")
-    for name, word in zip(names, line.words[1:], strict=True):
-        if name not in known or names.count(name) > 1:
-            reader.fail(line.number, f"channel '{word}' is unknown or named twice")
-    return names
 
 
 def _axis_order(reader: Reader, line: Line, words: list[str]) -> str:
@@ -276,7 +269,7 @@ def _hierarchy(
     """Parts in the order of the hierarchy, parents first, with their parents' indices."""
     rows = lines[1:]
     if not rows or not rows[-1].starts("end"):
-        reader.fail(_end(lines), "the hierarchy has no 'end'")
+        reader.fail(lines[-1].number, "the hierarchy has no 'end'")
     parts, parents = [named[ROOT]], [-1]
     index = {ROOT: 0}
     for line in rows[:-1]:
@@ -297,34 +290,32 @@ def _hierarchy(
     return parts, parents
 
 
-def _end(lines: list[Line]) -> int:
-    return lines[-1].number
-
-
 # ---------------------------------------------------------------- motion
 
 
 def _read_amc(reader: Reader, skeleton: _Skeleton) -> dict[str, FloatArray]:
     """Each moving bone's channel values (T, n), in units and the skeleton's angles."""
     dof = {part.name: part.dof for part in skeleton.parts if part.dof}
-    rows: dict[str, list[list[float]]] = {}
-    frames = _Frames(reader.fail)
+    frames: list[dict[str, list[float]]] = []
     for line in reader.lines:
         bone = line.words[0]
         if bone.startswith(("#", ":")):
             _check_angles(reader, line, skeleton.degree)
         elif len(line.words) == 1 and bone.isdecimal():
-            frames.begin(line.number)
+            _check_bones(reader, line.number, frames)
+            frames.append({})
         elif bone not in dof:
             reader.fail(line.number, f"bone '{bone}' has no channels in the ASF file")
+        elif not frames:
+            reader.fail(line.number, "a bone's values before the first frame's number")
+        elif bone in frames[-1]:
+            reader.fail(line.number, f"bone '{bone}' twice in frame {len(frames)}")
         else:
-            frames.add(bone, line.number)
-            values = reader.keys(line.number, line.words[1:], len(dof[bone]))
-            rows.setdefault(bone, []).append(values)
-    frames.close(reader.last_line)
-    if ROOT not in rows:
+            frames[-1][bone] = reader.keys(line.number, line.words[1:], len(dof[bone]))
+    _check_bones(reader, reader.last_line, frames)
+    if not frames or ROOT not in frames[0]:
         reader.fail(reader.last_line, "the file ends without a frame that moves the root")
-    tables = {bone: np.array(values) for bone, values in rows.items()}
+    tables = {bone: np.array([frame[bone] for frame in frames]) for bone in frames[0]}
     owners = [bone for bone, table in tables.items() for _ in table[0]]
     require_finite(np.hstack(list(tables.values())), owners)
     return tables
@@ -337,36 +328,13 @@ def _check_angles(reader: Reader, line: Line, degree: float) -> None:
         reader.fail(line.number, f"{line.words[0]} contradicts the ASF file's unit of angle")
 
 
-@dataclass
-class _Frames:
-    """Watches that every frame moves the bones that the first one moves, each once."""
-
-    fail: Callable[[int, str], object]
-    expected: set[str] | None = None
-    seen: set[str] | None = None
-    count: int = 0
-
-    def begin(self, line: int) -> None:
-        self.close(line)
-        self.seen = set()
-        self.count += 1
-
-    def add(self, bone: str, line: int) -> None:
-        if self.seen is None:
-            self.fail(line, "a bone's values before the first frame's number")
-        elif bone in self.seen:
-            self.fail(line, f"bone '{bone}' twice in frame {self.count}")
-        else:
-            self.seen.add(bone)
-
-    def close(self, line: int) -> None:
-        if self.seen is None:
-            return
-        if self.expected is None:
-            self.expected = self.seen
-        missing = sorted(self.expected - self.seen)
-        if missing:
-            self.fail(line, f"frame {self.count} ends without bone '{missing[0]}'")
-        extra = sorted(self.seen - self.expected)
-        if extra:
-            self.fail(line, f"frame {self.count} has bone '{extra[0]}', the first frame has not")
+def _check_bones(reader: Reader, line: int, frames: list[dict[str, list[float]]]) -> None:
+    """The last frame so far, which ends at this line, must move the bones of the first."""
+    if not frames:
+        return
+    missing = sorted(frames[0].keys() - frames[-1].keys())
+    if missing:
+        reader.fail(line, f"frame {len(frames)} ends without bone '{missing[0]}'")
+    extra = sorted(frames[-1].keys() - frames[0].keys())
+    if extra:
+        reader.fail(line, f"frame {len(frames)} has bone '{extra[0]}', the first frame has not")

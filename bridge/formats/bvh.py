@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from .euler import euler_matrices
-from .motion_clip import Joint, MotionClip
+from .motion_clip import Joint, MotionClip, euler_matrices
 from .text import Line, Reader, require_finite
 
 _CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
@@ -60,16 +59,16 @@ def _joint(reader: Reader, title: Line, parent: int, drafts: list[_Draft]) -> No
     draft = _Draft(_unique_name(reader, title, drafts), parent)
     index = len(drafts)
     drafts.append(draft)
-    _open_brace(reader)
+    _brace(reader, "{")
     draft.offset = _offset(reader)
     draft.channels = _channels(reader)
     while not (line := reader.take(f"}} of '{draft.name}'")).starts("}"):
         if line.starts("joint"):
             _joint(reader, line, index, drafts)
         elif line.starts("end", "site"):
-            _open_brace(reader)
+            _brace(reader, "{")
             draft.tip = _offset(reader)
-            _close_brace(reader)
+            _brace(reader, "}")
         else:
             reader.fail(line.number, f"'{line.words[0]}' where JOINT, End Site or }} should stand")
 
@@ -87,16 +86,10 @@ def _unique_name(reader: Reader, title: Line, drafts: list[_Draft]) -> str:
     return name
 
 
-def _open_brace(reader: Reader) -> None:
-    line = reader.take("{")
-    if line.words != ["{"]:
-        reader.fail(line.number, "{ should stand here, alone on its line")
-
-
-def _close_brace(reader: Reader) -> None:
-    line = reader.take("}")
-    if line.words != ["}"]:
-        reader.fail(line.number, "} should stand here, alone on its line")
+def _brace(reader: Reader, brace: str) -> None:
+    line = reader.take(brace)
+    if line.words != [brace]:
+        reader.fail(line.number, f"{brace} should stand here, alone on its line")
 
 
 def _offset(reader: Reader) -> FloatArray:
@@ -110,12 +103,10 @@ def _channels(reader: Reader) -> list[str]:
     line = reader.take("CHANNELS")
     if not line.starts("channels"):
         reader.fail(line.number, f"'{line.words[0]}' where CHANNELS should stand")
-    names = [word.lower() for word in line.words[2:]]
-    if line.words[1:2] != [str(len(names))]:
-        reader.fail(line.number, f"{len(names)} channels are named, another number is announced")
-    for name, word in zip(names, line.words[2:], strict=True):
-        if name not in _CHANNELS or names.count(name) > 1:
-            reader.fail(line.number, f"channel '{word}' is unknown or named twice")
+    count = len(line.words[2:])
+    if line.words[1:2] != [str(count)]:
+        reader.fail(line.number, f"{count} channels are named, another number is announced")
+    names = reader.channels(line.number, line.words[2:], _CHANNELS)
     if sum(name.endswith("rotation") for name in names) not in (0, 3):
         reader.fail(line.number, "a joint has no rotation channel or three")
     return names

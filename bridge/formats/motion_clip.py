@@ -4,6 +4,7 @@ Every joint's rest frame has the file's axes, so a joint's rotation matrix is th
 figure's part itself, whatever the file calls its channels.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Bone, Recording
+from ...solver.numerics.rotations import axis_rotation
 
 UpAxis = Literal["Y", "Z"]
 
@@ -59,6 +61,14 @@ class MotionClip:
 def to_z_up(up: UpAxis) -> FloatArray:
     """(3, 3) rotation from the file's axes to Z up, the one Blender's BVH importer uses."""
     return _TO_Z_UP[up]
+
+
+def euler_matrices(axes: Sequence[int], angles: FloatArray) -> FloatArray:
+    """(T, 3, 3): R(axes[0]) R(axes[1]) ..., by the columns of angles (T, len(axes)), rad."""
+    out = np.broadcast_to(np.eye(3), (len(angles), 3, 3)).copy()
+    for column, axis in enumerate(axes):
+        out = out @ axis_rotation(axis, angles[:, column])
+    return out
 
 
 def forward_kinematics(

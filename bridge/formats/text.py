@@ -1,5 +1,6 @@
 """Line-based text reader: every complaint names its line."""
 
+from collections.abc import Container
 from math import isfinite
 from pathlib import Path
 from typing import NamedTuple, NoReturn
@@ -59,6 +60,14 @@ class Reader:
     def fail(self, line: int, problem: str) -> NoReturn:
         """Raises UnreadableClip for this file."""
         raise UnreadableClip(str(self.path), line, problem)
+
+    def channels(self, line: int, words: list[str], known: Container[str]) -> list[str]:
+        """Channels' names in lower case, each known and there once. Raises UnreadableClip."""
+        names = [word.lower() for word in words]
+        for name, word in zip(names, words, strict=True):
+            if name not in known or names.count(name) > 1:
+                self.fail(line, f"channel '{word}' is unknown or named twice")
+        return names
 
     def numbers(self, line: int, words: list[str], count: int) -> FloatArray:
         """(count,) finite numbers from these words. Raises UnreadableClip."""

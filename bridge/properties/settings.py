@@ -6,6 +6,7 @@ Lengths are in Blender units, world; frames are the scene's; angles in rad.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import bpy
 
@@ -13,7 +14,16 @@ from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
 from ..accessors import attached
 from ..rows.row import CLASSES as ROW_CLASSES
-from ..rows.row import OVERRIDABLE, OVERRIDABLE_LIST, HangtimeBoneMark
+from ..rows.row import (
+    HIDDEN,
+    OVERRIDABLE,
+    OVERRIDABLE_LIST,
+    HangtimeBoneMark,
+    chosen,
+    declared,
+    hidden,
+)
+from ..rows.stored import angle, boolean, frame, number, position, target, text, vector, whole
 from . import stances
 from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
@@ -22,7 +32,6 @@ from .constraint import HangtimeConstraint
 from .view import CLASSES as VIEW_CLASSES
 from .view import HangtimeView
 
-_HIDDEN = {"HIDDEN"}
 _TABLES = {
     MassTable.THESIS: ("Boxes", "Mass fractions of the thesis, each segment a uniform box"),
     MassTable.DE_LEVA: ("De Leva 1996", "Mass, centres and radii of gyration measured on men"),
@@ -52,57 +61,32 @@ def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
 class HangtimeContact(bpy.types.PropertyGroup):
     """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2")."""
 
-    point: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
-    bone: bpy.props.StringProperty(name="Bone", options=_HIDDEN, override=OVERRIDABLE)
-    phase: bpy.props.StringProperty(name="Phase", options=_HIDDEN, override=OVERRIDABLE)
-    found_start: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
-    found_end: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
-    found_at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
-    at: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
+    point: hidden(text())
+    bone: hidden(text("Bone"))
+    phase: hidden(text("Phase"))
+    found_start: hidden(number())
+    found_end: hidden(number())
+    found_at: hidden(vector())
+    at: hidden(vector())
 
-    added: bpy.props.BoolProperty(options=_HIDDEN, override=OVERRIDABLE)  # by the artist
-    used: bpy.props.BoolProperty(
-        name="Touches",
-        description="Whether this contact counts; off removes it",
-        default=True,
-        override=OVERRIDABLE,
+    added: hidden(boolean())  # by the artist
+    used: chosen(boolean("Touches", "Whether this contact counts; off removes it", default=True))
+    start_frame: chosen(frame("Start", "Frame at which the point begins to carry"))
+    end_frame: chosen(frame("End", "Frame at which the point ceases to carry"))
+    place: chosen(
+        position(
+            "Place",
+            "Where the point shall touch, in the world. Its whole stance moves along "
+            "while Move Whole Stance is on",
+            get=_get_place,
+            set=_set_place,
+        )
     )
-    start_frame: bpy.props.FloatProperty(
-        name="Start",
-        description="Frame at which the point begins to carry",
-        precision=1,
-        step=100,
-        override=OVERRIDABLE,
-    )
-    end_frame: bpy.props.FloatProperty(
-        name="End",
-        description="Frame at which the point ceases to carry",
-        precision=1,
-        step=100,
-        override=OVERRIDABLE,
-    )
-    place: bpy.props.FloatVectorProperty(
-        name="Place",
-        description="Where the point shall touch, in the world. Its whole stance moves along "
-        "while Move Whole Stance is on",
-        size=3,
-        subtype="TRANSLATION",
-        unit="LENGTH",
-        get=_get_place,
-        set=_set_place,
-        override=OVERRIDABLE,
-    )
-    empty: bpy.props.PointerProperty(
-        name="Empty",
-        description="Where this empty is, the point shall touch",
-        type=bpy.types.Object,
-        poll=_is_empty,
-        override=OVERRIDABLE,
-    )
+    empty: chosen(target("Empty", "Where this empty is, the point shall touch", poll=_is_empty))
 
 
-def _shift(axis: int) -> dict[str, object]:
-    """Callbacks of a stance's shift along one of its axes."""
+def _shift(axis: int, name: str, description: str) -> Any:
+    """A stance's shift along one of its axes."""
 
     def get(stance: HangtimeStance) -> float:
         return float(stance.shifted[axis])
@@ -112,14 +96,8 @@ def _shift(axis: int) -> dict[str, object]:
         shifted[axis] = to
         stances.shift_stance(attached(stance.id_data), stance, shifted)
 
-    return {
-        "get": get,
-        "set": put,
-        "unit": "LENGTH",
-        "subtype": "DISTANCE",
-        "step": 1,
-        "override": OVERRIDABLE,
-    }
+    options = {"unit": "LENGTH", "subtype": "DISTANCE", "step": 1}
+    return chosen(number(name, description, get=get, set=put, **options))
 
 
 def _get_turn(stance: HangtimeStance) -> float:
@@ -133,24 +111,20 @@ def _set_turn(stance: HangtimeStance, to: float) -> None:
 class HangtimeStance(bpy.types.PropertyGroup):
     """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2")."""
 
-    forward_axis: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
-    shifted: bpy.props.FloatVectorProperty(size=3, options=_HIDDEN, override=OVERRIDABLE)
-    turned: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
+    forward_axis: hidden(vector())
+    shifted: hidden(vector())
+    turned: hidden(number())
 
-    forward: bpy.props.FloatProperty(
-        name="Forward", description="Move the stance along the jump's travel", **_shift(0)
-    )
-    left: bpy.props.FloatProperty(
-        name="Left", description="Move the stance to the left of the jump's travel", **_shift(1)
-    )
-    up: bpy.props.FloatProperty(name="Up", description="Raise or lower the stance", **_shift(2))
-    turn: bpy.props.FloatProperty(
-        name="Turn",
-        description="Turn the stance about the vertical, counter-clockwise seen from above",
-        subtype="ANGLE",
-        get=_get_turn,
-        set=_set_turn,
-        override=OVERRIDABLE,
+    forward: _shift(0, "Forward", "Move the stance along the jump's travel")
+    left: _shift(1, "Left", "Move the stance to the left of the jump's travel")
+    up: _shift(2, "Up", "Raise or lower the stance")
+    turn: chosen(
+        angle(
+            "Turn",
+            "Turn the stance about the vertical, counter-clockwise seen from above",
+            get=_get_turn,
+            set=_set_turn,
+        )
     )
 
 
@@ -160,28 +134,17 @@ class HangtimePart(bpy.types.PropertyGroup):
     found: the bone that was found by itself; another one in `bone` is the artist's choice.
     """
 
-    bone: bpy.props.StringProperty(
-        name="Bone", description="The bone that moves this part of the body", override=OVERRIDABLE
-    )
-    found: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
-    needed: bpy.props.BoolProperty(options=_HIDDEN, override=OVERRIDABLE)
+    bone: chosen(text("Bone", "The bone that moves this part of the body"))
+    found: hidden(text())
+    needed: hidden(boolean())
 
 
 class HangtimeSettings(bpy.types.PropertyGroup):
     """An armature's edit; of an empty that marks a contact, whose contact it marks."""
 
-    marks: bpy.props.PointerProperty(
-        type=bpy.types.Object, options=_HIDDEN, poll=_is_armature, override=OVERRIDABLE
-    )
+    marks: hidden(target(poll=_is_armature))
 
-    mass: bpy.props.FloatProperty(
-        name="Mass (kg)",
-        description="The performer's mass",
-        default=70.0,
-        min=10.0,
-        max=300.0,
-        override=OVERRIDABLE,
-    )
+    mass: chosen(number("Mass (kg)", "The performer's mass", default=70.0, min=10.0, max=300.0))
     mass_table: bpy.props.EnumProperty(
         name="Mass Table",
         description="How the mass is shared among the parts of the body",
@@ -189,80 +152,67 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         default=MassTable.THESIS.name,
         override=OVERRIDABLE,
     )
-    measured_height: bpy.props.FloatProperty(options=_HIDDEN, override=OVERRIDABLE)
-    use_height: bpy.props.BoolProperty(
-        name="Own Height",
-        description="State the performer's height instead of the measured one",
-        override=OVERRIDABLE,
+    measured_height: hidden(number())
+    use_height: chosen(
+        boolean("Own Height", "State the performer's height instead of the measured one")
     )
-    height: bpy.props.FloatProperty(
-        name="Height (m)",
-        description="The performer's true height; the physics takes place at this size",
-        default=1.75,
-        min=0.5,
-        max=3.0,
-        override=OVERRIDABLE,
+    height: chosen(
+        number(
+            "Height (m)",
+            "The performer's true height; the physics takes place at this size",
+            default=1.75,
+            min=0.5,
+            max=3.0,
+        )
     )
-    use_range: bpy.props.BoolProperty(
-        name="Frame Range",
-        description="Adapt some frames only instead of the whole action",
-        override=OVERRIDABLE,
-    )
-    first_frame: bpy.props.IntProperty(
-        name="First", description="First frame that counts", default=1, override=OVERRIDABLE
-    )
-    last_frame: bpy.props.IntProperty(
-        name="Last", description="Last frame that counts", default=250, override=OVERRIDABLE
-    )
+    use_range: chosen(boolean("Frame Range", "Adapt some frames only instead of the whole action"))
+    first_frame: chosen(whole("First", "First frame that counts", default=1))
+    last_frame: chosen(whole("Last", "Last frame that counts", default=250))
 
     parts: bpy.props.CollectionProperty(type=HangtimePart, override=OVERRIDABLE_LIST)
 
-    fit_quality: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
-    analysed: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)  # digest
+    fit_quality: hidden(text())
+    analysed: hidden(text())  # digest
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
-    active_contact: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
+    active_contact: hidden(whole())
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
-    whole_stance: bpy.props.BoolProperty(
-        name="Move Whole Stance",
-        description="Moving a contact moves every contact of its phase, so that heels and toes "
-        "stay as far apart as the feet are long",
-        default=True,
-        override=OVERRIDABLE,
+    whole_stance: chosen(
+        boolean(
+            "Move Whole Stance",
+            "Moving a contact moves every contact of its phase, so that heels and toes "
+            "stay as far apart as the feet are long",
+            default=True,
+        )
     )
 
     constraints: bpy.props.CollectionProperty(type=HangtimeConstraint, override=OVERRIDABLE_LIST)
-    active_constraint: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
+    active_constraint: hidden(whole())
     body_changes: bpy.props.CollectionProperty(type=HangtimeBodyChange, override=OVERRIDABLE_LIST)
-    active_body_change: bpy.props.IntProperty(options=_HIDDEN, override=OVERRIDABLE)
-    use_new_mass: bpy.props.BoolProperty(
-        name="Other Mass",
-        description="Perform the motion with another mass than the recording's",
-        override=OVERRIDABLE,
+    active_body_change: hidden(whole())
+    use_new_mass: chosen(
+        boolean("Other Mass", "Perform the motion with another mass than the recording's")
     )
-    new_mass: bpy.props.FloatProperty(
-        name="New Mass (kg)",
-        default=70.0,
-        min=10.0,
-        max=300.0,
-        description="The new total mass",
-        override=OVERRIDABLE,
+    new_mass: chosen(
+        number("New Mass (kg)", "The new total mass", default=70.0, min=10.0, max=300.0)
     )
-    gravity: bpy.props.FloatProperty(
-        name="Gravity (m/s²)",
-        description="Of the place where the motion is performed; 1.62 m/s² on the Moon",
-        default=STANDARD_GRAVITY,
-        min=0.1,
-        max=50.0,
-        precision=3,
-        override=OVERRIDABLE,
+    gravity: chosen(
+        number(
+            "Gravity (m/s²)",
+            "Of the place where the motion is performed; 1.62 m/s² on the Moon",
+            default=STANDARD_GRAVITY,
+            min=0.1,
+            max=50.0,
+            precision=3,
+        )
     )
 
-    requests: bpy.props.PointerProperty(
-        name="Requests",
-        description="A text with limits, poses, torques, loads and whatever else a recipe may "
-        "hold; see the manual's page of recipes",
-        type=bpy.types.Text,
-        override=OVERRIDABLE,
+    requests: chosen(
+        target(
+            "Requests",
+            "A text with limits, poses, torques, loads and whatever else a recipe may "
+            "hold; see the manual's page of recipes",
+            type=bpy.types.Text,
+        )
     )
 
     method: bpy.props.EnumProperty(
@@ -292,39 +242,41 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         ],
         override=OVERRIDABLE,
     )
-    stay_close: bpy.props.FloatProperty(
-        name="Stay Close",
-        description="How much staying near the quick solution counts, beside what is lessened",
-        default=1.0,
-        min=0.0,
-        soft_max=10.0,
-        override=OVERRIDABLE,
+    stay_close: chosen(
+        number(
+            "Stay Close",
+            "How much staying near the quick solution counts, beside what is lessened",
+            default=1.0,
+            min=0.0,
+            soft_max=10.0,
+        )
     )
 
-    adapted: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN, override=OVERRIDABLE)
-    status: bpy.props.StringProperty(options=_HIDDEN, override=OVERRIDABLE)
+    adapted: hidden(target(type=bpy.types.Action))
+    status: hidden(text())
 
 
 class HangtimeScene(bpy.types.PropertyGroup):
     """Which armature the sidebar is about, and what is shown of it."""
 
-    view: bpy.props.PointerProperty(type=HangtimeView)
+    view: declared(target(type=HangtimeView))
 
-    armature: bpy.props.PointerProperty(
-        name="Armature",
-        description="The armature that carries the recording; the active one where none is chosen",
-        type=bpy.types.Object,
-        poll=_is_armature,
+    armature: declared(
+        target(
+            "Armature",
+            "The armature that carries the recording; the active one where none is chosen",
+            poll=_is_armature,
+        )
     )
 
 
 class HangtimeAction(bpy.types.PropertyGroup):
     """Of an adapted action: the recording that it was made from, and what was found."""
 
-    recording: bpy.props.PointerProperty(type=bpy.types.Action, options=_HIDDEN)
-    performer: bpy.props.PointerProperty(type=bpy.types.Object, options=_HIDDEN)
-    accepted: bpy.props.BoolProperty(options=_HIDDEN)
-    report: bpy.props.StringProperty(options=_HIDDEN)  # the report's text
+    recording: declared(target(type=bpy.types.Action), options=HIDDEN)
+    performer: declared(target(), options=HIDDEN)
+    accepted: declared(boolean(), options=HIDDEN)
+    report: declared(text(), options=HIDDEN)  # the report's text
 
 
 def settings_of(armature: bpy.types.Object) -> HangtimeSettings:

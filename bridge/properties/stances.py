@@ -20,11 +20,7 @@ _DIGITS = 6  # of a turn
 
 
 def place(
-    settings: Settings,
-    row: ContactRow,
-    to: Sequence[float],
-    *,
-    whole: bool | None = None,
+    settings: Settings, row: ContactRow, to: Sequence[float], *, whole: bool | None = None
 ) -> None:
     """Puts a contact somewhere; its whole stance makes the same move where `whole` says so.
 

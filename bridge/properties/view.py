@@ -2,77 +2,46 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
+
+from ..rows.row import declared
+from ..rows.stored import boolean, text, whole
+
+
+def _switch(name: str, description: str, *, on: bool = True) -> Any:
+    return declared(boolean(name, description, default=on))
 
 
 class HangtimeView(bpy.types.PropertyGroup):
     """Switches of overlays, plots and of the bars in the timeline."""
 
-    show: bpy.props.BoolProperty(
-        name="Hangtime Overlays", description="Show overlays in this scene", default=True
-    )
-    pins: bpy.props.BoolProperty(
-        name="Pins", description="Contacts and points that are held, as red spheres", default=True
-    )
-    limits: bpy.props.BoolProperty(
-        name="Cones and Limits",
-        description="Cones around limbs, and arcs of joint limits",
-        default=True,
-    )
-    poses: bpy.props.BoolProperty(
-        name="Poses", description="Poses that are asked for, as white bodies", default=True
-    )
-    forces: bpy.props.BoolProperty(
-        name="Contact Forces", description="Forces of the ground as arrows", default=True
-    )
-    path: bpy.props.BoolProperty(
-        name="Centre of Mass",
-        description="Its path, and the parabola of each flight",
-        default=True,
-    )
-    momentum: bpy.props.BoolProperty(
-        name="Angular Momentum", description="As an arrow at the centre of mass", default=False
-    )
-    ghosts: bpy.props.BoolProperty(
-        name="Ghosts",
-        description="The adapted motion beside the recording, at chosen frames",
-        default=True,
-    )
-    ghost_step: bpy.props.IntProperty(
-        name="Every", description="Frames from one ghost to the next", default=30, min=1
-    )
-    recording_too: bpy.props.BoolProperty(
-        name="Recording's Ghosts",
-        description="Also show the recording at these frames",
-        default=True,
-    )
+    show: _switch("Hangtime Overlays", "Show overlays in this scene")
+    pins: _switch("Pins", "Contacts and points that are held, as red spheres")
+    limits: _switch("Cones and Limits", "Cones around limbs, and arcs of joint limits")
+    poses: _switch("Poses", "Poses that are asked for, as white bodies")
+    forces: _switch("Contact Forces", "Forces of the ground as arrows")
+    path: _switch("Centre of Mass", "Its path, and the parabola of each flight")
+    momentum: _switch("Angular Momentum", "As an arrow at the centre of mass", on=False)
+    ghosts: _switch("Ghosts", "The adapted motion beside the recording, at chosen frames")
+    ghost_step: declared(whole("Every", "Frames from one ghost to the next", default=30, min=1))
+    recording_too: _switch("Recording's Ghosts", "Also show the recording at these frames")
 
-    labels: bpy.props.BoolProperty(
-        name="Labels", description="Numbers beside pins, limits and arrows", default=True
-    )
+    labels: _switch("Labels", "Numbers beside pins, limits and arrows")
 
-    plots: bpy.props.BoolProperty(
-        name="Plots", description="Curves over time at the foot of the viewport", default=False
+    plots: _switch("Plots", "Curves over time at the foot of the viewport", on=False)
+    plot_forces: _switch("Contact Forces", "In body weights")
+    plot_torque: _switch("Torque", "Of the chosen joint, with its limit, in N·m")
+    plot_bone: declared(
+        text("Joint", "The bone whose joint's torque is plotted; the active one if empty")
     )
-    plot_forces: bpy.props.BoolProperty(
-        name="Contact Forces", description="In body weights", default=True
-    )
-    plot_torque: bpy.props.BoolProperty(
-        name="Torque", description="Of the chosen joint, with its limit, in N·m", default=True
-    )
-    plot_bone: bpy.props.StringProperty(
-        name="Joint",
-        description="The bone whose joint's torque is plotted; the active one if empty",
-    )
-    plot_com: bpy.props.BoolProperty(
-        name="Centre of Mass", description="Its height and its speed", default=True
-    )
+    plot_com: _switch("Centre of Mass", "Its height and its speed")
 
-    timeline: bpy.props.BoolProperty(
-        name="Contacts in Timeline",
-        description="Contacts and phases as bars in the timeline and the dope sheet; drag their "
+    timeline: _switch(
+        "Contacts in Timeline",
+        "Contacts and phases as bars in the timeline and the dope sheet; drag their "
         "ends to retime them",
-        default=True,
     )
 
 

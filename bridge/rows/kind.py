@@ -100,10 +100,10 @@ class ConstraintKind:
     """A kind of constraint: how it is stored, drawn, solved for and written in a recipe.
 
     name, number: stored in the artist's file; neither may ever change. label, description, icon:
-    what the artist sees. requests: the field of the solver's Requests that `record` adds to.
-    draw: its fields, when and whose included. fields: stored for it beside the shared ones.
-    short: of the label, for names of rows. on_ground: about the nearest stance, not the phase.
-    told: when it holds, in a few letters. added: what else is set in a row that was just added.
+    what the artist sees. draw: its fields, when and whose included. fields: stored for it beside
+    the shared ones. short: of the label, for names of rows. on_ground: about the nearest stance,
+    not the phase. told: when it holds, in a few letters. added: what else is set in a row that was
+    just added.
     """
 
     name: str
@@ -112,7 +112,6 @@ class ConstraintKind:
     description: str
     icon: Icon
     menu: MenuGroup
-    requests: str
     record: Callable[[Row, RowContext], Any]
     draw: Callable[[FieldDrawing, Row], None]
     recipe: RecipeKind[Any]
@@ -123,6 +122,11 @@ class ConstraintKind:
     short: str = ""
     told: Callable[[Row], str] = range_text
     added: Callable[[bpy.types.Object, Row, Sequence[str]], None] = nothing_more
+
+    @property
+    def requests(self) -> str:
+        """The field of the solver's Requests that `record` adds to: the recipe header's plural."""
+        return f"{self.recipe.header}s"
 
     def row_name(self, row: Row, bones: Sequence[str], titles: Callable[[str], str]) -> str:
         """What a new row is called, before a number makes that unique."""

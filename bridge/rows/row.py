@@ -1,15 +1,15 @@
-"""What rows of the lists of constraints and of body changes share: their bones and their state."""
+"""What rows of the lists share: how Blender keeps their properties, their bones and their state."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from enum import Enum
+from functools import partial
 from typing import Any
 
 import bpy
 
 from . import bone_keys
 from .choices import Met
+from .stored import PropertyType, Stored, boolean, choice, text
 
 HIDDEN = {"HIDDEN"}
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
@@ -28,17 +28,29 @@ def forget_status(row: Any, _context: bpy.types.Context) -> None:
         row.status = ""
 
 
-ASKED: dict[str, object] = {"override": OVERRIDABLE, "update": forget_status}
+def declared(stored: Stored, **shared: Any) -> Any:
+    """Blender's property of a declaration, with the options that it shares with others."""
+    options = {**stored.options, **shared}
+    if stored.type is PropertyType.OBJECT:
+        options.setdefault("type", bpy.types.Object)
+    return getattr(bpy.props, stored.type.value)(**options)
 
 
-def items(kinds: Iterable[Enum]) -> list[tuple[str, str, str]]:
-    return [(kind.name, kind.value, "") for kind in kinds]
+chosen = partial(declared, override=OVERRIDABLE)  # by the artist
+asked = partial(chosen, update=forget_status)  # of the next solve
+hidden = partial(chosen, options=HIDDEN)  # kept for the artist
+
+# What every row has.
+NAME = text("Name", "Your name for it, by which it is reported")
+MET = choice("Met", Met)
+STATUS = text()  # a line to be drawn
+USED = boolean("Use", "Whether this counts", default=True)
 
 
 class HangtimeBoneMark(bpy.types.PropertyGroup):
     """Of an armature's bone: the key by which rows find it after it was renamed."""
 
-    key: bpy.props.StringProperty(options=HIDDEN)
+    key: declared(text(), options=HIDDEN)
 
 
 def _armature_of(row: HangtimeBone) -> bpy.types.Object:
@@ -58,15 +70,9 @@ def _set_bone(row: HangtimeBone, name: str) -> None:
 class HangtimeBone(bpy.types.PropertyGroup):
     """A bone of the armature; `name` follows when the artist renames it (see bone_keys.py)."""
 
-    key: bpy.props.StringProperty(options=HIDDEN, override=OVERRIDABLE)
-    called: bpy.props.StringProperty(options=HIDDEN, override=OVERRIDABLE)
-    name: bpy.props.StringProperty(
-        name="Bone",
-        description="A bone of the armature",
-        get=_get_bone,
-        set=_set_bone,
-        override=OVERRIDABLE,
-    )
+    key: hidden(text())
+    called: hidden(text())
+    name: chosen(text("Bone", "A bone of the armature", get=_get_bone, set=_set_bone))
 
 
 CLASSES = (HangtimeBoneMark, HangtimeBone)

@@ -16,6 +16,7 @@ class PropertyType(Enum):
     ENUM = "EnumProperty"
     NUMBER = "FloatProperty"
     OBJECT = "PointerProperty"
+    TEXT = "StringProperty"
     VECTOR = "FloatVectorProperty"
     WHOLE = "IntProperty"
 
@@ -32,17 +33,19 @@ Fields = Mapping[str, Stored]
 
 
 def _declared(of: PropertyType, name: str, description: str, options: dict[str, Any]) -> Stored:
-    return Stored(of, {"name": name, "description": description, **options})
+    texts = {"name": name, "description": description}
+    return Stored(of, {key: text for key, text in texts.items() if text} | options)
 
 
-def boolean(name: str, description: str = "", **options: Any) -> Stored:
+def boolean(name: str = "", description: str = "", **options: Any) -> Stored:
     """A checkbox."""
     return _declared(PropertyType.BOOLEAN, name, description, options)
 
 
-def booleans(name: str, description: str = "", **options: Any) -> Stored:
-    """Three checkboxes, one an axis."""
-    return _declared(PropertyType.BOOLEANS, name, description, {"size": 3, **options})
+def booleans(name: str, description: str = "") -> Stored:
+    """Three checkboxes, one an axis, all on at first."""
+    options = {"size": 3, "default": (True, True, True)}
+    return _declared(PropertyType.BOOLEANS, name, description, options)
 
 
 def choice(name: str, of: type[Enum], description: str = "", **options: Any) -> Stored:
@@ -51,9 +54,14 @@ def choice(name: str, of: type[Enum], description: str = "", **options: Any) -> 
     return _declared(PropertyType.ENUM, name, description, {"items": items, **options})
 
 
-def number(name: str, description: str = "", **options: Any) -> Stored:
+def number(name: str = "", description: str = "", **options: Any) -> Stored:
     """A number."""
     return _declared(PropertyType.NUMBER, name, description, options)
+
+
+def angle(name: str, description: str = "", **options: Any) -> Stored:
+    """An angle, rad; degrees for the artist."""
+    return number(name, description, subtype="ANGLE", **options)
 
 
 def frame(name: str, description: str = "") -> Stored:
@@ -61,16 +69,29 @@ def frame(name: str, description: str = "") -> Stored:
     return number(name, description, precision=1, step=100)
 
 
-def whole(name: str, description: str = "", **options: Any) -> Stored:
+def whole(name: str = "", description: str = "", **options: Any) -> Stored:
     """A whole number."""
     return _declared(PropertyType.WHOLE, name, description, options)
 
 
-def vector(name: str, description: str = "", **options: Any) -> Stored:
+def vector(name: str = "", description: str = "", **options: Any) -> Stored:
     """Three numbers."""
     return _declared(PropertyType.VECTOR, name, description, {"size": 3, **options})
 
 
-def target(name: str, description: str = "") -> Stored:
-    """An object of the scene."""
-    return _declared(PropertyType.OBJECT, name, description, {})
+def position(name: str, description: str = "", **options: Any) -> Stored:
+    """A place, or the way to it."""
+    return vector(name, description, subtype="TRANSLATION", unit="LENGTH", **options)
+
+
+def text(name: str = "", description: str = "", **options: Any) -> Stored:
+    """A line of text."""
+    return _declared(PropertyType.TEXT, name, description, options)
+
+
+def target(name: str = "", description: str = "", **options: Any) -> Stored:
+    """A data-block; without a `type`, an object of the scene."""
+    return _declared(PropertyType.OBJECT, name, description, options)
+
+
+OFFSET = position("Offset", "From the bone's head, in the bone's axes and the armature's own scale")

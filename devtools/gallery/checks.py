@@ -128,7 +128,7 @@ def turns(shown: Recording, bone: str) -> FloatArray:
 
 def checks(adaptation: Adaptation) -> list[Check]:
     """Of every contact, and of every condition on points, bends and cones."""
-    conditions = adaptation.motion.transcription.conditions
+    conditions = adaptation.motion.transcription.constraints
     return [
         *_contacts(adaptation),
         *(c for each in conditions for c in _condition(each, adaptation)),
@@ -153,20 +153,20 @@ def _condition(condition: Constraint, adaptation: Adaptation) -> Iterator[Check]
     character = adaptation.motion.transcription.character
     span = (condition.name, condition.start, condition.end)
     lower, upper = condition.bounds.lower, condition.bounds.upper
-    match condition.measure:
-        case constraint_functions.Place() as place:
+    match condition.function:
+        case constraint_functions.PointPosition() as place:
             body = character.bodies[place.point.body]
-            recording = adaptation.plan.recording
+            recording = adaptation.setup.recording
             turn = recording.bones[recording.index(body.bone)].rotation
             times = np.linspace(condition.start, condition.end, 500)
             offset = turn.T @ place.point.place
             where = place.place(times)
             yield PointCheck(*span, body.bone, offset, times, where, place.axes, lower, upper)
-        case constraint_functions.Bend() as bend:
+        case constraint_functions.BendAngle() as bend:
             normal = np.cross(bend.straight, bend.flexion)
             bones = _bones(bend.joint.first, adaptation)
             yield BendCheck(*span, *bones, normal, float(lower[0]), float(upper[0]))
-        case constraint_functions.Cone() as cone:
+        case constraint_functions.ConeAngle() as cone:
             bones = _bones(cone.joint.first, adaptation)
             yield ConeCheck(*span, *bones, cone.frame, cone.stretch, float(upper[0]))
 

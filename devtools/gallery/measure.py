@@ -9,9 +9,9 @@ from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.row_kinds import RowKind
 from ...solver.results.mjcf import hinge_order
 from ...solver.stages.implicit import Adaptation
-from ...solver.transcription.constraint import missed
+from ...solver.transcription.constraint import dense_violation
 from ...solver.transcription.constraint_functions import PeakForce
-from ...solver.transcription.torque_constraint import Torques
+from ...solver.transcription.torque_constraint import TorqueFunction
 from ..checks.mujoco_check import Residual, check_motion
 from .jobs import Json
 from .looks import looks
@@ -69,25 +69,25 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
     weight = t.character.mass * STANDARD_GRAVITY
     order = hinge_order(t.character)
     found = []
-    for c in t.conditions:
+    for c in t.constraints:
         during = (residual.times >= c.start) & (residual.times <= c.end)
         entry: Json = {"name": c.name, "kind": c.kind.label, "by": "MuJoCo"}
-        if isinstance(c.measure, Torques):
-            columns = [int(np.flatnonzero(order == a)[0]) for a in c.measure.function.angles]
+        if isinstance(c.function, TorqueFunction):
+            columns = [int(np.flatnonzero(order == a)[0]) for a in c.function.angles]
             applied = torques[during][:, columns]
             lower, upper = weight * c.bounds.lower, weight * c.bounds.upper
             over = np.maximum(np.maximum(applied - upper, lower - applied), 0.0)
             share = over / (0.5 * (upper - lower))
             entry |= {"worst": 100.0 * float(share.max(initial=0.0)), "unit": "% of the bound"}
             entry |= {"bound_nm": (0.5 * (upper - lower)).tolist()}
-        elif isinstance(c.measure, PeakForce):
+        elif isinstance(c.function, PeakForce):
             total = np.linalg.norm(_needed(adaptation, residual)[during], axis=1)
             over = np.maximum(total - c.bounds.upper[0], 0.0) / c.bounds.upper[0]
             entry |= {"worst": 100.0 * float(over.max(initial=0.0)), "unit": "% of the bound"}
         elif c.kind in IN_BLENDER:
             continue
         else:
-            off = missed(c, t.character, t.basis, t.layout, motion.x)
+            off = dense_violation(c, t.character, t.basis, t.layout, motion.x)
             worst = off.kind.reported(off.amount, weight)
             entry |= {"worst": worst, "unit": off.kind.reported_unit, "by": "the solver"}
         found.append(entry)
@@ -98,7 +98,7 @@ def from_fit(adaptation: Adaptation) -> Json:
     """Distance of the motion from the fit at corresponding instants, root included."""
     motion, fitted = adaptation.motion, adaptation.fit.motion
     times = np.linspace(0.0, motion.duration, int(motion.duration * 240.0))
-    old = adaptation.plan.scene.timeline.to_old(times)
+    old = adaptation.setup.context.timeline.to_old(times)
     apart = np.linalg.norm(motion.joint_centres(times) - fitted.joint_centres(old), axis=2)
     turned = (motion.angles(times) - fitted.angles(old))[:, 3:]
     return {
@@ -112,7 +112,7 @@ def from_fit(adaptation: Adaptation) -> Json:
 
 def shape(adaptation: Adaptation) -> Json:
     """Measures that the thesis's claims are about: crouch, flight, and places of the hands."""
-    motion, phases = adaptation.motion, adaptation.plan.schedule.phases
+    motion, phases = adaptation.motion, adaptation.setup.schedule.phases
     flights = [p for p in phases if p.kind is PhaseKind.FLIGHT]
     if not flights:
         return {}

@@ -77,8 +77,8 @@ def _by(problem: MotionProblem, method: Method) -> MotionProblem:
 def _solved(solved: Fit | Adaptation, seconds: float) -> Json:
     transcription = solved.motion.transcription
     unknowns = transcription.n_unknowns
-    if isinstance(solved, Adaptation) and solved.plan.basis is not None:
-        full, reduced = solved.plan.basis.shape
+    if isinstance(solved, Adaptation) and solved.setup.basis is not None:
+        full, reduced = solved.setup.basis.shape
         unknowns -= (full - reduced) * transcription.basis.n_coefficients
     return {
         "status": solved.outcome.status.value,

@@ -37,10 +37,10 @@ class Task:
     @staticmethod
     def of(fit: Fit, problem: MotionProblem) -> "Task":
         """The adaptation of a fit to a problem, in one stage."""
-        plan = set_up(fit, problem)
-        moves = stance_moves(plan.schedule, plan.start.places, plan.goal, plan.turns)
-        start = warm_start(plan.start, moves)
-        return Task(plan.start.transcription, plan.goal, start, plan.metric)
+        setup = set_up(fit, problem)
+        moves = stance_moves(setup.schedule, setup.start.places, setup.target_places, setup.turns)
+        start = warm_start(setup.start, moves)
+        return Task(setup.start.transcription, setup.target_places, start, setup.metric)
 
     def rows(self, x: FloatArray) -> Rows:
         """The rows at x (K, n_block)."""

@@ -1,7 +1,5 @@
 """Modal drag of contacts and points: the motion follows as a ghost; letting go adapts."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import bpy
@@ -14,37 +12,30 @@ from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
 from ...solver.data.status import DragStatus
 from ...solver.worker.protocol import Answer, Failed, Followed, Progress
-from ..operator_types import OperatorMixin, OperatorResult
-from ..solve.adapt import NOT_ANALYSED, ask_for
-from ..solve.common import hindrance, required_armature, said
+from ..operator_types import OperatorResult, PolledOperator
+from ..solve.adapt import ask_for, unanalysed
+from ..solve.common import required_armature, said
 from ..solve.live import live, redraw_viewports
 from ..solve.session import session
 from ..solve.task import LOOK_EVERY
-from .mouse import Press
+from .mouse import BACK, CONFIRM, GIVEN, Press
 
-CONFIRM = {"RET", "NUMPAD_ENTER"}
-BACK = {"ESC", "RIGHTMOUSE"}
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 
 
-class FollowedDrag(OperatorMixin):
+class FollowedDrag(PolledOperator):
     """Mixin of modal operators that drag contacts or points in a 3D viewport."""
 
-    release_confirm: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+    release_confirm: bpy.props.BoolProperty(options=GIVEN)
     adapt: bpy.props.BoolProperty(
         name="Adapt", description="Adapt the motion once the mouse lets go", default=True
     )
     key_hints = ""  # what the header says of keys
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = hindrance(context)
-        if why is None and not settings_of(required_armature(context)).contacts:
-            why = NOT_ANALYSED
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return unanalysed(context)
 
     # -- what is dragged -----------------------------------------------------------------------
 
@@ -83,8 +74,7 @@ class FollowedDrag(OperatorMixin):
         self._press = Press.of(context, event, click=self.release_confirm)
         why = ELSEWHERE if context.region_data is None else self.take(context)
         if why is not None:
-            self.report({"ERROR"}, why)
-            return {"CANCELLED"}
+            return self.refuse(why)
         self._moved, self._share = True, 0.0
         self._fault = self._shown = ""
         self._task = self._follow(context)

@@ -3,45 +3,35 @@
 The handles (ui/gizmos) say where a limit is drawn; what the mouse does there is the same for all.
 """
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.settings import settings_of
-from ..operator_types import OperatorMixin, OperatorResult
+from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import EDIT_MODE, chosen_armature, required_armature
 from ..solve.live import redraw_viewports
-from .mouse import Press
+from .mouse import BACK, CONFIRM, GIVEN, Press
 
 KEYS = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
 NO_LIMIT = "There is no such joint limit or cone"
 BY_HANDLES = "Drag the limit's handles in a 3D viewport"
-CONFIRM, BACK = {"RET", "NUMPAD_ENTER"}, {"ESC", "RIGHTMOUSE"}
 
 
-class LimitDrag(OperatorMixin):
+class LimitDrag(PolledOperator):
     """Mixin of modal operators that change a limit of a joint."""
 
     constraint: bpy.props.IntProperty(
-        name="Constraint", description="Its place in the list", options={"HIDDEN", "SKIP_SAVE"}
+        name="Constraint", description="Its place in the list", options=GIVEN
     )
-    centre: bpy.props.FloatVectorProperty(
-        description="The joint, world", options={"HIDDEN", "SKIP_SAVE"}
-    )
+    centre: bpy.props.FloatVectorProperty(description="The joint, world", options=GIVEN)
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
         armature = chosen_armature(context)
-        why = None
         if armature is None or not len(settings_of(armature).constraints):
-            why = NO_LIMIT
-        elif armature.mode == "EDIT":
-            why = EDIT_MODE
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+            return NO_LIMIT
+        return EDIT_MODE if armature.mode == "EDIT" else None
 
     # -- what is dragged -----------------------------------------------------------------------
 
@@ -72,8 +62,7 @@ class LimitDrag(OperatorMixin):
         self._press = Press.of(context, event, click=True)
         row = self.find_row()
         if row is None or context.region_data is None or not self.take(context):
-            self.report({"ERROR"}, NO_LIMIT if row is None else BY_HANDLES)
-            return {"CANCELLED"}
+            return self.refuse(NO_LIMIT if row is None else BY_HANDLES)
         self._found = (row.met, row.status)
         self._area = present(context.area)
         present(context.window_manager).modal_handler_add(self)

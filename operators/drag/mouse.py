@@ -13,6 +13,10 @@ from .rays import Ray
 
 SLACK = 3.0  # px, at an interface scale of 1, until a click becomes a drag
 
+CONFIRM = {"RET", "NUMPAD_ENTER"}
+BACK = {"ESC", "RIGHTMOUSE"}
+GIVEN = {"HIDDEN", "SKIP_SAVE"}  # options of a property that only a gizmo or a keymap gives
+
 Pixel = tuple[float, float]
 
 

@@ -1,7 +1,5 @@
 """Drag Pin: a contact's or a point's place by the mouse, while the motion follows as a ghost."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Vector
@@ -15,9 +13,9 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
 from . import rays
+from .drag_state import Axis, PinDrag
 from .follow_mixin import FollowedDrag
-from .mouse import Pixel, pixel, pixel_of, ray_at
-from .pin_state import Axis, PinDrag
+from .mouse import GIVEN, Pixel, pixel, pixel_of, ray_at
 
 FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
 FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon
@@ -57,7 +55,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         name="Axis",
         description="What the drag is held to at first",
         items=[("NONE", "None", "Over the ground"), *((a.name, a.name, "") for a in Axis)],
-        options={"HIDDEN", "SKIP_SAVE"},
+        options=GIVEN,
     )
     shift: bpy.props.FloatVectorProperty(
         name="Shift", description="How far, in the world", subtype="TRANSLATION", unit="LENGTH"
@@ -67,8 +65,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         """In scripts and for redo: the pin moves by `shift`."""
         self._armature = required_armature(context)
         if self._find_row() is None:
-            self.report({"ERROR"}, NO_PIN)
-            return {"CANCELLED"}
+            return self.refuse(NO_PIN)
         self._put(Vector(self._place) + Vector(self.shift))
         return {"FINISHED"}
 
@@ -190,6 +187,3 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             distance = rays.along_line(ray, start, axis)
             return start + distance * axis if distance is not None else None
         return rays.on_plane(ray, start, self._normal.to_tuple(), FARTHEST)
-
-
-CLASSES = (DragPinOperator,)

@@ -1,7 +1,5 @@
 """Turn Stance: about the vertical by the mouse, while the motion follows as a ghost."""
 
-from __future__ import annotations
-
 from math import degrees, inf
 
 import bpy
@@ -13,10 +11,10 @@ from ...bridge.properties.stances import active_stance, stance_contacts, stance_
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
+from .drag_state import ANGLE_STEP, ValueDrag
 from .follow_mixin import FollowedDrag
 from .mouse import pixel, ray_at
 from .rays import Circle, angle_about
-from .value_state import ANGLE_STEP, ValueDrag
 
 NO_STANCE = "Choose a contact of the stance first"
 
@@ -39,8 +37,7 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         """In scripts and for redo."""
         stance = active_stance(settings_of(required_armature(context)))
         if stance is None:
-            self.report({"ERROR"}, NO_STANCE)
-            return {"CANCELLED"}
+            return self.refuse(NO_STANCE)
         stance.turn += self.by
         return {"FINISHED"}
 
@@ -79,6 +76,3 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
     def _stance(self) -> HangtimeStance:
         stance: HangtimeStance = settings_of(self._armature).stances[self._name]
         return stance
-
-
-CLASSES = (TurnStanceOperator,)

@@ -22,7 +22,7 @@ from ...solver.data.requests import AddedMass, TorqueLimit
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription import constraint_functions
 from ...solver.transcription.constraint import Constraint
-from ...solver.transcription.torque_constraint import Torques
+from ...solver.transcription.torque_constraint import TorqueFunction
 from .picture import instants
 
 DENSITY = 1000.0  # kg/m³, of what is carried
@@ -36,7 +36,7 @@ def marks_of(adaptation: Adaptation, problem: MotionProblem) -> tuple[Mark, ...]
     figure = _Posed(adaptation, instants(adaptation.motion))
     requests = problem.requests
     marks: list[Mark] = []
-    for condition in adaptation.motion.transcription.conditions:
+    for condition in adaptation.motion.transcription.constraints:
         marks += _of_condition(condition, figure)
     marks += _limp(requests.torques, adaptation, figure)
     marks += (mark for added in requests.body.added for mark in _carried(added, figure))
@@ -52,7 +52,7 @@ class _Posed:
         self.angles = motion.angles(times)
         self.com = motion.com(times)
         self.character = motion.transcription.character
-        self.scene = adaptation.plan.scene
+        self.context = adaptation.setup.context
         self.pose: Pose = forward_kinematics(self.character, self.angles)
         self.centres = self.pose.centres + self.com[:, None]
 
@@ -67,14 +67,14 @@ class _Posed:
 
 def _of_condition(condition: Constraint, figure: _Posed) -> Iterator[Mark]:
     span = (condition.start, condition.end)
-    match condition.measure:
-        case constraint_functions.Place() as place:
+    match condition.function:
+        case constraint_functions.PointPosition() as place:
             exact = np.all(condition.bounds.lower == condition.bounds.upper)
             if exact:  # bounds have no place of their own; the thesis leaves them out, too
                 yield Sphere(place.place(figure.times), span, hollow=True)
-        case constraint_functions.Bend() as bend:
+        case constraint_functions.BendAngle() as bend:
             yield from _limit(bend, condition, figure, span)
-        case constraint_functions.Cone() as cone:
+        case constraint_functions.ConeAngle() as cone:
             body = figure.body_of(cone.joint.first)
             yield Cone(
                 apex=figure.centres[:, body],
@@ -85,12 +85,12 @@ def _of_condition(condition: Constraint, figure: _Posed) -> Iterator[Mark]:
                 stretch=(float(cone.stretch[0]), float(cone.stretch[1])),
                 span=span,
             )
-        case constraint_functions.Angles() as wanted:
+        case constraint_functions.JointAngles() as wanted:
             yield _ghost(wanted, figure, span)
 
 
 def _limit(
-    bend: constraint_functions.Bend, condition: Constraint, figure: _Posed, span: TimeSpan
+    bend: constraint_functions.BendAngle, condition: Constraint, figure: _Posed, span: TimeSpan
 ) -> Iterator[Mark]:
     body = figure.body_of(bend.joint.first)
     lower, upper = float(condition.bounds.lower[0]), float(condition.bounds.upper[0])
@@ -107,7 +107,7 @@ def _limit(
     )
 
 
-def _ghost(wanted: constraint_functions.Angles, figure: _Posed, span: TimeSpan) -> Ghost:
+def _ghost(wanted: constraint_functions.JointAngles, figure: _Posed, span: TimeSpan) -> Ghost:
     """The boxes of the bodies whose angles are asked for, hung on the figure as it is."""
     angles = figure.angles.copy()
     angles[:, wanted.which] = wanted.wanted(figure.times)
@@ -129,8 +129,8 @@ def _limp(torques: Iterable[TorqueLimit], adaptation: Adaptation, figure: _Posed
     bodies = {body.bone: body.name for body in figure.character.bodies}
     spans = {
         c.name: (c.start, c.end)
-        for c in adaptation.motion.transcription.conditions
-        if isinstance(c.measure, Torques)
+        for c in adaptation.motion.transcription.constraints
+        if isinstance(c.function, TorqueFunction)
     }
     for request in torques:
         limbs = tuple(bodies[bone] for bone in request.bones)
@@ -143,12 +143,12 @@ def _carried(added: AddedMass, figure: _Posed) -> Iterator[Box]:
     body = next((i for i, b in enumerate(bodies) if b.bone == added.bone), None)
     if body is None:
         return
-    total = figure.scene.fitted.transcription.character.mass
+    total = figure.context.fitted.transcription.character.mass
     mass = added.mass if added.mass is not None else (added.share or 0.0) * total
     side = np.cbrt(mass / DENSITY)
     at = bodies[body].tip
     if added.offset is not None:
-        recording = figure.scene.recording
+        recording = figure.context.recording
         at = recording.bones[recording.index(added.bone)].rotation @ np.array(added.offset)
     turns = figure.pose.rotations[:, body]
     yield Box(figure.centres[:, body] + turns @ at, turns, side * SHAPE)

@@ -9,14 +9,12 @@ from ...solver.one_thread import ONE_THREAD
 
 
 def main(argv: list[str]) -> int:
-    """Runs `adapt` or `analyze` with its arguments; the exit code."""
+    """Runs `adapt` or `analyze` with its arguments; the exit code.
+
+    Also for bpy.utils.register_cli_command("hangtime", main): argv is what follows `hangtime`.
+    """
     for name, value in ONE_THREAD.items():
         os.environ.setdefault(name, value)
     from .commands import run  # loads numpy, which reads them
 
     return run(argv)
-
-
-def command(argv: list[str]) -> int:
-    """For bpy.utils.register_cli_command("hangtime", command): argv is what follows `hangtime`."""
-    return main(argv)

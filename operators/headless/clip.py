@@ -62,7 +62,7 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
         return _open(clip.path), Origin(clip.path.name)
     import bpy
 
-    from ...bridge.accessors import current_action
+    from ...bridge.accessors import current_action, present
     from ...bridge.files.import_clip import import_clip
     from ...bridge.formats.acclaim import USUAL_RATE
 
@@ -76,9 +76,7 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
         asf=clip.asf,
         rate=USUAL_RATE if clip.rate is None else clip.rate,
     )
-    action = current_action(made.armature)
-    assert action is not None
-    action.name = clip.path.stem
+    present(current_action(made.armature)).name = clip.path.stem
     origin = Origin(clip.path.name, made.unit_m, made.unit_guessed, made.up, made.up_guessed)
     return made.armature, origin
 
@@ -87,18 +85,18 @@ def _open(path: Path) -> bpy.types.Object:
     """The armature of a .blend: the active one, else the only one that carries an action."""
     import bpy
 
+    from ...bridge.accessors import current_scene, present
+
     try:
         with quiet():
             bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)
     except RuntimeError as error:
         problem = "Blender cannot open it" if path.is_file() else "there is no such file"
         raise UnreadableClip(str(path), None, problem) from error
-    assert bpy.context.view_layer is not None
-    assert bpy.context.scene is not None
-    active = bpy.context.view_layer.objects.active
+    active = present(bpy.context.view_layer).objects.active
     if active is not None and active.type == "ARMATURE":
         return active
-    armatures = [o for o in bpy.context.scene.objects if o.type == "ARMATURE"]
+    armatures = [o for o in current_scene().objects if o.type == "ARMATURE"]
     animated = [o for o in armatures if o.animation_data and o.animation_data.action]
     if len(animated) != 1:
         raise NoArmature(path.name)

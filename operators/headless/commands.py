@@ -11,12 +11,12 @@ from pathlib import Path
 from ...bridge.recipe.problem import Recipe, locate, parse_recipe, read_recipe_text
 from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
+from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
-from ..words.wording import recipe_place, sentence
+from ..words.messages import recipe_place, sentence
 from .clip import Clip, load
-from .job import AdaptationJob
-from .job import run as run_job
-from .outbox import not_writable
+from .outbox import Outbox, not_writable
+from .outputs import Outputs
 from .stages import WIDTH, Stages
 
 WRONG_INPUT = 2
@@ -125,11 +125,23 @@ def _bone(text: str) -> tuple[str, str]:
 
 
 def adapt(options: argparse.Namespace) -> None:
-    """The main job. Raises Fault."""
+    """The main job: a recorded clip in, an adapted one out, with its report.
+
+    Raises NoSolution, having written the report, and any other Fault having written nothing.
+    """
     recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
-    job = AdaptationJob(_clip(options, recipe), overridden(recipe.problem, options), options.out)
+    clip, problem = _clip(options, recipe), overridden(recipe.problem, options)
     stages = Stages(sys.stdout)
-    files = run_job(job, stages)
+    with Outbox(options.out) as outbox:
+        loaded = load(clip, problem, stages)
+        result = solve(loaded.subject, stages)
+        outputs = Outputs(loaded, problem, result, outbox, stages)
+        if result.fault is not None:
+            outputs.write_failure()
+            outbox.deliver()
+            raise result.fault
+        outputs.write()
+        files = outbox.deliver()
     print(f"{'Total':<{WIDTH}}{stages.total:6.1f} s", "Written:", sep="\n")
     for path in files:
         print(f"  {path}")

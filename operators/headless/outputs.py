@@ -27,14 +27,6 @@ ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
 @dataclass(frozen=True)
-class Performed:
-    """An adapted action, and the armature that performs it."""
-
-    armature: bpy.types.Object
-    action: bpy.types.Action
-
-
-@dataclass(frozen=True)
 class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
 
@@ -51,12 +43,12 @@ class Outputs:
         """All files of a result that is what was asked for."""
         adaptation = self.result.adaptation
         with self.stages.stage("Writing keyframes"):
-            adapted = self._write_actions("adapted")
+            performer, adapted = self._write_actions("adapted")
             _save_blend(self.outbox.path("adapted.blend"))
         with self.stages.stage("Exporting FBX"), quiet():
             from ...bridge.files.export import export_fbx
 
-            export_fbx(adapted.armature, adapted.action, self.outbox.path("adapted.fbx"))
+            export_fbx(performer, adapted, self.outbox.path("adapted.fbx"))
         with self.stages.stage("Drawing the picture"), quiet():
             from .annotate import marks_of
             from .picture import draw
@@ -87,17 +79,16 @@ class Outputs:
         self.outbox.write_text("report.json", text + "\n")
         self.outbox.write_text("report.txt", as_text(report))
 
-    def _write_actions(self, called: str) -> Performed:
+    def _write_actions(self, called: str) -> tuple[bpy.types.Object, bpy.types.Action]:
         """The adapted action on the armature, or on one of its own where limbs were changed; the
-        recording's on a copy beside it."""
+        recording's on a copy beside it. Returns who performs the action, and the action."""
         from mathutils import Vector
 
-        from ...bridge.accessors import current_action
+        from ...bridge.accessors import current_action, present
         from ...bridge.armature.reproportioned import build_reproportioned
         from ...bridge.armature.write import side_by_side, write_action
 
-        recorded = current_action(self.clip.armature)
-        assert recorded is not None
+        recorded = present(current_action(self.clip.armature))
         armature, track = self.clip.armature, self.result.track
         if self.result.subject.problem.requests.body.limbs:
             armature, track, _ = build_reproportioned(self.result.recording, track)
@@ -107,7 +98,7 @@ class Outputs:
         else:  # the recording's own armature performs it
             self.clip.armature.location += Vector(self._beside())
         _show_frames(round(track.frames[0]), round(track.frames[-1]))
-        return Performed(armature, adapted)
+        return armature, adapted
 
     def _beside(self) -> tuple[float, float, float]:
         """To the left of where the recording travels, m, world."""
@@ -118,10 +109,9 @@ class Outputs:
 
 
 def _show_frames(first: int, last: int) -> None:
-    import bpy
+    from ...bridge.accessors import current_scene
 
-    scene = bpy.context.scene
-    assert scene is not None
+    scene = current_scene()
     scene.frame_start, scene.frame_end = first, last
     scene.frame_set(first)
 

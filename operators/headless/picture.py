@@ -66,7 +66,7 @@ def recorded_row(adaptation: Adaptation) -> SheetRow:
 
 def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) -> SheetRow:
     """The adapted motion with its contacts: spheres, and a bar where hands hold on."""
-    motion, phases = adaptation.motion, adaptation.plan.schedule.phases
+    motion, phases = adaptation.motion, adaptation.setup.schedule.phases
     t, times = motion.transcription, instants(motion)
     posed, com = motion.pose(times), motion.com(times)
     holds = tuple(contact_holds(motion, times))

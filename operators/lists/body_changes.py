@@ -1,7 +1,5 @@
 """The list of body changes: add and remove weights and limbs; and the bones of either list."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.constraint_kinds import KINDS
@@ -14,10 +12,15 @@ from ...bridge.rows.kind import BoneUse
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
-from .chosen_bones import chosen_bones
-from .row_lists import FROM_LIBRARY, AddingOperator, RowList, RowOperator, list_items
+from .row_lists import (
+    FROM_LIBRARY,
+    AddingOperator,
+    RemoveOperator,
+    RowList,
+    SelectedBonesOperator,
+    chosen_bones,
+)
 
-NONE_SELECTED = "Select bones in pose mode first"
 _OF_ONE_BONE = {
     BodyKind.LOAD.name,
     *(kind.name for kind in KINDS.values() if kind.bones is BoneUse.ONE),
@@ -26,19 +29,16 @@ DESCRIPTIONS = {
     BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
     BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",
 }
-
-
-def _items() -> list[tuple[str, str, str]]:
-    return [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
+BonedRow = HangtimeConstraint | HangtimeBodyChange
+KIND_ITEMS = [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
 
 
 class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADD_BODY_CHANGE
     bl_label = "Add Body Change"
     bl_description = "Add a weight or a limb of the selected pose bones"
-    bl_options = {"REGISTER", "UNDO"}
 
-    kind: bpy.props.EnumProperty(name="Kind", items=_items())
+    kind: bpy.props.EnumProperty(name="Kind", items=KIND_ITEMS)
 
     @classmethod
     def description(
@@ -55,96 +55,61 @@ class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class RemoveBodyChangeOperator(RowOperator, bpy.types.Operator):
+class RemoveBodyChangeOperator(RemoveOperator, bpy.types.Operator):
     bl_idname = OperatorId.REMOVE_BODY_CHANGE
     bl_label = "Remove Body Change"
     bl_description = "Delete the chosen weight or limb"
-    bl_options = {"REGISTER", "UNDO"}
     of = RowList.BODY_CHANGES
-    own = True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = settings_of(required_armature(context))
-        index = self.of.chosen(settings)
-        settings.body_changes.remove(index)
-        self.of.choose(settings, index)
-        return {"FINISHED"}
 
 
 class _BonesOperator(AddingOperator):
     """Mixin: changes the bones of the chosen row of either list."""
 
-    of: bpy.props.EnumProperty(name="List", items=list_items())
+    of: bpy.props.EnumProperty(name="List", items=[(each.name, each.label, "") for each in RowList])
 
-    def _row(self, context: bpy.types.Context) -> HangtimeConstraint | HangtimeBodyChange | None:
-        """None, reported, where there is none that can be changed."""
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, of = required_armature(context), RowList[self.of]
         index = of.chosen(settings_of(armature))
-        if index >= of.linked(armature):
-            row: HangtimeConstraint | HangtimeBodyChange = of.rows(settings_of(armature))[index]
-            return row
-        self.report({"WARNING"}, of.nothing_chosen if index < 0 else FROM_LIBRARY)
-        return None
+        if index < of.linked(armature):
+            return self.refuse(of.nothing_chosen if index < 0 else FROM_LIBRARY, "WARNING")
+        row = of.rows(settings_of(armature))[index]
+        return {"FINISHED"} if self.change(row, armature) else {"CANCELLED"}
+
+    def change(self, row: BonedRow, armature: bpy.types.Object) -> bool:
+        """Changes the bones of a row; whether it can."""
+        raise NotImplementedError
 
 
-class AssignBonesOperator(_BonesOperator, bpy.types.Operator):
+class AssignBonesOperator(_BonesOperator, SelectedBonesOperator, bpy.types.Operator):
     bl_idname = OperatorId.ASSIGN_BONES
     bl_label = "Assign Selected Bones"
     bl_description = "Let the chosen row be about the bones that are selected in pose mode"
-    bl_options = {"REGISTER", "UNDO"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not super().poll(context):
-            return False
-        if not chosen_bones(required_armature(context)):
-            cls.poll_message_set(NONE_SELECTED)
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        row = self._row(context)
-        if row is None:
-            return {"CANCELLED"}
-        bones = chosen_bones(required_armature(context))
+    def change(self, row: BonedRow, armature: bpy.types.Object) -> bool:
+        bones = chosen_bones(armature)
         set_bones(row, bones[:1] if row.kind in _OF_ONE_BONE else bones)
-        return {"FINISHED"}
+        return True
 
 
 class AddBoneOperator(_BonesOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADD_BONE
     bl_label = "Add Bone"
     bl_description = "Add a field to choose one more bone in"
-    bl_options = {"REGISTER", "UNDO"}
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        row = self._row(context)
-        if row is None:
-            return {"CANCELLED"}
+    def change(self, row: BonedRow, _armature: bpy.types.Object) -> bool:
         row.bones.add()
-        return {"FINISHED"}
+        return True
 
 
 class RemoveBoneOperator(_BonesOperator, bpy.types.Operator):
     bl_idname = OperatorId.REMOVE_BONE
     bl_label = "Remove Bone"
     bl_description = "Take this bone off the chosen row"
-    bl_options = {"REGISTER", "UNDO"}
 
     index: bpy.props.IntProperty(name="Index", min=0)
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        row = self._row(context)
-        if row is None or self.index >= len(row.bones):
-            return {"CANCELLED"}
+    def change(self, row: BonedRow, _armature: bpy.types.Object) -> bool:
+        if self.index >= len(row.bones):
+            return False
         row.bones.remove(self.index)
-        return {"FINISHED"}
-
-
-CLASSES = (
-    AddBodyChangeOperator,
-    RemoveBodyChangeOperator,
-    AssignBonesOperator,
-    AddBoneOperator,
-    RemoveBoneOperator,
-)
+        return True

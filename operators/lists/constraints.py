@@ -1,7 +1,5 @@
 """The list of constraints: add, remove, copy, move, aim at frames and place."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import pose_of, present
@@ -21,8 +19,7 @@ from ...bridge.rows.phases import phases_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
-from .chosen_bones import chosen_bones
-from .row_lists import AddingOperator, RowOperator
+from .row_lists import AddingOperator, RemoveOperator, RowOperator, chosen_bones
 
 NOT_A_POINT = "Only a Point has a place"
 NO_BONE = "Choose the point's bone first"
@@ -34,7 +31,6 @@ class AddConstraintOperator(AddingOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADD_CONSTRAINT
     bl_label = "Add Constraint"
     bl_description = "Add a constraint about the selected pose bones and the current frame"
-    bl_options = {"REGISTER", "UNDO"}
 
     kind: bpy.props.EnumProperty(
         name="Kind", items=[(kind.name, kind.label, kind.description) for kind in KINDS.values()]
@@ -56,26 +52,16 @@ class AddConstraintOperator(AddingOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class RemoveConstraintOperator(RowOperator, bpy.types.Operator):
+class RemoveConstraintOperator(RemoveOperator, bpy.types.Operator):
     bl_idname = OperatorId.REMOVE_CONSTRAINT
     bl_label = "Remove Constraint"
     bl_description = "Delete the chosen constraint"
-    bl_options = {"REGISTER", "UNDO"}
-    own = True
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        settings = settings_of(required_armature(context))
-        index = self.of.chosen(settings)
-        self.of.rows(settings).remove(index)
-        self.of.choose(settings, index)
-        return {"FINISHED"}
 
 
 class CopyConstraintOperator(RowOperator, bpy.types.Operator):
     bl_idname = OperatorId.COPY_CONSTRAINT
     bl_label = "Duplicate Constraint"
     bl_description = "Add a copy of the chosen constraint"
-    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = settings_of(required_armature(context))
@@ -92,7 +78,6 @@ class MoveConstraintOperator(RowOperator, bpy.types.Operator):
     bl_idname = OperatorId.MOVE_CONSTRAINT
     bl_label = "Move Constraint"
     bl_description = "Move the chosen constraint in the list"
-    bl_options = {"REGISTER", "UNDO"}
     own = True
 
     direction: bpy.props.EnumProperty(
@@ -115,7 +100,6 @@ class SetRangeOperator(RowOperator, bpy.types.Operator):
     bl_idname = OperatorId.SET_CONSTRAINT_RANGE
     bl_label = "Set Range"
     bl_description = "Choose when the chosen constraint holds"
-    bl_options = {"REGISTER", "UNDO"}
 
     to: bpy.props.EnumProperty(
         name="To",
@@ -157,7 +141,6 @@ class PlaceConstraintOperator(RowOperator, bpy.types.Operator):
     bl_idname = OperatorId.PLACE_CONSTRAINT
     bl_label = "Place Where Shown"
     bl_description = "Put the point where its bone is shown at the current frame"
-    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, row = required_armature(context), self.row(context)
@@ -167,17 +150,6 @@ class PlaceConstraintOperator(RowOperator, bpy.types.Operator):
         elif not row.bones or row.bones[0].name not in pose_of(armature).bones:
             why = NO_BONE
         if why is not None:
-            self.report({"WARNING"}, why)
-            return {"CANCELLED"}
+            return self.refuse(why, "WARNING")
         point.put_where_shown(armature, row, keep_offset=True)
         return {"FINISHED"}
-
-
-CLASSES = (
-    AddConstraintOperator,
-    RemoveConstraintOperator,
-    CopyConstraintOperator,
-    MoveConstraintOperator,
-    SetRangeOperator,
-    PlaceConstraintOperator,
-)

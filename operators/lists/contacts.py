@@ -1,6 +1,4 @@
-"""Add and Remove Contact: what the analysis has missed, or has seen where nothing touches."""
-
-from __future__ import annotations
+"""The list of contacts: add what the analysis has missed, remove, place, and put back."""
 
 import bpy
 import numpy as np
@@ -8,14 +6,16 @@ import numpy as np
 from ...bridge.accessors import present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.armature.traces_store import kept
-from ...bridge.properties.settings import settings_of
-from ...bridge.properties.stances import active_contact
+from ...bridge.properties.settings import scene_settings, settings_of
+from ...bridge.properties.stances import active_contact, active_stance, put_back
+from ...bridge.rows.protocols import ContactRow
 from ..names import OperatorId
-from ..operator_types import OperatorResult
+from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import chosen_armature, required_armature
-from .place_by_empty import NO_CONTACT
 
 USUAL_FRAMES = 10
+EMPTY_SIZE = 0.05  # m
+NO_CONTACT = "Choose a contact in the list first"
 NO_POINTS_KNOWN = "Press Analyze first, to know what may touch"
 
 
@@ -26,7 +26,7 @@ def _points(
     return [(name, name, "") for name in seen.traces.contacts] if seen is not None else []
 
 
-class AddContactOperator(bpy.types.Operator):
+class AddContactOperator(PolledOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADD_CONTACT
     bl_label = "Add Contact"
     bl_description = "Let a heel, toe or hand touch from the current frame on; adjust its frames"
@@ -36,12 +36,8 @@ class AddContactOperator(bpy.types.Operator):
     point: bpy.props.EnumProperty(name="Point", items=_points)
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        armature = chosen_armature(context)
-        if armature is None or kept(armature) is None:
-            cls.poll_message_set(NO_POINTS_KNOWN)
-            return False
-        return True
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return NO_POINTS_KNOWN if kept(chosen_armature(context)) is None else None
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         present(context.window_manager).invoke_search_popup(self)
@@ -68,7 +64,17 @@ class AddContactOperator(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class RemoveContactOperator(bpy.types.Operator):
+class _OfContact(PolledOperator):
+    """Mixin: an operator on the chosen contact."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        armature = chosen_armature(context)
+        found = armature is not None and active_contact(settings_of(armature)) is not None
+        return None if found else NO_CONTACT
+
+
+class RemoveContactOperator(_OfContact, bpy.types.Operator):
     bl_idname = OperatorId.REMOVE_CONTACT
     bl_label = "Remove Contact"
     bl_description = (
@@ -76,14 +82,6 @@ class RemoveContactOperator(bpy.types.Operator):
         "switched on again"
     )
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        armature = chosen_armature(context)
-        possible = armature is not None and active_contact(settings_of(armature)) is not None
-        if not possible:
-            cls.poll_message_set(NO_CONTACT)
-        return possible
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = settings_of(required_armature(context))
@@ -96,4 +94,50 @@ class RemoveContactOperator(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (AddContactOperator, RemoveContactOperator)
+class PlaceByEmptyOperator(_OfContact, bpy.types.Operator):
+    bl_idname = OperatorId.PLACE_BY_EMPTY
+    bl_label = "Place by Empty"
+    bl_description = "Add an empty at the contact's place; where you move it, the point shall touch"
+    bl_options = {"UNDO"}
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature, layer = required_armature(context), present(context.view_layer)
+        row = present(active_contact(settings_of(armature)))
+        if row.empty is None or row.empty.name not in layer.objects:
+            row.empty = _new_empty(context, row)
+            settings_of(row.empty).marks = armature
+        if context.mode == "OBJECT":
+            bpy.ops.object.select_all(action="DESELECT")
+            row.empty.select_set(True)
+            layer.objects.active = row.empty
+        # The choice in the sidebar outlives that the empty is active now.
+        scene_settings(context.scene).armature = armature
+        return {"FINISHED"}
+
+
+class PutBackOperator(PolledOperator, bpy.types.Operator):
+    bl_idname = OperatorId.PUT_BACK
+    bl_label = "Put Back"
+    bl_description = "Put every contact of the chosen phase where it was recorded"
+    bl_options = {"UNDO"}
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        armature = chosen_armature(context)
+        found = armature is not None and active_stance(settings_of(armature)) is not None
+        return None if found else NO_CONTACT
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
+        put_back(settings, present(active_stance(settings)))
+        return {"FINISHED"}
+
+
+def _new_empty(context: bpy.types.Context, row: ContactRow) -> bpy.types.Object:
+    empty = bpy.data.objects.new(row.name, None)
+    empty.empty_display_type = "SPHERE"
+    empty.empty_display_size = EMPTY_SIZE / metres_per_unit(present(context.scene))
+    empty.location = row.at
+    present(context.collection).objects.link(empty)
+    present(context.view_layer).update()  # so that its world matrix is where it is
+    return empty

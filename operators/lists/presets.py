@@ -4,8 +4,6 @@ Where the ranges and the torques come from is said in solver/body/human_limits.p
 solver/body/human_strength.py.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from math import degrees
 
@@ -30,10 +28,8 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.analyze import USUAL_HEIGHT
 from ..solve.common import required_armature
-from .chosen_bones import chosen_bones
-from .row_lists import AddingOperator, cannot_change
+from .row_lists import AddingOperator, SelectedBonesOperator, chosen_bones
 
-NO_BONES_SELECTED = "Select bones in pose mode first"
 NO_LANDING = "Press Analyze first: no landing is known"
 NO_FIGURE = "No bones of joints were found; choose them in the panel Bones"
 SOFTER = 0.8  # of the peak that was needed
@@ -50,7 +46,6 @@ class JointLimitsOperator(AddingOperator, bpy.types.Operator):
         "Add limits to knees, elbows, ankles, hips, shoulders, wrists, spine and neck, as far as "
         "people can bend them (American Academy of Orthopaedic Surgeons, 1965)"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         from ...bridge.constraints.joint_limits import joint_limits  # loads parts of the solver
@@ -58,8 +53,7 @@ class JointLimitsOperator(AddingOperator, bpy.types.Operator):
         armature = required_armature(context)
         found = joint_limits(armature)
         if not found.made:
-            self.report({"WARNING"}, NO_FIGURE)
-            return {"CANCELLED"}
+            return self.refuse(NO_FIGURE, "WARNING")
         told = [f"Added {len(found.made)} joint limits"]
         told += [f"no bone for {_listed(found.missing)}"] if found.missing else []
         beyond = sorted(
@@ -80,7 +74,6 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
         "Cap the torques of hips, knees and ankles at what strong young people hold, by mass and "
         "height (Anderson, Madigan and Nussbaum, 2007)"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         from ...bridge.constraints.rest_figure import parts_of  # loads parts of the solver
@@ -102,8 +95,7 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
             hold_throughout(row)
             told.append(f"{joint.lower()} {row.torque:.0f} N·m{_needed(settings, bones)}")
         if not told:
-            self.report({"WARNING"}, NO_FIGURE)
-            return {"CANCELLED"}
+            return self.refuse(NO_FIGURE, "WARNING")
         missing = f"; no bone for {_listed(lost)}" if lost else ""
         self.report({"WARNING" if lost else "INFO"}, f"Added {', '.join(told)}{missing}.")
         return {"FINISHED"}
@@ -113,16 +105,13 @@ class SoftLandingOperator(AddingOperator, bpy.types.Operator):
     bl_idname = OperatorId.SOFT_LANDING
     bl_label = "Softer Landing"
     bl_description = "Cap the contact force of the last landing at 80 % of its peak"
-    bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = cannot_change(context)
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
         if why is None and _landing(required_armature(context)) is None:
-            why = NO_LANDING
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+            return NO_LANDING
+        return why
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
@@ -137,24 +126,10 @@ class SoftLandingOperator(AddingOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class _SelectedBonesOperator(AddingOperator):
-    """Mixin: an operator about selected pose bones."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not super().poll(context):
-            return False
-        if not chosen_bones(required_armature(context)):
-            cls.poll_message_set(NO_BONES_SELECTED)
-            return False
-        return True
-
-
-class LimpLimbOperator(_SelectedBonesOperator, bpy.types.Operator):
+class LimpLimbOperator(SelectedBonesOperator, bpy.types.Operator):
     bl_idname = OperatorId.LIMP_LIMB
     bl_label = "Limp Limb"
     bl_description = "Let the selected bones and those below them hang without any strength"
-    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         from ...bridge.constraints.rest_figure import jointed_bones  # loads parts of the solver
@@ -165,8 +140,9 @@ class LimpLimbOperator(_SelectedBonesOperator, bpy.types.Operator):
         jointed = jointed_bones(armature)
         bones = [bone for bone in limb if bone in jointed]
         if not bones:
-            self.report({"WARNING"}, "None of the selected bones has a joint that physics moves")
-            return {"CANCELLED"}
+            return self.refuse(
+                "None of the selected bones has a joint that physics moves", "WARNING"
+            )
         frame = present(context.scene).frame_current_final
         row = add_constraint(armature, torque_limit.KIND, bones, frame)
         row.name = free_name(settings_of(armature), f"Limp {title(chosen[0])}")
@@ -177,11 +153,10 @@ class LimpLimbOperator(_SelectedBonesOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class CarryWeightOperator(_SelectedBonesOperator, bpy.types.Operator):
+class CarryWeightOperator(SelectedBonesOperator, bpy.types.Operator):
     bl_idname = OperatorId.CARRY_WEIGHT
     bl_label = "Carry Weight"
     bl_description = "Let the selected bones carry 10 kg each"
-    bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
@@ -238,12 +213,3 @@ def _with_those_below(armature: bpy.types.Object, names: Iterable[str]) -> list[
 def _listed(names: Sequence[str]) -> str:
     more = len(names) - MOST_NAMED
     return ", ".join(names[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
-
-
-CLASSES = (
-    JointLimitsOperator,
-    JointStrengthOperator,
-    SoftLandingOperator,
-    LimpLimbOperator,
-    CarryWeightOperator,
-)

@@ -7,16 +7,18 @@ from typing import Any
 
 import bpy
 
+from ...bridge.accessors import armature_data, pose_of
 from ...bridge.constraints.linked_rows import linked_count
 from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.settings import HangtimeSettings, settings_of
-from ..operator_types import OperatorMixin
+from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import chosen_armature, required_armature
 
 NO_ARMATURE = "Select the armature that carries the recording"
 LINKED = "The armature is linked; make a library override of it first"
 NO_CONSTRAINT = "Choose a constraint in the list first"
 NO_BODY_CHANGE = "Choose a weight or a limb in the list first"
+NONE_SELECTED = "Select bones in pose mode first"
 FROM_LIBRARY = "It comes from the linked file; switch it off instead, and add one of your own"
 
 
@@ -46,53 +48,85 @@ class RowList(Enum):
     def nothing_chosen(self) -> str:
         return str(self.value[2])
 
-
-def list_items() -> list[tuple[str, str, str]]:
-    """For an operator's property that says which list."""
-    return [(each.name, each.name.replace("_", " ").title(), "") for each in RowList]
-
-
-def cannot_change(context: bpy.types.Context) -> str | None:
-    """Why nothing can be added to the lists, in a sentence; None where it can."""
-    armature = chosen_armature(context)
-    if armature is None or armature.type != "ARMATURE":
-        return NO_ARMATURE
-    return None if armature.is_editable else LINKED
+    @property
+    def label(self) -> str:
+        return self.name.replace("_", " ").title()
 
 
-class AddingOperator(OperatorMixin):
+def chosen_bones(armature: bpy.types.Object) -> list[str]:
+    """Names of the selected pose bones, the active one first; none outside pose mode."""
+    if armature.mode != "POSE":
+        return []
+    names = [bone.name for bone in pose_of(armature).bones if _is_selected(bone)]
+    active = armature_data(armature).bones.active
+    if active is not None and active.name in names:
+        names.remove(active.name)
+        names.insert(0, active.name)
+    return names
+
+
+def _is_selected(bone: bpy.types.PoseBone) -> bool:
+    # From Blender 5.0 on the pose's bone knows it.
+    carrier = bone if hasattr(bone, "select") else bone.bone
+    return bool(carrier.select and not getattr(carrier, "hide", False))
+
+
+class AddingOperator(PolledOperator):
     """Mixin: an operator that may run wherever an armature is chosen that can be changed."""
 
+    bl_options = {"REGISTER", "UNDO"}
+
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = cannot_change(context)
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        armature = chosen_armature(context)
+        if armature is None or armature.type != "ARMATURE":
+            return NO_ARMATURE
+        return None if armature.is_editable else LINKED
 
 
-class RowOperator(OperatorMixin):
+class SelectedBonesOperator(AddingOperator):
+    """Mixin: an operator about selected pose bones."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
+        if why is None and not chosen_bones(required_armature(context)):
+            return NONE_SELECTED
+        return why
+
+
+class RowOperator(AddingOperator):
     """Mixin: an operator on the chosen row of `of`. own: whether rows of a library are refused."""
 
     of = RowList.CONSTRAINTS
     own = False
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = cannot_change(context)
-        if why is None:
-            armature = required_armature(context)
-            index = cls.of.chosen(settings_of(armature))
-            if index < 0:
-                why = cls.of.nothing_chosen
-            elif cls.own and index < cls.of.linked(armature):
-                why = FROM_LIBRARY
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
         if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+            return why
+        armature = required_armature(context)
+        index = cls.of.chosen(settings_of(armature))
+        if index < 0:
+            return cls.of.nothing_chosen
+        return FROM_LIBRARY if cls.own and index < cls.of.linked(armature) else None
 
     def row(self, context: bpy.types.Context) -> HangtimeConstraint:
         """The chosen row."""
         settings = settings_of(required_armature(context))
         row: HangtimeConstraint = self.of.rows(settings)[self.of.chosen(settings)]
         return row
+
+
+class RemoveOperator(RowOperator):
+    """Mixin: deletes the chosen row."""
+
+    own = True
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
+        index = self.of.chosen(settings)
+        self.of.rows(settings).remove(index)
+        self.of.choose(settings, index)
+        return {"FINISHED"}

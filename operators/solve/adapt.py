@@ -1,7 +1,5 @@
 """Adapt and Refine: a new action in which the contacts are where the artist put them."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from dataclasses import replace
 
@@ -28,30 +26,33 @@ from ...solver.data.recording import Recording
 from ...solver.data.report import ConstraintReport
 from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
-from ...solver.worker.protocol import Adapted, Failed, RequestKind
+from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import as_text
 from .common import hindrance, required_armature
 from .live import live
-from .session import Asked, Best, session
+from .session import Asked, session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered, take_best
 
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
 
+def unanalysed(context: bpy.types.Context) -> str | None:
+    """Precondition: why there is nothing to adapt, in a sentence; None where there is."""
+    why = hindrance(context)
+    if why is None and not settings_of(required_armature(context)).contacts:
+        return NOT_ANALYSED
+    return why
+
+
 class _Adapting(TaskOperator):
     """Base of Adapt and Refine."""
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = hindrance(context)
-        if why is None and not settings_of(required_armature(context)).contacts:
-            why = NOT_ANALYSED
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return unanalysed(context)
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         """Solver options; asked: those of a recipe."""
@@ -61,25 +62,19 @@ class _Adapting(TaskOperator):
         present(context.view_layer).update()  # empties that a script moved
         try:
             asked = yield from self._asked(context)
-            answer = yield from answered(
-                shared().ask(RequestKind.ADAPT, asked.recording, asked.problem)
-            )
+            job = shared().ask(RequestKind.ADAPT, asked.recording, asked.problem)
+            answer = yield from answered(job, Adapted)
         finally:
             live().clear()  # a drag's ghost stays until there is something better, or nothing
-        if isinstance(answer, Failed):
-            raise answer.fault
-        assert isinstance(answer, Adapted)
         session().best = None
         if answer.fault is not None and answer.fault.reason is not Status.STOPPED:
-            session().best = Best(asked, answer)
+            session().best = (asked, answer)
             raise answer.fault
         return (yield from write_answer(asked, answer))
 
     def _asked(self, context: bpy.types.Context) -> Incremental[Asked]:
         asked = yield from ask_for(context)
-        solving = session().solving
-        assert solving is not None
-        solving.advance(SolveState.SOLVING)
+        session().advance(SolveState.SOLVING)
         settings, requests = settings_of(required_armature(context)), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
         return replace(asked, problem=replace(asked.problem, requests=requests))
@@ -129,21 +124,16 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
+    def obstacle(cls, _context: bpy.types.Context) -> str | None:
         solving = session().solving
-        if session().best is None and (solving is None or not solving.can_stop):
-            cls.poll_message_set("No solve is under way, and none has failed")
-            return False
-        return True
+        possible = session().best is not None or (solving is not None and solving.can_stop)
+        return None if possible else "No solve is under way, and none has failed"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         return {"FINISHED"} if take_best() else super().invoke(context, event)
 
     def task(self, _context: bpy.types.Context) -> Task:
-        best, solving = session().best, session().solving
-        assert best is not None
-        assert solving is not None
-        done = yield from write_answer(best.asked, best.answer)
+        done = yield from write_answer(*present(session().best))
         session().best = None
         return done
 
@@ -164,11 +154,9 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
-    solving = session().solving
-    assert solving is not None
-    solving.advance(SolveState.CHECKING)
+    session().advance(SolveState.CHECKING)
     armature = yield from _unchanged(asked)
-    solving.advance(SolveState.WRITING)
+    session().advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
         return _write_other(changed_recording(asked.recording, limbs), answer, armature)
@@ -240,6 +228,3 @@ def _held(constraint: ConstraintReport) -> str:
     if constraint.met:
         return "held"
     return f"missed by {constraint.worst_violation:.0f} {constraint.kind.reported_unit}"
-
-
-CLASSES = (AdaptOperator, RefineOperator, UseBestOperator)

@@ -1,7 +1,5 @@
 """Analyze and Fit: what touches when in a recording, and how near physics comes to it."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present
@@ -22,11 +20,11 @@ from ...solver.data.faults import (
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.report import FitQuality
-from ...solver.worker.protocol import Analysed, Failed, Fitted, RequestKind
+from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from .adapt import ask_for
-from .common import FaultyOperator, chosen_armature, hindrance, required_armature, said
+from .common import FaultyOperator, chosen_armature, required_armature, said
 from .session import session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered
@@ -45,11 +43,8 @@ class FindBonesOperator(FaultyOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        armature = chosen_armature(context)
-        if armature is None:
-            cls.poll_message_set("Choose or select an armature first")
-        return armature is not None
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return "Choose or select an armature first" if chosen_armature(context) is None else None
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
@@ -60,16 +55,7 @@ class FindBonesOperator(FaultyOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class _OnRecording(TaskOperator):
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        why = hindrance(context)
-        if why is not None:
-            cls.poll_message_set(why)
-        return why is None
-
-
-class AnalyzeOperator(_OnRecording, bpy.types.Operator):
+class AnalyzeOperator(TaskOperator, bpy.types.Operator):
     bl_idname = OperatorId.ANALYZE
     bl_label = "Analyze"
     bl_description = (
@@ -86,13 +72,12 @@ class AnalyzeOperator(_OnRecording, bpy.types.Operator):
         for missing in missing_parts(settings):
             raise MissingPart(missing)
         problem = problem_of(settings, recording, with_contacts=False)
-        solving = session().solving
-        assert solving is not None
-        solving.advance(SolveState.SOLVING)
-        answer = yield from answered(shared().ask(RequestKind.ANALYSE, recording, problem))
-        if isinstance(answer, Failed):
-            raise _telling(answer.fault, armature, recording, problem)
-        assert isinstance(answer, Analysed)
+        session().advance(SolveState.SOLVING)
+        job = shared().ask(RequestKind.ANALYSE, recording, problem)
+        try:
+            answer = yield from answered(job, Analysed)
+        except Fault as fault:
+            raise _telling(fault, armature, recording, problem) from None
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
         scene_settings(context.scene).armature = armature
@@ -125,7 +110,7 @@ def _odd_height(armature: str, height: float) -> OddHeight | None:
     return None if low < height < high else OddHeight(armature, height, USUAL_HEIGHT / height)
 
 
-class FitOperator(_OnRecording, bpy.types.Operator):
+class FitOperator(TaskOperator, bpy.types.Operator):
     bl_idname = OperatorId.FIT
     bl_label = "Fit"
     bl_description = (
@@ -136,14 +121,10 @@ class FitOperator(_OnRecording, bpy.types.Operator):
 
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
-        solving = session().solving
-        assert solving is not None
         asked = yield from ask_for(context)
-        solving.advance(SolveState.SOLVING)
-        answer = yield from answered(shared().ask(RequestKind.FIT, asked.recording, asked.problem))
-        if isinstance(answer, Failed):
-            raise answer.fault
-        assert isinstance(answer, Fitted)
+        session().advance(SolveState.SOLVING)
+        job = shared().ask(RequestKind.FIT, asked.recording, asked.problem)
+        answer = yield from answered(job, Fitted)
         settings_of(armature).fit_quality = quality(answer.quality)
         return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.quality)}"
 
@@ -162,6 +143,3 @@ def quality(fit: FitQuality) -> str:
         f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
         f"apex {fit.pelvis_apex_difference_cm:+.1f} cm"
     )
-
-
-CLASSES = (FindBonesOperator, AnalyzeOperator, FitOperator)

@@ -1,15 +1,13 @@
 """The operators' common base: target armature, preconditions, fault reporting."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.properties.settings import scene_settings
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
-from ..operator_types import OperatorMixin, OperatorResult
-from ..words.wording import sentence
+from ..operator_types import OperatorResult, PolledOperator
+from ..words.messages import sentence
 from .session import session
 
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
@@ -55,15 +53,14 @@ def said(fault: Fault) -> str:
     return sentence(fault, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
 
 
-class FaultyOperator(OperatorMixin):
+class FaultyOperator(PolledOperator):
     """Mixin: `run` may raise what an artist can mend; that is reported, and nothing finished."""
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         try:
             return self.run(context)
         except Fault as fault:
-            self.report({"ERROR"}, said(fault))
-            return {"CANCELLED"}
+            return self.refuse(said(fault))
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         """Does the work. Raises any Fault, having changed nothing."""

@@ -1,13 +1,11 @@
 """Live preview: the motion that follows a dragged pin, shown as a ghost, never written."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
 import bpy
 
-from ...bridge.accessors import present
 from ...solver.data.traces import Traces
 from ...solver.worker.protocol import Followed
 
@@ -45,9 +43,19 @@ def live() -> Live:
     return Live()
 
 
+def editors(*kinds: str) -> Iterator[bpy.types.Area]:
+    """The editors of these kinds, such as "VIEW_3D", in every window."""
+    for manager in getattr(bpy.data, "window_managers", ()):  # none while Blender starts
+        for window in manager.windows:
+            yield from (area for area in window.screen.areas if area.type in kinds)
+
+
+def redraw(*kinds: str) -> None:
+    """Every editor of these kinds is drawn again."""
+    for area in editors(*kinds):
+        area.tag_redraw()
+
+
 def redraw_viewports() -> None:
     """Every 3D viewport is drawn again."""
-    for window in present(bpy.context.window_manager).windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    redraw("VIEW_3D")

@@ -1,6 +1,4 @@
-"""Operators on the result: Compare, Accept, Discard, Show Report, Cancel."""
-
-from __future__ import annotations
+"""Operators on the result: show it or the recording, Accept, Discard, Show Report, Cancel."""
 
 import bpy
 
@@ -8,7 +6,7 @@ from ...bridge.accessors import current_action, present
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.properties.settings import action_settings, settings_of
 from ..names import OperatorId
-from ..operator_types import OperatorMixin, OperatorResult
+from ..operator_types import OperatorResult, PolledOperator
 from .common import chosen_armature, required_armature
 from .session import session
 from .task import CANCELLED
@@ -35,15 +33,12 @@ def performer_of(armature: bpy.types.Object) -> bpy.types.Object:
     return performer if performer is not None else armature
 
 
-class _OfResult(OperatorMixin):
+class _OfResult(PolledOperator):
     """Mixin: needs a result."""
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if result_of(chosen_armature(context)) is None:
-            cls.poll_message_set(NOTHING_ADAPTED)
-            return False
-        return True
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return NOTHING_ADAPTED if result_of(chosen_armature(context)) is None else None
 
 
 class CompareOperator(_OfResult, bpy.types.Operator):
@@ -53,19 +48,55 @@ class CompareOperator(_OfResult, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not super().poll(context):
-            return False
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
+        if why is not None:
+            return why
         armature = required_armature(context)
-        if performer_of(armature) != armature:
-            cls.poll_message_set(BESIDE.format(performer_of(armature).name))
-            return False
-        return True
+        performer = performer_of(armature)
+        return None if performer == armature else BESIDE.format(performer.name)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
         recorded, adapted = present(recorded_action(armature)), required_result(context)
         show(armature, recorded if current_action(armature) == adapted else adapted)
+        return {"FINISHED"}
+
+
+class ShowRecordingOperator(PolledOperator, bpy.types.Operator):
+    bl_idname = OperatorId.SHOW_RECORDING
+    bl_label = "Show Recording"
+    bl_description = "Go back to the recording's action; the adapted one is kept"
+    bl_options = {"UNDO"}
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        armature = chosen_armature(context)
+        if armature is None or current_action(armature) == recorded_action(armature):
+            return "The recording is what is shown"
+        return None
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        show(armature, present(recorded_action(armature)))
+        return {"FINISHED"}
+
+
+class ShowAdaptedOperator(_OfResult, bpy.types.Operator):
+    bl_idname = OperatorId.SHOW_ADAPTED
+    bl_label = "Show Adapted"
+    bl_description = "Go to the action that was adapted last"
+    bl_options = {"UNDO"}
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
+        if why is None and current_action(required_armature(context)) == required_result(context):
+            return "The adapted motion is what is shown"
+        return why
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        show(required_armature(context), required_result(context))
         return {"FINISHED"}
 
 
@@ -79,12 +110,11 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        result = result_of(chosen_armature(context))
-        if result is None or action_settings(result).accepted:
-            cls.poll_message_set(NOTHING_ADAPTED if result is None else ACCEPTED)
-            return False
-        return True
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
+        if why is None and action_settings(required_result(context)).accepted:
+            return ACCEPTED
+        return why
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, result = required_armature(context), required_result(context)
@@ -142,29 +172,17 @@ class ShowReportOperator(_OfResult, bpy.types.Operator):
             column.label(text=line)
 
 
-class CancelOperator(bpy.types.Operator):
+class CancelOperator(PolledOperator, bpy.types.Operator):
     bl_idname = OperatorId.CANCEL
     bl_label = "Cancel"
     bl_description = "End what Hangtime is doing; nothing is changed"
 
     @classmethod
-    def poll(cls, _context: bpy.types.Context) -> bool:
-        if not session().running:
-            cls.poll_message_set("Nothing is under way")
-            return False
-        return True
+    def obstacle(cls, _context: bpy.types.Context) -> str | None:
+        return None if session().running else "Nothing is under way"
 
     def execute(self, _context: bpy.types.Context) -> OperatorResult:
         for operator in list(session().running):
             operator.leave()
         self.report({"INFO"}, CANCELLED)
         return {"FINISHED"}
-
-
-CLASSES = (
-    CompareOperator,
-    AcceptOperator,
-    DiscardOperator,
-    ShowReportOperator,
-    CancelOperator,
-)

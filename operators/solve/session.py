@@ -1,7 +1,5 @@
 """Unsaved run-time state: running solve, last failure, best result."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Protocol
@@ -9,7 +7,7 @@ from typing import Protocol
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.worker.protocol import Adapted
-from .solving import Solving
+from .solving import SolveState, Solving
 
 
 @dataclass(frozen=True)
@@ -32,26 +30,24 @@ class Running(Protocol):
 
 @dataclass
 class Session:
-    """The solve under way, who runs it, why the last one failed, and the best that it found."""
+    """The solve under way, who runs it, why the last one failed, what it was asked, and the best
+    motion that it found."""
 
     solving: Solving | None = None
     failure: str = ""
-    best: Best | None = None
+    best: tuple[Asked, Adapted] | None = None
     running: list[Running] = field(default_factory=list)
+
+    def advance(self, to: SolveState) -> None:
+        """The solve under way goes on to its next part."""
+        assert self.solving is not None
+        self.solving.advance(to)
 
     def end(self) -> None:
         """Ends what runs, without a word; for when the extension goes."""
         for operator in list(self.running):
             operator.leave()
         self.best, self.failure = None, ""
-
-
-@dataclass(frozen=True)
-class Best:
-    """The best motion that a solve found which failed, and what was asked."""
-
-    asked: Asked
-    answer: Adapted
 
 
 @cache

@@ -1,7 +1,5 @@
 """State machine of a solve that the artist waits for, with its progress text; without Blender."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 

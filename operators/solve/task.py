@@ -1,18 +1,18 @@
 """Cooperative multitasking of long operators: parts and a worker, so that Blender never freezes."""
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from time import perf_counter
+from typing import TypeVar
 
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import Fault
-from ...solver.worker.protocol import Answer, Progress
+from ...solver.worker.protocol import Failed, Progress
 from ..operator_types import OperatorResult
-from .common import FaultyOperator, said
+from .common import FaultyOperator, hindrance, said
+from .live import editors
 from .session import session
 from .solving import SolveState, Solving
 
@@ -22,19 +22,27 @@ STATUS = "Hangtime: {} (Esc cancels)"
 CANCELLED = "Cancelled; nothing was changed"
 TAKEN_AWAY = "Stopped, because the scene changed meanwhile; nothing was written. Try again"
 
+A = TypeVar("A")
 Task = Generator[PendingRequest | None, None, str]
 """Work in parts; where it yields a job it waits for that. Returns what to tell the artist."""
 
 
-def answered(job: PendingRequest) -> Generator[PendingRequest, None, Answer]:
-    """Waits for a job in a task."""
+def answered(job: PendingRequest, kind: type[A]) -> Generator[PendingRequest, None, A]:
+    """Waits in a task for the answer of this kind. Raises the fault of a job that fails."""
     while job.answer is None:
         yield job
+    if isinstance(job.answer, Failed):
+        raise job.answer.fault
+    assert isinstance(job.answer, kind)
     return job.answer
 
 
 class TaskOperator(FaultyOperator):
     """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return hindrance(context)
 
     def task(self, context: bpy.types.Context) -> Task:
         """The work. Raises any Fault, having changed nothing."""
@@ -101,11 +109,9 @@ class TaskOperator(FaultyOperator):
             return {"FINISHED"}
         except Fault as fault:
             session().failure = said(fault)  # the report vanishes when the mouse moves
-            self.report({"ERROR"}, session().failure)
-            return {"CANCELLED"}
+            return self.refuse(session().failure)
         except ReferenceError:  # an undo took the armature away from under us
-            self.report({"ERROR"}, TAKEN_AWAY)
-            return {"CANCELLED"}
+            return self.refuse(TAKEN_AWAY)
         finally:
             if not goes_on:  # also after a mistake of ours, or every button stayed grey
                 self.leave()
@@ -157,9 +163,7 @@ def take_best() -> bool:
 
 def _redraw() -> None:
     """The sidebar shows how far a solve is."""
-    for window in present(bpy.context.window_manager).windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()
+    for area in editors("VIEW_3D"):
+        for region in area.regions:
+            if region.type == "UI":
+                region.tag_redraw()

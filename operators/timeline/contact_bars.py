@@ -3,8 +3,6 @@
 Knows nothing of Blender. Frames are the scene's; places px from the region's lower left corner.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -30,9 +28,6 @@ class Bar:
     chosen: bool = False
     is_phase: bool = False
     firm: bool = False  # a phase that has no edges of its own: a flight
-
-    def frame(self, edge: Edge) -> float:
-        return self.start if edge is Edge.START else self.end
 
 
 @dataclass(frozen=True)

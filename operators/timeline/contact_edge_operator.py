@@ -1,15 +1,14 @@
 """Drag Contact Edge: retimes a contact or a phase by its bar in the timeline."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.rows.phases import carried, clip_ends, phases
 from ..names import OperatorId
-from ..operator_types import OperatorResult
+from ..operator_types import OperatorResult, PolledOperator
 from ..solve.common import chosen_armature, required_armature
+from ..solve.live import redraw
 from .contact_bars import Grip
 from .contact_edge_state import Edge, EdgeDrag, Touch, contact_drag, phase_drag
 from .timeline_bars import bars_in, frames_axis
@@ -20,10 +19,20 @@ FIELDS = {Edge.START: "start_frame", Edge.END: "end_frame"}
 VERBS = {Edge.START: "starts", Edge.END: "ends"}
 GIVES_UP = {"ESC", "RIGHTMOUSE"}
 MOVES = {"MOUSEMOVE", "LEFT_CTRL", "RIGHT_CTRL", "LEFT_SHIFT", "RIGHT_SHIFT"}
-EDITORS = {"DOPESHEET_EDITOR", "VIEW_3D"}  # in which contacts are seen
+EDITORS = ("DOPESHEET_EDITOR", "VIEW_3D")  # in which contacts are seen
 
 
-class DragContactEdgeOperator(bpy.types.Operator):
+class _OfKnownContacts(PolledOperator):
+    """Mixin: needs contacts."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        armature = chosen_armature(context)
+        known = armature is not None and len(settings_of(armature).contacts) > 0
+        return None if known else NOTHING_TO_RETIME
+
+
+class DragContactEdgeOperator(_OfKnownContacts, bpy.types.Operator):
     bl_idname = OperatorId.DRAG_CONTACT_EDGE
     bl_label = "Drag Contact Edge"
     bl_description = (
@@ -39,16 +48,11 @@ class DragContactEdgeOperator(bpy.types.Operator):
     )
     frame: bpy.props.FloatProperty(name="Frame", description="Where the end goes")
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return contacts_known(cls, context)
-
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = settings_of(required_armature(context))
         drag = drag_of(settings, self.contact, Edge[self.edge])
         if drag is None:
-            self.report({"ERROR"}, f"There is no contact or ground phase called “{self.contact}”")
-            return {"CANCELLED"}
+            return self.refuse(f"There is no contact or ground phase called “{self.contact}”")
         drag.begin(drag.origin)
         drag.put(self.frame, fine=True)
         if abs(drag.frame - self.frame) > 0.5:
@@ -125,17 +129,17 @@ class DragContactEdgeOperator(bpy.types.Operator):
         drag = self._drag
         text = f"{self.contact} {VERBS[drag.edge]} at frame {drag.frame:g} ({drag.change:+.3g})"
         present(context.area).header_text_set(f"{text}    Ctrl: tenths of a frame    Esc: cancel")
-        redraw(context)
+        redraw(*EDITORS)
 
     def _end(self, context: bpy.types.Context) -> None:
         if context.window is not None:
             context.window.cursor_modal_restore()
-            redraw(context)
+            redraw(*EDITORS)
         if context.area is not None:
             context.area.header_text_set(None)
 
 
-class PickContactOperator(bpy.types.Operator):
+class PickContactOperator(_OfKnownContacts, bpy.types.Operator):
     bl_idname = OperatorId.PICK_CONTACT
     bl_label = "Pick Contact"
     bl_description = "Choose a contact in the list by its bar in the timeline"
@@ -143,18 +147,13 @@ class PickContactOperator(bpy.types.Operator):
 
     contact: bpy.props.StringProperty(name="Contact", description="Name of the contact")
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return contacts_known(cls, context)
-
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = settings_of(required_armature(context))
         index = settings.contacts.find(self.contact)
         if index < 0:
-            self.report({"ERROR"}, f"There is no contact called “{self.contact}”")
-            return {"CANCELLED"}
+            return self.refuse(f"There is no contact called “{self.contact}”")
         settings.active_contact = index
-        redraw(context)
+        redraw(*EDITORS)
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
@@ -168,19 +167,9 @@ class PickContactOperator(bpy.types.Operator):
         return self.execute(context) | {"PASS_THROUGH"}
 
 
-def contacts_known(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Poll: true if the armature has contacts; else says what to do."""
-    armature = chosen_armature(context)
-    known = armature is not None and len(settings_of(armature).contacts) > 0
-    if not known:
-        operator.poll_message_set(NOTHING_TO_RETIME)
-    return known
-
-
 def drag_of(settings: HangtimeSettings, name: str, edge: Edge) -> EdgeDrag | None:
     """Of the edge of a contact that counts or of a ground phase; None where there is none such."""
-    clip = clip_ends(settings)
-    assert clip is not None
+    clip = present(clip_ends(settings))
     touches = [
         Touch(row.name, row.point, row.start_frame, row.end_frame)
         for row in settings.contacts
@@ -199,14 +188,3 @@ def write(settings: HangtimeSettings, edge: Edge, frames: dict[str, float]) -> N
         row = settings.contacts.get(name)
         if row is not None and getattr(row, FIELDS[edge]) != frame:
             setattr(row, FIELDS[edge], frame)
-
-
-def redraw(context: bpy.types.Context) -> None:
-    """Everywhere contacts are seen."""
-    for window in present(context.window_manager).windows:
-        for area in window.screen.areas:
-            if area.type in EDITORS:
-                area.tag_redraw()
-
-
-CLASSES = (DragContactEdgeOperator, PickContactOperator)

@@ -3,8 +3,6 @@
 Knows nothing of Blender; frames are the scene's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum

@@ -1,7 +1,5 @@
 """The bars of the chosen armature's contacts in a timeline or dope sheet."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present

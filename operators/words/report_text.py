@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from ...solver.data.contacts import PhaseKind
 from ...solver.data.report import Report
-from .wording import outcome
+from .messages import outcome
 
 LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,

@@ -1,4 +1,4 @@
-"""Bounds in a step: a small dense quadratic program on the rows that matter (thesis 4.4).
+"""Bound-constrained quadratic program of a step, on the rows that matter (thesis 4.4).
 
 The step without bounds is known from one banded factor of A = W + rho J'J. Bounds lo <= z + G d
 <= hi change it by -A^-1 G'u, where the multipliers u belong to
@@ -19,15 +19,16 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..numerics.block_banded import CholeskyFactor
 from ..transcription.rows import violation
 
-SOFT = 1e-7  # share of a row's own stiffness by which it gives, so that rows may depend on others
-MOST_ROUNDS = 6
-SMALL = 0.1  # of a row's tolerance: what is let stand in a step
+CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
+MAX_ROUNDS = 6  # of row generation
+STEP_TOLERANCE = 0.1  # of a row's own tolerance: the violation that a step may leave
 
 
 class BoundedStep:
-    """Keeps bounded rows (R,) within their bounds while the quadratic stays the same.
+    """Bound corrections of steps on one factor of A, by row generation.
 
-    columns(rows) gives G' as (K, n, len(rows)); working: rows to begin with.
+    columns(rows) gives G' as (K, n, len(rows)). bounds: lower, upper (R,). tolerance: (R,).
+    working: (R,) initial working set. multipliers: (R,), of the last correction.
     """
 
     def __init__(
@@ -40,28 +41,28 @@ class BoundedStep:
     ) -> None:
         self._factor, self._columns = factor, columns
         self.lower, self.upper = bounds
-        self._enough = SMALL * tolerance
+        self._tolerance = STEP_TOLERANCE * tolerance
         self.multipliers = np.zeros(len(tolerance))
         self._rows = np.zeros(0, dtype=int)
         self._half = np.zeros((0, 0, 0))  # L^-1 G' (K, n, m)
-        self._first = working
+        self._initial = working
 
     @property
     def working(self) -> BoolArray:
-        """(R,) the rows that are at a bound."""
+        """(R,) working set: the rows that are at a bound."""
         return np.asarray(self.multipliers != 0.0)
 
     def correct(self, z: FloatArray, times: Callable[[FloatArray], FloatArray]) -> FloatArray:
-        """The change of the step (K, n) that brings rows with values z (R,) into their bounds.
+        """Correction (K, n) of the step that brings rows with values z (R,) into their bounds.
 
         times: G d for (K, n).
         """
         change = np.zeros(self._factor.inverse.shape[:2])
         reached = z
-        for _ in range(MOST_ROUNDS):
-            off = np.abs(violation(reached, self.lower, self.upper)) > self._enough
+        for _ in range(MAX_ROUNDS):
+            off = np.abs(violation(reached, self.lower, self.upper)) > self._tolerance
             if not len(self._rows):
-                off |= self._first
+                off |= self._initial
             off[self._rows] = False
             if off.any():
                 self._add(np.flatnonzero(off))
@@ -78,20 +79,20 @@ class BoundedStep:
         self._rows = np.concatenate([self._rows, rows])
         flat = self._half.reshape(-1, len(self._rows))
         stiffness = flat.T @ flat
-        self._soft = SOFT * np.diagonal(stiffness) + 1e-14
+        self._soft = CONSTRAINT_SOFTNESS * np.diagonal(stiffness) + 1e-14
         self._root = np.linalg.cholesky(stiffness + np.diag(self._soft))
 
     def _solve(self, z: FloatArray) -> FloatArray:
         rows = self._rows
         # The rows give a little (SOFT); their last multipliers make up for it.
         base = z[rows] + self._soft * self.multipliers[rows]
-        u = small_program(self._root, self.lower[rows] - base, self.upper[rows] - base)
+        u = solve_dual_qp(self._root, self.lower[rows] - base, self.upper[rows] - base)
         self.multipliers[rows] = u
         return u
 
 
-def small_program(root: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper; root (m, m)."""
+def solve_dual_qp(root: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper, root (m, m)."""
     m = len(root)
     # DAQP's tolerances are absolute: rows of length 1, and a violation of 1 to begin with.
     row = 1.0 / np.linalg.norm(root, axis=1)

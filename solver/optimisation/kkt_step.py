@@ -1,10 +1,10 @@
-"""The linearised problem of a step, solved on one banded factor (thesis 4.4).
+"""KKT step: the linearised problem of a step, solved on one banded factor (thesis 4.4).
 
     min  g . d + 1/2 d . W d   subject to   C + C_x d = 0,   lo <= B + B_x d <= hi
 
-The equations are settled by an augmented Lagrangian, which also settles redundant rows (two feet
-planted, pins on one rigid foot) without choosing among them; the bounds by a small quadratic
-program (qp.py).
+The equalities are settled by an augmented Lagrangian (Nocedal & Wright, 17.3), which also settles
+redundant rows (two feet planted, pins on one rigid foot) without choosing among them; the bounds by
+a small quadratic program (bounded_qp.py).
 """
 
 from dataclasses import dataclass
@@ -20,20 +20,20 @@ from ..transcription.rows import Rows, by_kind
 from ..transcription.transcription import Transcription
 from .bounded_qp import BoundedStep
 
-# Speeds are weighed against places by the time in which they would move as far.
-NORM = {RowKind.PIN_SPEED: 30.0}
+# Velocities are weighed against positions by the time in which they would move as far.
+ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
 PENALTY = 1e4
-AT_ONCE = 32  # spans
-FEWEST_EACH = 8  # spans worth a thread of their own
-MOST_SWEEPS = 8
-SWEEP_GAIN = 1e-3
-RIDGE = 1e-8
-LET_STAND = 0.5  # of a bound's tolerance
+NORMAL_BATCH = 32  # spans
+MIN_SPANS_PER_THREAD = 8
+MAX_SWEEPS = 8
+SWEEP_REDUCTION = 1e-3  # of the equality residual, at which sweeps end
+RIDGE = 1e-8  # of the diagonal
+MERIT_DEAD_BAND = 0.5  # of a bound's tolerance, which the merit function ignores
 
 
 @dataclass(frozen=True)
-class _Windows:
-    """Rows gathered span by span: J (S, R, 4 n), zero where a span has fewer."""
+class _SpanRows:
+    """Jacobian gathered span by span: J (S, R, 4 n), zero where a span has fewer rows."""
 
     J: FloatArray
     counts: IntArray  # (S,) rows of each span
@@ -42,8 +42,8 @@ class _Windows:
     where: tuple[IntArray, IntArray]  # of each row: its span, its place there
 
     @staticmethod
-    def of(rows: Rows, norm: FloatArray, first: IntArray, basis: FloatArray | None) -> "_Windows":
-        """Sorts rows, in units of norm (R,), by span."""
+    def of(rows: Rows, scale: FloatArray, first: IntArray, basis: FloatArray | None) -> "_SpanRows":
+        """Sorts rows, in units of scale (R,), by span."""
         order = np.argsort(rows.span, kind="stable")
         counts = np.bincount(rows.span, minlength=len(first))
         before = np.concatenate([[0], np.cumsum(counts)])
@@ -52,16 +52,16 @@ class _Windows:
         jacobian = rows.jacobian if basis is None else rows.jacobian @ basis
         n = jacobian.shape[2]
         J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
-        J[rows.span, place] = jacobian.reshape(len(order), -1) / norm[:, None]
-        return _Windows(J, counts, first, n, (rows.span, place))
+        J[rows.span, place] = jacobian.reshape(len(order), -1) / scale[:, None]
+        return _SpanRows(J, counts, first, n, (rows.span, place))
 
     def times(self, d: FloatArray) -> FloatArray:
-        """J d, (S, R), of d (K, n)."""
+        """(S, R) product J d, of d (K, n)."""
         local = d[self.first[:, None] + np.arange(ORDER)].reshape(len(self.J), -1, 1)
         return np.asarray((self.J @ local)[..., 0])
 
     def transposed(self, y: FloatArray, blocks: int) -> FloatArray:
-        """J' y, (K, n), of y (S, R)."""
+        """(K, n) product J' y, of y (S, R)."""
         local = (y[:, None] @ self.J).reshape(len(self.J), ORDER, self.size)
         total = np.zeros((blocks, self.size))
         for k in range(ORDER):
@@ -72,21 +72,21 @@ class _Windows:
         """Adds weight * J'J, a few spans at a time so that they stay in the processor's cache."""
         wide = self.J.shape[2]
         scaled = np.sqrt(weight) * self.J
-        squares = np.empty((AT_ONCE, wide, wide))
+        squares = np.empty((NORMAL_BATCH, wide, wide))
 
         def square(part: slice) -> None:
             for i in range(part.start, part.stop):  # numpy knows that a.T @ a is symmetric
                 rows = scaled[first + i, : self.counts[first + i]]
                 np.matmul(rows.T, rows, out=squares[i])
 
-        for first in range(0, len(self.J), AT_ONCE):
-            count = min(AT_ONCE, len(self.J) - first)
-            in_threads(square, count, FEWEST_EACH)
+        for first in range(0, len(self.J), NORMAL_BATCH):
+            count = min(NORMAL_BATCH, len(self.J) - first)
+            in_threads(square, count, MIN_SPANS_PER_THREAD)
             shape = (count, ORDER, self.size, ORDER, self.size)
             system.add_windows(self.first[first : first + count], squares[:count].reshape(shape))
 
     def columns(self, rows: IntArray, blocks: int) -> FloatArray:
-        """(K, n, m) the chosen rows as columns."""
+        """(K, n, m) columns of J' of the chosen rows (m,)."""
         span, place = (index[rows] for index in self.where)
         local = self.J[span, place].reshape(len(rows), ORDER, self.size)
         columns = np.zeros((blocks, self.size, len(rows)))
@@ -96,7 +96,7 @@ class _Windows:
 
 
 def _factor(system: BlockBanded) -> CholeskyFactor:
-    """Cholesky; far from any motion rounding can spoil it, and a small ridge mends that."""
+    """Cholesky factor; far from any motion rounding can spoil it, and a small ridge mends that."""
     try:
         return system.factor()
     except np.linalg.LinAlgError:
@@ -104,11 +104,11 @@ def _factor(system: BlockBanded) -> CholeskyFactor:
         return system.factor()
 
 
-class Linearised:
+class LinearisedProblem:
     """Rows linearised at one point, with the factor of W + rho J'J, ready for steps.
 
-    basis: (n_block, k) the changes of a block that are allowed, None all. working: (R,) the rows
-    that were at their bounds in the last step.
+    metric: W. basis: (n_block, k) the changes of a block that are allowed, None all. working: (R,)
+    working set of the last step, the rows that were at their bounds.
     """
 
     def __init__(
@@ -124,16 +124,18 @@ class Linearised:
         self.rows = rows
         self._metric = metric if basis is None else metric.congruent(basis)
         self._blocks = transcription.basis.n_coefficients
-        self._norm = by_kind(rows.kind, NORM)
+        self._scale = by_kind(rows.kind, ROW_SCALES)
         self._tolerance = rows.tolerance
         first = transcription.basis.first_coefficient
         self._equal = np.flatnonzero(rows.equal)
         self._free = np.flatnonzero(~rows.equal)
-        self._equations = _Windows.of(rows.some(self._equal), self._norm[self._equal], first, basis)
+        self._equalities = _SpanRows.of(
+            rows.some(self._equal), self._scale[self._equal], first, basis
+        )
         system = self._metric.copy()
-        self._equations.add_normal(system, PENALTY)
+        self._equalities.add_normal(system, PENALTY)
         self._factor = _factor(system)
-        bounds = _Windows.of(rows.some(self._free), self._norm[self._free], first, basis)
+        bounds = _SpanRows.of(rows.some(self._free), self._scale[self._free], first, basis)
         self._bounds, blocks = bounds, self._blocks
         was = np.zeros(len(self._free), bool) if working is None else working[self._free]
         self._bounded = BoundedStep(
@@ -146,37 +148,39 @@ class Linearised:
 
     @property
     def working(self) -> BoolArray:
-        """(R,) the rows that the last step has at a bound."""
+        """(R,) working set: the rows that the last step has at a bound."""
         working = np.zeros(len(self.rows.value), dtype=bool)
         working[self._free] = self._bounded.working
         return working
 
-    def worst(self, value: FloatArray) -> float:
-        """The worst violation over its tolerance; at most 1 means that all rows hold."""
+    def violation(self, value: FloatArray) -> float:
+        """The worst violation by values (R,) over its tolerance; at most 1: all rows hold."""
         return float((np.abs(self.rows.violation(value)) / self._tolerance).max())
 
-    def worst_name(self, value: FloatArray) -> str:
-        """Whose the worst row is: a contact, a condition, or the equation's own name."""
+    def worst_owner(self, value: FloatArray) -> str:
+        """Name of the worst row's contact or constraint, else of its kind; value (R,)."""
         worst = int(np.argmax(np.abs(self.rows.violation(value)) / self._tolerance))
         owner = int(self.rows.owner[worst])
         kind: RowKind = self.rows.kind[worst]
         return self._transcription.owners[owner] if owner >= 0 else kind.label
 
     def merit(self, value: FloatArray) -> float:
-        """The summed squared violations in units of NORM (thesis eq. 4.6).
+        """Squared l2 violation by values (R,) in units of ROW_SCALES (thesis eq. 4.6).
 
-        What a bound's tolerance lets stand counts nothing: it is large beside the equations'.
+        A part of a bound's tolerance is ignored: it is large beside the equalities'.
         """
         off = np.abs(self.rows.violation(value))
-        off[self._free] = np.maximum(off[self._free] - LET_STAND * self._tolerance[self._free], 0.0)
-        return float(((off / self._norm) ** 2).sum())
+        off[self._free] = np.maximum(
+            off[self._free] - MERIT_DEAD_BAND * self._tolerance[self._free], 0.0
+        )
+        return float(((off / self._scale) ** 2).sum())
 
-    def total(self, value: FloatArray) -> float:
-        """The summed violations in units of NORM."""
-        return float((np.abs(self.rows.violation(value)) / self._norm).sum())
+    def l1_violation(self, value: FloatArray) -> float:
+        """l1 violation by values (R,) in units of ROW_SCALES."""
+        return float((np.abs(self.rows.violation(value)) / self._scale).sum())
 
     def _scaled(self, values: FloatArray, rows: IntArray) -> FloatArray:
-        return np.asarray(values[rows] / self._norm[rows])
+        return np.asarray(values[rows] / self._scale[rows])
 
     def step(
         self,
@@ -184,13 +188,14 @@ class Linearised:
         gradient: FloatArray | None = None,
         multipliers: FloatArray | None = None,
     ) -> tuple[FloatArray, FloatArray]:
-        """Step d (K, n_block) and multipliers (R,) of the rows in units of NORM.
+        """Step d (K, n_block) and Lagrange multipliers (R,) of the rows in units of ROW_SCALES.
 
         Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
-        y += rho (r + J d), until the linearised equations hold a thousand times better than
-        before. gradient: g, None for the minimum-norm step.
+        y += rho (r + J d), until the linearised equalities hold a thousand times better than
+        before. value: (R,). gradient: g (K, n_block), None for the minimum-norm step. multipliers:
+        y to begin with (R,), None zero.
         """
-        windows = self._equations
+        windows = self._equalities
         r = np.zeros(windows.J.shape[:2])
         r[windows.where] = self._scaled(value - self.rows.lower, self._equal)
         y = np.zeros_like(r)
@@ -199,21 +204,21 @@ class Linearised:
         if gradient is not None and self._basis is not None:
             gradient = gradient @ self._basis
         d = np.zeros((self._blocks, windows.size))
-        missing = r
-        enough = max(1e-9, SWEEP_GAIN * float(np.abs(missing).max()))
+        residual = r
+        enough = max(1e-9, SWEEP_REDUCTION * float(np.abs(residual).max()))
         z = self._scaled(value, self._free)
-        for sweep in range(MOST_SWEEPS):
-            slope = windows.transposed(y + PENALTY * missing, self._blocks)
+        for sweep in range(MAX_SWEEPS):
+            lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
             if sweep:
-                slope += self._metric.times(d)
+                lagrangian_gradient += self._metric.times(d)
             if gradient is not None:
-                slope += gradient
-            d = d - self._factor.solve(slope)
+                lagrangian_gradient += gradient
+            d = d - self._factor.solve(lagrangian_gradient)
             if len(z):
                 d = d + self._bounded.correct(z + self._bound_values(d), self._bound_values)
-            missing = r + windows.times(d)
-            y += PENALTY * missing
-            if np.abs(missing).max() < enough:
+            residual = r + windows.times(d)
+            y += PENALTY * residual
+            if np.abs(residual).max() < enough:
                 break
         found = np.zeros(len(value))
         found[self._equal] = y[windows.where]
@@ -221,5 +226,5 @@ class Linearised:
         return d if self._basis is None else d @ self._basis.T, found
 
     def _bound_values(self, d: FloatArray) -> FloatArray:
-        """B_x d, (R_bounds,)."""
+        """(R_bounds,) product B_x d."""
         return np.asarray(self._bounds.times(d)[self._bounds.where])

@@ -1,4 +1,4 @@
-"""A smaller figure: the joints other than the root tied together (thesis 5).
+"""Model reduction: joint angles in a subspace, the root's in full (thesis 5).
 
 An adaptation q differs from its fit by what a few coordinates z can do: q = q_fit + basis z. The
 root keeps its angles. The basis comes from the performance (principal components, rotated so that
@@ -17,14 +17,14 @@ from ..data.requests import Reduction, ReductionKind
 from ..numerics.rotations import axis_rotation, unit
 
 LEG = (Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE)
-STILL = 1e-8  # share of the largest variance below which a direction has no sources to part
-MOST_STEPS = 1000
-SETTLED = 1e-9
+MIN_VARIANCE_SHARE = 1e-8  # of the largest; directions of less have no sources to part
+MAX_ROTATION_ITERATIONS = 1000
+ROTATION_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
 class ReducedSpace:
-    """What the non-root angles may do: their changes are basis @ z.
+    """Reduced coordinates: changes of the non-root angles are basis @ z.
 
     basis: (n_angles - 3, k), of full rank k. eigenvalues: (n_angles - 3,) rad², of the samples'
     covariance, falling. explained: (n_angles - 3,) share of the variance that the first so many
@@ -38,7 +38,7 @@ class ReducedSpace:
 
 
 def reduce(reduction: Reduction, character: Character, angles: FloatArray) -> ReducedSpace:
-    """The reduced space that is asked for, from samples (T, n_angles) rad of the performance.
+    """Reduced space of a request, from samples (T, n_angles) rad of the performance (thesis 5).
 
     Legs tied and the artist's matrix have the dimensions that they have, whatever is asked.
     Raises BadDimensions, UnknownReductionBone, WrongWeights, DependentRows.
@@ -59,6 +59,7 @@ def reduce(reduction: Reduction, character: Character, angles: FloatArray) -> Re
 
 
 def _dimensions(reduction: Reduction, explained: FloatArray) -> int:
+    """As asked, or as the explained variance asks for. Raises BadDimensions."""
     most = len(explained)
     if reduction.dimensions is None:
         return min(int(np.searchsorted(explained, reduction.explained)) + 1, most)
@@ -70,7 +71,7 @@ def _dimensions(reduction: Reduction, explained: FloatArray) -> int:
 def _statistical(
     kind: ReductionKind, samples: FloatArray, eigenvalues: FloatArray, vectors: FloatArray
 ) -> FloatArray:
-    """(n, k) columns of length 1 that span the eigenvectors (n, k); their largest entry positive.
+    """(n, k) unit columns that span the eigenvectors (n, k), their largest entry positive.
 
     The eigenvectors themselves are rotated, not scaled by their deviations as a factor analyst
     would: only then does a full rotation end at the joints' own angles, as the thesis says (5.4.1).
@@ -91,7 +92,7 @@ def _statistical(
 
 
 def principal_components(samples: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Eigenvalues (n,), falling, and eigenvectors (n, n), as columns, of the covariance (T, n)."""
+    """Eigenvalues (n,), falling, and eigenvectors (n, n), columns, of the covariance of (T, n)."""
     about_mean = samples - samples.mean(axis=0)
     covariance = about_mean.T @ about_mean / max(len(samples) - 1, 1)
     values, vectors = np.linalg.eigh(covariance)
@@ -99,52 +100,52 @@ def principal_components(samples: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def orthomax(loadings: FloatArray, gamma: float) -> FloatArray:
-    """(n, k) loadings turned by an orthogonal matrix so that each column has few large entries.
+    """Orthomax rotation of (n, k) loadings: each column gets few large entries.
 
     gamma: 1 varimax (Kaiser 1958), 0 quartimax (Neuhaus & Wrigley 1954). Maximises
     sum L⁴ - gamma / n sum_j (sum_i L²)² by projecting its gradient (Jennrich 2001).
     """
     turn = np.eye(loadings.shape[1])
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_ROTATION_ITERATIONS):
         L = loadings @ turn
-        slope = L**3 - gamma / len(L) * L * (L**2).sum(axis=0)
-        u, _, vt = np.linalg.svd(loadings.T @ slope)
+        gradient = L**3 - gamma / len(L) * L * (L**2).sum(axis=0)
+        u, _, vt = np.linalg.svd(loadings.T @ gradient)
         moved = np.abs(u @ vt - turn).max()
         turn = u @ vt
-        if moved < SETTLED:
+        if moved < ROTATION_TOLERANCE:
             break
     return np.asarray(loadings @ turn)
 
 
 def oblimin(loadings: FloatArray) -> FloatArray:
-    """(n, k) pattern of direct oblimin with delta 0, an oblique rotation (Jennrich & Sampson 1966).
+    """Direct oblimin with delta 0, an oblique rotation (Jennrich & Sampson 1966): pattern (n, k).
 
     Minimises sum_{j != l} sum_i L_ij² L_il² over L = A T^-T with columns of T of length 1, by
     gradient projection (Jennrich 2002; Bernaards & Jennrich 2005).
     """
     T, step = np.eye(loadings.shape[1]), 1.0
-    value, slope, L = _overlap(loadings, T)
-    for _ in range(MOST_STEPS):
-        along = slope - T * (T * slope).sum(axis=0)
+    value, gradient, L = _overlap(loadings, T)
+    for _ in range(MAX_ROTATION_ITERATIONS):
+        along = gradient - T * (T * gradient).sum(axis=0)
         size = float((along**2).sum())
-        if size < SETTLED**2:
+        if size < ROTATION_TOLERANCE**2:
             break
         step *= 2.0
         while True:
             X = T - step * along
             trial = X / np.linalg.norm(X, axis=0)
             new = _overlap(loadings, trial)
-            if new[0] <= value - 0.5 * step * size or step < SETTLED:
+            if new[0] <= value - 0.5 * step * size or step < ROTATION_TOLERANCE:
                 break
             step *= 0.5
         if new[0] >= value:
             break  # what is left is rounding
-        T, (value, slope, L) = trial, new
+        T, (value, gradient, L) = trial, new
     return L
 
 
 def _overlap(loadings: FloatArray, T: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-    """What `oblimin` minimises (a quarter of it), its derivative by T (k, k), and L (n, k)."""
+    """A quarter of the oblimin criterion, its derivative by T (k, k), and L (n, k)."""
     inverse = np.linalg.inv(T)
     L = loadings @ inverse.T
     others = (L**2).sum(axis=1, keepdims=True) - L**2
@@ -152,11 +153,11 @@ def _overlap(loadings: FloatArray, T: FloatArray) -> tuple[float, FloatArray, Fl
 
 
 def _independent(samples: FloatArray, eigenvalues: FloatArray, vectors: FloatArray) -> FloatArray:
-    """(n, k) how the independent sources of the scores on (n, k) eigenvectors move the angles.
+    """Independent components: (n, k) mixing of the scores' sources on (n, k) eigenvectors.
 
     Directions in which the samples hardly vary have no sources; they stay as they are.
     """
-    moving = (eigenvalues > STILL * eigenvalues[0]) & (eigenvalues > 0.0)
+    moving = (eigenvalues > MIN_VARIANCE_SHARE * eigenvalues[0]) & (eigenvalues > 0.0)
     deviations = np.sqrt(eigenvalues[moving])
     scores = (samples - samples.mean(axis=0)) @ vectors[:, moving] / deviations
     mixing = deviations[:, None] * fast_ica(scores).T
@@ -164,31 +165,31 @@ def _independent(samples: FloatArray, eigenvalues: FloatArray, vectors: FloatArr
 
 
 def fast_ica(white: FloatArray) -> FloatArray:
-    """(k, k) orthogonal W: the sources are white @ W.T, for (T, k) uncorrelated unit scores.
+    """FastICA: orthogonal W (k, k); the sources of whitened scores (T, k) are white @ W.T.
 
     Symmetric fixed point with log cosh (Hyvärinen 1999). Where sources are too nearly Gaussian to
     be told apart it stops after a while: every orthogonal W spans the same.
     """
     count = white.shape[1]
     W = _orthogonal(np.random.default_rng(0).normal(size=(count, count)))
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_ROTATION_ITERATIONS):
         g = np.tanh(white @ W.T)
         new = _orthogonal(g.T @ white / len(white) - (1.0 - g**2).mean(axis=0)[:, None] * W)
         moved = np.abs(np.abs((new * W).sum(axis=1)) - 1.0).max(initial=0.0)
         W = new
-        if moved < SETTLED:
+        if moved < ROTATION_TOLERANCE:
             break
     return W
 
 
 def _orthogonal(W: FloatArray) -> FloatArray:
-    """The orthogonal matrix nearest to (k, k) W: (W W^T)^-1/2 W."""
+    """Nearest orthogonal matrix (polar factor) (W W^T)^-1/2 W of W (k, k)."""
     u, _, vt = np.linalg.svd(W)
     return np.asarray(u @ vt)
 
 
 def mirrored_legs(character: Character, angles: FloatArray) -> FloatArray:
-    """(n_angles - 3, k) both legs turn alike, mirrored in the sagittal plane; the rest is free.
+    """Basis (n_angles - 3, k) of legs mirrored in the sagittal plane; the rest is free.
 
     The joints' axes were chosen side by side from the clip, so which angle of the other leg does
     the same is found from where the axes point: a turn w (a rotation vector in the parent's frame)
@@ -215,18 +216,18 @@ def mirrored_legs(character: Character, angles: FloatArray) -> FloatArray:
 
 
 def _across(character: Character) -> FloatArray:
-    """(3,) from the right hip to the left one at rest: the sagittal plane's normal."""
+    """(3,) normal of the sagittal plane: from the right hip to the left one at rest."""
     hips = []
     for side in (Side.LEFT, Side.RIGHT):
         thigh = character.body(Part.THIGH, side)
         assert thigh is not None  # no figure is built without thighs
-        line = character.ancestors(thigh)  # at rest, every body's frame is the world's
-        hips.append(np.sum([character.joints[body].offset for body in line], axis=0))
+        linearised = character.ancestors(thigh)  # at rest, every body's frame is the world's
+        hips.append(np.sum([character.joints[body].offset for body in linearised], axis=0))
     return unit(hips[0] - hips[1])
 
 
 def turning_axes(joint: Joint, angles: FloatArray) -> FloatArray:
-    """(T, 3, dofs) the axes, in the parent's frame, that a joint's angles turn about."""
+    """(T, 3, dofs) rotation axes of a joint's angles, parent's frame; angles (T, n_angles) rad."""
     own = angles[:, joint.dofs]
     turn = np.broadcast_to(joint.axes.before, (len(own), 3, 3))
     columns = []
@@ -237,7 +238,7 @@ def turning_axes(joint: Joint, angles: FloatArray) -> FloatArray:
 
 
 def written_matrix(reduction: Reduction, character: Character) -> FloatArray:
-    """(n_angles - 3, k) one column per row of the artist's matrix; unnamed bones stay free.
+    """Basis (n_angles - 3, k) with a column per row of the artist's matrix; other bones stay free.
 
     Raises UnknownReductionBone (the root's too: it stays full), WrongWeights, DependentRows.
     """

@@ -1,14 +1,12 @@
-"""Steps towards a motion that satisfies every equation and bound (thesis 4.2 and 4.4).
+"""Sequential quadratic programming: restoration, and projection onto the feasible set (4.2, 4.4).
 
-Each step solves the linearised problem
+Each step solves the linearised problem (kkt_step.py)
 
     min  g . d + 1/2 d . W d   subject to   C(x) + C_x d = 0,   lo <= B(x) + B_x d <= hi
 
-with W the metric of closeness.py. With g the gradient of the distance to a target this *projects*
-the target onto the valid motions (the fit); with g = 0 it is the thesis's minimum-norm step (the
-implicit solution), which converges quadratically and stays near where it began.
-
-The linearised problem itself is solved in linearised.py.
+with W the metric of tracking_cost.py. With g the gradient of the distance to a target this
+*projects* the target onto the feasible set (the fit); with g = 0 it is the thesis's minimum-norm
+step (the implicit solution), which converges quadratically and stays near where it began.
 """
 
 from collections.abc import Callable
@@ -17,26 +15,27 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..transcription.motion import Motion
 from ..transcription.rows import Rows
 from ..transcription.transcription import Transcription
-from .kkt_step import Linearised
+from .kkt_step import LinearisedProblem
 
-CHORD_GAIN = 0.03
-SHORTEST_STEP = 0.005
-PATIENCE = 6  # steps
-NEAR = 1e3  # times the tolerances: the end of a solve
-ENOUGH = 0.05  # of the objective: what a further step must gain
+MAX_CHORD_RATIO = 0.03  # of the violation that a step leaves, for the next to keep its Jacobian
+MIN_RESTORATION_LENGTH = 0.005
+MIN_PROJECTION_LENGTH = 0.1
+STALL_WINDOW = 6  # steps in which the violation has to halve
+NEAR_FEASIBLE = 1e3  # times the tolerances: the end of a solve
+MIN_PROJECTION_DECREASE = 0.05  # of the objective: what a further step must gain
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step: worst violation over its tolerance before the step, whose, and the length taken.
+    """Record of one step: worst violation over its tolerance before it, whose, and its length.
 
-    worst: a contact's name, a condition's, or the equation's where it is nobody's.
+    worst: a contact's name, a constraint's, or the row kind's where it is nobody's.
     """
 
     stage: str
@@ -47,7 +46,10 @@ class Step:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Where the steps ended: unknowns, equations, how and why, and the contacts' places."""
+    """End of a solve: unknowns x (K, n_block), their transcription, and places (n_contacts, 3) m.
+
+    violation: the worst over its tolerance.
+    """
 
     x: FloatArray
     transcription: Transcription
@@ -62,11 +64,11 @@ class Outcome:
 
 
 Progress = Callable[[Step, Motion], None]
-"""Told each step and where it led; what it raises ends the solve."""
+"""Callback after each step, with the motion that it led to; what it raises ends the solve."""
 
 
 class Stopped(Exception):
-    """The solve shall end, with the motion as it stands."""
+    """Request to end the solve with the motion as it stands."""
 
     def __init__(self, motion: Motion) -> None:
         super().__init__()
@@ -74,7 +76,7 @@ class Stopped(Exception):
 
 
 class Objective(Protocol):
-    """What steps lessen."""
+    """Objective to be minimised."""
 
     def value(self, x: FloatArray) -> float:
         """The objective at unknowns (K, n_block)."""
@@ -83,105 +85,45 @@ class Objective(Protocol):
         """Its gradient (K, n_block) and a positive definite approximation of its Hessian."""
 
 
-def restore(
-    transcription: Transcription,
-    metric: BlockBanded,
-    x: FloatArray,
-    places: FloatArray,
-    *,
-    stage: str,
-    most_steps: int = 30,
-    basis: FloatArray | None = None,
-    progress: Progress | None = None,
-) -> Outcome:
-    """Minimum-norm steps until equations and bounds hold.
+@dataclass(frozen=True)
+class FeasibleSet:
+    """Motions that satisfy a transcription's rows with pins at places (n_contacts, 3) m, world.
 
-    metric: W, fixed. places: (n_contacts, 3) m. basis: (n_block, k), the changes of a block that
-    are allowed (thesis 5), None all. A line search on the summed squared violation guards the
-    steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
-    Jacobian and factor, which costs a third of a new one (chord steps).
+    basis: (n_block, k), the changes of a block that are allowed (thesis 5), None all.
     """
-    steps: list[Step] = []
-    status = Status.TOO_MANY_STEPS
-    begun = transcription.rows(x, places)
-    here: Rows | None = begun  # the rows at x with their Jacobian, where that is known
-    line: Linearised | None = None
-    value, last, violation = begun.value, np.inf, worst_violation(begun)
-    slow = stale = False
-    while len(steps) < most_steps:
-        violation = violation if line is None else line.worst(value)
-        if violation <= 1.0:
-            status = Status.SOLVED
-            break
-        slow = line is None or violation > CHORD_GAIN * last
-        fresh, stale = slow or stale or here is not None, False
-        if fresh:
-            here = transcription.rows(x, places) if here is None else here
-            working = None if line is None else line.working
-            line = Linearised(transcription, here, metric, basis=basis, working=working)
-        assert line is not None
-        whose = line.worst_name(value)
-        d, _ = line.step(value)
-        at = _shorten(transcription, line, x, d, places, value, whole=slow)
-        if at.length < 1.0 and not fresh:  # the old Jacobian no longer serves
-            x, value, here, stale = at.x, at.value, None, True
-            continue
-        x, value, here, length = at.x, at.value, at.rows, at.length
-        steps.append(Step(stage, violation, length, whose))
-        last = violation
-        if progress is not None:
-            progress(steps[-1], Motion(transcription, x, places))
-        if length == 0.0 or _stagnant(steps):
-            status = Status.STALLED
-            break
-    violation = violation if line is None else line.worst(value)
-    return Outcome(x, transcription, status, tuple(steps), violation, places)
 
+    transcription: Transcription
+    places: FloatArray
+    basis: FloatArray | None = None
 
-def _stagnant(steps: list[Step]) -> bool:
-    """Whether the last steps did not even halve the violation."""
-    if len(steps) < 2 * PATIENCE:
-        return False
-    return steps[-1].violation > 0.5 * steps[-1 - PATIENCE].violation
+    def rows(self, x: FloatArray) -> Rows:
+        """Constraint rows at unknowns x (K, n_block)."""
+        return self.transcription.rows(x, self.places)
 
+    def values(self, x: FloatArray) -> FloatArray:
+        """(R,) values of `rows` without their Jacobian."""
+        return self.transcription.values(x, self.places)
 
-def project(
-    transcription: Transcription,
-    goal: Objective,
-    x: FloatArray,
-    places: FloatArray,
-    *,
-    stage: str,
-    most_steps: int,
-    basis: FloatArray | None = None,
-    progress: Progress | None = None,
-) -> Outcome:
-    """Steps that lessen a goal among the valid motions; `restore` finishes what they leave.
+    def motion(self, x: FloatArray) -> Motion:
+        """Unknowns x (K, n_block) as a motion."""
+        return Motion(self.transcription, x, self.places)
 
-    Ends when a step changes the goal little; equations and bounds then nearly hold.
-    """
-    steps: list[Step] = []
-    status = Status.TOO_MANY_STEPS
-    multipliers: FloatArray | None = None
-    objective = goal.value(x)
-    line: Linearised | None = None
-    for _ in range(most_steps):
-        rows = transcription.rows(x, places)
-        gradient, metric = goal.expand(x)
-        working = None if line is None else line.working
-        line = Linearised(transcription, rows, metric, basis=basis, working=working)
-        d, multipliers = line.step(rows.value, gradient, multipliers)
-        x, length = _search(transcription, goal, x, d, places, line, multipliers, objective)
-        worst = (line.worst(rows.value), length, line.worst_name(rows.value))
-        steps.append(Step(stage, *worst))
-        if progress is not None:
-            progress(steps[-1], Motion(transcription, x, places))
-        before, objective = objective, goal.value(x)
-        if length == 0.0 or (len(steps) > 1 and abs(before - objective) < ENOUGH * before):
-            status = Status.SOLVED
-            break
-    violation = worst_violation(transcription.rows(x, places))
-    return Outcome(x, transcription, status, tuple(steps), violation, places)
+    def violation(self, x: FloatArray) -> float:
+        """The worst violation over its tolerance; at most 1 means that x (K, n_block) is in it."""
+        return worst_violation(self.rows(x))
+
+    def linearise(
+        self, rows: Rows, metric: BlockBanded, working: BoolArray | None = None
+    ) -> LinearisedProblem:
+        """The linearised problem of these rows with metric W; working: see LinearisedProblem."""
+        t = self.transcription
+        return LinearisedProblem(t, rows, metric, basis=self.basis, working=working)
+
+    def outcome(
+        self, x: FloatArray, status: Status, steps: list[Step], violation: float
+    ) -> Outcome:
+        """End of a solve in this set."""
+        return Outcome(x, self.transcription, status, tuple(steps), violation, self.places)
 
 
 def worst_violation(rows: Rows) -> float:
@@ -189,9 +131,89 @@ def worst_violation(rows: Rows) -> float:
     return float((np.abs(rows.violation()) / rows.tolerance).max())
 
 
+# ---------------------------------------------------------------- restoration
+
+
+def restore(
+    feasible: FeasibleSet,
+    metric: BlockBanded,
+    x: FloatArray,
+    *,
+    stage: str,
+    max_steps: int = 30,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Feasibility restoration: minimum-norm steps until all rows hold (thesis 4.4).
+
+    metric: W, fixed. x: (K, n_block). A line search on the summed squared violation guards the
+    steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
+    Jacobian and factor, which costs a third of a new one (chord steps).
+    """
+    iterate = _ChordIterate(feasible, metric, x)
+    steps: list[Step] = []
+    status = Status.TOO_MANY_STEPS
+    while len(steps) < max_steps:
+        if iterate.violation <= 1.0:
+            status = Status.SOLVED
+            break
+        step = iterate.advance(stage)
+        if step is None:
+            continue
+        steps.append(step)
+        if progress is not None:
+            progress(step, feasible.motion(iterate.x))
+        if step.length == 0.0 or _stagnant(steps):
+            status = Status.STALLED
+            break
+    return feasible.outcome(iterate.x, status, steps, iterate.violation)
+
+
+class _ChordIterate:
+    """Unknowns x on their way to the feasible set; keeps Jacobian and factor while they serve."""
+
+    def __init__(self, feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> None:
+        self._feasible, self._metric = feasible, metric
+        rows = feasible.rows(x)
+        self.x, self.violation = x, worst_violation(rows)
+        self._value = rows.value
+        self._rows: Rows | None = rows  # at x with their Jacobian, where that is known
+        self._linearised: LinearisedProblem | None = None
+        self._before = np.inf  # violation before the last step
+        self._stale = False
+
+    def advance(self, stage: str) -> Step | None:
+        """Takes a step; None where a chord step was shortened, so that a new Jacobian is due."""
+        slow = self._linearised is None or self.violation > MAX_CHORD_RATIO * self._before
+        fresh = slow or self._stale or self._rows is not None
+        linearised = self._linearise() if fresh or self._linearised is None else self._linearised
+        before, worst = self.violation, linearised.worst_owner(self._value)
+        d, _ = linearised.step(self._value)
+        trial = _shorten(self._feasible, linearised, self.x, d, self._value, whole=slow)
+        self.x, self._value, self._rows = trial.x, trial.value, trial.rows
+        self.violation = linearised.violation(trial.value)
+        self._stale = trial.length < 1.0 and not fresh
+        if self._stale:
+            return None
+        self._before = before
+        return Step(stage, before, trial.length, worst)
+
+    def _linearise(self) -> LinearisedProblem:
+        rows = self._feasible.rows(self.x) if self._rows is None else self._rows
+        working = None if self._linearised is None else self._linearised.working
+        self._linearised = self._feasible.linearise(rows, self._metric, working)
+        return self._linearised
+
+
+def _stagnant(steps: list[Step]) -> bool:
+    """Whether the last steps did not even halve the violation."""
+    if len(steps) < 2 * STALL_WINDOW:
+        return False
+    return steps[-1].violation > 0.5 * steps[-1 - STALL_WINDOW].violation
+
+
 @dataclass(frozen=True)
 class _Trial:
-    """Where a step led: unknowns, the rows' values, its length, and the rows if they are known."""
+    """Trial point: unknowns, the rows' values, step length, and the rows if they are known."""
 
     x: FloatArray
     value: FloatArray
@@ -200,53 +222,112 @@ class _Trial:
 
 
 def _shorten(
-    transcription: Transcription,
-    line: Linearised,
+    feasible: FeasibleSet,
+    linearised: LinearisedProblem,
     x: FloatArray,
     d: FloatArray,
-    places: FloatArray,
     value: FloatArray,
     *,
     whole: bool,
 ) -> _Trial:
-    """The longest of d, d/2, d/4 … that lessens the summed squared violation; 0 if none does.
+    """Backtracking line search on the summed squared violation; length 0 if nothing lowers it.
 
-    Near the end, where what is left of different rows has different units, lessening the worst
+    Near the end, where what is left of different rows has different units, lowering the worst
     violation counts as well. whole: whether the next step will want the Jacobian there, so that
     the full step is tried with it.
     """
-    before, worst = line.merit(value), line.worst(value)
+    before, worst = linearised.merit(value), linearised.violation(value)
     length = 1.0
-    while length > SHORTEST_STEP:
+    while length > MIN_RESTORATION_LENGTH:
         trial = x + length * d
-        rows = transcription.rows(trial, places) if whole and length == 1.0 else None
-        left = transcription.values(trial, places) if rows is None else rows.value
+        rows = feasible.rows(trial) if whole and length == 1.0 else None
+        left = feasible.values(trial) if rows is None else rows.value
         enough = 1.0 - 0.1 * length
-        near = worst < NEAR and line.worst(left) < enough * worst
-        if near or line.merit(left) < enough * before:
+        near = worst < NEAR_FEASIBLE and linearised.violation(left) < enough * worst
+        if near or linearised.merit(left) < enough * before:
             return _Trial(trial, left, length, rows)
         length *= 0.5
     return _Trial(x, value, 0.0, None)
 
 
-def _search(
-    transcription: Transcription,
-    goal: Objective,
+# ---------------------------------------------------------------- projection
+
+
+def project(
+    feasible: FeasibleSet,
+    objective: Objective,
     x: FloatArray,
-    d: FloatArray,
-    places: FloatArray,
-    line: Linearised,
-    multipliers: FloatArray,
-    objective: float,
+    *,
+    stage: str,
+    max_steps: int,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Projection: SQP steps that minimise an objective in the feasible set (thesis 4.2).
+
+    x: (K, n_block). Ends when a step changes the objective little; the rows then nearly hold, and
+    `restore` finishes what is left.
+    """
+    steps: list[Step] = []
+    status = Status.TOO_MANY_STEPS
+    multipliers: FloatArray | None = None
+    value = objective.value(x)
+    linearised: LinearisedProblem | None = None
+    for _ in range(max_steps):
+        rows = feasible.rows(x)
+        gradient, hessian = objective.expand(x)
+        working = None if linearised is None else linearised.working
+        linearised = feasible.linearise(rows, hessian, working)
+        d, multipliers = linearised.step(rows.value, gradient, multipliers)
+        merit = _L1Merit.of(feasible, objective, linearised, multipliers)
+        x, length = _backtrack(merit, merit.combined(value, rows.value), x, d)
+        worst = linearised.worst_owner(rows.value)
+        steps.append(Step(stage, linearised.violation(rows.value), length, worst))
+        if progress is not None:
+            progress(steps[-1], feasible.motion(x))
+        before, value = value, objective.value(x)
+        little = abs(before - value) < MIN_PROJECTION_DECREASE * before
+        if length == 0.0 or (len(steps) > 1 and little):
+            status = Status.SOLVED
+            break
+    return feasible.outcome(x, status, steps, feasible.violation(x))
+
+
+@dataclass(frozen=True)
+class _L1Merit:
+    """Exact l1 merit function: objective + penalty * violation (Nocedal & Wright, 15.4)."""
+
+    feasible: FeasibleSet
+    objective: Objective
+    linearised: LinearisedProblem
+    penalty: float
+
+    @staticmethod
+    def of(
+        feasible: FeasibleSet,
+        objective: Objective,
+        linearised: LinearisedProblem,
+        multipliers: FloatArray,
+    ) -> "_L1Merit":
+        """With a penalty beyond the largest multiplier, so that the function is exact."""
+        penalty = 2.0 * float(np.abs(multipliers).max()) + 1e-9
+        return _L1Merit(feasible, objective, linearised, penalty)
+
+    def combined(self, value: float, rows: FloatArray) -> float:
+        """The merit of an objective's value and the rows' values (R,)."""
+        return value + self.penalty * self.linearised.l1_violation(rows)
+
+    def __call__(self, x: FloatArray) -> float:
+        return self.combined(self.objective.value(x), self.feasible.values(x))
+
+
+def _backtrack(
+    merit: _L1Merit, before: float, x: FloatArray, d: FloatArray
 ) -> tuple[FloatArray, float]:
-    """Backtracks on the goal plus weighted violation (an exact l1 merit function)."""
-    weight = 2.0 * float(np.abs(multipliers).max()) + 1e-9
-    before = objective + weight * line.total(line.rows.value)
+    """Backtracking line search from x along d (K, n_block); x itself and 0 if nothing lowers it."""
     length = 1.0
-    while length > 0.1:
+    while length > MIN_PROJECTION_LENGTH:
         trial = x + length * d
-        violation = line.total(transcription.values(trial, places))
-        if goal.value(trial) + weight * violation < before:
+        if merit(trial) < before:
             return trial, length
         length *= 0.5
     return x, 0.0

@@ -34,7 +34,7 @@ from ..data.requests import ConeShape, Dynamics, Method, Vector
 from ..optimisation.sqp import Outcome
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
-from ..transcription.constraint import Missed
+from ..transcription.constraint import DenseViolation
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion, dynamics_residual, pinned_instants
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
@@ -56,7 +56,7 @@ def report(
 
     Raises UnknownPhase, UnknownContact where a pin of the problem names none.
     """
-    fit, motion, schedule = adaptation.fit, adaptation.motion, adaptation.plan.schedule
+    fit, motion, schedule = adaptation.fit, adaptation.motion, adaptation.setup.schedule
     transcription = motion.transcription
     pins = pins_of_contacts(fit, problem)
     return Report(
@@ -147,7 +147,7 @@ def _solves(outcomes: Sequence[Outcome], name: str) -> list[SolveReport]:
 # ---------------------------------------------------------------- how well it holds
 
 
-def _condition(missed: Missed, fit: Fit, character: Character) -> ConstraintReport:
+def _condition(missed: DenseViolation, fit: Fit, character: Character) -> ConstraintReport:
     return ConstraintReport(
         name=missed.name,
         kind=missed.kind,
@@ -177,7 +177,7 @@ def _contact(adaptation: Adaptation, i: int, pin: str | None) -> ContactReport:
         end_frame=scene_frame(fit, contact.end),
         pinned_from_s=at.pin_start,
         pinned_to_s=at.pin_end,
-        fitted_place_m=_vector(adaptation.plan.start.places[i]),
+        fitted_place_m=_vector(adaptation.setup.start.places[i]),
         place_m=_vector(motion.places[i]),
         worst_violation_mm=1000.0 * float(drift.max()),
         worst_violation_frame=scene_frame(fit, float(pinned[drift.argmax()])),
@@ -236,7 +236,7 @@ def _forces(adaptation: Adaptation) -> ForcesReport:
     carried = np.where(ground[:, 2] > LEAST_CARRIED, ground[:, 2], np.inf)
     friction = np.linalg.norm(ground[:, :2], axis=1) / carried
     peaks = []
-    for phase in adaptation.plan.schedule.phases:
+    for phase in adaptation.setup.schedule.phases:
         inside = (times >= phase.start) & (times <= phase.end)
         if phase.kind is PhaseKind.GROUND and inside.any():
             at = int(np.argmax(np.where(inside, total, -1.0)))
@@ -258,7 +258,7 @@ def fit_quality(fit: Fit) -> FitQuality:
 
 
 def _reduction(adaptation: Adaptation) -> ReductionReport | None:
-    space = adaptation.plan.space
+    space = adaptation.setup.space
     if space is None:
         return None
     return ReductionReport(
@@ -280,7 +280,7 @@ def _in_play(problem: MotionProblem) -> bool:
 
 
 def _torques(adaptation: Adaptation, problem: MotionProblem) -> TorquesReport:
-    motion, torques = adaptation.motion, adaptation.plan.torques
+    motion, torques = adaptation.motion, adaptation.setup.torques
     times = (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
     sizes = np.abs(exact_torques(motion, torques, times))
     character = motion.transcription.character
@@ -298,7 +298,7 @@ def _torques(adaptation: Adaptation, problem: MotionProblem) -> TorquesReport:
 def change(adaptation: Adaptation) -> MotionChange:
     """Distance of the motion from the fit, at the recording's frames and on its own time."""
     times = adaptation.fit.performance.times
-    moved = adaptation.plan.scene.timeline.to_new(times)
+    moved = adaptation.setup.context.timeline.to_new(times)
     kept = moved <= adaptation.motion.duration
     was, now = adaptation.fit.motion, adaptation.motion
     places = now.joint_centres(moved[kept]) - was.joint_centres(times[kept])

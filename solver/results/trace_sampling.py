@@ -14,7 +14,7 @@ from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.recording import Recording
 from ..data.traces import FlightParabola, Traces
-from ..transcription.motion import Motion, motion_efforts
+from ..transcription.motion import Motion, motion_inverse_dynamics
 
 PARABOLA_POINTS = 25
 MOMENT = 1e-3  # s, half of what speeds are taken over
@@ -110,7 +110,7 @@ def _figure(motion: Motion, times: FloatArray) -> _Figure:
 def _torques(motion: Motion, times: FloatArray, dynamics: InverseDynamics | None) -> FloatArray:
     if dynamics is None:
         return np.zeros((len(times), 0))
-    torques = np.abs(motion_efforts(dynamics, motion, times).torques)
+    torques = np.abs(motion_inverse_dynamics(dynamics, motion, times).torques)
     joints = motion.transcription.character.joints[1:]
     slices = [slice(j.first - 3, j.dofs.stop - 3) for j in joints]
     return np.stack([torques[:, part].max(axis=1, initial=0.0) for part in slices], axis=1)

@@ -12,7 +12,7 @@ from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
-from ..transcription.constraint import Missed, missed
+from ..transcription.constraint import DenseViolation, dense_violation
 
 MOST_LISTED = 3  # constraints that a failure names
 
@@ -29,10 +29,10 @@ def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
     return names
 
 
-def missed_conditions(adaptation: Adaptation) -> list[Missed]:
+def missed_conditions(adaptation: Adaptation) -> list[DenseViolation]:
     """Worst violation of each of the artist's constraints, between the nodes too."""
     x, t = adaptation.motion.x, adaptation.motion.transcription
-    return [missed(c, t.character, t.basis, t.layout, x) for c in t.conditions]
+    return [dense_violation(c, t.character, t.basis, t.layout, x) for c in t.constraints]
 
 
 def worst_constraints(
@@ -53,7 +53,7 @@ def worst_constraints(
     t = motion.transcription
     rows = t.rows(motion.x, adaptation.outcome.places)
     pins = pins_of_contacts(adaptation.fit, problem)
-    phases = adaptation.plan.schedule.phases
+    phases = adaptation.setup.schedule.phases
     owners = [f"{pins[name]}: {name}" if name in pins else name for name in t.owners]
     found: dict[tuple[str, RowKind], float] = {}
     for kind, time, owner, left in zip(

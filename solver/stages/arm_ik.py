@@ -1,7 +1,7 @@
-"""Arms that reach for what they shall grip: the first guess of a hang (thesis 6.2, 6.3).
+"""Damped least-squares inverse kinematics of gripping arms: initial guess of a hang (6.2, 6.3).
 
-The held frame repeats a pose whose hands are elsewhere. Carrying the whole body there would lift
-it off its ballistic path; the arms alone are turned towards the grip, and eased in before it.
+The held frame repeats a pose whose hands are elsewhere. Moving the whole body there would lift it
+off its ballistic path; the arms alone are turned towards the grip, and eased in before it.
 """
 
 import numpy as np
@@ -14,12 +14,14 @@ from ..transcription.motion import Motion
 from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants
 
 ARM = (Part.UPPER_ARM, Part.FOREARM, Part.HAND)
-EASE = 0.25  # s, before the grip
-STEPS, LONGEST, DAMPING = 60, 0.1, 1e-3  # of damped least squares; rad a step, m²
+EASE_IN = 0.25  # s, before the grip
+IK_ITERATIONS = 60
+MAX_ANGLE_STEP = 0.1  # rad an iteration
+IK_DAMPING = 1e-3  # m²
 
 
-def reaching(motion: Motion, places: FloatArray) -> Motion:
-    """The motion with the arms of its gripping contacts turned to the places (n_contacts, 3) m."""
+def reach_grips(motion: Motion, places: FloatArray) -> Motion:
+    """The motion with its gripping arms turned to reach places (n_contacts, 3) m, world."""
     t = motion.transcription
     grips = [
         (contact, place)
@@ -40,30 +42,33 @@ def reaching(motion: Motion, places: FloatArray) -> Motion:
 def _turn_arm(
     motion: Motion, contact: PointContact, place: FloatArray, times: FloatArray, angles: FloatArray
 ) -> None:
-    """Writes one arm's angles into (T, n) angles; the pelvis stays where it was."""
+    """Solves one arm's inverse kinematics into angles (T, n_angles) rad at times (T,) s.
+
+    Damped least squares, d = J'(J J' + damping I)^-1 e (Wampler 1986); the pelvis stays in place.
+    """
     t = motion.transcription
     character, point = t.character, t.points[contact.point]
-    start = contact.contact.start - EASE
+    start = contact.contact.start - EASE_IN
     during = np.flatnonzero((times >= start) & (times <= contact.contact.end))
     moved = angles[during]
     pelvis = forward_kinematics(character, moved).centres[:, 0] + motion.com(times[during])
     chain = _chain(motion, point.body)
-    for _ in range(STEPS):
+    for _ in range(IK_ITERATIONS):
         posed = forward_kinematics(character, moved)
         at = posed.points([point])[:, 0] - posed.centres[:, 0] + pelvis
-        pelvis_by = posed.point_jacobian([BodyPoint(0, np.zeros(3))])
-        by = (posed.point_jacobian([point]) - pelvis_by)[:, 0]
-        by = by[:, :, chain]
-        square = by @ np.swapaxes(by, 1, 2) + DAMPING * np.eye(3)
-        turn = np.swapaxes(by, 1, 2) @ np.linalg.solve(square, (place - at)[..., None])
-        moved[:, chain] += np.clip(turn[..., 0], -LONGEST, LONGEST)
-    share = np.clip((times[during] - start) / EASE, 0.0, 1.0)[:, None]
+        pelvis_jacobian = posed.point_jacobian([BodyPoint(0, np.zeros(3))])
+        jacobian = (posed.point_jacobian([point]) - pelvis_jacobian)[:, 0]
+        jacobian = jacobian[:, :, chain]
+        square = jacobian @ np.swapaxes(jacobian, 1, 2) + IK_DAMPING * np.eye(3)
+        turn = np.swapaxes(jacobian, 1, 2) @ np.linalg.solve(square, (place - at)[..., None])
+        moved[:, chain] += np.clip(turn[..., 0], -MAX_ANGLE_STEP, MAX_ANGLE_STEP)
+    share = np.clip((times[during] - start) / EASE_IN, 0.0, 1.0)[:, None]
     share = share**2 * (3.0 - 2.0 * share)
     angles[during] += share * (moved - angles[during])
 
 
 def _chain(motion: Motion, body: int) -> IntArray:
-    """The angles of the joints from the shoulder to a body."""
+    """Kinematic chain: indices of the angles of the joints from the shoulder to a body."""
     character = motion.transcription.character
     bodies = {body, *character.ancestors(body)}
     joints = [character.joints[b] for b in sorted(bodies) if character.bodies[b].part in ARM]

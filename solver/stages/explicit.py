@@ -1,6 +1,6 @@
-"""The explicit solution: the motion that lessens an objective under every request (thesis 4.3).
+"""The explicit solution: minimises an objective subject to every request (thesis 4.3).
 
-It starts from an implicit one, where every equation holds, and takes Gauss-Newton steps.
+It starts from an implicit one, where every row holds, and takes Gauss-Newton steps.
 """
 
 from collections.abc import Mapping
@@ -9,190 +9,187 @@ from ..arrays import FloatArray
 from ..data.requests import ObjectiveKind
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
-from ..optimisation.kkt_step import Linearised
-from ..optimisation.sqp import Outcome, Progress, Step, restore
+from ..optimisation.kkt_step import LinearisedProblem
+from ..optimisation.sqp import FeasibleSet, Outcome, Progress, Step, restore
 from ..transcription.motion import Motion
 from ..transcription.objectives import (
-    AngleRates,
+    AngleDerivatives,
     ContactForces,
-    MassPlaces,
+    LeastSquares,
+    MassPositions,
+    ObjectiveTerm,
     Power,
-    Quantity,
-    Squares,
-    Term,
     TorqueSmoothness,
-    WeightedSum,
-    nodes_of,
+    WeightedObjective,
+    values_at_nodes,
 )
+from ..transcription.sampling import MotionFunction
 from ..transcription.tracking_cost import TrackingCost
 from ..transcription.transcription import Transcription
 from .constraint_builder import preferred_poses
-from .fit import ADAPT_PRICES, motion_target
+from .fit import ADAPT_COST_WEIGHTS, motion_target
 from .setup import Setup
 
-MOST_STEPS = 12
-DAMPING = 0.02  # of what DRIFT costs; keeps the steps sane without being part of the goal
-DRIFT = 0.05  # m, rms; a drift from the start that costs as much as the whole objective there
-LEAST = 1e-9
-ENOUGH = 0.02  # of the goal: what a further step must gain
-SHORTEST = 0.05
-MOST_CORRECTIONS = 4
-SETTLED = 20.0  # times the tolerances: near enough to compare goals
+MAX_GAUSS_NEWTON_STEPS = 12
+DAMPING_SHARE = 0.02  # of what REFERENCE_DRIFT costs: Levenberg damping of the steps
+REFERENCE_DRIFT = 0.05  # m, rms; its tracking cost weighs like the whole objective at the start
+MIN_OBJECTIVE = 1e-9  # by which terms are divided at least
+MIN_EXPLICIT_DECREASE = 0.02  # of the objective: what a further step must gain
+MIN_STEP_LENGTH = 0.05
+MAX_CORRECTIONS = 4  # second-order, a trial point
+CORRECTION_TOLERANCE = 20.0  # times the tolerances: near enough to compare objectives
 
 
-class Near:
-    """TrackingCost to the start as a term. value, expand: see objectives.Term."""
+class TrackingTerm:
+    """Tracking cost to the start as an objective's term; see objectives.ObjectiveTerm."""
 
-    def __init__(self, closeness: TrackingCost, scale: float) -> None:
-        self._closeness, self.scale = closeness, scale
+    def __init__(self, cost: TrackingCost, scale: float) -> None:
+        self._cost, self.scale = cost, scale
 
     def value(self, x: FloatArray) -> float:
-        return self._closeness.value(x)
+        return self._cost.value(x)
 
     def expand(self, x: FloatArray, gradient: FloatArray, hessian: BlockBanded) -> None:
-        slope, metric = self._closeness.expand(x)
-        gradient += self.scale * slope
+        mine, metric = self._cost.expand(x)
+        gradient += self.scale * mine
         hessian.lower[: metric.band + 1] += self.scale * metric.lower
 
 
 def explicit(
     outcome: Outcome,
-    plan: Setup,
+    setup: Setup,
     objectives: Mapping[ObjectiveKind, float],
     progress: Progress | None,
 ) -> tuple[list[Outcome], float]:
-    """Lessens weighted objectives from a motion that meets every request.
+    """Minimises weighted objectives from a motion that meets every request (thesis 4.3).
 
-    Returns the steps' outcome and that of the restoring after, and the goal's value in shares of
-    that at the start; nothing and 1 where no motion with a lower objective was reached.
+    Returns the outcomes of minimisation and restoration, and the objective in shares of that at
+    the start; nothing and 1 where no motion with a lower objective was reached.
     """
-    t = outcome.transcription
-    goal = weighed(t, outcome.x, plan, objectives)
-    near = descend(t, goal, outcome.x, plan, progress)
-    settled = restore(
-        t,
-        goal.damping(near.x),
-        near.x,
-        plan.goal,
-        stage="explicit",
-        basis=plan.basis,
-        progress=progress,
-    )
-    if settled.status is not Status.SOLVED or goal.value(settled.x) >= goal.value(outcome.x):
+    feasible = setup.feasible_set(outcome.transcription)
+    objective = weighted_objective(outcome.transcription, outcome.x, setup, objectives)
+    near = minimise(feasible, objective, outcome.x, progress)
+    damping = objective.damping(near.x)
+    restored = restore(feasible, damping, near.x, stage="explicit", progress=progress)
+    before = objective.value(outcome.x)
+    if not restored.solved or (after := objective.value(restored.x)) >= before:
         return [], 1.0
-    return [near, settled], goal.value(settled.x) / goal.value(outcome.x)
+    return [near, restored], after / before
 
 
-def descend(
-    t: Transcription,
-    goal: WeightedSum,
+def minimise(
+    feasible: FeasibleSet,
+    objective: WeightedObjective,
     x: FloatArray,
-    plan: Setup,
     progress: Progress | None,
 ) -> Outcome:
-    """Gauss-Newton steps along the valid motions, until one gains little.
+    """Gauss-Newton steps in the feasible set from x (K, n_block), until one gains little.
 
-    A step is brought back to the valid motions before its goal is judged, for a small violation
-    would buy a lot of it (a feasible-direction method with second-order corrections).
+    A trial point is brought back to the set before its objective is judged, for a small violation
+    would buy a lot of it: second-order corrections (Nocedal & Wright, 18.3).
     """
     steps: list[Step] = []
-    value, working = goal.value(x), None
+    value, working = objective.value(x), None
     violation, length = 0.0, 1.0
-    for _ in range(MOST_STEPS):
-        rows = t.rows(x, plan.goal)
-        gradient, hessian = goal.expand(x)
-        line = Linearised(t, rows, hessian, basis=plan.basis, working=working)
-        d, _ = line.step(rows.value, gradient)
-        working = line.working
-        violation = line.worst(rows.value)
-        found = _settled_step(t, goal, line, x, d, plan.goal, (value, min(1.0, 2.0 * length)))
+    for _ in range(MAX_GAUSS_NEWTON_STEPS):
+        rows = feasible.rows(x)
+        gradient, hessian = objective.expand(x)
+        linearised = feasible.linearise(rows, hessian, working)
+        d, _ = linearised.step(rows.value, gradient)
+        working = linearised.working
+        violation = linearised.violation(rows.value)
+        begin = (value, min(1.0, 2.0 * length))
+        found = _corrected_step(feasible, objective, linearised, x, d, begin)
         length = found[2] if found else 0.0
-        steps.append(Step("explicit", violation, length, line.worst_name(rows.value)))
+        steps.append(Step("explicit", violation, length, linearised.worst_owner(rows.value)))
         if found is None:
             break
         before, (x, value, _) = value, found
         if progress is not None:
-            progress(steps[-1], Motion(t, x, plan.goal))
-        if before - value < ENOUGH * before:
+            progress(steps[-1], feasible.motion(x))
+        if before - value < MIN_EXPLICIT_DECREASE * before:
             break
-    return Outcome(x, t, Status.SOLVED, tuple(steps), violation, plan.goal)
+    return feasible.outcome(x, Status.SOLVED, steps, violation)
 
 
-def _settled_step(
-    t: Transcription,
-    goal: WeightedSum,
-    line: Linearised,
+def _corrected_step(
+    feasible: FeasibleSet,
+    objective: WeightedObjective,
+    linearised: LinearisedProblem,
     x: FloatArray,
     d: FloatArray,
-    places: FloatArray,
     begin: tuple[float, float],
 ) -> tuple[FloatArray, float, float] | None:
-    """The longest of d times a length, its half, … that lessens the goal once the rows hold again:
-    unknowns, goal and length; None if none does. begin: the goal's value, and the length."""
+    """Backtracking line search with second-order corrections: unknowns, objective and length.
+
+    None where no length lowers the objective. begin: the objective at x, and the first length.
+    """
     value, length = begin
-    while length > SHORTEST:
+    while length > MIN_STEP_LENGTH:
         trial = x + length * d
-        rows = t.values(trial, places)
-        for _ in range(MOST_CORRECTIONS):
-            if line.worst(rows) <= SETTLED:
+        values = feasible.values(trial)
+        for _ in range(MAX_CORRECTIONS):
+            if linearised.violation(values) <= CORRECTION_TOLERANCE:
                 break
-            trial = trial + line.step(rows)[0]
-            rows = t.values(trial, places)
-        if line.worst(rows) <= SETTLED:
-            reached = goal.value(trial)
+            trial = trial + linearised.step(values)[0]
+            values = feasible.values(trial)
+        if linearised.violation(values) <= CORRECTION_TOLERANCE:
+            reached = objective.value(trial)
             if reached < value:
                 return trial, reached, length
         length *= 0.5
     return None
 
 
-def weighed(
-    t: Transcription, x: FloatArray, plan: Setup, objectives: Mapping[ObjectiveKind, float]
-) -> WeightedSum:
-    """The goal of weighted objectives, each in shares of its value at x (K, n_block), and of poses
-    that are only preferred. Without objectives it is closeness to x that these have to outweigh."""
-    start = Motion(t, x, plan.goal)
-    closeness = TrackingCost(t, motion_target(start), ADAPT_PRICES)
-    typical = 0.5 * DRIFT**2 * start.duration
-    terms: list[Term] = [*preferred_poses(plan.requests, plan.scene, t)]
+def weighted_objective(
+    t: Transcription, x: FloatArray, setup: Setup, objectives: Mapping[ObjectiveKind, float]
+) -> WeightedObjective:
+    """Weighted objectives, each in shares of its value at x (K, n_block), and preferred poses.
+
+    Without objectives it is the tracking cost to x that the poses have to outweigh.
+    """
+    start = Motion(t, x, setup.target_places)
+    tracking = TrackingCost(t, motion_target(start), ADAPT_COST_WEIGHTS)
+    typical = 0.5 * REFERENCE_DRIFT**2 * start.duration
+    terms: list[ObjectiveTerm] = [*preferred_poses(setup.requests, setup.context, t)]
     if not objectives:
-        terms.append(Near(closeness, 1.0))
-    for objective, weight in objectives.items():
+        terms.append(TrackingTerm(tracking, 1.0))
+    for kind, weight in objectives.items():
         if weight <= 0.0:
             continue
-        if objective is ObjectiveKind.CLOSENESS:
-            terms.append(Near(closeness, weight / typical))
+        if kind is ObjectiveKind.CLOSENESS:
+            terms.append(TrackingTerm(tracking, weight / typical))
             continue
-        for term in _terms(objective, t, plan):
-            term.scale = weight / max(term.value(x), LEAST)
+        for term in _objective_terms(kind, t, setup):
+            term.scale = weight / max(term.value(x), MIN_OBJECTIVE)
             terms.append(term)
-    still = closeness.expand(x)[1]
-    still.lower *= DAMPING / typical
-    still.add_diagonal((~t.active).astype(float))
-    return WeightedSum(terms, lambda _: still)
+    damping = tracking.expand(x)[1]
+    damping.lower *= DAMPING_SHARE / typical
+    damping.add_diagonal((~t.active).astype(float))
+    return WeightedObjective(terms, lambda _: damping)
 
 
-def _terms(objective: ObjectiveKind, t: Transcription, plan: Setup) -> list[Term]:
-    def from_start(quantity: Quantity) -> Term:
-        return Squares(t, quantity, nodes_of(plan.start, t, quantity))
+def _objective_terms(kind: ObjectiveKind, t: Transcription, setup: Setup) -> list[ObjectiveTerm]:
+    def from_start(function: MotionFunction) -> ObjectiveTerm:
+        return LeastSquares(t, function, values_at_nodes(setup.start, t, function))
 
-    match objective:
+    match kind:
         case ObjectiveKind.TORQUE_SMOOTHNESS:
-            return [TorqueSmoothness(t, plan.torques)]
+            return [TorqueSmoothness(t, setup.torques)]
         case ObjectiveKind.TORQUE_OUTPUT:
-            return [Squares(t, plan.torques)]
+            return [LeastSquares(t, setup.torques)]
         case ObjectiveKind.POWER:
-            return [Squares(t, Power(plan.torques))]
+            return [LeastSquares(t, Power(setup.torques))]
         case ObjectiveKind.MASS_DISPLACEMENT:
-            return [from_start(MassPlaces())]
+            return [from_start(MassPositions())]
         case ObjectiveKind.ANGLE_DISPLACEMENT:
-            return [from_start(AngleRates(0))]
+            return [from_start(AngleDerivatives(0))]
         case ObjectiveKind.ANGLE_SMOOTHNESS:
-            return [Squares(t, AngleRates(2))]
+            return [LeastSquares(t, AngleDerivatives(2))]
         case ObjectiveKind.TOTAL_CHANGE:
             return [
-                from_start(AngleRates(0)),
-                from_start(plan.torques),
+                from_start(AngleDerivatives(0)),
+                from_start(setup.torques),
                 from_start(ContactForces()),
             ]
-    raise ValueError(objective)
+    raise ValueError(kind)

@@ -22,36 +22,38 @@ from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..numerics.interpolation import interpolate
 from ..numerics.splines import SplineBasis, gauss_instants, phase_breaks
-from ..optimisation.sqp import Outcome, Progress, project, restore
-from ..transcription.contact_pins import PointContact
-from ..transcription.motion import DenseTolerance, Motion, pinned_instants, split, weak_spans
-from ..transcription.objectives import torque_metric
-from ..transcription.torque_constraint import TorqueFunction, every_torque
-from ..transcription.tracking_cost import CostWeights, Target, TrackingCost, marker_points
-from ..transcription.transcription import SETTLE, Transcription, touching_spans
-
-SPANS = (0.08, 0.06, 0.045, 0.035, 0.025)  # s, from which the clip chooses
-SPLINE_FIT_TOLERANCE = 0.004  # m; how far a joint may be, rms, from the recording for want of knots
-SHORTEST_SPAN = 0.015  # s
-FIT_PRICES = CostWeights(place=1.0, smooth_s=0.05, force=1e-4)
-# An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
-# priced too: what a person does to jump further is push longer, not only harder.
-ADAPT_PRICES = CostWeights(shape=1.0, com=0.02, smooth_s=0.1, force=3e-3)
-MOST_REFINEMENTS = 3
-MOST_RESETTLINGS = 4
-THIRD_DERIVATIVE_WEIGHT = (
-    1e-9  # weight against third derivatives when the recording is made a spline
+from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
+from ..transcription.contact_pins import PointContact, touching_spans
+from ..transcription.motion import (
+    DenseTolerance,
+    Motion,
+    pinned_instants,
+    spans_to_refine,
+    split_spans,
 )
+from ..transcription.objectives import torque_metric
+from ..transcription.torque_constraint import TorqueFunction, joint_torques
+from ..transcription.tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_points
+from ..transcription.transcription import SETTLING_TIME, Transcription
 
-
+CANDIDATE_SPANS = (0.08, 0.06, 0.045, 0.035, 0.025)  # s, longest knot spans to choose from
+SPLINE_FIT_TOLERANCE = 0.004  # m, rms spline-fit error of a joint centre
+MIN_SPAN = 0.015  # s, between breaks
+FIT_COST_WEIGHTS = CostWeights(position=1.0, acceleration_time=0.05, force=1e-4)
+# An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
+# weigh too: what a person does to jump further is push longer, not only harder.
+ADAPT_COST_WEIGHTS = CostWeights(shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3)
+MAX_REFINEMENTS = 3
+MAX_PLACE_UPDATES = 4
+THIRD_DERIVATIVE_WEIGHT = 1e-9  # regularises splines through samples that jump between contacts
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
-FIT_PROMISE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
-ADAPT_PROMISE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
+FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
+ADAPT_TOLERANCE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
 
 
 @dataclass(frozen=True)
-class Solved:
-    """A motion that was solved for: how each stage ended, and each contact's place."""
+class SolvedMotion:
+    """A solved motion: the outcomes of its stages in order, and each contact's place."""
 
     outcomes: tuple[Outcome, ...]
     places: FloatArray  # (n_contacts, 3) m
@@ -70,7 +72,7 @@ class Solved:
 
 
 @dataclass(frozen=True)
-class Fit(Solved):
+class Fit(SolvedMotion):
     """A fitted performance."""
 
     performance: Performance
@@ -78,22 +80,22 @@ class Fit(Solved):
 
     @cached_property
     def metric(self) -> BlockBanded:
-        """The norm in which adaptations of this fit are small."""
-        return motion_metric(self.motion, ADAPT_PRICES)
+        """Metric W of the minimum-norm steps of its adaptations."""
+        return motion_metric(self.motion, ADAPT_COST_WEIGHTS)
 
     @cached_property
     def other_bodies(self) -> dict[BodyChange, Motion]:
-        """The fit with other bodies, for arrange.py to keep: their functions take long to build."""
+        """Cache of the fit with other bodies (setup.py): their functions take long to build."""
         return {}
 
     @cached_property
     def torques(self) -> TorqueFunction:
-        """The torques of every joint."""
-        return every_torque(self.motion.transcription)
+        """Torque function of every joint."""
+        return joint_torques(self.motion.transcription)
 
     @cached_property
     def torque_metric(self) -> BlockBanded:
-        """What changes of the fit's torques cost; see objectives.torque_metric."""
+        """Metric of changes of the fit's torques; see objectives.torque_metric."""
         return torque_metric(self.motion, self.torques)
 
 
@@ -103,25 +105,28 @@ def fit(
     *,
     progress: Progress | None = None,
 ) -> Fit:
-    """Finds the valid motion nearest to the recording, with its contacts."""
+    """The physically valid motion nearest to the recording, with its contacts (thesis 4.2).
+
+    A fit that fails is returned as it ended, with a status that says so.
+    """
     transcription = transcribe(performance, schedule)
-    x = first_guess(transcription, performance)
+    x = initial_guess(transcription, performance)
     places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
-    closeness = TrackingCost(
-        transcription, recorded_target(transcription, performance, x), FIT_PRICES
+    tracking_cost = TrackingCost(
+        transcription, recorded_target(transcription, performance, x), FIT_COST_WEIGHTS
     )
-    near = project(
-        transcription, closeness, x, places, stage="fit", most_steps=8, progress=progress
-    )
-    metric = closeness.expand(near.x)[1]
+    feasible = FeasibleSet(transcription, places)
+    near = project(feasible, tracking_cost, x, stage="fit", max_steps=8, progress=progress)
+    metric = tracking_cost.expand(near.x)[1]
     outcomes, last = [near], near
-    for _ in range(1 + MOST_RESETTLINGS):
-        last = restore(transcription, metric, last.x, places, stage="fit", progress=progress)
+    for _ in range(1 + MAX_PLACE_UPDATES):
+        last = restore(feasible, metric, last.x, stage="fit", progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
-            outcomes += refine(last, places, fitting_metric, FIT_PROMISE, progress=progress)
+            outcomes += refine(last, fit_metric, FIT_TOLERANCE, progress=progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
+        feasible = replace(feasible, places=places)
     settled = tuple(
         replace(contact, place=place)
         for contact, place in zip(schedule.contacts, places, strict=True)
@@ -130,7 +135,7 @@ def fit(
 
 
 def reached_places(motion: Motion) -> FloatArray:
-    """(n_contacts, 3) m: where each pinned point is on average.
+    """(n_contacts, 3) m, mean position of each pinned point.
 
     Places read off a recording contradict each other by millimetres where heel and toe of one foot
     are both down; where the steps brought them they agree better.
@@ -144,31 +149,26 @@ def reached_places(motion: Motion) -> FloatArray:
 
 def refine(
     outcome: Outcome,
-    places: FloatArray,
     metric_of: Callable[[Motion], BlockBanded],
-    promise: DenseTolerance,
+    tolerance: DenseTolerance,
     *,
     basis: FloatArray | None = None,
     progress: Progress | None = None,
 ) -> list[Outcome]:
-    """Splits spans until physics and pins hold between the nodes as promised (thesis 6.4)."""
+    """Knot refinement: splits spans until dynamics and pins hold between the nodes (thesis 6.4).
+
+    basis: the changes of a block that are allowed, see FeasibleSet.
+    """
     outcomes: list[Outcome] = []
-    for _ in range(MOST_REFINEMENTS):
-        motion = Motion(outcome.transcription, outcome.x, places)
-        weak = weak_spans(motion, promise)
+    for _ in range(MAX_REFINEMENTS):
+        motion = Motion(outcome.transcription, outcome.x, outcome.places)
+        weak = spans_to_refine(motion, tolerance)
         if not len(weak):
             break
         finer = on_finer_basis(motion, weak)
         metric = metric_of(finer)
-        finer_outcome = restore(
-            finer.transcription,
-            metric,
-            finer.x,
-            places,
-            stage="refine",
-            basis=basis,
-            progress=progress,
-        )
+        feasible = FeasibleSet(finer.transcription, outcome.places, basis)
+        finer_outcome = restore(feasible, metric, finer.x, stage="refine", progress=progress)
         if finer_outcome.status is not Status.SOLVED:
             break  # what was solved for stands; its residual between the nodes is reported
         outcome = finer_outcome
@@ -177,9 +177,9 @@ def refine(
 
 
 def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
-    """The same motion with some spans split in two."""
+    """Knot insertion: the same motion with some spans split in two."""
     old = motion.transcription
-    breaks = split(old.basis.breaks, spans)
+    breaks = split_spans(old.basis.breaks, spans)
     double = np.isin(breaks, old.basis.breaks[old.basis.double])
     basis = SplineBasis(breaks, double)
     new = replace(old, basis=basis)
@@ -189,41 +189,43 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
     nodes = basis.force_nodes(inner)
     middles = 0.5 * (breaks[:-1] + breaks[1:])
     was = old.basis.spans(middles)
-    values = motion.x[old.basis.force_nodes(was) + 1][:, :, old.layout.forces]
+    values = motion.x[old.layout.force_block(old.basis.force_nodes(was))][:, :, old.layout.forces]
     for side in range(2):
         weights = old.basis.force_weights(breaks[inner + side], was)
-        x[nodes[:, side] + 1, old.layout.forces] = np.einsum("tk,tkn->tn", weights, values)
+        x[old.layout.force_block(nodes[:, side]), old.layout.forces] = np.einsum(
+            "tk,tkn->tn", weights, values
+        )
     x[~new.active] = 0.0
     return Motion(new, x, motion.places)
 
 
-def fitting_metric(motion: Motion) -> BlockBanded:
-    """The norm in which steps of a fit are small."""
-    return motion_metric(motion, FIT_PRICES)
+def fit_metric(motion: Motion) -> BlockBanded:
+    """Metric W of the minimum-norm steps of a fit."""
+    return motion_metric(motion, FIT_COST_WEIGHTS)
 
 
-def motion_metric(motion: Motion, prices: CostWeights) -> BlockBanded:
-    """The metric W at a motion."""
-    return TrackingCost(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
+def motion_metric(motion: Motion, weights: CostWeights) -> BlockBanded:
+    """Metric W at a motion: Gauss-Newton Hessian of the tracking cost to itself."""
+    return TrackingCost(motion.transcription, motion_target(motion), weights).expand(motion.x)[1]
 
 
-def motion_target(motion: Motion) -> Target:
-    """A solved motion as a target."""
+def motion_target(motion: Motion) -> TrackingTarget:
+    """A motion as a tracking target."""
     t = motion.transcription
     com = t.basis.combine(motion.x[:, t.layout.com], t.node_times)
     q, a = (t.angles_at_nodes(motion.x, k) for k in (0, 2))
     markers = forward_kinematics(t.character, q).points(marker_points(t.character)) + com[:, None]
-    return Target(markers, com, a, motion.x[:, t.layout.forces])
+    return TrackingTarget(markers, com, a, motion.x[:, t.layout.forces])
 
 
 def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcription:
-    """The equations of a performance with its contacts."""
+    """Transcription of a performance with its contacts."""
     character = performance.character
     points, which = body_points(character, performance.recording, schedule)
     contacts, extra = point_contacts(schedule, which)
     return Transcription(
         character,
-        _coarsest_faithful(performance, schedule.boundaries, extra),
+        _coarsest_basis(performance, schedule.boundaries, extra),
         points,
         contacts,
         MomentFunction(character),
@@ -233,24 +235,26 @@ def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcrip
 def point_contacts(
     schedule: ContactSchedule, which: Sequence[int]
 ) -> tuple[tuple[PointContact, ...], list[float]]:
-    """The contacts with the instants between which their points (which) are held still, and those
-    of the instants that are no boundaries."""
+    """Contacts with their pins' intervals, and the ends of these that are no phase boundaries, s.
+
+    which: each contact's index of a touching point.
+    """
     contacts: list[PointContact] = []
     extra: list[float] = []
     for contact, point in zip(schedule.contacts, which, strict=True):
         start, end = (
-            _shared_instant(t, schedule.boundaries, extra)
-            for t in _pinned(contact, schedule.duration)
+            _snapped_instant(t, schedule.boundaries, extra)
+            for t in _pin_interval(contact, schedule.duration)
         )
         contacts.append(PointContact(contact, point, start, end))
     return tuple(contacts), extra
 
 
-def _coarsest_faithful(
+def _coarsest_basis(
     performance: Performance, boundaries: Sequence[float], extra: Sequence[float]
 ) -> SplineBasis:
-    """The basis with the fewest knots that follows the recording; physics adds more (`refine`)."""
-    for longest in SPANS:
+    """Basis with the fewest knots that follows the recording; `refine` adds more for physics."""
+    for longest in CANDIDATE_SPANS:
         basis = SplineBasis(*phase_breaks(boundaries, extra, longest))
         angles = recorded_spline(basis, performance, performance.angles)
         posed = forward_kinematics(performance.character, basis.combine(angles, performance.times))
@@ -260,18 +264,18 @@ def _coarsest_faithful(
     return basis
 
 
-def _pinned(contact: Contact, duration: float) -> tuple[float, float]:
-    """When a contact's point is held still: all of it but a short while at either end."""
-    settle = min(SETTLE, 0.25 * (contact.end - contact.start))
+def _pin_interval(contact: Contact, duration: float) -> tuple[float, float]:
+    """Start and end, s, of a contact's pin: the contact without a settling time at either end."""
+    settle = min(SETTLING_TIME, 0.25 * (contact.end - contact.start))
     start = contact.start if contact.start <= 0.0 else contact.start + settle
     end = contact.end if contact.end >= duration else contact.end - settle
     return start, end
 
 
-def _shared_instant(t: float, boundaries: Sequence[float], extra: list[float]) -> float:
-    """A break near t: one that is there already if it is close enough, else t itself, added."""
+def _snapped_instant(t: float, boundaries: Sequence[float], extra: list[float]) -> float:
+    """The existing break near t, or t itself, added to `extra`."""
     near = min((*boundaries, *extra), key=lambda b: abs(b - t))
-    if abs(near - t) < SHORTEST_SPAN:
+    if abs(near - t) < MIN_SPAN:
         return near
     extra.append(t)
     return t
@@ -280,7 +284,7 @@ def _shared_instant(t: float, boundaries: Sequence[float], extra: list[float]) -
 def body_points(
     character: Character, recording: Recording, schedule: ContactSchedule
 ) -> tuple[tuple[BodyPoint, ...], list[int]]:
-    """The distinct points that touch, in their bodies' frames, and each contact's index of one."""
+    """Distinct touching points, in their bodies' frames, and each contact's index of one."""
     bodies = {body.bone: i for i, body in enumerate(character.bodies)}
     names: list[str] = []
     points: list[BodyPoint] = []
@@ -294,8 +298,8 @@ def body_points(
     return tuple(points), which
 
 
-def first_guess(transcription: Transcription, performance: Performance) -> FloatArray:
-    """The recording's own spline, and forces that share its centre of mass's acceleration."""
+def initial_guess(transcription: Transcription, performance: Performance) -> FloatArray:
+    """Initial guess x (K, n_block): splines of the recording, forces that explain its load."""
     basis, layout = transcription.basis, transcription.layout
     x = np.zeros((basis.n_coefficients, layout.n_block))
     x[:, layout.com] = recorded_spline(basis, performance, performance.com)
@@ -303,13 +307,13 @@ def first_guess(transcription: Transcription, performance: Performance) -> Float
     spans = np.arange(basis.n_spans)
     middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
     load = basis.combine(x[:, layout.com], middles, 2)[:, 2] / STANDARD_GRAVITY + 1.0
-    nodes = basis.force_nodes(spans) + 1
+    blocks = layout.force_block(basis.force_nodes(spans))
     for contact in transcription.contacts:
         inside = touching_spans(basis, contact.contact)
         for side in range(2):
-            at = nodes[inside, side]
-            x[at, layout.force(contact.point).start + 2] = np.clip(load[inside], 0.0, 4.0)
-    vertical = range(layout.forces.start + 2, layout.n_block, 3)
+            at = blocks[inside, side]
+            x[at, layout.vertical_force(contact.point)] = np.clip(load[inside], 0.0, 4.0)
+    vertical = layout.vertical_forces
     together = np.maximum((x[:, vertical] > 0).sum(axis=1, keepdims=True), 1)
     x[:, vertical] /= together
     x[~transcription.active] = 0.0
@@ -319,7 +323,7 @@ def first_guess(transcription: Transcription, performance: Performance) -> Float
 def recorded_spline(
     basis: SplineBasis, performance: Performance, samples: FloatArray
 ) -> FloatArray:
-    """(n_coefficients, n) the spline nearest to samples (T, n) at the recording's frames.
+    """(n_coefficients, n) least-squares spline of samples (T, n) at the recording's frames.
 
     Fitted between the frames too: a short span may hold no frame, and a spline that nothing holds
     there would swing.
@@ -332,10 +336,10 @@ def recorded_spline(
 
 def recorded_target(
     transcription: Transcription, performance: Performance, x: FloatArray
-) -> Target:
-    """The recording at the dynamics nodes; accelerations and forces as in the first guess x."""
+) -> TrackingTarget:
+    """The recording as a tracking target; accelerations and forces as in the initial guess x."""
     times = transcription.node_times
-    return Target(
+    return TrackingTarget(
         markers=performance.points(marker_points(performance.character), times),
         com=interpolate(performance.times, performance.com, times),
         accelerations=transcription.angles_at_nodes(x, 2),
@@ -343,12 +347,12 @@ def recorded_target(
     )
 
 
-def greville(basis: SplineBasis) -> FloatArray:
-    """(n_coefficients,) the instant that each coefficient stands for."""
+def greville_abscissae(basis: SplineBasis) -> FloatArray:
+    """(n_coefficients,) Greville abscissae, s: the instant that each coefficient stands for."""
     k = basis.knots
     return np.asarray((k[1:-3] + k[2:-2] + k[3:-1]) / 3.0)
 
 
 def dense_instants(basis: SplineBasis, per_span: int = 4) -> FloatArray:
-    """Instants that determine a spline on this basis."""
+    """Gauss instants, s, that determine a spline on this basis."""
     return gauss_instants(basis.breaks, per_span)[0]

@@ -1,10 +1,10 @@
-"""A motion that follows a pin while it is dragged: a few warm-started steps for each new place.
+"""Interactive drag: a few warm-started SQP steps for each new place of a dragged pin.
 
 Moving a pin changes the rows' values, not their Jacobian, so most steps go on with the last factor
 (chord steps); a new one is made where they no longer come near. Each update steps from the last one
 by the smallest change: measured against steps towards the motion nearest to the fit, that is as
-near to what the solve will find and does not jitter. Far moves are made in stages, one an update.
-The solve proper, once the pin is let go, starts from the fit again.
+near to what the solve will find and does not jitter. Far moves are made by continuation, one step
+an update. The solve proper, once the pin is let go, starts from the fit again.
 """
 
 from dataclasses import replace
@@ -16,105 +16,99 @@ from ..data.problem import MotionProblem
 from ..data.report import DragSummary
 from ..data.status import DragStatus
 from ..data.traces import Traces
-from ..optimisation.kkt_step import Linearised
+from ..optimisation.kkt_step import LinearisedProblem
 from ..transcription.motion import Motion
 from .fit import Fit
 from .implicit import Adaptation
-from .setup import Setup, goal_places, set_up
-from .warm_start import stage_count, staged, stance_moves, warm_start
+from .setup import Setup, find_target_places, set_up
+from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
 
-CHORDS = 2  # steps an update on the same factor
-GAIN = 0.3  # of the violation: what a chord step must leave at most, or the factor is stale
-LOST = 1e5  # times the tolerances (1 m)
-NEAR = 100.0  # times the tolerances (1 mm): where the last factor still serves
+CHORD_STEPS = 2  # an update, on the same factor
+MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
+DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
+KEPT_FACTOR_VIOLATION = 100.0  # times the tolerances (1 mm): where the last factor still serves
 
 
 class Follower:
-    """The motion as it follows; begins at a fit, or at an adaptation of the same problem."""
+    """Warm-started tracking of a changing problem, from a fit or an adaptation of the same problem.
+
+    violation: of `motion`, the worst over its tolerance.
+    """
 
     def __init__(self, fit: Fit, problem: MotionProblem, last: Adaptation | None = None) -> None:
         self._fit, self._problem = fit, problem
-        self._plan = set_up(fit, problem)
-        self.motion = self._plan.start
+        self.setup = set_up(fit, problem)
+        self.motion = self.setup.start
         if last is not None:
             self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
-            self._plan = last.plan
-        self._metric = self._plan.metric if last is None else self._plan.metric_of(self.motion)
-        self._line: Linearised | None = None
+            self.setup = last.setup
+        self._metric = self.setup.metric if last is None else self.setup.metric_of(self.motion)
+        self._linearised: LinearisedProblem | None = None
         self._held = self.motion
         self.violation = np.inf
 
-    @property
-    def plan(self) -> Setup:
-        return self._plan
-
     def follow(self, problem: MotionProblem) -> DragStatus:
-        """Steps towards what a problem asks for now; a motion that is lost goes back to where it
-        last held.
+        """Steps towards a problem as it is now; a motion that diverges goes back to where it held.
 
-        Raises as arrange does, leaving the motion as it was.
+        Raises as set_up does, leaving the motion as it was.
         """
         if replace(problem, pins=()) != replace(self._problem, pins=()):
-            self._rearrange(problem)
+            self._set_up(problem)
         self._problem = problem
-        goal = goal_places(self._fit, problem, self._plan.schedule)
+        target = find_target_places(self._fit, problem, self.setup.schedule)
         was = self.motion.places
-        whole = stance_moves(self._plan.schedule, was, goal)
-        stages = stage_count(whole)
-        if stages > 1:
-            goal = staged(self._plan.schedule, was, goal, whole, 1.0 / stages)
-        x = warm_start(self.motion, stance_moves(self._plan.schedule, was, goal))
-        if not self._settle(x, goal):
-            self.motion, self._line = self._held, None
+        whole = stance_moves(self.setup.schedule, was, target)
+        steps = continuation_steps(whole)
+        if steps > 1:
+            target = partial_places(self.setup.schedule, was, target, whole, 1.0 / steps)
+        x = warm_start(self.motion, stance_moves(self.setup.schedule, was, target))
+        if not self._step(x, target):
+            self.motion, self._linearised = self._held, None
             return DragStatus.DIVERGED
-        if self.violation < NEAR:
+        if self.violation < KEPT_FACTOR_VIOLATION:
             self._held = self.motion
-        there = stages == 1 and self.violation <= 1.0
+        there = steps == 1 and self.violation <= 1.0
         return DragStatus.CONVERGED if there else DragStatus.CONVERGING
 
-    def _rearrange(self, problem: MotionProblem) -> None:
-        """Other bounds or places of points: the same unknowns where the structure allows."""
-        plan = set_up(self._fit, problem)
-        old, new = self.motion.transcription, plan.start.transcription
-        start = plan.start
+    def _set_up(self, problem: MotionProblem) -> None:
+        """Sets up for other requests, from the same unknowns where basis and layout allow."""
+        setup = set_up(self._fit, problem)
+        old, new = self.motion.transcription, setup.start.transcription
+        start = setup.start
         if new.basis is old.basis and new.layout == old.layout:
             start = Motion(new, self.motion.x, self.motion.places)
-        self._plan, self.motion, self._metric = plan, start, plan.metric
-        self._line, self._held = None, start
+        self.setup, self.motion, self._metric = setup, start, setup.metric
+        self._linearised, self._held = None, start
 
-    def _settle(self, x: FloatArray, places: FloatArray) -> bool:
-        """A few steps from unknowns x; False, having changed nothing, where they lead astray."""
-        t = self.motion.transcription
-        value = t.values(x, places)
+    def _step(self, x: FloatArray, places: FloatArray) -> bool:
+        """A few chord steps from unknowns x; False, having changed nothing, where they diverge."""
+        feasible = self.setup.feasible_set(self.motion.transcription, places)
+        value = feasible.values(x)
         try:
-            line = self._line or self._linearised(x, places)
+            linearised = self._linearised or feasible.linearise(feasible.rows(x), self._metric)
         except np.linalg.LinAlgError:  # too far from any motion
             return False
-        for _ in range(CHORDS):
-            before = line.worst(value)
-            x = x + line.step(value)[0]
-            value = t.values(x, places)
-            after = line.worst(value)
-            if after <= 1.0 or after > GAIN * before:
+        for _ in range(CHORD_STEPS):
+            before = linearised.violation(value)
+            x = x + linearised.step(value)[0]
+            value = feasible.values(x)
+            after = linearised.violation(value)
+            if after <= 1.0 or after > MAX_DRAG_CHORD_RATIO * before:
                 break
-        if not after < LOST:
+        if not after < DIVERGED_VIOLATION:
             return False
         self.violation = after
-        self._line = line if after < NEAR else None
-        self.motion = Motion(t, x, places)
+        self._linearised = linearised if after < KEPT_FACTOR_VIOLATION else None
+        self.motion = feasible.motion(x)
         return True
 
-    def _linearised(self, x: FloatArray, places: FloatArray) -> Linearised:
-        t = self.motion.transcription
-        return Linearised(t, t.rows(x, places), self._metric, basis=self._plan.basis)
 
-
-def change(fit: Fit, plan: Setup, motion: Motion, seen: Traces) -> DragSummary:
-    """Change of a motion against the fit. seen: the motion's traces."""
+def change(fit: Fit, setup: Setup, motion: Motion, seen: Traces) -> DragSummary:
+    """Change of a motion, as sampled (seen), against the fit."""
     known = {c.name: place for c, place in zip(fit.schedule.contacts, fit.places, strict=True)}
     moves = [
         float(np.linalg.norm(place - known[c.name]))
-        for c, place in zip(plan.schedule.contacts, motion.places, strict=True)
+        for c, place in zip(setup.schedule.contacts, motion.places, strict=True)
         if c.name in known
     ]
     was = fit.motion.joint_centres(fit.performance.times)[:, 0, 2]

@@ -1,4 +1,4 @@
-"""The fit's motion as a first guess for a changed body or other gravity (thesis 6.2)."""
+"""Warm start for a changed body or other gravity, from the fit's motion (thesis 6.2)."""
 
 import numpy as np
 
@@ -6,16 +6,12 @@ from ..arrays import FloatArray
 from ..body.body_changes import changed_points
 from ..body.character import Character
 from ..body.kinematics import forward_kinematics
-from ..numerics.splines import gauss_instants
 from ..transcription.motion import Motion
-
-THIRD_DERIVATIVE_WEIGHT = (
-    1e-9  # weight against third derivatives where a first guess jumps between contacts
-)
+from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants
 
 
-def reseated(motion: Motion, character: Character) -> FloatArray:
-    """Unknowns (K, n_block) of a motion of the old figure as a first guess for the new one.
+def reseat(motion: Motion, character: Character) -> FloatArray:
+    """Unknowns (K, n_block) of a motion of the old figure as an initial guess for the new one.
 
     character: of the same joints, see `changed_character`. The angles stay; the root moves so that
     the contact points stay where they were, on average over those pinned at each instant and
@@ -24,18 +20,16 @@ def reseated(motion: Motion, character: Character) -> FloatArray:
     none begins to pull); horizontal ones do not, for the body travels as far in the same time.
     """
     t, x = motion.transcription, motion.x.copy()
-    times = gauss_instants(t.basis.breaks, 4)[0]
-    x[:, t.layout.com] += t.basis.project(
-        times, _reseat(motion, character, times), THIRD_DERIVATIVE_WEIGHT
-    )
+    times = dense_instants(t.basis)
+    shift = _com_shift(motion, character, times)
+    x[:, t.layout.com] += t.basis.project(times, shift, THIRD_DERIVATIVE_WEIGHT)
     if character.gravity != t.character.gravity:
-        vertical = slice(t.layout.forces.start + 2, t.layout.forces.stop, 3)
-        x[:, vertical] *= character.gravity / t.character.gravity
+        x[:, t.layout.vertical_forces] *= character.gravity / t.character.gravity
     return x
 
 
-def _reseat(motion: Motion, character: Character, times: FloatArray) -> FloatArray:
-    """(T, 3) how far the centre of mass moves, m."""
+def _com_shift(motion: Motion, character: Character, times: FloatArray) -> FloatArray:
+    """(T, 3) displacement of the centre of mass that keeps contact points in place, m."""
     t = motion.transcription
     old, new = motion.pose(times), forward_kinematics(character, motion.angles(times))
     off = old.centres[:, 0] - new.centres[:, 0]  # with the root where it was

@@ -1,8 +1,8 @@
-"""Sets a problem up: what the fit becomes before it is solved for (thesis 6.2 to 6.4).
+"""Problem set-up: transcription, initial guess, targets and metric from a fit (thesis 6.2 to 6.4).
 
 Other proportions or masses, retimed phases, held frames, contacts that are lifted or added: each
-changes the equations, so the fit is carried over to new ones as a first guess. Where nothing of
-that kind is asked for, the fit's own equations serve.
+changes the transcription, so the fit is resampled on a new one as an initial guess. Where nothing
+of that kind is asked for, the fit's own transcription serves.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,40 +17,28 @@ from ..body.body_changes import changed_character, changed_points
 from ..body.dynamics import MomentFunction
 from ..body.proportions import changed_recording
 from ..data.constants import STANDARD_GRAVITY
-from ..data.contacts import Contact, ContactSchedule, Phase
-from ..data.faults import (
-    BadTiming,
-    FreePoint,
-    NeedsTorques,
-    NothingTouches,
-    TakenName,
-    UnknownPhaseIn,
-)
+from ..data.contacts import ContactSchedule, Phase
+from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
-from ..data.requests import ConeShape, Dynamics, Method, ObjectiveKind, PointRequest, Requests
-from ..data.timeline import MIN_PHASE_DURATION, timeline
+from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Requests
+from ..data.timeline import timeline
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
 from ..optimisation.reduction import ReducedSpace, reduce
-from ..transcription.contact_pins import PointContact, Track
+from ..optimisation.sqp import FeasibleSet
 from ..transcription.motion import Motion
 from ..transcription.objectives import torque_metric
-from ..transcription.torque_constraint import TorqueFunction, every_torque
+from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.tracking_cost import CostWeights
 from ..transcription.transcription import Transcription
-from .constraint_builder import (
-    EvaluationContext,
-    conditions,
-    path_places,
-    point_axes,
-    point_place,
-    touches,
-)
+from .constraint_builder import build_constraints
+from .contact_setup import added_contact, detailed_contact, with_added, without_lifted
+from .evaluation_context import EvaluationContext
 from .fit import (
-    ADAPT_PRICES,
-    SHORTEST_SPAN,
-    SPANS,
+    ADAPT_COST_WEIGHTS,
+    CANDIDATE_SPANS,
+    MIN_SPAN,
     THIRD_DERIVATIVE_WEIGHT,
     Fit,
     body_points,
@@ -58,11 +46,10 @@ from .fit import (
     motion_metric,
     point_contacts,
 )
-from .reseat import reseated
+from .reseat import reseat
 
-HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
-SAMPLES_PER_TRACK = 60.0  # Hz
-OF_TORQUES = (
+MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
+TORQUE_OBJECTIVES = (
     ObjectiveKind.TORQUE_SMOOTHNESS.value,
     ObjectiveKind.POWER.value,
     ObjectiveKind.TORQUE_OUTPUT.value,
@@ -75,17 +62,17 @@ OF_TORQUES = (
 class Setup:
     """A problem ready to be solved.
 
-    start: the first guess, whose equations have the problem's conditions; its places are where
-    the contacts are now. goal: (n_contacts, 3) m, where they shall be. turns: what the pins ask
-    of each phase, rad. basis: (n_block, k), the changes that a reduction allows, None all.
-    requests: those set up here. recording: of the figure as it is asked for. space: the reduced
-    figure, None where it is not reduced.
+    start: the initial guess, whose transcription has the problem's constraints; its places are
+    where the contacts are now. target_places: (n_contacts, 3) m, where they shall be. metric: W at
+    the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the changes of a
+    block that a reduction allows, None all. requests: those set up here. recording: of the figure
+    as it is asked for. space: the reduced coordinates, None where there are none.
     """
 
     fit: Fit
-    scene: EvaluationContext
+    context: EvaluationContext
     start: Motion
-    goal: FloatArray
+    target_places: FloatArray
     metric: BlockBanded
     turns: dict[str, float]
     basis: FloatArray | None
@@ -93,27 +80,34 @@ class Setup:
     requests: Requests
     space: ReducedSpace | None
 
+    def feasible_set(
+        self, transcription: Transcription, places: FloatArray | None = None
+    ) -> FeasibleSet:
+        """Feasible set of a transcription; places (n_contacts, 3) m, None the target's."""
+        places = self.target_places if places is None else places
+        return FeasibleSet(transcription, places, self.basis)
+
     def metric_of(self, motion: Motion) -> BlockBanded:
-        """The norm in which steps from a motion of this problem are small."""
-        metric = motion_metric(motion, _prices(self.requests))
+        """Metric W of the minimum-norm steps from a motion of this problem."""
+        metric = motion_metric(motion, _cost_weights(self.requests))
         if _weighs_torques(self.requests):
             metric.lower += torque_metric(motion, self.torques).lower
         return metric
 
     @property
     def schedule(self) -> ContactSchedule:
-        return self.scene.schedule
+        return self.context.schedule
 
     @cached_property
     def torques(self) -> TorqueFunction:
-        """The torques of every joint; the fit's own function where it serves."""
+        """Torque function of every joint; the fit's own where it serves."""
         t, old = self.start.transcription, self.fit.motion.transcription
         same = t.points is old.points and t.character is old.character
-        return self.fit.torques if same else every_torque(t)
+        return self.fit.torques if same else joint_torques(t)
 
 
 def set_up(fit: Fit, problem: MotionProblem) -> Setup:
-    """Sets a problem up from a fit.
+    """Problem set-up from a fit.
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults.
     """
@@ -122,42 +116,41 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         _refuse_torques(requests)
     rate = (len(recording.times) - 1) / float(recording.times[-1])
     first = float(recording.frames[0])
-    line = timeline(fit.schedule, first, rate, requests.timings, requests.holds)
+    retiming = timeline(fit.schedule, first, rate, requests.timings, requests.holds)
+    retimed = retiming.schedule(fit.schedule)
     changed = changed_recording(recording, requests.body.limbs)
     reference = _with_body(fit, problem, changed)
-    schedule = _without_lifted(line.schedule(fit.schedule), problem)
-
-    phases = line.schedule(fit.schedule).phases
+    schedule, phases = without_lifted(retimed, problem), retimed.phases
 
     def travel(time: float) -> FloatArray:
         index = next((i for i, p in enumerate(phases) if time <= p.end), len(phases) - 1)
         old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
         return travel_axes(fit.performance, fit.schedule, old)
 
-    scene = EvaluationContext(changed, fit.motion, reference, phases, schedule, line, travel)
+    context = EvaluationContext(changed, fit.motion, reference, phases, schedule, retiming, travel)
     added = {r.name: r for r in requests.points if r.environment}
-    contacts = [_added(request, scene) for request in added.values()]
-    scene = replace(scene, schedule=_with_added(schedule, contacts))
-    start = _start(fit, problem, scene, added)
-    start = _with_conditions(start, problem, scene)
-    goal = goal_places(fit, problem, scene.schedule)
+    contacts = [added_contact(request, context) for request in added.values()]
+    context = replace(context, schedule=with_added(schedule, contacts))
+    start = _start(fit, problem, context, added)
+    start = _with_constraints(start, problem, context)
+    target_places = find_target_places(fit, problem, context.schedule)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
-    prices = _prices(requests)
-    kept = same and prices is ADAPT_PRICES
-    metric = fit.metric if kept else motion_metric(start, prices)
+    weights = _cost_weights(requests)
+    kept = same and weights is ADAPT_COST_WEIGHTS
+    metric = fit.metric if kept else motion_metric(start, weights)
     if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
-    turns = _turns(problem, phases, scene.schedule)
+    turns = _turns(problem, phases, context.schedule)
     reduction, space = requests.solution.reduction, None
     if reduction is not None:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)
-    basis = _allowed(space, start)
-    return Setup(fit, scene, start, goal, metric, turns, basis, changed, requests, space)
+    basis = _reduced_basis(space, start)
+    return Setup(fit, context, start, target_places, metric, turns, basis, changed, requests, space)
 
 
-def goal_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
-    """(n_contacts, 3) m: where the problem's pins put the contacts of its schedule.
+def find_target_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
+    """Places (n_contacts, 3) m, world, where the problem's pins put the contacts of its schedule.
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins.
     """
@@ -167,7 +160,7 @@ def goal_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> 
 
 
 def _weighs_torques(requests: Requests) -> bool:
-    """Whether changes of torques count in the norm of the steps."""
+    """Whether changes of torques count in the metric of the steps: (q, tau, lambda), thesis 4.4."""
     solution = requests.solution
     return solution.method is not Method.IMPLICIT and solution.dynamics is not Dynamics.REDUCED
 
@@ -181,14 +174,14 @@ def _refuse_torques(requests: Requests) -> None:
         weighed = [o.value for o, weight in solution.objectives if weight > 0.0]
         weighed = weighed if solution.method is Method.EXPLICIT else [solution.method.value]
         for name in weighed:
-            if name in OF_TORQUES:
+            if name in TORQUE_OBJECTIVES:
                 raise NeedsTorques(name)
 
 
 def _turns(
     problem: MotionProblem, named: Sequence[Phase], schedule: ContactSchedule
 ) -> dict[str, float]:
-    """What the pins ask of the result's ground phases, rad; pins name the recording's."""
+    """Turns of the result's ground phases by the pins, which name the recording's phases; rad."""
     turns: dict[str, float] = {}
     for pin in problem.pins:
         was = next((phase for phase in named if phase.name == pin.phase), None)
@@ -198,14 +191,16 @@ def _turns(
     return turns
 
 
-def _prices(requests: Requests) -> CostWeights:
-    """The usual prices; forces are dearer where they shall stay like the fit's."""
-    wishes = [r.match for r in requests.forces if r.match is not None]
-    return replace(ADAPT_PRICES, force=max(wishes) * ADAPT_PRICES.force) if wishes else ADAPT_PRICES
+def _cost_weights(requests: Requests) -> CostWeights:
+    """Default cost weights; the force weight scaled by the largest `match` of the requests."""
+    matches = [r.match for r in requests.forces if r.match is not None]
+    if not matches:
+        return ADAPT_COST_WEIGHTS
+    return replace(ADAPT_COST_WEIGHTS, force=max(matches) * ADAPT_COST_WEIGHTS.force)
 
 
 def _torque_metric(fit: Fit, start: Motion, *, same: bool) -> BlockBanded:
-    return fit.torque_metric if same else torque_metric(start, every_torque(start.transcription))
+    return fit.torque_metric if same else torque_metric(start, joint_torques(start.transcription))
 
 
 def _with_body(fit: Fit, problem: MotionProblem, changed: Recording) -> Motion:
@@ -220,141 +215,66 @@ def _with_body(fit: Fit, problem: MotionProblem, changed: Recording) -> Motion:
         points = changed_points(t.points, t.character, character)
         moment = MomentFunction(character)
         new = replace(t, character=character, points=points, moment=moment)
-        made = Motion(new, reseated(motion, character), motion.places)
+        made = Motion(new, reseat(motion, character), motion.places)
         fit.other_bodies.clear()  # the last one is asked for again and again, older ones are not
         fit.other_bodies[change] = made
     return fit.other_bodies[change]
 
 
-# ---------------------------------------------------------------- contacts
-
-
-def _without_lifted(schedule: ContactSchedule, problem: MotionProblem) -> ContactSchedule:
-    kept = schedule.contacts
-    for lift in problem.requests.lifts:
-        phase = next((p for p in schedule.phases if p.name == lift.phase), None)
-        if phase is None:
-            known = tuple(p.name for p in schedule.phases)
-            raise UnknownPhaseIn(lift.name, lift.phase, known)
-        lifted = [
-            c.name
-            for c in kept
-            if c.start < phase.end and c.end > phase.start and touches(lift.touching, c)
-        ]
-        if not lifted:
-            raise NothingTouches(lift.name, lift.touching)
-        kept = tuple(c for c in kept if c.name not in lifted)
-    return replace(schedule, contacts=kept)
-
-
-def _added(request: PointRequest, scene: EvaluationContext) -> Contact:
-    """The contact that an environment point makes, from when it holds."""
-    body = scene.body(request.name, request.bone)
-    span = scene.interval(request.name, request.when)
-    if span[1] - span[0] < MIN_PHASE_DURATION:
-        raise BadTiming(request.name, span[1] - span[0])
-    if any(request.name in (c.name, c.point) for c in scene.schedule.contacts):
-        raise TakenName(request.name)
-    if request.bounds is not None and (0.0, 0.0) not in request.bounds:
-        raise FreePoint(request.name)
-    point = scene.point(body, request.offset)
-    place = point_place(request, scene, point, span)(np.array([span[0]]))[0]
-    bone = scene.recording.bones[scene.recording.index(request.bone)]
-    offset = bone.rotation.T @ point.place
-    return Contact(request.name, request.name, request.bone, offset, *span, place)
-
-
-def _with_added(schedule: ContactSchedule, added: Sequence[Contact]) -> ContactSchedule:
-    contacts = sorted([*schedule.contacts, *added], key=lambda c: (c.start, c.point))
-    return replace(schedule, contacts=tuple(contacts))
-
-
-def _detailed(
-    contact: PointContact,
-    problem: MotionProblem,
-    scene: EvaluationContext,
-    request: PointRequest | None,
-) -> PointContact:
-    """A contact with its friction, and with what an environment point says of it."""
-    friction, pyramid = contact.friction, False
-    for force in problem.requests.forces:
-        shaped = force.friction is not None or force.shape is ConeShape.PYRAMID
-        if shaped and touches(force.touching, contact.contact):
-            start, end = scene.interval(force.name, force.when)
-            if contact.contact.start < end and contact.contact.end > start:
-                friction = friction if force.friction is None else force.friction
-                pyramid = force.shape is ConeShape.PYRAMID
-    contact = replace(contact, friction=friction, pyramid=pyramid)
-    if request is None:
-        return contact
-    span = (contact.contact.start, contact.contact.end)
-    held, track = None, None
-    if request.bounds is not None:
-        axes = point_axes(request, scene, span)
-        held = axes.T[[bound == (0.0, 0.0) for bound in request.bounds]]
-    if request.path is not None:
-        count = max(2, int((span[1] - span[0]) * SAMPLES_PER_TRACK))
-        times = np.linspace(*span, count)
-        places = path_places(request.path, scene.timeline)(times)
-        track = Track(times, places - places[0])
-    return replace(
-        contact,
-        held=held,
-        track=track,
-        friction=None if request.grip else friction,
-        normal=np.array(request.normal, dtype=float),
-    )
-
-
-# ---------------------------------------------------------------- equations
+# ---------------------------------------------------------------- initial guess
 
 
 def _start(
-    fit: Fit, problem: MotionProblem, scene: EvaluationContext, added: dict[str, PointRequest]
+    fit: Fit, problem: MotionProblem, context: EvaluationContext, added: dict[str, PointRequest]
 ) -> Motion:
-    """The reference on the problem's own contacts, timeline and knots, without conditions."""
-    reference, schedule = scene.reference, scene.schedule
+    """The reference on the problem's own contacts, timeline and knots, without constraints."""
+    reference, schedule = context.reference, context.schedule
     t = reference.transcription
     coarse = problem.requests.solution.longest_span
-    same = scene.timeline.unchanged and coarse is None and not added
+    same = context.timeline.unchanged and coarse is None and not added
     if same and len(schedule.contacts) == len(t.contacts):
-        contacts = tuple(_detailed(c, problem, scene, None) for c in t.contacts)
+        contacts = tuple(detailed_contact(c, problem, context, None) for c in t.contacts)
         return replace(reference, transcription=replace(t, contacts=contacts))
-    points, which = body_points(t.character, scene.recording, schedule)
+    points, which = body_points(t.character, context.recording, schedule)
     plain, extra = point_contacts(schedule, which)
-    contacts = tuple(_detailed(c, problem, scene, added.get(c.contact.name)) for c in plain)
+    contacts = tuple(
+        detailed_contact(c, problem, context, added.get(c.contact.name)) for c in plain
+    )
     if coarse is None:
-        basis = _mapped_basis(t.basis, scene, extra)
+        basis = _mapped_basis(t.basis, context, extra)
     else:
         basis = SplineBasis(*phase_breaks(schedule.boundaries, extra, coarse))
     new = Transcription(t.character, basis, points, contacts, t.moment)
-    x = _resampled(reference, new, scene.timeline.eased)
+    x = _resampled(reference, new, context.timeline.eased)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
     return replace(motion, places=_current_places(motion, fit))
 
 
 def _mapped_basis(
-    old: SplineBasis, scene: EvaluationContext, extra: Sequence[float]
+    old: SplineBasis, context: EvaluationContext, extra: Sequence[float]
 ) -> SplineBasis:
     """The old knots at their new instants, and those that new boundaries and holds need."""
-    line, boundaries = scene.timeline, scene.schedule.boundaries
+    retiming, boundaries = context.timeline, context.schedule.boundaries
     fixed = sorted({*boundaries, *extra})
     kept: list[float] = []
     held = [
-        np.linspace(hold.start, hold.end, 1 + int(np.ceil((hold.end - hold.start) / HELD_SPAN)))
-        for hold in line.holds
+        np.linspace(hold.start, hold.end, 1 + int(np.ceil((hold.end - hold.start) / MAX_HELD_SPAN)))
+        for hold in retiming.holds
     ]
-    for t in np.unique(np.concatenate([line.to_new(old.breaks), *held])).tolist():
+    for t in np.unique(np.concatenate([retiming.to_new(old.breaks), *held])).tolist():
         near = min(abs(t - other) for other in (*fixed, *kept))
-        if 0.0 < t < line.duration and near > SHORTEST_SPAN:
+        if 0.0 < t < retiming.duration and near > MIN_SPAN:
             kept.append(t)
-    return SplineBasis(*phase_breaks(boundaries, [*extra, *kept], SPANS[0]))
+    return SplineBasis(*phase_breaks(boundaries, [*extra, *kept], CANDIDATE_SPANS[0]))
 
 
 def _resampled(
     motion: Motion, new: Transcription, to_old: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
-    """Unknowns of a motion on other equations: splines by least squares, forces at the nodes."""
+    """Unknowns of a motion on another transcription: splines by least squares, forces at the nodes.
+
+    to_old: instants (T,) s of the motion from those of the new one.
+    """
     basis, layout, old = new.basis, new.layout, motion.transcription
     times = dense_instants(basis)
     x = np.zeros((basis.n_coefficients, layout.n_block))
@@ -372,7 +292,9 @@ def _resampled(
         for contact in new.contacts:
             point = came_from.get(contact.contact.point)
             if point is not None:
-                x[nodes[:, side] + 1, layout.force(contact.point)] = forces[:, point]
+                x[layout.force_block(nodes[:, side]), layout.force(contact.point)] = forces[
+                    :, point
+                ]
     x[~new.active] = 0.0
     return x
 
@@ -390,23 +312,22 @@ def _current_places(motion: Motion, fit: Fit) -> FloatArray:
     return np.array(places).reshape(-1, 3)
 
 
-def _with_conditions(start: Motion, problem: MotionProblem, scene: EvaluationContext) -> Motion:
-    made = conditions(problem.requests, scene, start.transcription)
+def _with_constraints(start: Motion, problem: MotionProblem, context: EvaluationContext) -> Motion:
+    made = build_constraints(problem.requests, context, start.transcription)
     if not made:
         return start
-    return replace(start, transcription=replace(start.transcription, conditions=made))
+    return replace(start, transcription=replace(start.transcription, constraints=made))
 
 
-def _allowed(space: ReducedSpace | None, start: Motion) -> FloatArray | None:
-    """(n_block, k): root, centre of mass and forces as they are, the other joints reduced."""
+def _reduced_basis(space: ReducedSpace | None, start: Motion) -> FloatArray | None:
+    """Basis (n_block, k): root, centre of mass and forces in full, other joints reduced."""
     if space is None:
         return None
     layout, reduced = start.transcription.layout, space.basis
-    kept = layout.angles.start + 3  # the root's angles
+    kept, rest = layout.root_angles.stop, layout.n_block - layout.n_motion
     k = reduced.shape[1]
-    rest = layout.n_block - layout.angles.stop
     basis = np.zeros((layout.n_block, kept + k + rest))
     basis[:kept, :kept] = np.eye(kept)
-    basis[kept : layout.angles.stop, kept : kept + k] = reduced
-    basis[layout.angles.stop :, kept + k :] = np.eye(rest)
+    basis[layout.joint_angles, kept : kept + k] = reduced
+    basis[layout.forces, kept + k :] = np.eye(rest)
     return basis

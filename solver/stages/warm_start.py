@@ -1,8 +1,7 @@
-"""A motion carried along with its stances: the first guess of a changed landing (thesis 6.4).
+"""Warm start: each stance moves rigidly with its contacts, flights blend (thesis 6.4).
 
-Each stance moves rigidly with its contacts, and between stances the move is blended. That is the
-thesis's rotating and splicing of stages for the full twists, without the seams. Large edits are
-made in stages.
+That is the thesis's rotating and splicing of stages for the full twists, without the seams. Large
+edits are made by continuation, in several steps.
 """
 
 import itertools
@@ -16,15 +15,18 @@ from ..data.contacts import ContactSchedule, PhaseKind
 from ..numerics.rotations import axis_rotation
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
-from .fit import dense_instants, greville
+from .fit import dense_instants, greville_abscissae
 
-STAGE_SHIFT = 0.5  # m
-STAGE_TURN = np.radians(45.0)
+MAX_SHIFT_PER_STEP = 0.5  # m, of a continuation step
+MAX_TURN_PER_STEP = np.radians(45.0)
 
 
 @dataclass(frozen=True)
 class RigidMove:
-    """A stance's move between two instants: turn (rad, about the vertical through pivot), shift."""
+    """Rigid move of a stance that lasts from start to end, s.
+
+    turn: rad, about the vertical through pivot (3,) m. shift: (3,) m, world.
+    """
 
     start: float
     end: float
@@ -33,7 +35,7 @@ class RigidMove:
     shift: FloatArray
 
     def of(self, points: FloatArray) -> FloatArray:
-        """(T, 3) points moved."""
+        """Points (T, 3) m moved."""
         return np.asarray(
             (points - self.pivot) @ axis_rotation(2, self.turn).T + self.pivot + self.shift
         )
@@ -45,11 +47,11 @@ def stance_moves(
     after: FloatArray,
     wanted: Mapping[str, float] | None = None,
 ) -> tuple[RigidMove, ...]:
-    """The rigid move nearest to how each ground phase's contacts go from before to after.
+    """Least-squares rigid move (planar Kabsch) of each ground phase's contacts.
 
-    Grips and other contacts that were asked for move nothing: the arms reach for them (reach.py).
-    wanted: turns by phase, rad. Places alone cannot tell a half turn left from one right, nor a
-    whole turn from none.
+    before, after: (n_contacts, 3) m. Grips and other contacts that were asked for move nothing: the
+    arms reach for them (arm_ik.py). wanted: turns by phase, rad. Places alone cannot tell a half
+    turn left from one right, nor a whole turn from none.
     """
     moves = []
     for phase in schedule.phases:
@@ -76,12 +78,12 @@ def stance_moves(
 
 
 def warm_start(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
-    """Unknowns of a motion whose stances make these moves, blended linearly in between."""
+    """Unknowns (K, n_block) of a motion whose stances make these moves, blended in between."""
     t, x = motion.transcription, motion.x.copy()
     if not moves:
         return x
     layout, basis = t.layout, t.basis
-    at = greville(basis)
+    at = greville_abscissae(basis)
     com, _ = _blend(moves, at, x[:, layout.com])
     x[:, layout.com] = com
     if any(abs(move.turn) > 1e-6 for move in moves):
@@ -93,7 +95,7 @@ def warm_start(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
 def _blend(
     moves: tuple[RigidMove, ...], times: FloatArray, points: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """(T, 3) points moved and (T,) turns, at each instant."""
+    """Blended moves at instants (T,) s: points (T, 3) moved, and turns (T,) rad."""
     middles = [edge for move in moves for edge in (move.start, move.end)]
     position = np.interp(times, middles, np.repeat(np.arange(len(moves)), 2))
     low = np.floor(position).astype(int)
@@ -107,9 +109,9 @@ def _blend(
 
 
 def _turn_root(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) -> None:
-    """Turns the pelvis about the vertical, in place, keeping its angles continuous."""
+    """Turns the root about the vertical, in place, keeping its angles continuous."""
     joint = t.character.joints[0]
-    root = slice(t.layout.angles.start + joint.first, t.layout.angles.start + joint.dofs.stop)
+    root = t.layout.root_angles
     times = dense_instants(t.basis)
     was = t.basis.combine(x[:, root], times)
     turns = _blend(moves, times, np.zeros((len(times), 3)))[1]
@@ -121,29 +123,30 @@ def _turn_root(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) ->
 
 
 def _turn_forces(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) -> None:
-    turns = _blend(moves, greville(t.basis), np.zeros((len(x), 3)))[1]
+    turns = _blend(moves, greville_abscissae(t.basis), np.zeros((len(x), 3)))[1]
     forces = x[:, t.layout.forces].reshape(len(x), t.layout.n_points, 3)
     turned = np.einsum("kij,kpj->kpi", axis_rotation(2, turns), forces)
     x[:, t.layout.forces] = turned.reshape(len(x), -1)
 
 
-def stage_count(moves: tuple[RigidMove, ...]) -> int:
+def continuation_steps(moves: tuple[RigidMove, ...]) -> int:
+    """Number of continuation steps in which moves relative to each other are made."""
     relative = [b.shift - a.shift for a, b in itertools.pairwise(moves)]
     turns = [b.turn - a.turn for a, b in itertools.pairwise(moves)]
     furthest = max((float(np.linalg.norm(shift)) for shift in relative), default=0.0)
     largest = max((abs(turn) for turn in turns), default=0.0)
-    parts = np.array([furthest / STAGE_SHIFT, largest / STAGE_TURN])
+    parts = np.array([furthest / MAX_SHIFT_PER_STEP, largest / MAX_TURN_PER_STEP])
     return max(1, int(np.ceil(parts.max() - 1e-6)))
 
 
-def staged(
+def partial_places(
     schedule: ContactSchedule,
     before: FloatArray,
     after: FloatArray,
     moves: tuple[RigidMove, ...],
     share: float,
 ) -> FloatArray:
-    """Places part of the way: each stance turns and shifts by a share of its whole move."""
+    """Places (n_contacts, 3) m after a share of each stance's whole move from before to after."""
     places = before + share * (after - before)
     for move in moves:
         part = RigidMove(move.start, move.end, move.pivot, share * move.turn, share * move.shift)

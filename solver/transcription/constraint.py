@@ -1,7 +1,7 @@
-"""A named condition on the motion: bounds on a quantity at instants (thesis 3.3).
+"""Constraints: bounds on a function of the motion over an interval (thesis 3.3).
 
-Between the instants a bound can be missed a little; `exchange` then adds the worst instants, the
-way semi-infinite programs are solved (Hettich and Kortanek 1993).
+They are collocated at instants. Between these a bound can be missed a little; `exchange` then adds
+the worst instants: the exchange method of semi-infinite programming (Hettich & Kortanek 1993).
 """
 
 from copy import copy
@@ -15,47 +15,49 @@ from ..body.character import Character
 from ..data.row_kinds import RowKind
 from ..numerics.splines import SplineBasis
 from .rows import Layout, Rows, violation
-from .sampling import Instants, Slope, State
+from .sampling import Instants, MotionFunction, State
 
-DENSE = 0.004  # s, between the instants that tell whether a bound holds
-FEWEST_DENSE = 6  # of them a span
+MAX_DENSE_SPACING = 0.004  # s, between the instants that tell whether a bound holds
+MIN_DENSE_PER_SPAN = 6
 
 
-class ConstraintFunction(Protocol):
-    """A quantity of the motion that can be bounded."""
+class ConstraintFunction(MotionFunction, Protocol):
+    """A motion function that can be bounded."""
 
     @property
     def kind(self) -> RowKind:
-        """What its rows are called."""
-
-    def value(self, state: State) -> FloatArray:
-        """(U, m) at the state's instants."""
-
-    def slopes(self, state: State) -> list[Slope]:
-        """Its derivatives."""
+        """Constraint type of its rows."""
 
 
 @dataclass(frozen=True)
 class Bounds:
-    """lower, upper (m,); infinite where free."""
+    """Lower and upper bounds (m,), constant in time; infinite where free."""
 
     lower: FloatArray
     upper: FloatArray
 
+    @staticmethod
+    def scalar(lower: float | None, upper: float | None) -> "Bounds":
+        """Bounds of a single value; None where it is free."""
+        return Bounds(
+            np.array([-np.inf if lower is None else lower]),
+            np.array([np.inf if upper is None else upper]),
+        )
+
     def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Each (U, m)."""
+        """Lower and upper (U, m) at instants (U,) s."""
         return np.tile(self.lower, (len(times), 1)), np.tile(self.upper, (len(times), 1))
 
 
 @dataclass(frozen=True)
 class Constraint:
-    """Bounds on a measure between start and end, s. name: the artist's.
+    """Bounds on a function between start and end, s; its instants on a basis. name: the artist's.
 
-    per_span: rows per span. extra: instants that `exchange` added.
+    per_span: instants per span. extra: instants that `exchange` added, s.
     """
 
     name: str
-    measure: ConstraintFunction
+    function: ConstraintFunction
     bounds: Bounds
     start: float
     end: float
@@ -64,13 +66,13 @@ class Constraint:
 
     @property
     def kind(self) -> RowKind:
-        return self.measure.kind
+        return self.function.kind
 
     def instants(self, basis: SplineBasis) -> Instants:
-        """Where its rows are on a basis: at the ends, and evenly inside every span.
+        """Collocation instants on a basis: both ends, and evenly inside every span.
 
         Torques follow accelerations, which have corners at the breaks and jump at the double ones:
-        there they have rows on both sides.
+        there they have instants on both sides.
         """
         if self.kind is RowKind.PEAK:
             return self._node_instants(basis)
@@ -84,7 +86,7 @@ class Constraint:
         return Instants(basis, np.unique(np.concatenate([times, ends, self.extra])))
 
     def _node_instants(self, basis: SplineBasis) -> Instants:
-        """The force nodes: forces are linear in between, so a bound that is convex holds there."""
+        """Force nodes: forces are linear in between, so a convex bound holds there too."""
         inside = (basis.breaks[1:] > self.start) & (basis.breaks[:-1] < self.end)
         spans = np.flatnonzero(inside)
         if not len(spans):
@@ -93,6 +95,7 @@ class Constraint:
         return Instants(basis, times, np.concatenate([spans, spans]))
 
     def _sided_instants(self, basis: SplineBasis) -> Instants:
+        """Breaks, double ones from both sides, and evenly inside every span."""
         first, last = basis.breaks[:-1], basis.breaks[1:]
         spans = np.arange(basis.n_spans)
         ends = np.append(basis.double[1:-1], True)
@@ -113,30 +116,30 @@ class Constraint:
         return Instants(basis, times[order], owner[order])
 
     def dense(self, basis: SplineBasis) -> Instants:
-        """Instants that tell whether it holds between the rows."""
+        """Dense grid that tells whether it holds between its instants."""
         longest = float(np.diff(basis.breaks).max())
-        per_span = max(FEWEST_DENSE, int(np.ceil(longest / DENSE)))
+        per_span = max(MIN_DENSE_PER_SPAN, int(np.ceil(longest / MAX_DENSE_SPACING)))
         return replace(self, per_span=per_span, extra=()).instants(basis)
 
 
-class Bounded:
-    """A condition on one basis, ready to give rows. owner: its index among all owners."""
+class DiscretisedConstraint:
+    """A constraint collocated on one basis. owner: its index among all owners of rows."""
 
     def __init__(
         self,
-        condition: Constraint,
+        constraint: Constraint,
         character: Character,
         basis: SplineBasis,
         layout: Layout,
         owner: int,
     ) -> None:
-        self.condition = condition
-        self.instants = condition.instants(basis)
-        self.lower, self.upper = condition.bounds.at(self.instants.times)
+        self.constraint = constraint
+        self.instants = constraint.instants(basis)
+        self.lower, self.upper = constraint.bounds.at(self.instants.times)
         self._character, self._layout, self._owner = character, layout, owner
 
-    def eased(self, x: FloatArray, share: float) -> "Bounded":
-        """The same with the bounds that x misses moved `share` of the way from x to their own."""
+    def relaxed(self, x: FloatArray, share: float) -> "DiscretisedConstraint":
+        """Homotopy: bounds that x (K, n_block) violates lie `share` of the way to their own."""
         twin = copy(self)
         found = self.value(x).reshape(self.lower.shape)
         twin.lower = self.lower + (1.0 - share) * np.minimum(found - self.lower, 0.0)
@@ -144,17 +147,18 @@ class Bounded:
         return twin
 
     def value(self, x: FloatArray) -> FloatArray:
-        """(U m,) the values of `rows` alone, cheaper."""
-        return np.asarray(self.condition.measure.value(self.state(x)).ravel())
+        """(U m,) the values of `rows` without their Jacobian."""
+        return np.asarray(self.constraint.function.value(self.state(x)).ravel())
 
     def rows(self, x: FloatArray) -> Rows:
+        """Its rows at unknowns x (K, n_block)."""
         state, instants = self.state(x), self.instants
-        measure = self.condition.measure
+        function = self.constraint.function
         return Rows.of(
             instants.spans,
-            measure.value(state),
-            instants.spread(measure.slopes(state), self._layout),
-            measure.kind,
+            function.value(state),
+            instants.assemble(function.jacobians(state), self._layout),
+            function.kind,
             instants.times,
             self._owner,
             (self.lower, self.upper),
@@ -165,8 +169,8 @@ class Bounded:
 
 
 @dataclass(frozen=True)
-class Missed:
-    """By how much a condition is missed at worst, in its kind's unit, and when (s)."""
+class DenseViolation:
+    """Largest violation of a constraint on the dense grid, in its kind's unit, and when (s)."""
 
     name: str
     kind: RowKind
@@ -174,32 +178,36 @@ class Missed:
     time: float
 
 
-def missed(
-    condition: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
-) -> Missed:
-    """How badly a motion misses a condition at worst, between its rows too."""
-    instants, off = _dense_violation(condition, character, basis, layout, x)
-    worst = int(np.argmax(off))
-    return Missed(condition.name, condition.kind, float(off[worst]), float(instants.times[worst]))
+def dense_violation(
+    constraint: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
+) -> DenseViolation:
+    """Largest violation by unknowns x (K, n_block), between the constraint's instants too."""
+    instants, size = _violation_on_grid(constraint, character, basis, layout, x)
+    worst = int(np.argmax(size))
+    time = float(instants.times[worst])
+    return DenseViolation(constraint.name, constraint.kind, float(size[worst]), time)
 
 
 def exchange(
-    condition: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
+    constraint: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> Constraint:
-    """The condition with the instants added at which it is missed most, one for each stretch."""
-    instants, off = _dense_violation(condition, character, basis, layout, x)
-    bad = off > condition.kind.tolerance
-    if condition.kind is RowKind.PEAK or not bad.any():
-        return condition
-    peak = bad & (off >= np.roll(off, 1)) & (off >= np.roll(off, -1))
-    added = {*condition.extra, *instants.times[peak].tolist()}
-    return replace(condition, extra=tuple(sorted(added)))
+    """The constraint with the dense grid's local maxima of violation added to its instants.
+
+    Returns the very same constraint where x (K, n_block) violates it nowhere.
+    """
+    instants, size = _violation_on_grid(constraint, character, basis, layout, x)
+    bad = size > constraint.kind.tolerance
+    if constraint.kind is RowKind.PEAK or not bad.any():
+        return constraint
+    peak = bad & (size >= np.roll(size, 1)) & (size >= np.roll(size, -1))
+    added = {*constraint.extra, *instants.times[peak].tolist()}
+    return replace(constraint, extra=tuple(sorted(added)))
 
 
-def _dense_violation(
-    condition: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
+def _violation_on_grid(
+    constraint: Constraint, character: Character, basis: SplineBasis, layout: Layout, x: FloatArray
 ) -> tuple[Instants, FloatArray]:
-    instants = condition.dense(basis)
-    value = condition.measure.value(State(character, layout, instants, x))
-    off = violation(value, *condition.bounds.at(instants.times))
+    instants = constraint.dense(basis)
+    value = constraint.function.value(State(character, layout, instants, x))
+    off = violation(value, *constraint.bounds.at(instants.times))
     return instants, np.abs(off).max(axis=1)

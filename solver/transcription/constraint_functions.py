@@ -1,7 +1,7 @@
-"""What of a pose can be bounded: joints' bends, cones and twists, points, orientations (3.3.3).
+"""Constraint functions of pose and force: bend, cone, twist, point, orientation (thesis 3.3.3).
 
-Every measure gives values (U, m) at a state's instants and their derivatives. A joint's rotation
-is its child's frame in its parent's; both frames are aligned with the world in the rest pose.
+Each gives values (U, m) at a state's instants and their Jacobians; see sampling.MotionFunction. A
+joint's rotation takes its child's frame to its parent's; both are the world's in the rest pose.
 """
 
 from collections.abc import Callable
@@ -14,13 +14,16 @@ from ..body.character import Character, Joint
 from ..body.kinematics import BodyPoint
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix, rotation_vector
-from .sampling import Channel, Slope, State
+from .sampling import Channel, ChannelJacobian, State
 
-Follows = Callable[[FloatArray], FloatArray]  # of instants (U,) s
+TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (U,) s
 
 
 def joint_frame(joint: Joint, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Rotations (U, 3, 3) child to parent, and each angle's axis (U, dofs, 3) in the parent."""
+    """Rotations (U, 3, 3) child to parent, and each angle's axis (U, dofs, 3) in the parent.
+
+    angles: (U, n_angles) rad, of the whole character.
+    """
     mine = angles[:, joint.dofs]
     axes = np.empty((len(mine), joint.axes.dofs, 3))
     for k in range(joint.axes.dofs):
@@ -29,16 +32,16 @@ def joint_frame(joint: Joint, angles: FloatArray) -> tuple[FloatArray, FloatArra
     return joint.axes.rotation(mine), axes
 
 
-def _by_joint(character: Character, joint: Joint, by: FloatArray) -> list[Slope]:
-    """Derivatives (U, m, dofs) by one joint's angles."""
-    full = np.zeros((*by.shape[:2], character.n_angles))
-    full[..., joint.dofs] = by
-    return [Slope(Channel.ANGLES, 0, full)]
+def _by_joint(character: Character, joint: Joint, matrix: FloatArray) -> list[ChannelJacobian]:
+    """Jacobian by every angle, from that by one joint's (U, m, dofs)."""
+    full = np.zeros((*matrix.shape[:2], character.n_angles))
+    full[..., joint.dofs] = matrix
+    return [ChannelJacobian(Channel.ANGLES, 0, full)]
 
 
 @dataclass(frozen=True)
-class Bend:
-    """Angle by which a bone is bent from the straight limb, rad, positive towards `flexion`.
+class BendAngle:
+    """Flexion angle of a bone against the straight limb, rad, positive towards `flexion`.
 
     along (3,): the bone's direction, child's frame. straight, flexion (3,): unit, at right
     angles, parent's frame.
@@ -54,7 +57,7 @@ class Bend:
         x, y, _, _ = self._parts(state)
         return np.arctan2(y, x)[:, None]
 
-    def slopes(self, state: State) -> list[Slope]:
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
         x, y, direction, axes = self._parts(state)
         moved = np.cross(axes, direction[:, None])
         by = (moved @ self.flexion) * x[:, None] - (moved @ self.straight) * y[:, None]
@@ -68,7 +71,7 @@ class Bend:
 
 
 @dataclass(frozen=True)
-class Cone:
+class ConeAngle:
     """Angle between a bone and a cone's axis, rad, its cross directions divided by `stretch`.
 
     along (3,): the bone's direction, child's frame. frame (3, 3): rows the axis and the two cross
@@ -85,7 +88,7 @@ class Cone:
         parts, _ = self._parts(state)
         return np.arctan2(np.linalg.norm(parts[:, 1:], axis=1), parts[:, 0])[:, None]
 
-    def slopes(self, state: State) -> list[Slope]:
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
         parts, by = self._parts(state)
         across = np.linalg.norm(parts[:, 1:], axis=1)
         outward = parts[:, 1:] / np.maximum(across, 1e-9)[:, None]
@@ -103,8 +106,8 @@ class Cone:
 
 
 @dataclass(frozen=True)
-class Twist:
-    """Turn of a bone about itself against its parent, rad (swing-twist decomposition).
+class TwistAngle:
+    """Axial rotation of a bone against its parent, rad (swing-twist decomposition).
 
     along (3,): the bone's direction in the rest pose.
     """
@@ -117,7 +120,7 @@ class Twist:
         w, v, _ = self._quaternion(state)
         return 2.0 * np.arctan2(v @ self.along, w)[:, None]
 
-    def slopes(self, state: State) -> list[Slope]:
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
         w, v, axes = self._quaternion(state)
         s = v @ self.along
         # q' = (0, omega) q / 2, omega an axis in the parent's frame
@@ -135,11 +138,14 @@ class Twist:
 
 
 @dataclass(frozen=True)
-class Place:
-    """A body's point relative to a place that may move, m, along the columns of `axes` (3, 3)."""
+class PointPosition:
+    """Position of a body's point relative to a place that may move, m, along axes' columns (3, k).
+
+    place: (U, 3) m, world; axes in the world.
+    """
 
     point: BodyPoint
-    place: Follows
+    place: TimeFunction
     axes: FloatArray
     kind: RowKind = RowKind.POINT
 
@@ -147,24 +153,27 @@ class Place:
         at = state.pose.points([self.point])[:, 0] + state.com()
         return np.asarray((at - self.place(state.instants.times)) @ self.axes)
 
-    def slopes(self, state: State) -> list[Slope]:
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
         turn = state.pose.point_jacobian([self.point])[:, 0]
         com = np.tile(self.axes.T, (len(turn), 1, 1))
-        return [Slope(Channel.ANGLES, 0, self.axes.T @ turn), Slope(Channel.COM, 0, com)]
+        return [
+            ChannelJacobian(Channel.ANGLES, 0, self.axes.T @ turn),
+            ChannelJacobian(Channel.COM, 0, com),
+        ]
 
 
 @dataclass(frozen=True)
-class Orientation:
-    """Rotation vector (U, 3) from a wanted orientation (U, 3, 3) of a body, world axes, rad."""
+class BodyOrientation:
+    """Rotation vector (U, 3) from a wanted orientation (U, 3, 3) of a body, rad, wanted's axes."""
 
     body: int
-    wanted: Follows
+    wanted: TimeFunction
     kind: RowKind = RowKind.ORIENTATION
 
     def value(self, state: State) -> FloatArray:
         return rotation_vector(self._error(state))
 
-    def slopes(self, state: State) -> list[Slope]:
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
         off = rotation_vector(self._error(state))
         turned = np.swapaxes(self.wanted(state.instants.times), 1, 2) @ np.swapaxes(
             state.pose.axes, 1, 2
@@ -172,7 +181,7 @@ class Orientation:
         moves = np.zeros(state.character.n_angles)
         for ancestor in state.character.ancestors(self.body):
             moves[state.character.joints[ancestor].dofs] = 1.0
-        return [Slope(Channel.ANGLES, 0, _inverse_left_jacobian(off) @ turned * moves)]
+        return [ChannelJacobian(Channel.ANGLES, 0, _inverse_left_jacobian(off) @ turned * moves)]
 
     def _error(self, state: State) -> FloatArray:
         wanted = self.wanted(state.instants.times)
@@ -180,7 +189,7 @@ class Orientation:
 
 
 def _inverse_left_jacobian(turn: FloatArray) -> FloatArray:
-    """(U, 3, 3): how a rotation vector changes by a turn from the left (Chirikjian 2011, 10.86)."""
+    """(U, 3, 3) inverse left Jacobian of SO(3) at rotation vectors (Chirikjian 2011, 10.86)."""
     angle = np.linalg.norm(turn, axis=1)
     half = 0.5 * np.minimum(angle, np.pi - 1e-6)
     safe = np.maximum(half, 1e-4)
@@ -190,26 +199,26 @@ def _inverse_left_jacobian(turn: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Angles:
-    """Chosen joint angles relative to wanted ones (U, k), rad. which: (k,) their indices."""
+class JointAngles:
+    """Joint angles relative to wanted ones (U, k), rad. which: (k,) their indices."""
 
     which: IntArray
-    wanted: Follows
+    wanted: TimeFunction
     kind: RowKind = RowKind.POSE
 
     def value(self, state: State) -> FloatArray:
         off = state.angles()[:, self.which] - self.wanted(state.instants.times)
         return np.asarray(off)
 
-    def slopes(self, state: State) -> list[Slope]:
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
         by = np.zeros((len(self.which), state.character.n_angles))
         by[np.arange(len(self.which)), self.which] = 1.0
-        return [Slope(Channel.ANGLES, 0, np.tile(by, (len(state.instants.times), 1, 1)))]
+        return [ChannelJacobian(Channel.ANGLES, 0, np.tile(by, (len(state.instants.times), 1, 1)))]
 
 
 @dataclass(frozen=True)
 class PeakForce:
-    """The size of the sum of contact forces, body weights. points: (k,) whose."""
+    """Magnitude of the summed contact force, body weights. points: (k,) indices of its points."""
 
     points: IntArray
     kind: RowKind = RowKind.PEAK
@@ -218,9 +227,9 @@ class PeakForce:
         total = state.forces[:, self.points].sum(axis=1)
         return np.asarray(np.linalg.norm(total, axis=1)[:, None])
 
-    def slopes(self, state: State) -> list[Slope]:
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
         total = state.forces[:, self.points].sum(axis=1)
         size = np.maximum(np.linalg.norm(total, axis=1), 1e-9)
         by = np.zeros((len(total), 1, *state.forces.shape[1:]))
         by[:, 0, self.points] = (total / size[:, None])[:, None]
-        return [Slope(Channel.FORCES, 0, by.reshape(len(total), 1, -1))]
+        return [ChannelJacobian(Channel.FORCES, 0, by.reshape(len(total), 1, -1))]

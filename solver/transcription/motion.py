@@ -1,4 +1,4 @@
-"""A solved motion as functions of time."""
+"""A transcribed motion as functions of time, and its dynamics residual between the nodes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,13 +11,18 @@ from ..body.kinematics import Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.recording import PoseTrack, Recording
 from ..numerics.rotations import cross_matrix
-from .contact_pins import PointContact
-from .transcription import Transcription, touching_spans
+from .contact_pins import PointContact, touching_spans
+from .transcription import Transcription
+
+MIN_SPLIT_SPAN = 0.016  # s; shorter spans are not split further
 
 
 @dataclass(frozen=True)
 class Motion:
-    """Unknowns x (K, n_block) of a transcription, with each contact's place (n_contacts, 3) m."""
+    """Unknowns x (K, n_block) of a transcription, with each contact's place (n_contacts, 3) m.
+
+    Methods take instants (T,) s; positions are in the world.
+    """
 
     transcription: Transcription
     x: FloatArray
@@ -38,16 +43,16 @@ class Motion:
         return t.basis.combine(self.x[:, t.layout.angles], times, derivative)
 
     def forces(self, times: FloatArray) -> FloatArray:
-        """(T, P, 3) force on the body at each touching point, N, world; zero while not in touch."""
+        """(T, P, 3) contact force on the body at each point, N, world; zero while not in touch."""
         t = self.transcription
         spans = t.basis.spans(times)
-        values = self.x[t.basis.force_nodes(spans) + 1][:, :, t.layout.forces]
+        values = self.x[t.layout.force_block(t.basis.force_nodes(spans))][:, :, t.layout.forces]
         forces = np.einsum("tk,tkn->tn", t.basis.force_weights(times, spans), values)
         newtons = forces * t.character.mass * STANDARD_GRAVITY
         return np.asarray(newtons.reshape(len(times), t.layout.n_points, 3))
 
     def pose(self, times: FloatArray) -> Pose:
-        """The figure relative to its centre of mass."""
+        """Forward kinematics relative to the centre of mass."""
         return forward_kinematics(self.transcription.character, self.angles(times))
 
     def joint_centres(self, times: FloatArray) -> FloatArray:
@@ -55,12 +60,12 @@ class Motion:
         return np.asarray(self.pose(times).centres + self.com(times)[:, None])
 
     def contact_points(self, times: FloatArray) -> FloatArray:
-        """(T, P, 3) m, world places of the points that touch at some time."""
+        """(T, P, 3) m, of the points that touch at some time."""
         points = self.transcription.points
         return np.asarray(self.pose(times).points(points) + self.com(times)[:, None])
 
     def track(self, recording: Recording) -> PoseTrack:
-        """The bones' poses at the recording's frames, or as many as this motion lasts."""
+        """Bone poses at the recording's frames, or as many as this motion lasts."""
         times, frames = recording.times, recording.frames
         if abs(times[-1] - self.duration) > 1e-6:
             rate = (len(times) - 1) / float(times[-1])
@@ -78,27 +83,29 @@ class Motion:
         )
 
     def drift(self, contact: int, times: FloatArray) -> FloatArray:
-        """(T,) distance of a contact's point from where it is held, m."""
+        """(T,) drift of a contact's point from where it is held, m."""
         each = self.transcription.contacts[contact]
         at = self.contact_points(times)[:, each.point]
-        return np.asarray(np.linalg.norm(each.off(at, self.places[contact], times), axis=1))
+        return np.asarray(np.linalg.norm(each.pin_error(at, self.places[contact], times), axis=1))
 
 
-def motion_efforts(
+def motion_inverse_dynamics(
     dynamics: InverseDynamics, motion: Motion, times: FloatArray
 ) -> GeneralisedForces:
-    """Inverse dynamics of a motion at (T,) s; `dynamics` is of its character and its points."""
+    """Inverse dynamics of a motion at (T,) s (thesis 3.2).
+
+    dynamics: of the motion's character and its points.
+    """
     q, v, a = (motion.angles(times, k) for k in range(3))
     return dynamics(q, v, a, motion.com(times, 2), motion.forces(times))
 
 
-SHORTEST_SPLIT = 0.016  # s; shorter spans are not split further
-
-
 @dataclass(frozen=True)
 class DynamicsResidual:
-    """Root force (T, 3) in body weights and moment (T, 3) in body weights x m that nothing
-    explains, at instants (T,) s."""
+    """Residual of the root's equations of motion at instants (T,) s, world axes.
+
+    force: (T, 3) body weights. moment: (T, 3) about the centre of mass, body weights x m.
+    """
 
     times: FloatArray
     force: FloatArray
@@ -106,9 +113,9 @@ class DynamicsResidual:
 
 
 def dynamics_residual(motion: Motion, times: FloatArray) -> DynamicsResidual:
-    """The equations of motion evaluated between the nodes (by the solver's own functions).
+    """Residual m c'' = m g + sum f and L' = sum (p - c) x f at instants (T,) s (thesis 3.2).
 
-    Quick, for choosing knots; the figures are measured by another engine.
+    By the solver's own functions, for choosing knots; the figures are measured by another engine.
     """
     t = motion.transcription
     weight = t.character.mass * STANDARD_GRAVITY
@@ -124,17 +131,16 @@ def dynamics_residual(motion: Motion, times: FloatArray) -> DynamicsResidual:
 
 
 def pinned_instants(contact: PointContact, rate: float) -> FloatArray:
-    """Instants at `rate` Hz while a contact's point is pinned."""
+    """Instants, s, at `rate` Hz (two at least) while a contact's point is pinned."""
     count = max(2, int(np.ceil((contact.pin_end - contact.pin_start) * rate)))
     return np.linspace(contact.pin_start, contact.pin_end, count)
 
 
 @dataclass(frozen=True)
 class DenseTolerance:
-    """What must hold between the nodes, else knots are added.
+    """Tolerances between the nodes, beyond which knots are added.
 
-    flight, ground: rms moment that a span may leave unexplained, BW·m. drift: how far a pinned
-    point may wander, m.
+    flight, ground: rms residual moment of a span, BW·m. drift: of a pinned point, m.
     """
 
     flight: float
@@ -142,8 +148,8 @@ class DenseTolerance:
     drift: float
 
 
-def weak_spans(motion: Motion, promise: DenseTolerance) -> IntArray:
-    """Indices of the spans in which the motion breaks a promise between the nodes."""
+def spans_to_refine(motion: Motion, tolerance: DenseTolerance) -> IntArray:
+    """Indices of the spans that exceed a tolerance between the nodes (thesis 6.4)."""
     transcription = motion.transcription
     basis = transcription.basis
     per = 6
@@ -154,19 +160,19 @@ def weak_spans(motion: Motion, promise: DenseTolerance) -> IntArray:
     carried = np.zeros(basis.n_spans, dtype=bool)
     for contact in transcription.contacts:
         carried[touching_spans(basis, contact.contact)] = True
-    limit = np.where(carried, promise.ground, promise.flight)
-    weak = (np.sqrt(left.mean(axis=1)) > limit) & (length > SHORTEST_SPLIT)
+    limit = np.where(carried, tolerance.ground, tolerance.flight)
+    weak = (np.sqrt(left.mean(axis=1)) > limit) & (length > MIN_SPLIT_SPAN)
     if transcription.points:
         at = motion.contact_points(times)
         spans = np.repeat(np.arange(basis.n_spans), per)
         for i, contact in enumerate(transcription.contacts):
             pinned = (times > contact.pin_start) & (times < contact.pin_end)
-            off = contact.off(at[:, contact.point], motion.places[i], times)
-            weak[spans[pinned & (np.linalg.norm(off, axis=1) > promise.drift)]] = True
+            off = contact.pin_error(at[:, contact.point], motion.places[i], times)
+            weak[spans[pinned & (np.linalg.norm(off, axis=1) > tolerance.drift)]] = True
     return np.flatnonzero(weak)
 
 
-def split(breaks: Sequence[float] | FloatArray, spans: IntArray) -> FloatArray:
-    """Breaks with the middle of each of the spans added."""
+def split_spans(breaks: Sequence[float] | FloatArray, spans: IntArray) -> FloatArray:
+    """Breaks, s, with the middle of each of the spans added."""
     at = np.asarray(breaks)
     return np.sort(np.concatenate([at, 0.5 * (at[spans] + at[spans + 1])]))

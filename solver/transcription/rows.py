@@ -1,4 +1,4 @@
-"""Equations and bounds as arrays, and the layout of the unknowns that they act on."""
+"""Constraint rows as arrays, and the layout of the unknowns that they act on."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -9,20 +9,28 @@ from numpy.typing import NDArray
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
 
+FORCE_BLOCKS = slice(1, 3)  # of the four blocks of a span: those that hold its two force values
+ROOT_ANGLES = 3
+
 
 @dataclass(frozen=True)
 class Layout:
-    """Where each unknown sits in the array x (K, n_block): centre of mass, angles, forces.
+    """Layout of the unknowns x (K, n_block): block k holds coefficients k of the splines of centre
+    of mass (m, world) and joint angles (rad, the root's first), then forces (body weights, world).
 
-    The forces of force node g sit in block g + 1; those of blocks 0 and K - 1 do not exist.
+    Force node g sits in block g + 1; blocks 0 and K - 1 have no forces.
     """
 
     n_angles: int
     n_points: int
 
     @property
+    def n_motion(self) -> int:
+        return 3 + self.n_angles
+
+    @property
     def n_block(self) -> int:
-        return 3 + self.n_angles + 3 * self.n_points
+        return self.n_motion + 3 * self.n_points
 
     @property
     def com(self) -> slice:
@@ -30,26 +38,55 @@ class Layout:
 
     @property
     def angles(self) -> slice:
-        return slice(3, 3 + self.n_angles)
+        return slice(3, self.n_motion)
+
+    @property
+    def root_angles(self) -> slice:
+        return slice(3, 3 + ROOT_ANGLES)
+
+    @property
+    def joint_angles(self) -> slice:
+        """Every joint's but the root's."""
+        return slice(3 + ROOT_ANGLES, self.n_motion)
 
     @property
     def motion(self) -> slice:
-        return slice(0, 3 + self.n_angles)
+        """Centre of mass and angles."""
+        return slice(0, self.n_motion)
 
     @property
     def forces(self) -> slice:
-        return slice(3 + self.n_angles, self.n_block)
+        return slice(self.n_motion, self.n_block)
+
+    @property
+    def vertical_forces(self) -> slice:
+        return slice(self.n_motion + 2, self.n_block, 3)
 
     def force(self, point: int) -> slice:
-        first = 3 + self.n_angles + 3 * point
+        """The three components at a touching point."""
+        first = self.n_motion + 3 * point
         return slice(first, first + 3)
+
+    def vertical_force(self, point: int) -> int:
+        return self.n_motion + 3 * point + 2
+
+    def force_columns(self, points: IntArray) -> IntArray:
+        """(U, 3) columns of the components at touching points (U,)."""
+        return np.asarray(self.n_motion + 3 * points[:, None] + np.arange(3))
+
+    @staticmethod
+    def force_block(nodes: IntArray) -> IntArray:
+        """Blocks that hold the values at force nodes."""
+        return nodes + FORCE_BLOCKS.start
 
 
 @dataclass(frozen=True)
 class Rows:
-    """R rows, each within one span: value (R,) and its Jacobian (R, 4, n_block) over the span's
-    four blocks, between lower and upper (R,); an equation where they are equal. Per row its kind,
-    instant (s) and owner (the index of a contact, or of a condition counted on from those; -1)."""
+    """R constraint rows lower <= value <= upper, (R,) each, an equality where the bounds are equal.
+
+    span: the span that a row depends on; jacobian: (R, 4, n_block) by that span's four blocks.
+    time: s. owner: the index of a contact, or of a constraint counted on from those, else -1.
+    """
 
     span: IntArray
     value: FloatArray
@@ -62,6 +99,7 @@ class Rows:
 
     @staticmethod
     def join(parts: Sequence["Rows"]) -> "Rows":
+        """Concatenation in the given order."""
         names = [field.name for field in fields(Rows)]
         return Rows(*[np.concatenate([getattr(p, name) for p in parts]) for name in names])
 
@@ -91,31 +129,31 @@ class Rows:
         )
 
     def some(self, which: BoolArray | IntArray) -> "Rows":
-        """Those that are chosen, by (R,) flags or by indices."""
+        """Subset by (R,) flags or by indices."""
         return Rows(*[getattr(self, field.name)[which] for field in fields(Rows)])
 
     @property
     def equal(self) -> BoolArray:
-        """(R,) which rows are equations."""
+        """(R,) equality flags."""
         return np.asarray(self.lower == self.upper)
 
     @property
     def tolerance(self) -> FloatArray:
-        """(R,) the violation of each that is let stand."""
+        """(R,) feasibility tolerance of each, in its kind's unit."""
         return by_kind(self.kind, {kind: kind.tolerance for kind in RowKind})
 
     def violation(self, value: FloatArray | None = None) -> FloatArray:
-        """(R,) by how much values (their own by default) miss the bounds; signed."""
+        """(R,) signed violation of the bounds by values (R,), the rows' own by default."""
         return violation(self.value if value is None else value, self.lower, self.upper)
 
 
 def violation(value: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """By how much values miss their bounds: above zero over the upper, below under the lower."""
+    """Signed bound violation: positive over the upper, negative under the lower, else zero."""
     return np.asarray(np.maximum(value - upper, 0.0) + np.minimum(value - lower, 0.0))
 
 
 def by_kind(kinds: NDArray[np.object_], sizes: dict[RowKind, float]) -> FloatArray:
-    """(R,) the size of each row's kind; 1 where none is given."""
+    """(R,) each row's entry of a table by kind; 1 where it has none."""
     values = np.ones(len(kinds))
     for kind, size in sizes.items():
         values[kinds == kind] = size

@@ -1,8 +1,9 @@
-"""A motion's state at chosen instants, as the rows of the problem see it."""
+"""Functions of the motion sampled at instants, and the chain rule to the unknowns."""
 
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -10,11 +11,11 @@ from ..arrays import FloatArray, IntArray
 from ..body.character import Character
 from ..body.kinematics import Pose, forward_kinematics
 from ..numerics.splines import ORDER, SplineBasis
-from .rows import Layout
+from .rows import FORCE_BLOCKS, Layout
 
 
 class Channel(Enum):
-    """What of the unknowns a value depends on."""
+    """Parts of the unknowns that a function may depend on."""
 
     COM = "com"
     ANGLES = "angles"
@@ -22,17 +23,20 @@ class Channel(Enum):
 
 
 @dataclass(frozen=True)
-class Slope:
-    """Derivative (U, m, width) of values by a channel, or by its order-th time derivative."""
+class ChannelJacobian:
+    """Jacobian (U, m, width) of values by a channel, or by its order-th time derivative."""
 
     channel: Channel
     order: int
-    by: FloatArray
+    matrix: FloatArray
 
 
 class Instants:
-    """Instants (U,) s, each in a span, with what a basis is there. Values and derivatives of the
-    four basis functions; weights of the span's two force values."""
+    """Instants (U,) s, each in a span, with a basis evaluated there.
+
+    values: derivatives 0 to 2 of the four basis functions, (U, 4) each. force_weights: (U, 2) of
+    the span's two force values. blocks: (U, 4) of the unknowns that act in the span.
+    """
 
     def __init__(
         self, basis: SplineBasis, times: FloatArray, spans: IntArray | None = None
@@ -43,28 +47,28 @@ class Instants:
         self.force_weights = basis.force_weights(times, self.spans)
         self.blocks = basis.first_coefficient[self.spans][:, None] + np.arange(ORDER)
 
-    def spread(self, slopes: list[Slope], layout: Layout) -> FloatArray:
-        """(U, m, 4, n_block) derivatives by the unknowns of each instant's four blocks."""
-        count, rows = slopes[0].by.shape[:2]
+    def assemble(self, jacobians: list[ChannelJacobian], layout: Layout) -> FloatArray:
+        """Chain rule: Jacobian (U, m, 4, n_block) by the unknowns of each instant's four blocks."""
+        count, rows = jacobians[0].matrix.shape[:2]
         jacobian = np.zeros((count, rows, ORDER, layout.n_block))
-        for slope in slopes:
+        for each in jacobians:
             columns = {
                 Channel.COM: layout.com,
                 Channel.ANGLES: layout.angles,
                 Channel.FORCES: layout.forces,
-            }[slope.channel]
-            if slope.channel is Channel.FORCES:
+            }[each.channel]
+            if each.channel is Channel.FORCES:
                 weights = self.force_weights[:, None, :, None]
-                jacobian[:, :, 1:3, columns] += weights * slope.by[:, :, None]
+                jacobian[:, :, FORCE_BLOCKS, columns] += weights * each.matrix[:, :, None]
             else:
-                weights = self.values[slope.order][:, None, :, None]
-                jacobian[..., columns] += weights * slope.by[:, :, None]
+                weights = self.values[each.order][:, None, :, None]
+                jacobian[..., columns] += weights * each.matrix[:, :, None]
         return jacobian
 
 
 @dataclass(frozen=True)
 class State:
-    """Unknowns x (K, n_block) seen at instants."""
+    """The motion's state at instants: unknowns x (K, n_block) interpolated there."""
 
     character: Character
     layout: Layout
@@ -76,22 +80,33 @@ class State:
         return np.asarray(self.x[self.instants.blocks])
 
     def com(self, order: int = 0) -> FloatArray:
-        """(U, 3) m, or a time derivative."""
+        """(U, 3) centre of mass, m, world; or its order-th time derivative."""
         window = self._window[:, :, self.layout.com]
         return np.asarray(np.einsum("uk,ukj->uj", self.instants.values[order], window))
 
     def angles(self, order: int = 0) -> FloatArray:
-        """(U, n_angles) rad, or a time derivative."""
+        """(U, n_angles) joint angles, rad; or their order-th time derivative."""
         window = self._window[:, :, self.layout.angles]
         return np.asarray(np.einsum("uk,ukj->uj", self.instants.values[order], window))
 
     @cached_property
     def forces(self) -> FloatArray:
-        """(U, P, 3) body weights."""
-        window = self._window[:, 1:3, self.layout.forces]
+        """(U, P, 3) contact forces, body weights, world."""
+        window = self._window[:, FORCE_BLOCKS, self.layout.forces]
         values = np.einsum("uk,ukj->uj", self.instants.force_weights, window)
         return np.asarray(values.reshape(len(values), self.layout.n_points, 3))
 
     @cached_property
     def pose(self) -> Pose:
+        """Forward kinematics relative to the centre of mass."""
         return forward_kinematics(self.character, self.angles())
+
+
+class MotionFunction(Protocol):
+    """A function of the motion at instants, with its Jacobian."""
+
+    def value(self, state: State) -> FloatArray:
+        """(U, m) at the state's instants."""
+
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
+        """Jacobians of `value` by the channels that it depends on."""

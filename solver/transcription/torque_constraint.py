@@ -7,7 +7,6 @@ only in which joints' torques are bounded or weighed (docs/design.md says why).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
@@ -19,15 +18,20 @@ from ..body.inverse_dynamics import inverse_dynamics
 from ..body.kinematics import BodyPoint
 from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
-from .sampling import Channel, Slope, State
+from .rows import ROOT_ANGLES
+from .sampling import Channel, ChannelJacobian, State
 from .transcription import Transcription
+
+ROOT_FORCES = 3  # rows of inverse dynamics before the moments
 
 
 class TorqueFunction:
-    """Torques at chosen joint angles, body weights x m, and their derivatives.
+    """Joint torques (U, m) in body weights x m, a constraint function.
 
-    angles: (m,) indices of joint angles, none of the root's.
+    angles: (m,) indices of joint angles, none of the root's. points: where contact forces act.
     """
+
+    kind = RowKind.TORQUE
 
     def __init__(
         self, character: Character, points: Sequence[BodyPoint], angles: Sequence[int] | IntArray
@@ -40,7 +44,7 @@ class TorqueFunction:
         forces = ca.SX.sym("forces", 3, len(points))
         weight = character.mass * STANDARD_GRAVITY
         every = inverse_dynamics(character, points, q, v, a, fall, weight * forces)
-        torques = every[(self.angles + 3).tolist()] / weight
+        torques = every[(self.angles + ROOT_FORCES).tolist()] / weight
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))
         jacobian = ca.densify(ca.jacobian(torques, x))
         self._value = ca.Function("torques", [x], [ca.densify(torques)])
@@ -48,42 +52,29 @@ class TorqueFunction:
         self._width = int(x.shape[0])
 
     def value(self, state: State) -> FloatArray:
-        """(U, m)."""
+        """(U, m) body weights x m."""
         (torques,) = evaluate(self._value, self._inputs(state), [(len(self.angles),)])
         return torques
 
-    def slopes(self, state: State) -> list[Slope]:
-        """Derivatives by angles, speeds, accelerations, the centre of mass's and forces."""
-        m = len(self.angles)
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
+        """By angles, angular velocities, accelerations, the centre of mass's, and forces."""
+        m, n = len(self.angles), self._n
         shapes = [(m,), (self._width, m)]
-        by = np.swapaxes(evaluate(self._both, self._inputs(state), shapes)[1], 1, 2)
-        n = self._n
-        slopes = [Slope(Channel.ANGLES, k, by[:, :, k * n : (k + 1) * n]) for k in range(3)]
-        slopes.append(Slope(Channel.COM, 2, by[:, :, 3 * n : 3 * n + 3]))
+        matrix = np.swapaxes(evaluate(self._both, self._inputs(state), shapes)[1], 1, 2)
+        jacobians = [
+            ChannelJacobian(Channel.ANGLES, k, matrix[:, :, k * n : (k + 1) * n]) for k in range(3)
+        ]
+        jacobians.append(ChannelJacobian(Channel.COM, 2, matrix[:, :, 3 * n : 3 * n + 3]))
         if self._n_points:
-            slopes.append(Slope(Channel.FORCES, 0, by[:, :, 3 * n + 3 :]))
-        return slopes
+            jacobians.append(ChannelJacobian(Channel.FORCES, 0, matrix[:, :, 3 * n + 3 :]))
+        return jacobians
 
     def _inputs(self, state: State) -> FloatArray:
         parts = [state.angles(0), state.angles(1), state.angles(2), state.com(2)]
         return np.concatenate([*parts, state.forces.reshape(len(parts[0]), -1)], axis=1)
 
 
-def every_torque(transcription: Transcription) -> TorqueFunction:
-    """The torques of every joint."""
+def joint_torques(transcription: Transcription) -> TorqueFunction:
+    """The torques of every actuated joint."""
     character = transcription.character
-    return TorqueFunction(character, transcription.points, range(3, character.n_angles))
-
-
-@dataclass(frozen=True)
-class Torques:
-    """Torques as a measure that can be bounded."""
-
-    function: TorqueFunction
-    kind: RowKind = RowKind.TORQUE
-
-    def value(self, state: State) -> FloatArray:
-        return self.function.value(state)
-
-    def slopes(self, state: State) -> list[Slope]:
-        return self.function.slopes(state)
+    return TorqueFunction(character, transcription.points, range(ROOT_ANGLES, character.n_angles))

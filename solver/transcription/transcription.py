@@ -1,19 +1,19 @@
-"""The motion as finitely many unknowns and equations (thesis 4; findings: rank, Gauss points).
+"""Direct transcription: the motion as finitely many unknowns and constraint rows (thesis 4).
 
 Unknowns: coefficients of the centre of mass (m) and of the joint angles (rad) as cubic splines,
-and the contact forces (body weights) as piecewise linear functions. Equations:
+and the contact forces (body weights) as piecewise linear functions. Rows:
 
 balance   c'' / g + z - sum f = 0 at every force node: with the matching bases it then holds at
           *every* instant, exactly (both sides are piecewise linear)
-moment    L'(theta) - sum (p_i - c) x f_i = 0 at three Gauss points a span
+moment    L'(theta) - sum (p_i - c) x f_i = 0 at three Gauss points a span (collocation)
 pin       c + p_i(theta) - place = 0 at every break while a point is pinned, and zero velocity at
           the ends: as many rows as a cubic has freedom, so that they stay independent
 push      forces push and stay in their friction cones, at every force node and so at every
-          instant: both sets are convex (force_cones.py)
-others    what the artist bounds (condition.py)
+          instant: both sets are convex (friction_cones.py)
+others    the artist's constraints (constraint.py)
 
 A contact carries force for a short while before its point has come to rest and after it starts
-to lift (`SETTLE`): shoes and feet give, and a spline cannot stop a foot in no time.
+to lift (SETTLING_TIME): shoes and feet give, and a spline cannot stop a foot in no time.
 """
 
 from copy import copy
@@ -26,25 +26,26 @@ from ..body.character import Character
 from ..body.dynamics import MomentFunction
 from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
-from ..data.contacts import Contact
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix
 from ..numerics.splines import ORDER, SplineBasis, gauss_instants
-from .constraint import Bounded, Constraint
-from .contact_pins import Pins, PointContact
-from .friction_cones import ForceCones
-from .rows import Layout, Rows
-from .sampling import Instants, Slope
+from .constraint import Constraint, DiscretisedConstraint
+from .contact_pins import Pins, PointContact, touching_spans
+from .friction_cones import FrictionCones
+from .rows import FORCE_BLOCKS, Layout, Rows
+from .sampling import ChannelJacobian, Instants
 
-GAUSS = 3  # dynamics nodes a span
-SETTLE = 0.03  # s
+GAUSS_NODES = 3  # dynamics nodes a span
+SETTLING_TIME = 0.03  # s
 
 
 @dataclass
 class Transcription:
-    """The equations of one motion problem on one basis.
+    """Constraint rows of one motion problem on one basis.
 
-    points: the bodies' points that touch; contacts: when and where they do. conditions: bounds.
+    points: the bodies' points that touch. contacts: when and where they do. moment: the rate of
+    angular momentum about the centre of mass. active: which unknowns exist. discretised: the
+    constraints on this basis.
     """
 
     character: Character
@@ -52,36 +53,36 @@ class Transcription:
     points: tuple[BodyPoint, ...]
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
-    conditions: tuple[Constraint, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
     layout: Layout = field(init=False)
-    active: BoolArray = field(init=False)  # (K, n_block) bool, which unknowns exist
+    active: BoolArray = field(init=False)  # (K, n_block)
 
     def __post_init__(self) -> None:
         self.layout = Layout(self.character.n_angles, len(self.points))
         self.active = self._active()
-        times, self.node_weights, self.node_spans = gauss_instants(self.basis.breaks, GAUSS)
+        times, self.node_weights, self.node_spans = gauss_instants(self.basis.breaks, GAUSS_NODES)
         self.node_times = times
         self._node_basis = [self.basis.evaluate(times, k, self.node_spans) for k in range(3)]
         self._node_force = self.basis.force_weights(times, self.node_spans)
         self._balance = self._balance_rows()
         self.pins = Pins(self.basis, self.layout, self.contacts)
-        self.cones = ForceCones(self.basis, self.layout, self.contacts)
+        self.cones = FrictionCones(self.basis, self.layout, self.contacts)
         first = len(self.contacts)
-        self.bounded = [
-            Bounded(condition, self.character, self.basis, self.layout, first + i)
-            for i, condition in enumerate(self.conditions)
+        self.discretised = [
+            DiscretisedConstraint(constraint, self.character, self.basis, self.layout, first + i)
+            for i, constraint in enumerate(self.constraints)
         ]
 
     @property
     def owners(self) -> tuple[str, ...]:
-        """What the rows' owners are called: contacts, then conditions."""
+        """Names of the rows' owners: contacts, then constraints."""
         contacts = tuple(c.contact.name for c in self.contacts)
-        return contacts + tuple(c.name for c in self.conditions)
+        return contacts + tuple(c.name for c in self.constraints)
 
-    def eased(self, x: FloatArray, share: float) -> "Transcription":
-        """The same with every bound that x misses moved `share` of the way from x to its own."""
+    def relaxed(self, x: FloatArray, share: float) -> "Transcription":
+        """Homotopy: bounds that x (K, n_block) violates lie `share` of the way to their own."""
         twin = copy(self)
-        twin.bounded = [bounded.eased(x, share) for bounded in self.bounded]
+        twin.discretised = [each.relaxed(x, share) for each in self.discretised]
         return twin
 
     @property
@@ -96,45 +97,45 @@ class Transcription:
         for contact in self.contacts:
             inside = touching_spans(basis, contact.contact)
             nodes = basis.force_nodes(inside)
-            active[nodes.ravel() + 1, layout.force(contact.point)] = True
+            active[layout.force_block(nodes.ravel()), layout.force(contact.point)] = True
         for contact in self.contacts:
             nodes = basis.force_nodes(touching_spans(basis, contact.contact))
             if contact.contact.start > basis.breaks[0]:
-                active[nodes[0, 0] + 1, layout.force(contact.point)] = False
+                active[layout.force_block(nodes[0, 0]), layout.force(contact.point)] = False
             if contact.contact.end < basis.breaks[-1]:
-                active[nodes[-1, 1] + 1, layout.force(contact.point)] = False
+                active[layout.force_block(nodes[-1, 1]), layout.force(contact.point)] = False
         return active
 
     def window(self, x: FloatArray, spans: IntArray) -> FloatArray:
-        """(R, 4, n_block) the four blocks that act in each span."""
+        """(R, 4, n_block) the four blocks of x (K, n_block) that act in each span (R,)."""
         blocks = self.basis.first_coefficient[spans][:, None] + np.arange(ORDER)
         return np.asarray(x[blocks])
 
     def rows(self, x: FloatArray, places: FloatArray) -> Rows:
-        """Every equation at unknowns x (K, n_block), pins at places (n_contacts, 3) m."""
+        """Every row at unknowns x (K, n_block), pins at places (n_contacts, 3) m, world."""
         at_nodes, at_pins = self._poses(x)
         parts = [self._balance_at(x), self._moment_rows(x, at_nodes)]
         if self.contacts:
             window = self.window(x, self.pins.spans)
             parts += self.pins.rows(window, at_pins, self.points, places)
             parts += self.cones.rows(x)
-        parts += [bounded.rows(x) for bounded in self.bounded]
+        parts += [each.rows(x) for each in self.discretised]
         return self._only_active(Rows.join(parts))
 
     def values(self, x: FloatArray, places: FloatArray) -> FloatArray:
-        """The values of `rows` alone, cheaper."""
+        """(R,) values of `rows` without their Jacobian."""
         at_nodes, at_pins = self._poses(x)
         parts = [self._balance_residual(x), self._moment_residual(x, at_nodes).ravel()]
         if self.contacts:
             window = self.window(x, self.pins.spans)
             parts.append(self.pins.values(window, at_pins, self.points, places))
             parts.append(self.cones.values(x))
-        parts += [bounded.value(x) for bounded in self.bounded]
+        parts += [each.value(x) for each in self.discretised]
         return np.concatenate(parts)
 
-    def spread(self, instants: Instants, slopes: list[Slope]) -> FloatArray:
-        """(U, m, 4, n_block) derivatives by the unknowns that exist in each instant's blocks."""
-        jacobian = instants.spread(slopes, self.layout)
+    def assemble(self, instants: Instants, jacobians: list[ChannelJacobian]) -> FloatArray:
+        """(U, m, 4, n_block) Jacobian by the unknowns that exist in each instant's blocks."""
+        jacobian = instants.assemble(jacobians, self.layout)
         jacobian *= self.active[instants.blocks][:, None]
         return jacobian
 
@@ -144,7 +145,7 @@ class Transcription:
         return rows
 
     def _poses(self, x: FloatArray) -> tuple[Pose, Pose]:
-        """The figure at the dynamics nodes and at the pins' breaks, worked out together."""
+        """Forward kinematics at the dynamics nodes and at the pins' breaks, evaluated together."""
         q = self.angles_at_nodes(x, 0)
         pinned = self.pins.angles(self.window(x, self.pins.spans))
         posed = forward_kinematics(self.character, np.concatenate([q, pinned]))
@@ -163,9 +164,11 @@ class Transcription:
         jacobian = np.zeros((len(span), 3, ORDER, layout.n_block))
         each = np.arange(len(span))
         for axis in range(3):
-            jacobian[:, axis, :, axis] = second
+            jacobian[:, axis, :, layout.com.start + axis] = second
             for point in range(layout.n_points):
-                jacobian[each, axis, 1 + side, layout.force(point).start + axis] = -1.0
+                jacobian[
+                    each, axis, FORCE_BLOCKS.start + side, layout.force(point).start + axis
+                ] = -1.0
         weight = np.tile([0.0, 0.0, self.character.gravity / STANDARD_GRAVITY], (len(span), 1))
         return self._only_active(Rows.of(span, weight, jacobian, RowKind.BALANCE, times))
 
@@ -180,13 +183,13 @@ class Transcription:
     # -- moment ----------------------------------------------------------------------------
 
     def angles_at_nodes(self, x: FloatArray, derivative: int) -> FloatArray:
-        """(N, n_angles) joint angles, or their derivative, at the dynamics nodes."""
+        """(N, n_angles) joint angles, rad, or their derivative at the dynamics nodes."""
         local = self.window(x, self.node_spans)[:, :, self.layout.angles]
         return np.asarray(np.einsum("nk,nkj->nj", self._node_basis[derivative], local))
 
     def forces_at_nodes(self, x: FloatArray) -> FloatArray:
-        """(N, P, 3) contact forces in body weights at the dynamics nodes."""
-        local = self.window(x, self.node_spans)[:, 1:3, self.layout.forces]
+        """(N, P, 3) contact forces at the dynamics nodes, body weights, world."""
+        local = self.window(x, self.node_spans)[:, FORCE_BLOCKS, self.layout.forces]
         forces = np.einsum("nk,nkj->nj", self._node_force, local)
         return np.asarray(forces.reshape(len(forces), self.layout.n_points, 3))
 
@@ -211,13 +214,9 @@ class Transcription:
             lever = lever.transpose(0, 2, 1, 3).reshape(count, 3, 3 * layout.n_points)
             for side in range(2):
                 weight = self._node_force[:, side]
-                jacobian[:, :, 1 + side, layout.forces] = weight[:, None, None] * lever
+                jacobian[:, :, FORCE_BLOCKS.start + side, layout.forces] = (
+                    weight[:, None, None] * lever
+                )
         stacked = np.stack(self._node_basis, axis=-1)  # (N, 4, 3)
         jacobian[..., layout.angles] = np.einsum("nko,niom->nikm", stacked, by_order)
         return Rows.of(self.node_spans, rate, jacobian, RowKind.MOMENT, self.node_times)
-
-
-def touching_spans(basis: SplineBasis, contact: Contact) -> IntArray:
-    """Indices of the spans during which a contact carries force."""
-    middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
-    return np.flatnonzero((middles > contact.start) & (middles < contact.end))

@@ -112,7 +112,7 @@ class AdaptationResult:
     @property
     def recording(self) -> Recording:
         """The recording on the figure that the motion is for, in its own lengths."""
-        return scaled_recording(self.adaptation.plan.recording, 1.0 / self.subject.factor)
+        return scaled_recording(self.adaptation.setup.recording, 1.0 / self.subject.factor)
 
     @property
     def track(self) -> PoseTrack:
@@ -122,11 +122,11 @@ class AdaptationResult:
     @property
     def schedule(self) -> ContactSchedule:
         """The motion's contacts, in the recording's own lengths."""
-        return scaled_schedule(self.adaptation.plan.schedule, 1.0 / self.subject.factor)
+        return scaled_schedule(self.adaptation.setup.schedule, 1.0 / self.subject.factor)
 
     def traces(self) -> Traces:
         """In the recording's own lengths."""
-        return self.subject.motion_traces(self.adaptation.motion, self.adaptation.plan.schedule)
+        return self.subject.motion_traces(self.adaptation.motion, self.adaptation.setup.schedule)
 
     def report(self, origin: Origin, stages: list[StageReport] | None = None) -> Report:
         """At the stated stature. stages: None leaves out times."""

@@ -113,8 +113,8 @@ class Service:
             self._following = following
         follower = following.follower
         status = follower.follow(problem)
-        traces = subject.motion_traces(follower.motion, follower.plan.schedule, torques=False)
-        summary = change(fitted, follower.plan, follower.motion, traces)
+        traces = subject.motion_traces(follower.motion, follower.setup.schedule, torques=False)
+        summary = change(fitted, follower.setup, follower.motion, traces)
         return Followed(request, traces, status, summary)
 
     def _similar(self, fitted: Fit, problem: MotionProblem) -> Adaptation | None:

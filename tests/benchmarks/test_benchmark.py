@@ -16,7 +16,7 @@ from hangtime.devtools.peers import ipopt_peer
 from hangtime.devtools.peers.task import Equations, Task, metric_matrix
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.stages.fit import ADAPT_PRICES, motion_metric
+from hangtime.solver.stages.fit import ADAPT_COST_WEIGHTS, motion_metric
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.toy_problems import places, random_state, standing
@@ -28,7 +28,7 @@ LIMIT = 60.0  # s
 def toy() -> Task:
     """Two legs that stand, from a guess that is in balance but for its moment."""
     start = random_state(3, 0.0)
-    metric = motion_metric(Motion(standing(), start, places()), ADAPT_PRICES)
+    metric = motion_metric(Motion(standing(), start, places()), ADAPT_COST_WEIGHTS)
     return Task(standing(), places(), start, metric)
 
 

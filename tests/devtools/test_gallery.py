@@ -151,11 +151,11 @@ def test_the_page_shows_a_failure_and_the_thesis_s_sizes() -> None:
 
 def test_what_is_asked_for_is_marked_where_it_is() -> None:
     flight = When(phase="flight 1")
-    case = AddedMass("case", "rhand", share=0.1)
+    case = AddedMass("case", "RightHand", share=0.1)
     requests = Requests(
-        angles=(AngleLimit("knee", "ltibia", 0.0, None, flight),),
-        cones=(ConeLimit("arm", "lhumerus", math.radians(170), when=flight),),
-        torques=(TorqueLimit("weak", ("rfoot",), bound=1000.0, when=flight),),
+        angles=(AngleLimit("knee", "LeftLeg", 0.0, None, flight),),
+        cones=(ConeLimit("arm", "LeftArm", math.radians(170), when=flight),),
+        torques=(TorqueLimit("weak", ("RightFoot",), bound=1000.0, when=flight),),
         body=BodyChange(added=(case,)),
     )
     problem = MotionProblem(requests=requests)
@@ -166,10 +166,10 @@ def test_what_is_asked_for_is_marked_where_it_is() -> None:
     names = [body.bone for body in motion.transcription.character.bodies]
     names_of_bodies = [body.name for body in motion.transcription.character.bodies]
     centres = motion.joint_centres(instants(motion))
-    np.testing.assert_allclose(marks[Cone].apex, centres[:, names.index("lhumerus")])
-    np.testing.assert_allclose(marks[LimitArc].centre, centres[:, names.index("ltibia")])
+    np.testing.assert_allclose(marks[Cone].apex, centres[:, names.index("LeftArm")])
+    np.testing.assert_allclose(marks[LimitArc].centre, centres[:, names.index("LeftLeg")])
     assert marks[LimitArc].lower == marks[LimitArc].upper == 0.0
-    assert marks[Tint].limbs == (names_of_bodies[names.index("rfoot")],)
+    assert marks[Tint].limbs == (names_of_bodies[names.index("RightFoot")],)
     assert marks[Box].size.prod() == pytest.approx(0.007, rel=0.01)  # 7 kg
 
 

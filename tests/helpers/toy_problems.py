@@ -17,11 +17,12 @@ from hangtime.solver.data.timeline import Timeline
 from hangtime.solver.numerics.block_banded import BlockBanded
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.numerics.splines import ORDER, SplineBasis, phase_breaks
-from hangtime.solver.optimisation.sqp import Outcome, restore
-from hangtime.solver.stages.constraint_builder import EvaluationContext, conditions
+from hangtime.solver.optimisation.sqp import FeasibleSet, Outcome, restore
+from hangtime.solver.stages.constraint_builder import build_constraints
+from hangtime.solver.stages.evaluation_context import EvaluationContext
 from hangtime.solver.stages.fit import motion_target
 from hangtime.solver.transcription.constraint import Constraint, ConstraintFunction, exchange
-from hangtime.solver.transcription.constraint_functions import Twist
+from hangtime.solver.transcription.constraint_functions import TwistAngle
 from hangtime.solver.transcription.contact_pins import PointContact
 from hangtime.solver.transcription.motion import Motion
 from hangtime.solver.transcription.rows import Layout
@@ -117,8 +118,8 @@ def random_state(seed: int, size: float = 0.2) -> np.ndarray:
 
 
 def metric(motion: Motion) -> BlockBanded:
-    prices = CostWeights(shape=1.0, com=0.1, force=1e-3)
-    return TrackingCost(motion.transcription, motion_target(motion), prices).expand(motion.x)[1]
+    weights = CostWeights(shape=1.0, com=0.1, force=1e-3)
+    return TrackingCost(motion.transcription, motion_target(motion), weights).expand(motion.x)[1]
 
 
 @cache
@@ -133,23 +134,23 @@ def stood() -> Motion:
 
 def restored(transcription: Transcription, start: Motion) -> Outcome:
     """Minimum-norm steps to where a transcription's rows hold."""
-    return restore(transcription, metric(start), start.x, places(), stage="toy")
+    return restore(FeasibleSet(transcription, places()), metric(start), start.x, stage="toy")
 
 
 def held_between(t: Transcription, start: Motion) -> tuple[Transcription, Outcome]:
-    """The same, with rows added where a condition is missed in between."""
+    """The same, with rows added where a constraint is violated in between."""
     outcome = restored(t, start)
     for _ in range(4):
-        added = tuple(exchange(c, t.character, t.basis, t.layout, outcome.x) for c in t.conditions)
-        if all(new is old for new, old in zip(added, t.conditions, strict=True)):
+        added = tuple(exchange(c, t.character, t.basis, t.layout, outcome.x) for c in t.constraints)
+        if all(new is old for new, old in zip(added, t.constraints, strict=True)):
             break
-        t = replace(t, conditions=added)
+        t = replace(t, constraints=added)
         outcome = restored(t, Motion(t, outcome.x, start.places))
     return t, outcome
 
 
 @cache
-def scene() -> EvaluationContext:
+def context() -> EvaluationContext:
     """The standing motion as a fit of which something is asked."""
     motion = stood()
     touching = tuple(c.contact for c in motion.transcription.contacts)
@@ -161,7 +162,7 @@ def scene() -> EvaluationContext:
 
 
 def recording() -> Recording:
-    """What scene() was read from; bones' axes are the bodies'."""
+    """What context() was read from; bones' axes are the bodies'."""
     character = figure()
     times = np.linspace(0.0, DURATION, round(DURATION * RATE) + 1)
     still = forward_kinematics(character, np.zeros((1, character.n_angles)))
@@ -176,7 +177,7 @@ def recording() -> Recording:
 
 def asked(requests: Requests) -> Transcription:
     """The standing figure of which something is asked."""
-    return replace(standing(), conditions=conditions(requests, scene(), standing()))
+    return replace(standing(), constraints=build_constraints(requests, context(), standing()))
 
 
 # -- an arm with plain axes, posed at will --------------------------------------------------
@@ -201,26 +202,26 @@ def still(character: Character, angles: np.ndarray, com: np.ndarray | None = Non
     return State(character, layout, Instants(basis, np.array([0.5])), x)
 
 
-# -- slopes ---------------------------------------------------------------------------------
+# -- Jacobians ------------------------------------------------------------------------------
 
 
 def seen(t: Transcription, x: np.ndarray) -> State:
-    """Unknowns at the instants at which a condition of the whole clip would have its rows."""
+    """Unknowns at the instants at which a constraint of the whole clip would have its rows."""
     whole = Constraint(
-        "toy", Twist(t.character.joints[0], np.eye(3)[0]), None, *t.basis.breaks[[0, -1]]
+        "toy", TwistAngle(t.character.joints[0], np.eye(3)[0]), None, *t.basis.breaks[[0, -1]]
     )
     return State(t.character, t.layout, whole.instants(t.basis), x)
 
 
-def slope_error(state: State, measure: ConstraintFunction, seed: int) -> float:
-    """How far a measure's slopes are from central differences along a random direction of the
+def jacobian_error(state: State, function: ConstraintFunction, seed: int) -> float:
+    """Error of a function's Jacobian against central differences along a random direction of the
     unknowns, over the largest of these."""
     direction = np.random.default_rng(seed).normal(size=state.x.shape)
     ahead, behind = (
-        measure.value(replace(state, x=state.x + s * STEP * direction)) for s in (1.0, -1.0)
+        function.value(replace(state, x=state.x + s * STEP * direction)) for s in (1.0, -1.0)
     )
     theirs = (ahead - behind) / (2.0 * STEP)
-    jacobian = state.instants.spread(measure.slopes(state), state.layout)
+    jacobian = state.instants.assemble(function.jacobians(state), state.layout)
     assert jacobian.shape == (*theirs.shape, ORDER, state.layout.n_block)
     ours = np.einsum("umkn,ukn->um", jacobian, direction[state.instants.blocks])
     largest = float(np.abs(theirs).max())

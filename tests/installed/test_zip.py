@@ -57,7 +57,7 @@ print("ANSWER", json.dumps(
 os._exit(0)
 """
 ADAPT = """
-from bl_ext.user_default.hangtime.operators import cli
+from bl_ext.user_default.hangtime.operators.headless import cli
 code = cli.main(["adapt", sys.argv[2], "--recipe", sys.argv[3], "--out", sys.argv[4]])
 print("ANSWER", json.dumps({"code": code}), flush=True)
 os._exit(0)

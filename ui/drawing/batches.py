@@ -1,7 +1,5 @@
 """Batches of coloured triangles and lines on the GPU, drawn by Blender's own shaders."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import gpu

@@ -1,7 +1,5 @@
 """A cache of what was built for a content, of the last few contents that were asked for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
 

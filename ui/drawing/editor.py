@@ -1,7 +1,5 @@
 """Typed reads of the editor that is being drawn: its 3D space, the interface's scale."""
 
-from __future__ import annotations
-
 from typing import cast
 
 import bpy

@@ -1,7 +1,5 @@
 """Drawings painted in a region by the GPU: for plots and timeline."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

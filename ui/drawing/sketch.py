@@ -1,7 +1,5 @@
 """Flat drawings as data: what is painted in a region, made and tested without a GPU."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum

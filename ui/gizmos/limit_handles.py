@@ -1,20 +1,18 @@
 """Handles of the chosen joint limit: its ends, and a cone's axis."""
 
-from __future__ import annotations
-
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
 from ...bridge.accessors import present
 from ...operators.drag import rays
-from ...operators.names import GizmoGroupId, OperatorId
+from ...operators.names import OperatorId
 from ..overlay.context.figure_cache import FigureCache
 from ..overlay.context.view_context import ViewContext
 from ..overlay.geometry import palette
 from ..overlay.geometry.limit_shapes import limit_frames
 from ..overlay.layers.limits import chosen_limit, limit_pose
-from .places import Knob, LimitHandlePlaces, LimitPlacement, Tip, handle_places
+from .places import Knob, LimitHandlePlaces, Tip, handle_places
 from .shown import handled, knob, paint, put
 
 ENDS = ("lower", "upper", "half_angle")
@@ -26,13 +24,12 @@ def handles(view: ViewContext, figures: FigureCache, sight: rays.Vector) -> Limi
     if limit is None:
         return LimitHandlePlaces()
     figure = figures.of(view, view.recorded)
-    joints, drawn = limit_frames([limit], figure, limit_pose(view.armature, (limit,)))
-    at = LimitPlacement(drawn.axes[0], drawn.origins[0], joints.turns[0])
-    return handle_places(limit, at, np.array(view.armature.matrix_world), sight)
+    placed = limit_frames([limit], figure, limit_pose(view.armature, (limit,)))
+    return handle_places(limit, *placed, np.array(view.armature.matrix_world), sight)
 
 
 class LimitHandles(bpy.types.GizmoGroup):
-    bl_idname = GizmoGroupId.LIMITS
+    bl_idname = "HANGTIME_GGT_limits"
     bl_label = "Hangtime Joint Limits"
     bl_space_type = "VIEW_3D"
     bl_region_type = "WINDOW"
@@ -86,6 +83,3 @@ def _show_tip(
     put(gizmo, Vector(tip.at.tolist()))
     aim.constraint, aim.centre, aim.tip = chosen, tip.centre, tip.at
     aim.turn = Matrix(tip.turn.tolist())
-
-
-CLASSES = (LimitHandles,)

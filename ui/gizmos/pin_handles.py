@@ -1,7 +1,5 @@
 """Handles of contacts and points, and of the stance of the chosen contact."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import bpy
@@ -9,7 +7,7 @@ from mathutils import Vector
 
 from ...bridge.constraint_kinds import point
 from ...bridge.properties.stances import active_stance, stance_contacts, stance_middle
-from ...operators.names import GizmoGroupId, OperatorId
+from ...operators.names import OperatorId
 from ..overlay.context.view_context import ViewContext
 from ..overlay.geometry import palette
 from ..overlay.geometry.shapes import faded
@@ -49,7 +47,7 @@ def handles(view: ViewContext) -> list[Handle]:
 
 
 class PinHandles(bpy.types.GizmoGroup):
-    bl_idname = GizmoGroupId.PINS
+    bl_idname = "HANGTIME_GGT_pins"
     bl_label = "Hangtime Pins"
     bl_space_type = "VIEW_3D"
     bl_region_type = "WINDOW"
@@ -119,6 +117,3 @@ class PinHandles(bpy.types.GizmoGroup):
         lift.release_confirm = lift.whole = True
         lift.axis = "Z"
         return arrow, lift
-
-
-CLASSES = (PinHandles,)

@@ -3,8 +3,6 @@
 A limit's angles count on a circle about its joint; its ends are points of that circle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -13,6 +11,7 @@ import numpy as np
 from ...bridge.shapes.limits import directions
 from ...operators.drag.rays import Circle, Vector, scaled, unit
 from ...solver.arrays import FloatArray
+from ..overlay.geometry.limit_poses import Joints, LimitFrames
 from ..overlay.geometry.limit_shapes import ARC, CONE, RING, TWIST, Limit
 
 SIDEWAYS = 0.2  # sine of axis and view: below, one looks along the cone
@@ -48,31 +47,23 @@ class LimitHandlePlaces:
     tip: Tip | None = None
 
 
-@dataclass(frozen=True)
-class LimitPlacement:
-    """A limit as drawn in the armature's space, in the axes of bridge/shapes/limits.py.
-
-    axes: (3, 3) columns. origin: (3,). parent: (3, 3) the parent's turn from rest to now.
-    """
-
-    axes: FloatArray
-    origin: Vector
-    parent: FloatArray
-
-
 def handle_places(
-    limit: Limit, placed: LimitPlacement, armature: FloatArray, sight: Vector
+    limit: Limit, joint: Joints, drawn: LimitFrames, armature: FloatArray, sight: Vector
 ) -> LimitHandlePlaces:
-    """armature: (4, 4) its matrix in the world. sight: (3,) unit vector to the viewer, world."""
+    """The handles of a limit.
+
+    joint, drawn: of this one alone, in the armature's space. armature: (4, 4) its matrix in the
+    world. sight: (3,) unit vector to the viewer, world.
+    """
     scale = float(np.linalg.norm(armature[:3, 0]))
     if scale == 0.0:  # nothing of it is to be seen
         return LimitHandlePlaces()
     to_world = armature[:3, :3] / scale
-    origin, axes = armature[:3, :3] @ placed.origin + armature[:3, 3], to_world @ placed.axes
+    origin, axes = armature[:3, :3] @ drawn.origins[0] + armature[:3, 3], to_world @ drawn.axes[0]
     length = scale * limit.length
     if limit.kind == CONE:
         knob = _rim(limit, Circle(origin, axes[:, 0], axes[:, 1], length), axes, sight)
-        turn = to_world @ placed.parent.T @ to_world.T
+        turn = to_world @ joint.turns[0].T @ to_world.T
         return LimitHandlePlaces((knob,), Tip(_on(knob.circle, 0.0), origin, turn))
     radius = (RING if limit.kind == TWIST else ARC) * length
     return LimitHandlePlaces(tuple(_ends(limit, Circle(origin, axes[:, 0], axes[:, 1], radius))))

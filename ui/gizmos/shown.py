@@ -1,7 +1,5 @@
 """Conditions under which handles are shown, and their looks."""
 
-from __future__ import annotations
-
 import bpy
 from mathutils import Matrix, Vector
 

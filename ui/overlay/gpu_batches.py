@@ -1,7 +1,5 @@
 """Shapes on the graphics card, and the passes in which they are drawn. Built-in shaders only."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass

@@ -1,11 +1,10 @@
 """The viewport's draw handlers, and what they keep between redraws."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy
 
+from ...operators.solve.live import redraw_viewports
 from ..drawing.editor import ui_scale
 from .context.figure_cache import FigureCache
 from .context.view_context import read_view
@@ -31,9 +30,9 @@ class Overlay:
         view = read_view(context)
         if view is None:
             return
-        picture = self._pictures.of(list(layers(view, self._figures)))
-        draw(picture.batches, ui_scale(context))
-        self._labels = picture.labels if view.options.labels else ()
+        batches, named = self._pictures.of(list(layers(view, self._figures)))
+        draw(batches, ui_scale(context))
+        self._labels = named if view.options.labels else ()
 
     def draw_labels(self) -> None:
         """Over the picture (POST_PIXEL), which follows for the same region."""
@@ -55,14 +54,6 @@ def add(undo: ExitStack) -> Overlay:
     for callback, when in ((overlay.draw_view, "POST_VIEW"), (overlay.draw_labels, "POST_PIXEL")):
         handle = space.draw_handler_add(callback, (), "WINDOW", when)
         undo.callback(space.draw_handler_remove, handle, "WINDOW")
-    _redraw()
-    undo.callback(_redraw)
+    redraw_viewports()
+    undo.callback(redraw_viewports)
     return overlay
-
-
-def _redraw() -> None:
-    managers = getattr(bpy.data, "window_managers", ())  # none while Blender starts
-    for window in (window for manager in managers for window in manager.windows):
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()

@@ -1,7 +1,5 @@
 """Selection of the layers that are switched on."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from .context.figure_cache import FigureCache

@@ -1,9 +1,7 @@
 """A cache of the whole picture by its content, and of its layers by theirs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Generic, TypeVar
 
@@ -17,26 +15,14 @@ from .geometry.shapes import Label, Shape, merged, placed
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class OverlayPicture(Generic[T]):
-    """batches: the shapes, as `upload` made them. labels: in the world."""
-
-    batches: T
-    labels: tuple[Label, ...]
+BuiltLayer = tuple[tuple[Shape, ...], tuple[Label, ...]]
 
 
-@dataclass(frozen=True)
-class BuiltLayer:
-    """A layer's shapes and labels, in its own space."""
-
-    shapes: tuple[Shape, ...]
-    labels: tuple[Label, ...]
-
-    @staticmethod
-    def of(layer: Layer) -> BuiltLayer:
-        parts = list(layer.build())
-        shapes = merged(part for part in parts if isinstance(part, Shape))
-        return BuiltLayer(shapes, tuple(part for part in parts if isinstance(part, Label)))
+def build(layer: Layer) -> BuiltLayer:
+    """A layer's shapes, one for each look, and its labels, in its own space."""
+    parts = list(layer.build())
+    shapes = merged(part for part in parts if isinstance(part, Shape))
+    return shapes, tuple(part for part in parts if isinstance(part, Label))
 
 
 class PictureCache(Generic[T]):
@@ -45,10 +31,13 @@ class PictureCache(Generic[T]):
     def __init__(self, upload: Callable[[Sequence[Shape]], T]) -> None:
         self._upload = upload
         self._layers: ContentCache[BuiltLayer] = ContentCache()
-        self._pictures: ContentCache[OverlayPicture[T]] = ContentCache()
+        self._pictures: ContentCache[tuple[T, tuple[Label, ...]]] = ContentCache()
 
-    def of(self, layers: Sequence[Layer]) -> OverlayPicture[T]:
-        """Layers in one picture: few and large things are drawn sooner than many small ones."""
+    def of(self, layers: Sequence[Layer]) -> tuple[T, tuple[Label, ...]]:
+        """Layers in one picture: its shapes as uploaded, and the labels in the world.
+
+        Few and large things are drawn sooner than many small ones.
+        """
         content = tuple((layer.part, layer.content, layer.matrix) for layer in layers)
         return self._pictures.get("picture", content, lambda: self._picture(layers))
 
@@ -56,14 +45,11 @@ class PictureCache(Generic[T]):
         self._layers.clear()
         self._pictures.clear()
 
-    def _picture(self, layers: Sequence[Layer]) -> OverlayPicture[T]:
+    def _picture(self, layers: Sequence[Layer]) -> tuple[T, tuple[Label, ...]]:
         shapes, labels = [], []
         for layer in layers:
-            built = self._layers.get(layer.part, layer.content, partial(BuiltLayer.of, layer))
+            made, named = self._layers.get(layer.part, layer.content, partial(build, layer))
             matrix = np.array(layer.matrix.copy())  # numpy cannot look into frozen ones
-            shapes += [placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in built.shapes]
-            labels += [
-                replace(label, place=xyz(layer.matrix @ Vector(label.place)))
-                for label in built.labels
-            ]
-        return OverlayPicture(self._upload(merged(shapes)), tuple(labels))
+            shapes += [placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in made]
+            labels += [replace(n, place=xyz(layer.matrix @ Vector(n.place))) for n in named]
+        return self._upload(merged(shapes)), tuple(labels)

@@ -1,38 +1,57 @@
-"""The fields of a constraint, drawn in the sidebar; its kind says which."""
-
-from __future__ import annotations
+"""The fields of a constraint or body change, drawn in the sidebar; its kind says which."""
 
 from dataclasses import dataclass
 
 import bpy
 
-from ...bridge.constraint_kinds import KINDS
 from ...bridge.rows.choices import Span
 from ...bridge.rows.kind import Row
+from ...operators.lists.row_lists import RowList
 from ...operators.names import OperatorId
+from .sidebar import optional
 
 Layout = bpy.types.UILayout
 
 
-def draw_constraint(layout: Layout, row: Row, bones: bpy.types.Armature, *, own: bool) -> None:
-    """The fields of a row. bones: the armature's data. own: whether its bones may be changed."""
-    KINDS[row.kind].draw(RowDrawing(layout, row, bones, own), row)
-
-
 @dataclass(frozen=True)
 class RowDrawing:
-    """What kinds draw their fields with (bridge/rows/kind.py FieldDrawing)."""
+    """What kinds draw their fields with (bridge/rows/kind.py FieldDrawing).
+
+    data: the armature's. own: whether the row's bones may be changed. of: the name of its list.
+    """
 
     layout: Layout
     row: Row
     data: bpy.types.Armature
     own: bool
+    of: str = RowList.CONSTRAINTS.name
 
     def bone(self) -> None:
-        draw_bone(self.layout, self.row, self.data, own=self.own)
+        """The one bone that the row is about."""
+        line = self.layout.row()
+        line.enabled = self.own
+        if not self.row.bones:
+            line.label(text="Select a bone and assign it", icon="ERROR")
+            return
+        line.alert = self.row.bones[0].name not in self.data.bones
+        line.prop_search(self.row.bones[0], "name", self.data, "bones", text="Bone")
 
     def bones(self, none: str) -> None:
-        draw_bones(self.layout, self.row, self.data, "CONSTRAINTS", none, own=self.own)
+        """All bones of the row. none: what no bones mean."""
+        column = self.layout.column(align=True)
+        column.enabled = self.own
+        for index, bone in enumerate(self.row.bones):
+            line = column.row(align=True)
+            line.alert = bool(bone.name) and bone.name not in self.data.bones
+            text = "Bones" if index == 0 else " "
+            line.prop_search(bone, "name", self.data, "bones", text=text)
+            remove = line.operator(OperatorId.REMOVE_BONE, text="", icon="REMOVE")
+            remove.of, remove.index = self.of, index
+        if not self.row.bones:
+            column.label(text=none, icon="INFO")
+        buttons = column.row(align=True)
+        buttons.operator(OperatorId.ASSIGN_BONES, icon="RESTRICT_SELECT_OFF").of = self.of
+        buttons.operator(OperatorId.ADD_BONE, text="", icon="ADD").of = self.of
 
     def phase(self) -> None:
         self._phase(self.layout)
@@ -50,11 +69,7 @@ class RowDrawing:
             column.prop(self.row, "first_frame", text="Frame")
 
     def optional(self, layout: Layout, use: str, value: str, heading: str) -> None:
-        line = layout.row(heading=heading)
-        line.prop(self.row, use, text="")
-        field = line.row()
-        field.active = getattr(self.row, use)
-        field.prop(self.row, value, text="")
+        optional(layout, self.row, use, heading, value)
 
     def place_button(self, layout: Layout) -> None:
         layout.operator(OperatorId.PLACE_CONSTRAINT, icon="CON_LOCLIKE")
@@ -63,34 +78,3 @@ class RowDrawing:
         line = layout.row(align=True)
         line.alert = not self.row.phase
         line.prop(self.row, "phase", icon="PREVIEW_RANGE")
-
-
-def draw_bone(layout: Layout, row: Row, data: bpy.types.Armature, *, own: bool) -> None:
-    """The one bone that a row is about. data: the armature's."""
-    line = layout.row()
-    line.enabled = own
-    if not row.bones:
-        line.label(text="Select a bone and assign it", icon="ERROR")
-        return
-    line.alert = row.bones[0].name not in data.bones
-    line.prop_search(row.bones[0], "name", data, "bones", text="Bone")
-
-
-def draw_bones(
-    layout: Layout, row: Row, data: bpy.types.Armature, of: str, none: str, *, own: bool
-) -> None:
-    """All bones of a row. of: the list's name. none: what no bones mean."""
-    column = layout.column(align=True)
-    column.enabled = own
-    for index, bone in enumerate(row.bones):
-        line = column.row(align=True)
-        line.alert = bool(bone.name) and bone.name not in data.bones
-        text = "Bones" if index == 0 else " "
-        line.prop_search(bone, "name", data, "bones", text=text)
-        remove = line.operator(OperatorId.REMOVE_BONE, text="", icon="REMOVE")
-        remove.of, remove.index = of, index
-    if not row.bones:
-        column.label(text=none, icon="INFO")
-    buttons = column.row(align=True)
-    buttons.operator(OperatorId.ASSIGN_BONES, icon="RESTRICT_SELECT_OFF").of = of
-    buttons.operator(OperatorId.ADD_BONE, text="", icon="ADD").of = of

@@ -1,7 +1,5 @@
 """Constraints and Body Changes: what the artist asks for beside moved contacts."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import armature_data, present
@@ -10,38 +8,33 @@ from ...bridge.properties.settings import settings_of
 from ...bridge.rows.choices import BodyKind
 from ...bridge.rows.kind import Row
 from ...operators.lists.row_lists import RowList
-from ...operators.names import ListId, MenuId, OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .constraint_fields import draw_bone, draw_bones, draw_constraint
-from .constraint_lists import MET_ICONS
-from .sidebar import ArmaturePanel, settings_in, split
+from .constraint_fields import RowDrawing
+from .lists import MET_ICONS, BodyChangeList, ConstraintList
+from .menus import AddBodyChangeMenu, AddConstraintMenu, ConstraintMoreMenu
+from .sidebar import ArmaturePanel, draw_list, optional, settings_in, split
 
 
 class ConstraintsPanel(ArmaturePanel):
-    bl_idname = PanelId.CONSTRAINTS
+    bl_idname = "HANGTIME_PT_constraints"
     bl_label = "Constraints"
     bl_order = 3
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        settings = settings_in(context)
-        row = layout.row()
-        row.template_list(
-            ListId.CONSTRAINTS, "", settings, "constraints", settings, "active_constraint", rows=5
-        )
-        side = row.column(align=True)
-        side.menu(MenuId.ADD_CONSTRAINT, text="", icon="ADD")
+        side = draw_list(present(self.layout), ConstraintList, settings_in(context), "constraints")
+        side.menu(AddConstraintMenu.bl_idname, text="", icon="ADD")
         side.operator(OperatorId.REMOVE_CONSTRAINT, text="", icon="REMOVE")
         side.separator()
-        side.menu(MenuId.CONSTRAINT_MORE, text="", icon="DOWNARROW_HLT")
+        side.menu(ConstraintMoreMenu.bl_idname, text="", icon="DOWNARROW_HLT")
         side.separator()
         side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_UP").direction = "UP"
         side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_DOWN").direction = "DOWN"
 
 
 class ConstraintPanel(ArmaturePanel):
-    bl_idname = PanelId.CONSTRAINT
-    bl_parent_id = PanelId.CONSTRAINTS
+    bl_idname = "HANGTIME_PT_constraint"
+    bl_parent_id = ConstraintsPanel.bl_idname
     bl_label = ""
 
     @classmethod
@@ -55,50 +48,33 @@ class ConstraintPanel(ArmaturePanel):
         present(self.layout).label(text=kind.label, icon=kind.icon)
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         armature = present(chosen_armature(context))
         row = _chosen(armature, RowList.CONSTRAINTS)
         _draw_status(layout, row)
         body = layout.column()
         body.active = row.used
         own = _is_own(armature, RowList.CONSTRAINTS)
-        draw_constraint(body, row, armature_data(armature), own=own)
+        KINDS[row.kind].draw(RowDrawing(body, row, armature_data(armature), own), row)
 
 
 class BodyChangesPanel(ArmaturePanel):
-    bl_idname = PanelId.BODY_CHANGES
+    bl_idname = "HANGTIME_PT_body_changes"
     bl_label = "Body Changes"
     bl_order = 4
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         armature = present(chosen_armature(context))
         settings = settings_of(armature)
-        mass = layout.row(heading="New Mass (kg)")
-        mass.prop(settings, "use_new_mass", text="")
-        value = mass.row()
-        value.active = settings.use_new_mass
-        value.prop(settings, "new_mass", text="")
+        optional(layout, settings, "use_new_mass", "New Mass (kg)", "new_mass")
         layout.prop(settings, "gravity")
         hint = layout.row()
         hint.active, hint.alignment = False, "RIGHT"
         hint.label(text="Moon 1.62, Mars 3.73")
-        row = layout.row()
-        row.use_property_split = False
-        row.template_list(
-            ListId.BODY_CHANGES,
-            "",
-            settings,
-            "body_changes",
-            settings,
-            "active_body_change",
-            rows=3,
-        )
-        side = row.column(align=True)
-        side.menu(MenuId.ADD_BODY_CHANGE, text="", icon="ADD")
+        side = draw_list(layout, BodyChangeList, settings, "body_changes", rows=3)
+        side.menu(AddBodyChangeMenu.bl_idname, text="", icon="ADD")
         side.operator(OperatorId.REMOVE_BODY_CHANGE, text="", icon="REMOVE")
         if RowList.BODY_CHANGES.chosen(settings) >= 0:
             _draw_body_change(layout, armature)
@@ -109,15 +85,15 @@ def _draw_body_change(layout: bpy.types.UILayout, armature: bpy.types.Object) ->
     _draw_status(layout, row)
     body = layout.column()
     body.active = row.used
-    own = _is_own(armature, RowList.BODY_CHANGES)
+    of = RowList.BODY_CHANGES
+    fields = RowDrawing(body, row, armature_data(armature), _is_own(armature, of), of.name)
     if row.kind == BodyKind.LIMB.name:
-        none = "Select bones and assign them"
-        draw_bones(body, row, armature_data(armature), "BODY_CHANGES", none, own=own)
+        fields.bones("Select bones and assign them")
         factors = body.column(align=True)
         factors.prop(row, "length", text="Length ×")
         factors.prop(row, "mass_factor", text="Mass ×")
         return
-    draw_bone(body, row, armature_data(armature), own=own)
+    fields.bone()
     body.prop(row, "by_share")
     body.prop(row, "share" if row.by_share else "mass")
     body.prop(row, "use_offset")
@@ -138,6 +114,3 @@ def _chosen(armature: bpy.types.Object, of: RowList) -> Row:
 def _is_own(armature: bpy.types.Object, of: RowList) -> bool:
     """Whether the chosen row is the artist's, not a linked file's."""
     return of.chosen(settings_of(armature)) >= of.linked(armature)
-
-
-CLASSES = (ConstraintsPanel, ConstraintPanel, BodyChangesPanel)

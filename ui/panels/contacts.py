@@ -1,19 +1,18 @@
 """Panels of contacts: what touches when and where, and where it shall touch instead."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import active_contact, active_stance
-from ...operators.names import ListId, OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .sidebar import ArmaturePanel, settings_in, split
+from .lists import ContactList
+from .sidebar import ArmaturePanel, draw_list, settings_in, split
 
 
 class ContactsPanel(ArmaturePanel):
-    bl_idname = PanelId.CONTACTS
+    bl_idname = "HANGTIME_PT_contacts"
     bl_label = "Contacts"
     bl_order = 2
 
@@ -23,30 +22,16 @@ class ContactsPanel(ArmaturePanel):
         if not settings.contacts:
             layout.label(text="Press Analyze to find them", icon="INFO")
             return
-        row = layout.row()
-        row.template_list(
-            ListId.CONTACTS, "", settings, "contacts", settings, "active_contact", rows=5
-        )
-        side = row.column(align=True)
+        side = draw_list(layout, ContactList, settings, "contacts")
         side.operator(OperatorId.ADD_CONTACT, text="", icon="ADD")
         side.operator(OperatorId.REMOVE_CONTACT, text="", icon="REMOVE")
         layout.prop(settings, "whole_stance")
 
 
-class _ActivePanel(ArmaturePanel):
-    """Base: a subpanel about the chosen contact."""
-
-    bl_parent_id = PanelId.CONTACTS
+class StancePanel(ArmaturePanel):
+    bl_idname = "HANGTIME_PT_stance"
+    bl_parent_id = ContactsPanel.bl_idname
     bl_label = ""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        armature = chosen_armature(context)
-        return armature is not None and active_contact(settings_of(armature)) is not None
-
-
-class StancePanel(_ActivePanel):
-    bl_idname = PanelId.STANCE
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -57,8 +42,7 @@ class StancePanel(_ActivePanel):
         present(self.layout).label(text=f"Move {present(active_stance(settings_in(context))).name}")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         stance = present(active_stance(settings_in(context)))
         column = layout.column(align=True)
         for name in ("forward", "left", "up", "turn"):
@@ -68,17 +52,23 @@ class StancePanel(_ActivePanel):
         buttons.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
 
 
-class ContactPanel(_ActivePanel):
-    bl_idname = PanelId.CONTACT
+class ContactPanel(ArmaturePanel):
+    bl_idname = "HANGTIME_PT_contact"
+    bl_parent_id = ContactsPanel.bl_idname
+    bl_label = ""
     bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and active_contact(settings_of(armature)) is not None
 
     def draw_header(self, context: bpy.types.Context) -> None:
         row = present(active_contact(settings_in(context)))
         present(self.layout).label(text=f"{row.name} ({row.bone})")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         row = present(active_contact(settings_in(context)))
         frames = layout.column(align=True)
         frames.prop(row, "start_frame")
@@ -86,6 +76,3 @@ class ContactPanel(_ActivePanel):
         layout.column(align=True).prop(row, "place")
         layout.prop(row, "empty")
         layout.operator(OperatorId.PLACE_BY_EMPTY, icon="EMPTY_AXIS")
-
-
-CLASSES = (ContactsPanel, StancePanel, ContactPanel)

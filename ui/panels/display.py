@@ -1,23 +1,23 @@
 """The panel of what the viewport and the timeline show."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import armature_data, present
 from ...bridge.properties.settings import scene_settings
 from ...bridge.properties.view import HangtimeView
-from ...operators.names import OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .sidebar import SidebarPanel
+from .sidebar import SidebarPanel, split
 
-_CONSTRAINTS = ("pins", "limits", "poses")
-_MOTION = ("path", "forces", "momentum")
+_COLUMNS = {
+    "Constraints": ("pins", "limits", "poses"),
+    "Motion": ("path", "forces", "momentum"),
+}
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
 
 class DisplayPanel(SidebarPanel):
-    bl_idname = PanelId.DISPLAY
+    bl_idname = "HANGTIME_PT_display"
     bl_label = "Display"
     bl_order = 8
     bl_options = {"DEFAULT_CLOSED"}
@@ -26,25 +26,17 @@ class DisplayPanel(SidebarPanel):
         present(self.layout).prop(scene_settings(context.scene).view, "show", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout, view = present(self.layout), scene_settings(context.scene).view
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout, view = split(self), scene_settings(context.scene).view
         shown = layout.column()
         shown.active = view.show
-        _draw_column(shown, view, "Constraints", _CONSTRAINTS)
-        _draw_column(shown, view, "Motion", _MOTION)
+        for heading, names in _COLUMNS.items():
+            column = shown.column(heading=heading)
+            for name in names:
+                column.prop(view, name)
         _draw_ghosts(shown, view)
         shown.column(heading="Numbers").prop(view, "labels")
         _draw_plots(shown, context)
         layout.column(heading="Timeline").prop(view, "timeline", text="Contacts")
-
-
-def _draw_column(
-    layout: bpy.types.UILayout, view: HangtimeView, heading: str, names: tuple[str, ...]
-) -> None:
-    column = layout.column(heading=heading)
-    for name in names:
-        column.prop(view, name)
 
 
 def _draw_ghosts(layout: bpy.types.UILayout, view: HangtimeView) -> None:
@@ -70,6 +62,3 @@ def _draw_plots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     else:
         column.prop_search(view, "plot_bone", armature_data(armature), "bones")
     layout.operator(OperatorId.SAVE_PLOTS, icon="EXPORT")
-
-
-CLASSES = (DisplayPanel,)

@@ -1,25 +1,22 @@
 """Character and Recording: whose motion it is, and which frames of it."""
 
-from __future__ import annotations
-
 import bpy
 
 from ...bridge.accessors import armature_data, present
 from ...bridge.armature.actions import recorded_action
 from ...bridge.properties.settings import scene_settings, settings_of
-from ...operators.names import OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .sidebar import ArmaturePanel, SidebarPanel, lines, settings_in, split
+from .sidebar import ArmaturePanel, SidebarPanel, lines, optional, settings_in, split
 
 
 class CharacterPanel(SidebarPanel):
-    bl_idname = PanelId.CHARACTER
+    bl_idname = "HANGTIME_PT_character"
     bl_label = "Character"
     bl_order = 0
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         armature = chosen_armature(context)
         active = armature.name if armature is not None else "Select an armature"
         layout.prop(scene_settings(context.scene), "armature", placeholder=active)
@@ -27,18 +24,14 @@ class CharacterPanel(SidebarPanel):
             return
         settings = settings_of(armature)
         layout.prop(settings, "mass")
-        height = layout.row(heading="Own Height")
-        height.prop(settings, "use_height", text="")
-        value = height.row()
-        value.active = settings.use_height
-        value.prop(settings, "height", text="")
+        optional(layout, settings, "use_height", "Own Height", "height")
         if settings.measured_height > 0.0:
             layout.label(text=f"Measured height: {settings.measured_height:.2f} m")
 
 
 class BonesPanel(ArmaturePanel):
-    bl_idname = PanelId.BONES
-    bl_parent_id = PanelId.CHARACTER
+    bl_idname = "HANGTIME_PT_bones"
+    bl_parent_id = CharacterPanel.bl_idname
     bl_label = "Bones"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -49,8 +42,7 @@ class BonesPanel(ArmaturePanel):
             present(self.layout).label(text=f"{missing} missing", icon="ERROR")
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         armature = present(chosen_armature(context))
         settings, bones = settings_of(armature), armature_data(armature)
         column = layout.column(align=True)
@@ -63,13 +55,12 @@ class BonesPanel(ArmaturePanel):
 
 
 class RecordingPanel(ArmaturePanel):
-    bl_idname = PanelId.RECORDING
+    bl_idname = "HANGTIME_PT_recording"
     bl_label = "Recording"
     bl_order = 1
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         armature = present(chosen_armature(context))
         settings = settings_of(armature)
         recorded = recorded_action(armature)
@@ -77,17 +68,9 @@ class RecordingPanel(ArmaturePanel):
             layout.label(text=recorded.name, icon="ACTION")
         else:
             layout.label(text="No action is assigned", icon="ERROR")
-        span = layout.row(heading="Frame Range")
-        span.prop(settings, "use_range", text="")
-        frames = span.row(align=True)
-        frames.active = settings.use_range
-        frames.prop(settings, "first_frame", text="")
-        frames.prop(settings, "last_frame", text="")
+        optional(layout, settings, "use_range", "Frame Range", "first_frame", "last_frame")
         buttons = layout.row(align=True)
         buttons.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
         buttons.operator(OperatorId.FIT, icon="CON_FOLLOWPATH")
         if settings.fit_quality:
             lines(layout, settings.fit_quality, icon="CHECKMARK")
-
-
-CLASSES = (CharacterPanel, BonesPanel, RecordingPanel)

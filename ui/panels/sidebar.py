@@ -1,13 +1,12 @@
 """Bases and helpers of the sidebar's panels."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ...bridge.rows.kind import Row
 from ...operators.names import CATEGORY
 from ...operators.solve.common import chosen_armature
 
@@ -35,10 +34,24 @@ def settings_in(context: bpy.types.Context) -> HangtimeSettings:
     return settings_of(present(chosen_armature(context)))
 
 
-def split(layout: bpy.types.UILayout) -> None:
-    """Labels left, values right, as in Blender's own panels."""
+def split(panel: bpy.types.Panel) -> bpy.types.UILayout:
+    """A panel's layout with labels left and values right, as in Blender's own panels."""
+    layout = present(panel.layout)
     layout.use_property_split = True
     layout.use_property_decorate = False
+    return layout
+
+
+def optional(
+    layout: bpy.types.UILayout, owner: HangtimeSettings | Row, use: str, heading: str, *values: str
+) -> None:
+    """Values in one line behind the tick `use` that switches them on."""
+    line = layout.row(heading=heading)
+    line.prop(owner, use, text="")
+    fields = line.row(align=True)
+    fields.active = getattr(owner, use)
+    for value in values:
+        fields.prop(owner, value, text="")
 
 
 def lines(layout: bpy.types.UILayout, text: str, icon: Icon = "NONE") -> None:
@@ -47,3 +60,18 @@ def lines(layout: bpy.types.UILayout, text: str, icon: Icon = "NONE") -> None:
     column.scale_y = 0.8
     for index, line in enumerate(text.splitlines()):
         column.label(text=line, icon=icon if index == 0 or icon == "NONE" else "BLANK1")
+
+
+def draw_list(
+    layout: bpy.types.UILayout,
+    kind: type[bpy.types.UIList],
+    settings: HangtimeSettings,
+    name: str,
+    rows: int = 5,
+) -> bpy.types.UILayout:
+    """A list of the settings' collection of this name; returns the column of buttons beside it."""
+    line = layout.row()
+    line.use_property_split = False
+    active = f"active_{name.removesuffix('s')}"
+    line.template_list(kind.bl_idname, "", settings, name, settings, active, rows=rows)
+    return line.column(align=True)

@@ -1,14 +1,12 @@
 """Solve, Result and Export."""
 
-from __future__ import annotations
-
 from textwrap import fill
 
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import action_settings
-from ...operators.names import OperatorId, PanelId
+from ...operators.names import OperatorId
 from ...operators.solve.session import session
 from ..drawing.editor import ui_scale
 from .sidebar import ArmaturePanel, lines, settings_in, split
@@ -17,7 +15,7 @@ CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
 
 
 class SolvePanel(ArmaturePanel):
-    bl_idname = PanelId.SOLVE
+    bl_idname = "HANGTIME_PT_solve"
     bl_label = "Solve"
     bl_order = 5
 
@@ -42,14 +40,13 @@ class SolvePanel(ArmaturePanel):
 
 
 class AdvancedPanel(ArmaturePanel):
-    bl_idname = PanelId.ADVANCED
-    bl_parent_id = PanelId.SOLVE
+    bl_idname = "HANGTIME_PT_advanced"
+    bl_parent_id = SolvePanel.bl_idname
     bl_label = "Advanced"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = present(self.layout)
-        split(layout)
+        layout = split(self)
         settings = settings_in(context)
         layout.prop(settings, "method")
         refine = layout.column(heading="Refine")
@@ -61,7 +58,7 @@ class AdvancedPanel(ArmaturePanel):
 
 
 class ResultPanel(ArmaturePanel):
-    bl_idname = PanelId.RESULT
+    bl_idname = "HANGTIME_PT_result"
     bl_label = "Result"
     bl_order = 6
 
@@ -83,7 +80,7 @@ class ResultPanel(ArmaturePanel):
 
 
 class ExportPanel(ArmaturePanel):
-    bl_idname = PanelId.EXPORT
+    bl_idname = "HANGTIME_PT_export"
     bl_label = "Export"
     bl_order = 7
     bl_options = {"DEFAULT_CLOSED"}
@@ -92,6 +89,3 @@ class ExportPanel(ArmaturePanel):
         row = present(self.layout).row(align=True)
         row.operator(OperatorId.EXPORT_FBX, text="FBX", icon="EXPORT")
         row.operator(OperatorId.EXPORT_GLTF, text="glTF", icon="EXPORT")
-
-
-CLASSES = (SolvePanel, AdvancedPanel, ResultPanel, ExportPanel)

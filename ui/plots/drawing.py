@@ -1,7 +1,5 @@
 """A figure of charts as pictures: one that stays, and one of the playhead that is shifted."""
 
-from __future__ import annotations
-
 from math import floor
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Charts laid out in a viewport: axes, legends, and where each curve's value is printed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ...bridge.plots.curves import Chart, Curve

@@ -1,7 +1,5 @@
 """Draw handler of the plots: looks up what is stored, paints what has been prepared."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy
@@ -17,7 +15,7 @@ from ..drawing.editor import ui_scale, view_3d
 from . import looks
 from .drawing import playhead, readings, still
 from .figure import PlotFigure, lay_out
-from .layout import Overlap, cards, free_room
+from .layout import cards, free_room
 
 
 def add(undo: ExitStack) -> None:
@@ -76,19 +74,12 @@ def _wanted(context: bpy.types.Context) -> PlottedMotions | None:
 def _room(context: bpy.types.Context) -> Rect:
     """The rectangle that bars and the sidebar leave of the viewport, in its px."""
     window = present(context.region)
-    overlaps = [
-        Overlap(
-            region.alignment,
-            Rect(
-                region.x - window.x,
-                region.y - window.y,
-                region.x - window.x + region.width,
-                region.y - window.y + region.height,
-            ),
-        )
-        for region in present(context.area).regions
-        if region.type != "WINDOW" and _is_open(region, view_3d(context))
-    ]
+    overlaps = []
+    for region in present(context.area).regions:
+        if region.type != "WINDOW" and _is_open(region, view_3d(context)):
+            x, y = region.x - window.x, region.y - window.y
+            rect = Rect(x, y, x + region.width, y + region.height)
+            overlaps.append((str(region.alignment), rect))
     return free_room(window.width, window.height, overlaps)
 
 

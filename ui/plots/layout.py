@@ -1,9 +1,6 @@
 """Layout of plots in a viewport: the room that bars and the sidebar leave, and the cards in it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from ...bridge.plots.screen import Rect
 
@@ -15,28 +12,22 @@ LOWEST, HIGHEST = 92.0, 150.0
 SHARE = 0.4  # of the viewport's height that plots may take
 
 
-@dataclass(frozen=True)
-class Overlap:
-    """A region that lies upon the viewport, and the side it sticks to ("LEFT", ...)."""
+def free_room(width: float, height: float, overlaps: Iterable[tuple[str, Rect]]) -> Rect:
+    """The rectangle that overlapping regions leave of a viewport; theirs are in its px.
 
-    side: str
-    rect: Rect
-
-
-def free_room(width: float, height: float, overlaps: Iterable[Overlap]) -> Rect:
-    """The rectangle that overlapping regions leave of a viewport; theirs are in its px."""
+    overlaps: for each region the side that it sticks to ("LEFT", ...), and where it is.
+    """
     left, bottom, right, top = 0.0, 0.0, width, height
-    for overlap in overlaps:
-        rect = overlap.rect
+    for side, rect in overlaps:
         if rect.right <= 0.0 or rect.left >= width or rect.top <= 0.0 or rect.bottom >= height:
             continue  # beside the viewport, not upon it
-        if overlap.side == "LEFT":
+        if side == "LEFT":
             left = max(left, rect.right)
-        elif overlap.side == "RIGHT":
+        elif side == "RIGHT":
             right = min(right, rect.left)
-        elif overlap.side == "BOTTOM":
+        elif side == "BOTTOM":
             bottom = max(bottom, rect.top)
-        elif overlap.side == "TOP":
+        elif side == "TOP":
             top = min(top, rect.bottom)
     return Rect(left, bottom, max(left, right), max(bottom, top))
 

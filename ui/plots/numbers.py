@@ -1,7 +1,5 @@
 """Printing of values, and decimation of curves that keeps their extremes."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import floor, log10
 

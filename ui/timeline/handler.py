@@ -1,7 +1,5 @@
 """The bars' draw handler, and the mouse's way to their edges."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import bpy
@@ -11,8 +9,7 @@ from ...operators.names import OperatorId
 from ...operators.timeline.timeline_bars import bars_in
 from ..drawing import paint
 from ..drawing.cache import ContentCache
-from . import looks
-from .drawing import drawn
+from .drawing import STROKE, drawn
 
 KEYMAP = "Dopesheet"  # the timeline's, too
 # Those that are added last are asked first: edges before bars.
@@ -49,4 +46,4 @@ class BarOverlay:
         drawing = self._drawings.get(
             "bars", bars, lambda: paint.upload(drawn(bars, paint.text_width))
         )
-        paint.paint(drawing, present(context.region), looks.STROKE * bars.scale)
+        paint.paint(drawing, present(context.region), STROKE * bars.scale)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -14,7 +15,9 @@ from hangtime.bridge.constraints.status import write_status
 from hangtime.bridge.rows import bone_keys
 from hangtime.bridge.rows.choices import BodyKind
 from hangtime.solver.data import faults, requests
+from hangtime.solver.data.report import ConstraintReport
 from hangtime.solver.data.requests import When
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.rows import (
     IN_FLIGHT,
@@ -309,16 +312,6 @@ def test_body_changes_are_added_and_removed(rig: bpy.types.Object) -> None:
 # ---------------------------------------------------------------- what a solve said
 
 
-def condition(name: str, met: bool, amount: float, unit: str) -> dict[str, object]:
-    return {
-        "name": name,
-        "met": met,
-        "worst_violation": amount,
-        "unit": unit,
-        "worst_violation_frame": 213.4,
-    }
-
-
 def test_every_row_is_told_how_it_came_out(rig: bpy.types.Object) -> None:
     added(rig, KINDS["CONE"], "thigh", name="Leg")
     added(rig, KINDS["POINT"], "foot", name="Pin")
@@ -327,16 +320,16 @@ def test_every_row_is_told_how_it_came_out(rig: bpy.types.Object) -> None:
     added(rig, KINDS["TIMING"], name="Slow")
     added(rig, KINDS["CONE"], "shin", name="Off", used=False)
     add_body_change(rig.hangtime, BodyKind.LOAD, ["head"])
-    report = {
-        "conditions": [
-            condition("Leg", True, 0.0001, "degrees"),
-            condition("Pin", False, 12.3, "mm"),
-            condition("Weak", False, 3.25, "N·m beyond the limit"),
+    report = SimpleNamespace(
+        conditions=[
+            ConstraintReport("Leg", RowKind.CONE, 0.0001, 213.4, met=True),
+            ConstraintReport("Pin", RowKind.POINT, 12.3, 213.4, met=False),
+            ConstraintReport("Weak", RowKind.TORQUE, 3.25, 213.4, met=False),
         ],
-        "contacts": [
-            {"name": "Bar", "worst_violation_mm": 0.02, "worst_violation_frame": 3.0},
+        contacts=[
+            SimpleNamespace(name="Bar", worst_violation_mm=0.02, worst_violation_frame=3.0),
         ],
-    }
+    )
     write_status(rig.hangtime, report)
     told = {row.name: (row.met, row.status) for row in rig.hangtime.constraints}
     assert told == {

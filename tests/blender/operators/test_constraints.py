@@ -15,7 +15,7 @@ from hangtime.bridge.constraints.requests import joined
 from hangtime.bridge.constraints.rows import add_body_change
 from hangtime.bridge.rows.choices import BodyKind, Span
 from hangtime.bridge.rows.kind import ConstraintKind
-from hangtime.operators.words.wording import sentence
+from hangtime.operators.words.messages import sentence
 from hangtime.solver.data import faults, requests
 from hangtime.solver.data.requests import When
 from hangtime.tests.blender.helpers import rigs

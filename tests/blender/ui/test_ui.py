@@ -23,11 +23,12 @@ from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.properties import settings
-from hangtime.operators.names import ListId, MenuId, OperatorId, PanelId
+from hangtime.operators.names import OperatorId
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.tests.blender.bridge.test_read_write import curves_of, snapshot
 from hangtime.tests.blender.helpers import rigs
+from hangtime.ui import registration
 
 JUMP = "forward_jump_116cm.bvh"
 FIRST, LAST = 73, 325
@@ -81,9 +82,9 @@ class SceneState:
 
 def every_name() -> set[str]:
     """The identifiers of all the extension's classes."""
-    groups = {group.__name__ for group in settings.CLASSES}
     operators = {o.replace("hangtime.", "HANGTIME_OT_") for o in OperatorId}
-    return groups | operators | set(PanelId) | set(ListId) | set(MenuId)
+    others = [c for c in registration.classes() if not issubclass(c, bpy.types.Operator)]
+    return operators | {getattr(c, "bl_idname", c.__name__) for c in others}
 
 
 def names_in_blender() -> set[str]:
@@ -94,7 +95,7 @@ def names_in_blender() -> set[str]:
 def known(name: str) -> bool:
     kinds = (
         *(bpy.types.Operator, bpy.types.Panel, bpy.types.Menu),
-        *(bpy.types.UIList, bpy.types.PropertyGroup),
+        *(bpy.types.UIList, bpy.types.PropertyGroup, bpy.types.GizmoGroup),
     )
     return any(kind.bl_rna_get_subclass_py(name) is not None for kind in kinds)
 
@@ -156,7 +157,7 @@ def test_registering_five_times_leaves_nothing_behind(monkeypatch: pytest.Monkey
 ENABLE = """
 import runpy, sys
 runpy.run_path(sys.argv[1])["load"]().register()
-from hangtime.operators.words import report_text, wording
+from hangtime.operators.words import messages, report_text
 print("casadi" in sys.modules, flush=True)
 import os
 os._exit(0)

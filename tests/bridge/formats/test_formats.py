@@ -14,7 +14,7 @@ from hangtime.solver.data.faults import NonFiniteKey, UnreadableClip
 from hangtime.tests.helpers.clips import load_clip, load_recording
 
 HOP_BVH = "hop_01_01.bvh"
-HOP = slice(200, 260)  # what it holds of the ten hops, counted from 0
+HOP = slice(160, 360)  # what it holds of the ten hops, counted from 0
 
 BVH = """\
 HIERARCHY

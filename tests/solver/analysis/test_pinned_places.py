@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.pinned_places import pinned_places, travel_axes
 from hangtime.solver.arrays import FloatArray
@@ -16,7 +15,7 @@ from hangtime.solver.data.faults import (
 )
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, OffsetAxes, Pin
 from hangtime.tests.helpers.clips import load_recording
-from hangtime.tests.helpers.fitted_hop import HOP, frames_of, hop
+from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
 
 LANDING = "ground 2"
 UP = np.array([0.0, 0.0, 1.0])
@@ -122,9 +121,9 @@ def test_unknown_phases_are_named_with_those_there_are() -> None:
 
 def test_unknown_contacts_are_named_with_those_there_are() -> None:
     with pytest.raises(UnknownContact) as caught:
-        after(Pin("landing", LANDING, touching=("lhand",)))
-    assert (caught.value.pin, caught.value.what) == ("landing", "lhand")
-    assert "lfoot" in caught.value.known
+        after(Pin("landing", LANDING, touching=("LeftHand",)))
+    assert (caught.value.pin, caught.value.what) == ("landing", "LeftHand")
+    assert "LeftFoot" in caught.value.known
 
 
 def test_two_pins_for_one_contact_contradict_each_other_by_their_distance() -> None:
@@ -158,31 +157,31 @@ def test_heel_and_toe_of_one_foot_cannot_part() -> None:
 
 
 def test_feet_may_part() -> None:
-    left = Pin("left", LANDING, touching=("lfoot", "ltoes"), offset=(0.0, 0.1, 0.0))
-    right = Pin("right", LANDING, touching=("rfoot", "rtoes"), offset=(0.2, -0.1, 0.0))
+    left = Pin("left", LANDING, touching=("LeftFoot", "LeftToeBase"), offset=(0.0, 0.1, 0.0))
+    right = Pin("right", LANDING, touching=("RightFoot", "RightToeBase"), offset=(0.2, -0.1, 0.0))
     moved = np.linalg.norm(after(left, right) - before(), axis=1)[landing()]
     assert moved.min() > 0.09
 
 
 def test_contacts_are_corrected_by_name() -> None:
     contact = hop().schedule.contacts[-1]
-    frames = frames_of(HOPS, HOP)
+    frames = frames_of(HOP_CLIP, HOP)
     end = frames[0] + round(0.9 * (frames[1] - frames[0]))
     problem = MotionProblem(frames=frames, contacts=(ContactEdit(contact.name, end_frame=end),))
-    edited = analyse(load_recording(HOPS), problem)
+    edited = analyse(load_recording(HOP_CLIP), problem)
     mine = next(c for c in edited.schedule.contacts if c.name == contact.name)
     rate = (len(edited.performance.times) - 1) / edited.performance.times[-1]
     assert mine.end == pytest.approx((end - frames[0]) / rate, abs=0.0125)
     gone = replace(problem, contacts=(ContactEdit(contact.name, remove=True),))
-    names = [c.name for c in analyse(load_recording(HOPS), gone).schedule.contacts]
+    names = [c.name for c in analyse(load_recording(HOP_CLIP), gone).schedule.contacts]
     assert contact.name not in names
 
 
 def test_unknown_corrections_are_named() -> None:
     problem = MotionProblem(
-        frames=frames_of(HOPS, HOP), contacts=(ContactEdit("Left ear 1", remove=True),)
+        frames=frames_of(HOP_CLIP, HOP), contacts=(ContactEdit("Left ear 1", remove=True),)
     )
     with pytest.raises(UnknownContactName) as caught:
-        analyse(load_recording(HOPS), problem)
+        analyse(load_recording(HOP_CLIP), problem)
     assert caught.value.name == "Left ear 1"
     assert "Left toe 1" in caught.value.known

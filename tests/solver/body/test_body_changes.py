@@ -27,7 +27,7 @@ from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import AddedMass, BodyChange, LimbChange
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.results.npz_export import sample
-from hangtime.solver.stages.reseat import reseated
+from hangtime.solver.stages.reseat import reseat
 from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.tests.helpers import toy_problems as toys
 from hangtime.tests.helpers.clips import load_recording
@@ -336,12 +336,12 @@ def moved_to(motion: Motion, character: Character) -> Motion:
     t = motion.transcription
     points = changed_points(t.points, t.character, character)
     new = replace(t, character=character, points=points, moment=MomentFunction(character))
-    return Motion(new, reseated(motion, character), motion.places)
+    return Motion(new, reseat(motion, character), motion.places)
 
 
 def test_the_same_figure_keeps_its_seat() -> None:
     motion = toy_motion()
-    np.testing.assert_array_equal(reseated(motion, toys.figure()), motion.x)
+    np.testing.assert_array_equal(reseat(motion, toys.figure()), motion.x)
 
 
 def test_contact_points_stay_on_average() -> None:

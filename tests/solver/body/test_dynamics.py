@@ -24,7 +24,7 @@ from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import adapt
-from hangtime.solver.transcription.motion import motion_efforts
+from hangtime.solver.transcription.motion import motion_inverse_dynamics
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.clips import load_recording
 
@@ -279,7 +279,7 @@ def test_efforts_of_an_adapted_jump_leave_nothing_at_the_root() -> None:
     assert adapted.solved
     motion = adapted.motion
     t = motion.transcription
-    efforts = motion_efforts(InverseDynamics(t.character, t.points), motion, t.node_times)
+    efforts = motion_inverse_dynamics(InverseDynamics(t.character, t.points), motion, t.node_times)
     weight = t.character.mass * STANDARD_GRAVITY
     assert np.abs(efforts.root_force).max() < 1e-4 * weight
     assert np.abs(efforts.root_moment).max() < 1e-4 * weight

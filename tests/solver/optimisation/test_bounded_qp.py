@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray, IntArray
 from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
-from hangtime.solver.optimisation.bounded_qp import BoundedStep, small_program
+from hangtime.solver.optimisation.bounded_qp import BoundedStep, solve_dual_qp
 from hangtime.solver.transcription.rows import violation
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -39,7 +39,7 @@ def test_the_small_program_s_answer_is_scipy_s(seed: int, m: int) -> None:
     random = np.random.default_rng(seed)
     root = random_root(random, m)
     lower, upper = random_bounds(random, m)
-    u = small_program(root, lower, upper)
+    u = solve_dual_qp(root, lower, upper)
     apart = np.where(lower == upper, upper + 1e-10, upper)  # scipy wants them so
     best = lsq_linear(np.linalg.inv(root), np.zeros(m), (lower, apart), tol=1e-14)
     w = -root.T @ u
@@ -53,7 +53,7 @@ def test_multipliers_push_from_the_bound_they_are_at(seed: int, m: int) -> None:
     random = np.random.default_rng(seed)
     root = random_root(random, m)
     lower, upper = random_bounds(random, m)
-    u = small_program(root, lower, upper)
+    u = solve_dual_qp(root, lower, upper)
     reached = -root @ root.T @ u
     size = 1e-6 * (1.0 + np.abs(reached).max())
     assert np.abs(violation(reached, lower, upper)).max() < size
@@ -64,7 +64,7 @@ def test_multipliers_push_from_the_bound_they_are_at(seed: int, m: int) -> None:
 
 def test_bounds_that_hold_need_no_push() -> None:
     root = random_root(np.random.default_rng(0), 5)
-    u = small_program(root, np.full(5, -1.0), np.full(5, np.inf))
+    u = solve_dual_qp(root, np.full(5, -1.0), np.full(5, np.inf))
     assert u == pytest.approx(np.zeros(5))
 
 

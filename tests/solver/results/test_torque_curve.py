@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from hangtime.solver.results.torque_curve import exact_torques, torque_curve
-from hangtime.solver.transcription.torque_constraint import every_torque
+from hangtime.solver.transcription.torque_constraint import joint_torques
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 
 def test_the_chosen_density_is_near_enough() -> None:
     motion = fitted_hop().motion
-    torques = every_torque(motion.transcription)
+    torques = joint_torques(motion.transcription)
     curve = torque_curve(motion, torques)
     times = np.linspace(0.01, motion.duration - 0.01, 500)
     exact = exact_torques(motion, torques, times)
@@ -20,7 +20,7 @@ def test_the_chosen_density_is_near_enough() -> None:
 
 def test_denser_splines_are_nearer_and_larger() -> None:
     motion = fitted_hop().motion
-    torques = every_torque(motion.transcription)
+    torques = joint_torques(motion.transcription)
     coarse, fine = (torque_curve(motion, torques, longest=span) for span in (0.2, 0.05))
     assert fine.error < coarse.error
     assert fine.n_coefficients > coarse.n_coefficients
@@ -28,7 +28,7 @@ def test_denser_splines_are_nearer_and_larger() -> None:
 
 def test_a_jump_belongs_to_the_stretch_after_it() -> None:
     motion = fitted_hop().motion
-    torques = every_torque(motion.transcription)
+    torques = joint_torques(motion.transcription)
     curve = torque_curve(motion, torques, longest=0.02)
     edge = curve.pieces[1].basis.breaks[0]
     at = curve.at(np.array([edge]))

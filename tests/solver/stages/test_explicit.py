@@ -17,24 +17,24 @@ from hangtime.solver.data.requests import (
     SolverOptions,
     When,
 )
-from hangtime.solver.optimisation.kkt_step import Linearised
+from hangtime.solver.optimisation.kkt_step import LinearisedProblem
 from hangtime.solver.results.report import change
 from hangtime.solver.results.violations import missed_conditions
-from hangtime.solver.stages.explicit import weighed
+from hangtime.solver.stages.explicit import weighted_objective
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
 from hangtime.solver.transcription.objectives import (
-    AngleRates,
+    AngleDerivatives,
     ContactForces,
-    MassPlaces,
+    LeastSquares,
+    MassPositions,
+    ObjectiveTerm,
     Power,
-    Squares,
-    Term,
     TorqueSmoothness,
-    WeightedSum,
+    WeightedObjective,
     torque_metric,
 )
-from hangtime.solver.transcription.torque_constraint import every_torque
+from hangtime.solver.transcription.torque_constraint import joint_torques
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.toy_problems import random_state, standing, stood
 
@@ -52,17 +52,17 @@ def implicit() -> Adaptation:
     return adapt(fitted_hop(), asked(Requests()))
 
 
-def terms() -> dict[str, Term]:
+def terms() -> dict[str, ObjectiveTerm]:
     t = standing()
-    torques = every_torque(t)
+    torques = joint_torques(t)
     return {
         "torque smoothness": TorqueSmoothness(t, torques),
-        "torque output": Squares(t, torques),
-        "power": Squares(t, Power(torques)),
-        "mass places": Squares(t, MassPlaces()),
-        "angles": Squares(t, AngleRates(0)),
-        "angle smoothness": Squares(t, AngleRates(2)),
-        "forces": Squares(t, ContactForces()),
+        "torque output": LeastSquares(t, torques),
+        "power": LeastSquares(t, Power(torques)),
+        "mass places": LeastSquares(t, MassPositions()),
+        "angles": LeastSquares(t, AngleDerivatives(0)),
+        "angle smoothness": LeastSquares(t, AngleDerivatives(2)),
+        "forces": LeastSquares(t, ContactForces()),
     }
 
 
@@ -70,7 +70,7 @@ def terms() -> dict[str, Term]:
 def test_gradients_agree_with_differences(name: str) -> None:
     t, x = standing(), random_state(3)
     term = terms()[name]
-    goal = WeightedSum([term], lambda _: torque_metric(stood(), every_torque(t)))
+    goal = WeightedObjective([term], lambda _: torque_metric(stood(), joint_torques(t)))
     gradient, _ = goal.expand(x)
     direction = np.random.default_rng(1).normal(size=x.shape) * t.active
     ahead, behind = (term.value(x + step * 1e-6 * direction) for step in (1.0, -1.0))
@@ -82,9 +82,9 @@ def test_hessians_are_the_squares_of_the_residuals_slopes(name: str) -> None:
     """For a quadratic they give the next value; here to first order in a small step."""
     t, x = standing(), random_state(4, 0.05)
     term = terms()[name]
-    zero = torque_metric(stood(), every_torque(t))
+    zero = torque_metric(stood(), joint_torques(t))
     zero.lower[:] = 0.0
-    gradient, hessian = WeightedSum([term], lambda _: zero).expand(x)
+    gradient, hessian = WeightedObjective([term], lambda _: zero).expand(x)
     direction = np.random.default_rng(2).normal(size=x.shape) * t.active
     assert (direction * hessian.times(direction)).sum() >= 0.0
     size = 1e-4
@@ -102,10 +102,10 @@ def test_every_objective_is_lessened_and_every_request_still_met(objective: Obje
     found = adapt(fitted_hop(), asked(Requests(solution=solution)))
     assert found.solved
     t = start.motion.transcription
-    goal = weighed(t, start.motion.x, start.plan, {objective: 1.0})
+    goal = weighted_objective(t, start.motion.x, start.setup, {objective: 1.0})
     ends = [o for o in found.outcomes if o.steps and o.steps[0].stage == "explicit"]
     assert ends, "no better motion was found"
-    other = weighed(ends[-1].transcription, ends[0].x, found.plan, {objective: 1.0})
+    other = weighted_objective(ends[-1].transcription, ends[0].x, found.setup, {objective: 1.0})
     assert other.terms  # of the same kind as the start's
     before = sum(term.value(start.motion.x) for term in goal.terms)
     after = sum(term.value(found.motion.x) for term in other_terms(found, objective))
@@ -114,9 +114,11 @@ def test_every_objective_is_lessened_and_every_request_still_met(objective: Obje
     assert drift < 1e-3
 
 
-def other_terms(found: Adaptation, objective: ObjectiveKind) -> list[Term]:
+def other_terms(found: Adaptation, objective: ObjectiveKind) -> list[ObjectiveTerm]:
     motion = found.motion
-    return list(weighed(motion.transcription, motion.x, found.plan, {objective: 1.0}).terms)
+    return list(
+        weighted_objective(motion.transcription, motion.x, found.setup, {objective: 1.0}).terms
+    )
 
 
 def c_times(found: Adaptation, i: int) -> np.ndarray:
@@ -132,10 +134,10 @@ def test_torques_weighed_in_the_step_change_less() -> None:
     assert adapt(fit, asked(Requests(solution=solution))).solved
     moved = []
     for requests in (Requests(), Requests(solution=solution)):
-        plan = set_up(fit, asked(requests))
-        t = plan.start.transcription
-        line = Linearised(t, t.rows(plan.start.x, plan.goal), plan.metric)
-        step, _ = line.step(line.rows.value)
+        setup = set_up(fit, asked(requests))
+        t = setup.start.transcription
+        linearised = LinearisedProblem(t, t.rows(setup.start.x, setup.target_places), setup.metric)
+        step, _ = linearised.step(linearised.rows.value)
         moved.append(float((step * fit.torque_metric.times(step)).sum()))
     assert moved[1] < moved[0]
 
@@ -149,12 +151,12 @@ def test_a_preferred_pose_is_approached_but_not_held() -> None:
     for poses in ((), (soft,)):
         found = adapt(fitted_hop(), MotionProblem(requests=Requests(poses=poses)))
         assert found.solved
-        plan = set_up(fitted_hop(), MotionProblem(requests=Requests(poses=(held,))))
-        (condition,) = plan.start.transcription.conditions
+        setup = set_up(fitted_hop(), MotionProblem(requests=Requests(poses=(held,))))
+        (constraint,) = setup.start.transcription.constraints
         motion = found.motion
-        at = np.array([condition.start])
-        wanted = condition.measure.wanted(at)
-        misses.append(np.abs(motion.angles(at)[:, condition.measure.which] - wanted).max())
+        at = np.array([constraint.start])
+        wanted = constraint.function.wanted(at)
+        misses.append(np.abs(motion.angles(at)[:, constraint.function.which] - wanted).max())
     assert 0.01 < misses[1] < 0.9 * misses[0]
 
 
@@ -181,9 +183,9 @@ def test_every_reduction_solves_and_moves_only_along_itself(kind: ReductionKind)
         )
     assert found.solved
     assert not missed_conditions(found)
-    layout, basis = found.motion.transcription.layout, found.plan.basis
+    layout, basis = found.motion.transcription.layout, found.setup.basis
     assert basis is not None
-    step = (found.outcomes[0].x - found.plan.start.x)[
+    step = (found.outcomes[0].x - found.setup.start.x)[
         :, layout.angles.start + 3 : layout.angles.stop
     ]
     reduced = basis[layout.angles.start + 3 : layout.angles.stop]

@@ -12,7 +12,7 @@ from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.stages.fit import Fit, fit, on_finer_basis, transcribe
 from hangtime.tests.helpers.clips import load_recording
-from hangtime.tests.helpers.fitted_hop import HOP, fitted_hop, frames_of
+from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of
 from hangtime.tests.helpers.validity import assert_valid, joint_error
 
 MIRROR = np.diag([-1.0, 1.0, 1.0])
@@ -29,7 +29,7 @@ MORE_HOPS = [(4.49, 5.99), (5.99, 7.69), (10.29, 11.79)]
 
 
 def hop_recording() -> Recording:
-    return load_recording(HOPS).window(*frames_of(HOPS, HOP))
+    return load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
 
 
 def fit_of(recording: Recording, frames: tuple[float, float] | None = None) -> Fit:
@@ -59,16 +59,10 @@ def moved(recording: Recording, turn: np.ndarray, shift: np.ndarray) -> Recordin
 def mirrored(recording: Recording) -> Recording:
     """The recording in a mirror: left and right change places."""
 
-    names = {b.name for b in recording.bones}
-
     def bone(b: Bone) -> Bone:
-        twin = {"l": "r", "r": "l"}.get(b.name[0], "") + b.name[1:]  # lhand, rhand; but lowerback
+        swapped = b.name.replace("Left", "*").replace("Right", "Left").replace("*", "Right")
         return Bone(
-            twin if twin in names else b.name,
-            b.parent,
-            MIRROR @ b.head,
-            MIRROR @ b.tail,
-            MIRROR @ b.rotation @ MIRROR,
+            swapped, b.parent, MIRROR @ b.head, MIRROR @ b.tail, MIRROR @ b.rotation @ MIRROR
         )
 
     return replace(
@@ -152,7 +146,7 @@ def test_a_mirrored_recording_gives_the_mirrored_fit() -> None:
     seen = fit_of(mirrored(hop_recording()))
     assert seen.outcome.status is Status.SOLVED
     names = [b.name for b in seen.performance.recording.bones]
-    assert "lfoot" in names
+    assert "LeftFoot" in names
     off = np.linalg.norm(centres(seen) - centres(fitted_hop()) @ MIRROR, axis=-1)
     assert np.sqrt((off**2).mean()) < 0.005  # joint axes, and so splines, are not mirrored
     assert off.max() < 0.04

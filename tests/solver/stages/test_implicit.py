@@ -130,8 +130,8 @@ def test_feet_that_land_ten_metres_apart_end_soon_and_say_so() -> None:
     """No body can stand so."""
     steps: list[Step] = []
     pins = (
-        Pin("left", LANDING, touching=("lfoot", "ltoes"), offset=(0.0, 5.0, 0.0)),
-        Pin("right", LANDING, touching=("rfoot", "rtoes"), offset=(0.0, -5.0, 0.0)),
+        Pin("left", LANDING, touching=("LeftFoot", "LeftToeBase"), offset=(0.0, 5.0, 0.0)),
+        Pin("right", LANDING, touching=("RightFoot", "RightToeBase"), offset=(0.0, -5.0, 0.0)),
     )
     problem = MotionProblem(pins=pins)
     adaptation = adapt(fitted_hop(), problem, progress=lambda step, _: steps.append(step))

@@ -10,11 +10,11 @@ from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.stages.constraint_builder import bend_measure
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.solver.stages.joint_constraints import bend_function
 from hangtime.solver.stages.setup import Setup
-from hangtime.solver.transcription.constraint import missed
+from hangtime.solver.transcription.constraint import dense_violation
 from hangtime.solver.transcription.sampling import Instants, State
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.validity import assert_valid, joint_error, measure
@@ -45,15 +45,15 @@ def adapted(name: str) -> Adaptation:
     return adapt(fitted(), problem_of(name))
 
 
-def flights(plan: Setup) -> list[float]:
+def flights(setup: Setup) -> list[float]:
     """Durations, s."""
-    return [p.end - p.start for p in plan.schedule.phases if p.kind is PhaseKind.FLIGHT]
+    return [p.end - p.start for p in setup.schedule.phases if p.kind is PhaseKind.FLIGHT]
 
 
 def apex(name: str, flight: int) -> float:
     """Height of the centre of mass, m."""
     found = adapted(name)
-    span = found.plan.schedule.flights[flight]
+    span = found.setup.schedule.flights[flight]
     return float(found.motion.com(np.linspace(span.start, span.end, 50))[:, 2].max())
 
 
@@ -99,11 +99,11 @@ def test_recipe_is_solved(name: str) -> None:
     found = adapted(name)
     assert found.solved
     motion, t = found.motion, found.motion.transcription
-    for condition in t.conditions:
-        worst = missed(condition, t.character, t.basis, t.layout, motion.x)
+    for constraint in t.constraints:
+        worst = dense_violation(constraint, t.character, t.basis, t.layout, motion.x)
         assert worst.amount <= worst.kind.tolerance, worst
-    assert_valid(motion, found.plan.schedule)
-    assert measure(motion, found.plan.schedule).peak < HARDEST
+    assert_valid(motion, found.setup.schedule)
+    assert measure(motion, found.setup.schedule).peak < HARDEST
 
 
 @pytest.mark.slow
@@ -128,16 +128,16 @@ def test_no_knee_bends_backwards_and_no_foot_sinks(name: str) -> None:
     state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
     for i, body in enumerate(t.character.bodies):
         if body.part is Part.SHANK:
-            bend = np.degrees(bend_measure(found.plan.scene, i).value(state))
+            bend = np.degrees(bend_function(found.setup.context, i).value(state))
             assert bend.min() > 5.0
             assert bend.max() < 125.0
-    floor = min(float(c.place[2]) for c in found.plan.schedule.contacts)
+    floor = min(float(c.place[2]) for c in found.setup.schedule.contacts)
     assert motion.contact_points(times)[..., 2].min() > floor - 0.005
 
 
 @pytest.mark.slow
 def test_bounces_are_longer_and_higher() -> None:
-    before, after = (flights(adapted(name).plan) for name in ("run_fit", "run_bouncy_step"))
+    before, after = (flights(adapted(name).setup) for name in ("run_fit", "run_bouncy_step"))
     assert after == pytest.approx([1.6 * seconds for seconds in before], abs=1e-6)
     for flight in range(3):
         assert apex("run_bouncy_step", flight) > apex("run_fit", flight) + 0.02
@@ -145,7 +145,7 @@ def test_bounces_are_longer_and_higher() -> None:
 
 @pytest.mark.slow
 def test_hurdler_flies_longer_and_higher() -> None:
-    before, after = (flights(adapted(name).plan) for name in ("run_fit", "run_hurdle"))
+    before, after = (flights(adapted(name).setup) for name in ("run_fit", "run_hurdle"))
     assert after[1:] == pytest.approx([0.36, 0.2], abs=1e-6)
     assert after[0] == pytest.approx(before[0], abs=1e-6)
     assert apex("run_hurdle", 1) > apex("run_fit", 1) + 0.1
@@ -155,11 +155,11 @@ def test_hurdler_flies_longer_and_higher() -> None:
 @pytest.mark.parametrize("name", ["run_cross_step", "run_wide_step"])
 def test_reduction_keeps_the_joints_in_its_plane(name: str) -> None:
     found = adapted(f"{name}_pca")
-    basis = found.plan.basis
+    basis = found.setup.basis
     assert basis is not None
     assert basis.shape[1] < basis.shape[0]
     t = found.motion.transcription
     assert t.basis.n_coefficients == fitted().motion.transcription.basis.n_coefficients
-    change = found.motion.x - found.plan.start.x
+    change = found.motion.x - found.setup.start.x
     inside = change @ basis @ np.linalg.pinv(basis.T @ basis) @ basis.T
     assert np.abs(change - inside).max() < 1e-9

@@ -25,18 +25,20 @@ from hangtime.solver.data.requests import (
 )
 from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
-from hangtime.solver.stages.constraint_builder import conditions, point_axes, touches
-from hangtime.solver.transcription.constraint import exchange, missed
+from hangtime.solver.stages.constraint_builder import build_constraints
+from hangtime.solver.stages.evaluation_context import touches
+from hangtime.solver.stages.point_constraints import point_axes
+from hangtime.solver.transcription.constraint import dense_violation, exchange
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.toy_problems import (
     DURATION,
     RATE,
     asked,
     contacts,
+    context,
     held_between,
     places,
     restored,
-    scene,
     standing,
     stood,
 )
@@ -114,18 +116,18 @@ MET_ALREADY = {"point at a place"}  # what the fit does anyway
 @pytest.mark.parametrize("name", ASKED)
 def test_what_is_asked_is_missed_by_name_and_then_met(name: str) -> None:
     t = asked(ASKED[name])
-    (condition,) = t.conditions
-    before = missed(condition, t.character, t.basis, t.layout, stood().x)
-    assert before.name == condition.name == t.owners[-1]
-    assert before.kind is condition.measure.kind
-    assert condition.start - 1e-9 <= before.time <= condition.end + 1e-9
+    (constraint,) = t.constraints
+    before = dense_violation(constraint, t.character, t.basis, t.layout, stood().x)
+    assert before.name == constraint.name == t.owners[-1]
+    assert before.kind is constraint.function.kind
+    assert constraint.start - 1e-9 <= before.time <= constraint.end + 1e-9
     if name not in MET_ALREADY:
         assert before.amount > 5.0 * before.kind.tolerance
     t, outcome = held_between(t, stood())
     assert outcome.status is Status.SOLVED
     rows = t.rows(outcome.x, places())
     assert np.abs(rows.violation() / rows.tolerance).max() <= 1.0
-    after = missed(condition, t.character, t.basis, t.layout, outcome.x)
+    after = dense_violation(constraint, t.character, t.basis, t.layout, outcome.x)
     assert after.amount < 0.2 * before.amount + before.kind.tolerance
 
 
@@ -133,25 +135,25 @@ def test_what_is_asked_is_missed_by_name_and_then_met(name: str) -> None:
 def test_exchange_adds_rows_until_bounds_hold_between_them(name: str) -> None:
     """From one row a span only, which leaves something to be found in between."""
     t = asked(ASKED[name])
-    sparse = tuple(replace(c, per_span=1) for c in t.conditions)
-    t, x, rounds = replace(t, conditions=sparse), stood().x, 0
+    sparse = tuple(replace(c, per_span=1) for c in t.constraints)
+    t, x, rounds = replace(t, constraints=sparse), stood().x, 0
     while rounds < 6:
         outcome = restored(t, Motion(t, x, places()))
         assert outcome.status is Status.SOLVED
         x = outcome.x
-        added = tuple(exchange(c, t.character, t.basis, t.layout, x) for c in t.conditions)
-        if added == t.conditions:
+        added = tuple(exchange(c, t.character, t.basis, t.layout, x) for c in t.constraints)
+        if added == t.constraints:
             break
-        t, rounds = replace(t, conditions=added), rounds + 1
-    (condition,) = t.conditions
-    after = missed(condition, t.character, t.basis, t.layout, x)
+        t, rounds = replace(t, constraints=added), rounds + 1
+    (constraint,) = t.constraints
+    after = dense_violation(constraint, t.character, t.basis, t.layout, x)
     assert after.amount <= after.kind.tolerance
 
 
 def test_exchange_leaves_alone_what_holds() -> None:
     t = asked(ASKED["point at a place"])
-    (condition,) = t.conditions
-    assert exchange(condition, t.character, t.basis, t.layout, stood().x) is condition
+    (constraint,) = t.constraints
+    assert exchange(constraint, t.character, t.basis, t.layout, stood().x) is constraint
 
 
 def test_requests_that_contradict_each_other_end_soon_unmet_and_finite() -> None:
@@ -169,7 +171,8 @@ def test_requests_that_contradict_each_other_end_soon_unmet_and_finite() -> None
     assert len(outcome.steps) <= 30
     assert np.isfinite(outcome.x).all()
     off = {
-        c.name: missed(c, t.character, t.basis, t.layout, outcome.x).amount for c in t.conditions
+        c.name: dense_violation(c, t.character, t.basis, t.layout, outcome.x).amount
+        for c in t.constraints
     }
     assert max(off.values()) > 0.1
     assert sum(off.values()) >= 0.45 - 1e-6
@@ -208,14 +211,14 @@ def test_bounds_without_a_place_are_above_the_floor() -> None:
 
 def test_a_bound_on_one_axis_has_one_row_an_instant() -> None:
     t = asked(ASKED["point in bounds"])
-    (bounded,) = t.bounded
-    assert bounded.lower.shape == (len(bounded.instants.times), 1)
+    (discretised,) = t.discretised
+    assert discretised.lower.shape == (len(discretised.instants.times), 1)
 
 
 def test_a_surface_s_axes_are_along_across_and_out() -> None:
     normal = (0.3, 0.2, 1.0)
     request = PointRequest("p", "trunk", ALWAYS, axes=PointAxes.SURFACE, normal=normal)
-    axes = point_axes(request, scene(), (0.0, DURATION))
+    axes = point_axes(request, context(), (0.0, DURATION))
     assert axes.T @ axes == pytest.approx(np.eye(3), abs=1e-12)
     assert np.linalg.det(axes) == pytest.approx(1.0)
     assert axes[:, 2] == pytest.approx(unit(np.array(normal)))
@@ -223,19 +226,19 @@ def test_a_surface_s_axes_are_along_across_and_out() -> None:
 
 
 def test_a_share_of_a_torque_is_of_the_fit_s_peak() -> None:
-    whole = asked(Requests(torques=(TorqueLimit("t", ("left shank",), share=1.0),))).conditions[0]
+    whole = asked(Requests(torques=(TorqueLimit("t", ("left shank",), share=1.0),))).constraints[0]
     t = standing()
-    assert missed(whole, t.character, t.basis, t.layout, stood().x).amount < 2e-5
-    half = asked(Requests(torques=(TorqueLimit("t", ("left shank",), share=0.5),))).conditions[0]
+    assert dense_violation(whole, t.character, t.basis, t.layout, stood().x).amount < 2e-5
+    half = asked(Requests(torques=(TorqueLimit("t", ("left shank",), share=0.5),))).constraints[0]
     assert half.bounds.upper == pytest.approx(0.5 * whole.bounds.upper)
 
 
 def test_torques_of_one_angle_and_about_a_value() -> None:
     request = TorqueLimit("t", ("left thigh",), bound=10.0, dof=1, value=30.0)
-    (condition,) = asked(Requests(torques=(request,))).conditions
+    (constraint,) = asked(Requests(torques=(request,))).constraints
     unit_nm = standing().character.mass * 9.81
-    assert condition.bounds.lower * unit_nm == pytest.approx([20.0])
-    assert condition.bounds.upper * unit_nm == pytest.approx([40.0])
+    assert constraint.bounds.lower * unit_nm == pytest.approx([20.0])
+    assert constraint.bounds.upper * unit_nm == pytest.approx([40.0])
 
 
 def test_touching_is_by_contact_point_or_bone() -> None:
@@ -250,7 +253,7 @@ def test_touching_is_by_contact_point_or_bone() -> None:
 
 
 def built(requests: Requests) -> None:
-    conditions(requests, scene(), standing())
+    build_constraints(requests, context(), standing())
 
 
 def test_bones_that_no_body_moves_are_named_with_those_there_are() -> None:

@@ -1,4 +1,4 @@
-"""What conditions measure: the truth of it on an arm, and slopes on figures small and real."""
+"""Constraint functions: their values on an arm, and Jacobians on figures small and real."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,28 +9,28 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import Character
 from hangtime.solver.body.kinematics import BodyPoint
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_matrix, rotation_vector, unit
-from hangtime.solver.stages.constraint_builder import bend_measure
+from hangtime.solver.stages.joint_constraints import bend_function
 from hangtime.solver.transcription.constraint import ConstraintFunction
 from hangtime.solver.transcription.constraint_functions import (
-    Angles,
-    Bend,
-    Cone,
-    Orientation,
+    BendAngle,
+    BodyOrientation,
+    ConeAngle,
+    JointAngles,
     PeakForce,
-    Place,
-    Twist,
+    PointPosition,
+    TwistAngle,
 )
 from hangtime.solver.transcription.sampling import Instants, State
-from hangtime.solver.transcription.torque_constraint import TorqueFunction, Torques
+from hangtime.solver.transcription.torque_constraint import TorqueFunction
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.toy_problems import (
     arm,
+    context,
     figure,
+    jacobian_error,
     random_state,
-    scene,
     seen,
-    slope_error,
     standing,
     still,
 )
@@ -61,7 +61,7 @@ def turned(R: np.ndarray) -> State:
 def test_a_bend_about_the_hinge_reads_its_angle(angle: float) -> None:
     """The arm hangs down; about x, positive angles bring it to +y."""
     character = arm(1)
-    bend = Bend(character.joints[1], DOWN, DOWN, np.array([0.0, 1.0, 0.0]))
+    bend = BendAngle(character.joints[1], DOWN, DOWN, np.array([0.0, 1.0, 0.0]))
     state = still(character, np.array([0.1, 0.2, 0.3, angle]))
     assert bend.value(state)[0, 0] == pytest.approx(angle)
     other = replace(bend, flexion=-bend.flexion)
@@ -74,7 +74,7 @@ def test_a_bend_of_thirty_degrees_is_thirty_degrees_in_a_skew_hinge() -> None:
     axis = joint.axes.before[:, 0]
     straight = unit(np.cross(axis, [0.3, 1.0, 0.0]))
     along = joint.axes.rotation(np.zeros((1, 1)))[0].T @ straight
-    bend = Bend(joint, along, straight, np.cross(axis, straight))
+    bend = BendAngle(joint, along, straight, np.cross(axis, straight))
     angles = np.zeros(figure().n_angles)
     angles[joint.first] = np.radians(30.0)
     assert bend.value(still(figure(), angles))[0, 0] == pytest.approx(np.radians(30.0))
@@ -83,11 +83,11 @@ def test_a_bend_of_thirty_degrees_is_thirty_degrees_in_a_skew_hinge() -> None:
 def test_a_joint_bends_towards_where_it_bends_in_the_fit() -> None:
     """Positive in the recording's own direction, on a real figure's knees and elbows."""
     motion = fitted_hop().motion
-    real = replace(scene(), fitted=motion, reference=motion)
+    real = replace(context(), fitted=motion, reference=motion)
     names = [body.bone for body in motion.transcription.character.bodies]
     angles = motion.angles(np.linspace(0.0, motion.duration, 40))
-    for bone in ("ltibia", "rtibia", "lradius", "rradius"):
-        bend = bend_measure(real, names.index(bone))
+    for bone in ("LeftLeg", "RightLeg", "LeftForeArm", "RightForeArm"):
+        bend = bend_function(real, names.index(bone))
         assert abs(bend.straight @ bend.flexion) < 1e-12
         found = np.array([bend.value(still(real.character, q))[0, 0] for q in angles])
         assert np.degrees(found).min() > -5.0
@@ -97,7 +97,7 @@ def test_a_joint_bends_towards_where_it_bends_in_the_fit() -> None:
 @given(SWING, SWING, ANGLE)
 def test_a_cone_s_angle_is_that_between_bone_and_axis(x: float, y: float, spin: float) -> None:
     R = axis_rotation(0, x) @ axis_rotation(1, y) @ axis_rotation(2, spin)
-    cone = Cone(arm(3).joints[1], DOWN, ACROSS, np.ones(2))
+    cone = ConeAngle(arm(3).joints[1], DOWN, ACROSS, np.ones(2))
     angle = np.arccos(np.clip((R @ DOWN) @ DOWN, -1.0, 1.0))
     assert cone.value(turned(R))[0, 0] == pytest.approx(angle, abs=1e-7)
 
@@ -105,7 +105,7 @@ def test_a_cone_s_angle_is_that_between_bone_and_axis(x: float, y: float, spin: 
 @pytest.mark.parametrize(("axis", "tangent"), [(0, 0.5), (1, 2.0)])
 def test_a_cone_s_stretch_widens_it(axis: int, tangent: float) -> None:
     """At 45 degrees sideways (about y) or forwards (about x), with sideways halved."""
-    cone = Cone(arm(3).joints[1], DOWN, ACROSS, np.array([0.5, 2.0]))
+    cone = ConeAngle(arm(3).joints[1], DOWN, ACROSS, np.array([0.5, 2.0]))
     state = turned(axis_rotation(axis, np.radians(45.0)))
     assert np.tan(cone.value(state)[0, 0]) == pytest.approx(tangent)
 
@@ -115,8 +115,8 @@ def test_twist_does_not_see_swings(twist: float, x: float, y: float) -> None:
     along = unit(np.array([0.2, -0.3, -1.0]))
     first = unit(np.cross(along, [1.0, 0.0, 0.0]))
     swing = rotation_matrix(x * first + y * np.cross(along, first))
-    measure = Twist(arm(3).joints[1], along)
-    found = measure.value(turned(swing @ rotation_matrix(twist * along)))[0, 0]
+    function = TwistAngle(arm(3).joints[1], along)
+    found = function.value(turned(swing @ rotation_matrix(twist * along)))[0, 0]
     assert found == pytest.approx(twist, abs=1e-6)
 
 
@@ -125,8 +125,8 @@ def test_orientation_is_the_turn_that_is_missing(angle: float) -> None:
     axis = unit(np.array([1.0, -2.0, 0.5]))
     R = rotation_matrix(np.array([0.4, -0.2, 0.3]))
     wanted = R @ rotation_matrix(-angle * axis)
-    measure = Orientation(1, constant(wanted))
-    found = measure.value(turned(R))[0]
+    function = BodyOrientation(1, constant(wanted))
+    found = function.value(turned(R))[0]
     assert found == pytest.approx(angle * axis, abs=1e-8)
 
 
@@ -137,8 +137,8 @@ def test_a_place_is_measured_from_its_own_along_its_axes() -> None:
     at = state.pose.points([tip])[0, 0] + [1.0, 2.0, 3.0]
     slope = unit(np.array([[0.0, 1.0, 1.0], [0.0, -1.0, 1.0]])).T
     away = np.array([0.3, 0.2, 0.1])
-    measure = Place(tip, lambda times: np.tile(at - away, (len(times), 1)), slope)
-    assert measure.value(state)[0] == pytest.approx([0.3 / np.sqrt(2.0), -0.1 / np.sqrt(2.0)])
+    function = PointPosition(tip, lambda times: np.tile(at - away, (len(times), 1)), slope)
+    assert function.value(state)[0] == pytest.approx([0.3 / np.sqrt(2.0), -0.1 / np.sqrt(2.0)])
 
 
 def test_peak_is_of_the_sum_of_forces() -> None:
@@ -156,15 +156,15 @@ def _state(t: Transcription, x: np.ndarray, times: np.ndarray) -> State:
     return State(t.character, t.layout, Instants(t.basis, times), x)
 
 
-# -- slopes --------------------------------------------------------------------------------
+# -- Jacobians --------------------------------------------------------------------------------
 
 
 def moving_place(times: FloatArray) -> FloatArray:
     return np.stack([times, 0.5 * times, 1.0 - times], axis=1)
 
 
-def measures(t: Transcription, body: int) -> dict[str, ConstraintFunction]:
-    """Every measure, on one jointed body of a figure."""
+def functions(t: Transcription, body: int) -> dict[str, ConstraintFunction]:
+    """Every constraint function, on one jointed body of a figure."""
     character: Character = t.character
     joint = character.joints[body]
     along = unit(character.bodies[body].tip)
@@ -176,61 +176,61 @@ def measures(t: Transcription, body: int) -> dict[str, ConstraintFunction]:
     mine = np.arange(joint.first, joint.dofs.stop)
     point = BodyPoint(body, np.array([0.02, -0.05, 0.1]))
     return {
-        "bend": Bend(joint, along, straight, flexion),
-        "cone": Cone(joint, along, frame, np.ones(2)),
-        "stretched cone": Cone(joint, along, frame, np.array([0.6, 1.7])),
-        "twist": Twist(joint, along),
-        "place": Place(point, moving_place, slope),
-        "orientation": Orientation(body, constant(rotation_matrix(wanted))),
-        "angles": Angles(mine, constant(0.1 * mine)),
+        "bend": BendAngle(joint, along, straight, flexion),
+        "cone": ConeAngle(joint, along, frame, np.ones(2)),
+        "stretched cone": ConeAngle(joint, along, frame, np.array([0.6, 1.7])),
+        "twist": TwistAngle(joint, along),
+        "place": PointPosition(point, moving_place, slope),
+        "orientation": BodyOrientation(body, constant(rotation_matrix(wanted))),
+        "angles": JointAngles(mine, constant(0.1 * mine)),
         "peak": PeakForce(np.arange(t.layout.n_points)),
-        "torques": Torques(TorqueFunction(character, t.points, mine)),
+        "torques": TorqueFunction(character, t.points, mine),
     }
 
 
-NAMES = tuple(measures(standing(), 1))
+NAMES = tuple(functions(standing(), 1))
 
 
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", NAMES)
-def test_slopes_on_a_small_figure(name: str, seed: int) -> None:
-    measure = measures(standing(), 1 + seed)[name]
-    assert slope_error(seen(standing(), random_state(seed)), measure, 20 + seed) < 1e-6
+def test_jacobians_on_a_small_figure(name: str, seed: int) -> None:
+    function = functions(standing(), 1 + seed)[name]
+    assert jacobian_error(seen(standing(), random_state(seed)), function, 20 + seed) < 1e-6
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("bone", ["lfemur", "rhumerus"])
-def test_slopes_on_a_real_figure(bone: str, name: str) -> None:
+@pytest.mark.parametrize("bone", ["LeftUpLeg", "RightArm"])
+def test_jacobians_on_a_real_figure(bone: str, name: str) -> None:
     motion = fitted_hop().motion
     t = motion.transcription
     body = [b.bone for b in t.character.bodies].index(bone)
-    assert slope_error(seen(t, motion.x), measures(t, body)[name], 30) < 1e-5
+    assert jacobian_error(seen(t, motion.x), functions(t, body)[name], 30) < 1e-5
 
 
 @pytest.mark.parametrize("angle", [1e-5, 1.0, 3.0, np.pi - 1e-3])
-def test_orientation_s_slopes_hold_up_to_half_a_turn(angle: float) -> None:
+def test_orientation_s_jacobian_holds_up_to_half_a_turn(angle: float) -> None:
     """Of a constant pose and a target `angle` from it about a random axis."""
     character = arm(3)
     q = np.array([0.2, -0.3, 0.1, 0.4, 0.2, -0.5])
     axis = unit(np.array([0.3, -1.0, 0.6]))
     now = still(character, q).pose.rotations[0, 1]
-    measure = Orientation(1, constant(now @ rotation_matrix(-angle * axis)))
-    (slope,) = measure.slopes(still(character, q))
+    function = BodyOrientation(1, constant(now @ rotation_matrix(-angle * axis)))
+    (jacobian,) = function.jacobians(still(character, q))
     for k in range(6):
         step = 1e-6 * np.eye(6)[k]
-        ahead, behind = (measure.value(still(character, q + s * step))[0] for s in (1.0, -1.0))
-        assert slope.by[0, :, k] == pytest.approx((ahead - behind) / 2e-6, abs=1e-5)
+        ahead, behind = (function.value(still(character, q + s * step))[0] for s in (1.0, -1.0))
+        assert jacobian.matrix[0, :, k] == pytest.approx((ahead - behind) / 2e-6, abs=1e-5)
 
 
 def test_an_orientation_beyond_half_a_turn_reads_the_shorter_way() -> None:
     R = axis_rotation(2, 4.0)
-    found = Orientation(1, constant(np.eye(3))).value(turned(R))[0]
+    found = BodyOrientation(1, constant(np.eye(3))).value(turned(R))[0]
     assert found == pytest.approx(rotation_vector(R))
     assert np.linalg.norm(found) == pytest.approx(2.0 * np.pi - 4.0)
 
 
-def test_a_bone_on_its_cone_s_axis_has_finite_slopes() -> None:
-    cone = Cone(arm(3).joints[1], DOWN, ACROSS, np.ones(2))
+def test_a_bone_on_its_cone_s_axis_has_a_finite_jacobian() -> None:
+    cone = ConeAngle(arm(3).joints[1], DOWN, ACROSS, np.ones(2))
     state = turned(np.eye(3))
     assert cone.value(state)[0, 0] == pytest.approx(0.0)
-    assert np.isfinite(cone.slopes(state)[0].by).all()
+    assert np.isfinite(cone.jacobians(state)[0].matrix).all()

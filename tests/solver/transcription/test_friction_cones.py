@@ -10,7 +10,7 @@ from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
 from hangtime.solver.transcription.contact_pins import PointContact
-from hangtime.solver.transcription.friction_cones import ForceCones
+from hangtime.solver.transcription.friction_cones import FrictionCones
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.toy_problems import (
     DURATION,
@@ -29,8 +29,8 @@ FLOOR = np.array([0.0, 0.0, 1.0])
 NORMALS = {"floor": FLOOR, "nearly floor": [0.03, 0.01, 1.0], "slope": [0.3, -0.4, 1.0]}
 
 
-def cones(changed: Sequence[PointContact]) -> ForceCones:
-    return ForceCones(standing().basis, standing().layout, changed)
+def cones(changed: Sequence[PointContact]) -> FrictionCones:
+    return FrictionCones(standing().basis, standing().layout, changed)
 
 
 def left(**changes: object) -> PointContact:

@@ -1,4 +1,4 @@
-"""Torques as functions of the unknowns: against inverse dynamics, and their slopes."""
+"""Torques as functions of the unknowns: against inverse dynamics, and their Jacobians."""
 
 from dataclasses import replace
 
@@ -7,19 +7,19 @@ import pytest
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.status import Status
-from hangtime.solver.transcription.constraint import Bounds, Constraint, missed
-from hangtime.solver.transcription.motion import Motion, motion_efforts
+from hangtime.solver.transcription.constraint import Bounds, Constraint, dense_violation
+from hangtime.solver.transcription.motion import Motion, motion_inverse_dynamics
 from hangtime.solver.transcription.sampling import Instants, State
-from hangtime.solver.transcription.torque_constraint import TorqueFunction, Torques
+from hangtime.solver.transcription.torque_constraint import TorqueFunction
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.toy_problems import (
     DURATION,
     figure,
     held_between,
+    jacobian_error,
     places,
     random_state,
     seen,
-    slope_error,
     standing,
     still,
     stood,
@@ -30,19 +30,19 @@ KNEE = (5,)  # the left knee's angle
 ALL = tuple(range(3, 9))
 
 
-def function(angles: tuple[int, ...]) -> TorqueFunction:
+def torque_function(angles: tuple[int, ...]) -> TorqueFunction:
     return TorqueFunction(figure(), standing().points, angles)
 
 
 def torques(t: Transcription, x: np.ndarray, angles: tuple[int, ...]) -> np.ndarray:
-    return function(angles).value(State(t.character, t.layout, Instants(t.basis, TIMES), x))
+    return torque_function(angles).value(State(t.character, t.layout, Instants(t.basis, TIMES), x))
 
 
 @pytest.mark.parametrize("angles", [ALL, KNEE, (8, 3)])
 def test_they_are_inverse_dynamics_torques(angles: tuple[int, ...]) -> None:
     x = random_state(0)
     motion = Motion(standing(), x, places())
-    efforts = motion_efforts(InverseDynamics(figure(), standing().points), motion, TIMES)
+    efforts = motion_inverse_dynamics(InverseDynamics(figure(), standing().points), motion, TIMES)
     weight = figure().mass * STANDARD_GRAVITY
     expected = efforts.torques[:, np.array(angles) - 3] / weight
     found = torques(standing(), x, angles)
@@ -51,16 +51,16 @@ def test_they_are_inverse_dynamics_torques(angles: tuple[int, ...]) -> None:
 
 
 @pytest.mark.parametrize("angles", [ALL, KNEE])
-def test_slopes(angles: tuple[int, ...]) -> None:
+def test_jacobians(angles: tuple[int, ...]) -> None:
     for seed in range(3):
-        measure = Torques(function(angles))
-        assert slope_error(seen(standing(), random_state(seed)), measure, 40 + seed) < 1e-6
+        torques_at = torque_function(angles)
+        assert jacobian_error(seen(standing(), random_state(seed)), torques_at, 40 + seed) < 1e-6
 
 
-def test_slopes_where_nothing_touches() -> None:
+def test_jacobians_where_nothing_touches() -> None:
     pose = still(figure(), 0.3 * np.arange(figure().n_angles))
-    measure = Torques(TorqueFunction(figure(), (), ALL))
-    assert slope_error(pose, measure, 50) < 1e-6
+    function = TorqueFunction(figure(), (), ALL)
+    assert jacobian_error(pose, function, 50) < 1e-6
 
 
 def test_gravity_is_the_character_s() -> None:
@@ -76,12 +76,12 @@ def test_gravity_is_the_character_s() -> None:
 def test_a_bound_is_kept_between_its_rows_too() -> None:
     bound = 0.5 * float(np.abs(torques(standing(), stood().x, KNEE)).max())
     limits = Bounds(np.array([-bound]), np.array([bound]))
-    condition = Constraint("knee", Torques(function(KNEE)), limits, 0.0, DURATION)
-    t = replace(standing(), conditions=(condition,))
-    before = missed(condition, figure(), t.basis, t.layout, stood().x)
+    constraint = Constraint("knee", torque_function(KNEE), limits, 0.0, DURATION)
+    t = replace(standing(), constraints=(constraint,))
+    before = dense_violation(constraint, figure(), t.basis, t.layout, stood().x)
     assert before.name == "knee"
     assert before.amount > 0.8 * bound
     _, outcome = held_between(t, stood())
     assert outcome.status is Status.SOLVED
-    after = missed(condition, figure(), t.basis, t.layout, outcome.x)
+    after = dense_violation(constraint, figure(), t.basis, t.layout, outcome.x)
     assert after.amount < 0.1 * bound

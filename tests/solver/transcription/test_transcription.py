@@ -22,7 +22,7 @@ from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
-from hangtime.solver.transcription.contact_pins import PointContact, Track
+from hangtime.solver.transcription.contact_pins import PlaceTrajectory, PointContact
 from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.toy_problems import (
@@ -59,13 +59,13 @@ def carried() -> Transcription:
     """A foot on a lift, which it grips."""
     left, right = contacts()
     times = np.linspace(0.0, DURATION, 13)
-    track = Track(times, times[:, None] * SPEED)
+    track = PlaceTrajectory(times, times[:, None] * SPEED)
     return with_contacts(replace(left, track=track, friction=None), right)
 
 
 @cache
-def bounded() -> Transcription:
-    """One condition of every kind."""
+def discretised() -> Transcription:
+    """One constraint of every kind."""
     return asked(
         Requests(
             points=(PointRequest("place", "trunk", ALWAYS, offset=(0.0, 0.1, 0.2)),),
@@ -85,7 +85,7 @@ def directional(t: Transcription, x: np.ndarray, direction: np.ndarray) -> np.nd
     return (ahead - behind) / (2.0 * STEP)
 
 
-MAKERS = (standing, tilted, carried, bounded)
+MAKERS = (standing, tilted, carried, discretised)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -120,14 +120,14 @@ def test_these_tests_cover_every_kind_of_row() -> None:
 
 
 def test_unknowns_that_do_not_exist_have_no_slopes() -> None:
-    t = bounded()
+    t = discretised()
     rows = t.rows(random_state(1), places())
     blocks = t.basis.first_coefficient[rows.span][:, None] + np.arange(ORDER)
     assert not rows.jacobian[~t.active[blocks]].any()
 
 
 def test_rows_are_owned_by_those_that_asked_for_them() -> None:
-    t = bounded()
+    t = discretised()
     rows = t.rows(random_state(1), places())
     asked_by = {name: set(rows.kind[rows.owner == i]) for i, name in enumerate(t.owners)}
     assert asked_by["left shank 1"] == {
@@ -190,15 +190,15 @@ def test_a_foot_that_may_slide_is_held_in_its_directions_only() -> None:
 
 def test_a_steady_track_has_its_speed_at_its_ends_too() -> None:
     times = np.linspace(0.1, 0.4, 5)
-    track = Track(times, (times - 0.1)[:, None] * SPEED)
-    found = track.speed(np.array([0.1, 0.25, 0.4]))
+    track = PlaceTrajectory(times, (times - 0.1)[:, None] * SPEED)
+    found = track.velocity(np.array([0.1, 0.25, 0.4]))
     assert found == pytest.approx(np.tile(SPEED, (3, 1)))
 
 
-def test_eased_bounds_move_their_share_towards_what_was_asked() -> None:
-    t, x = bounded(), random_state(5)
-    eased = t.eased(x, 0.25)
-    whole, part = (each.rows(x, places()).violation() for each in (t, eased))
+def test_relaxed_bounds_move_their_share_towards_what_was_asked() -> None:
+    t, x = discretised(), random_state(5)
+    relaxed = t.relaxed(x, 0.25)
+    whole, part = (each.rows(x, places()).violation() for each in (t, relaxed))
     mine = t.rows(x, places()).owner >= len(t.contacts)
     assert np.abs(whole[mine]).max() > 0.1
     assert part[mine] == pytest.approx(0.25 * whole[mine], abs=1e-12)

@@ -5,19 +5,12 @@ import pytest
 from hangtime.solver.data.faults import UnknownPhase
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.stages.fit import Fit
-from hangtime.solver.worker.pipeline import (
-    ADAPTING,
-    StageClock,
-    Subject,
-    adapt_fit,
-    measure,
-    solve,
-)
+from hangtime.solver.worker.pipeline import ADAPTING, StageClock, Subject, adapt_fit, measure, solve
 from hangtime.tests.helpers.clips import load_recording
-from hangtime.tests.helpers.fitted_hop import HOP, HOPS, fitted_hop, frames_of, hop
+from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
 
 FURTHER = Pin("further", "ground 2", offset=(0.1, 0.0, 0.0))
-FRAMES = frames_of(HOPS, HOP)
+FRAMES = frames_of(HOP_CLIP, HOP)
 
 
 def subject(*pins: Pin) -> Subject:
@@ -36,7 +29,7 @@ def test_a_wrong_name_is_said_before_the_fit() -> None:
 def test_a_stated_stature_scales_the_solvers_lengths_alone() -> None:
     plain = MotionProblem(frames=FRAMES, pins=(FURTHER,))
     tall = MotionProblem(frames=FRAMES, pins=(FURTHER,), height=2.0)
-    recording = load_recording(HOPS)
+    recording = load_recording(HOP_CLIP)
     one, other = measure(recording, plain), measure(recording, tall)
     assert one.factor == 1.0
     assert other.analysis.performance.character.height == pytest.approx(2.0)

@@ -12,7 +12,7 @@ from hangtime.bridge.rows.phases import phases
 from hangtime.ui.plots import looks
 from hangtime.ui.plots.drawing import playhead, readings, still
 from hangtime.ui.plots.figure import PlotFigure, lay_out
-from hangtime.ui.plots.layout import Overlap, cards, free_room
+from hangtime.ui.plots.layout import cards, free_room
 from hangtime.ui.plots.numbers import number, thinned
 
 FRAMES = np.arange(60.0, 331.0)
@@ -93,10 +93,10 @@ def test_a_long_curve_keeps_its_peak() -> None:
 
 def test_cards_avoid_what_lies_upon_the_viewport() -> None:
     overlaps = (
-        Overlap("LEFT", Rect(0.0, 0.0, 58.0, 640.0)),
-        Overlap("RIGHT", Rect(1000.0, 0.0, 1300.0, 640.0)),
-        Overlap("TOP", Rect(0.0, 640.0, 1300.0, 692.0)),
-        Overlap("BOTTOM", Rect(0.0, -81.0, 1300.0, 0.0)),  # below, not upon it
+        ("LEFT", Rect(0.0, 0.0, 58.0, 640.0)),
+        ("RIGHT", Rect(1000.0, 0.0, 1300.0, 640.0)),
+        ("TOP", Rect(0.0, 640.0, 1300.0, 692.0)),
+        ("BOTTOM", Rect(0.0, -81.0, 1300.0, 0.0)),  # below, not upon it
     )
     free = free_room(1300.0, 692.0, overlaps)
     assert free == Rect(58.0, 0.0, 1000.0, 640.0)

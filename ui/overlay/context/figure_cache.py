@@ -1,7 +1,5 @@
 """A cache of traced motions as figures in their armature's space."""
 
-from __future__ import annotations
-
 from typing import TypeVar
 
 import bpy

@@ -1,7 +1,5 @@
 """A part of the picture: named by its content, built only when that is new."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto

@@ -1,7 +1,5 @@
 """Context of a redraw: everything that overlays and handles look at, read once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,19 +23,6 @@ from ...drawing.editor import view_3d
 
 USUAL = 1.7  # m, the height at which sizes are meant
 NEAR = 0.5  # frames; what holds at one frame holds as long as that is shown
-
-
-@dataclass(frozen=True, eq=False)
-class TracesKey:
-    """Traces as a key: equal to itself only, and alive as long as it is a key."""
-
-    traces: Traces
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, TracesKey) and other.traces is self.traces
-
-    def __hash__(self) -> int:
-        return id(self.traces)
 
 
 @dataclass(frozen=True)
@@ -89,9 +74,8 @@ class ViewContext:
         if traces is None or not len(traces.frames):
             return None
         stood = self.armature.matrix_world.copy()
-        return ShownMotion(
-            traces, TracesKey(traces), Matrix.Scale(1.0 / self.metres, 4).freeze(), stood
-        )
+        matrix = Matrix.Scale(1.0 / self.metres, 4).freeze()
+        return ShownMotion(traces, ("live", live().version), matrix, stood)
 
     @cached_property
     def performs_adapted(self) -> bool:

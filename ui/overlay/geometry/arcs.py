@@ -1,7 +1,5 @@
 """Cones around limbs, and arcs at joints, in the axes of bridge/shapes/limits.py. Angles in rad."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -3,8 +3,6 @@
 Everything is of N joints at once, in the armature's space; angles in rad.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

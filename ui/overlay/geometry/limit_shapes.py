@@ -1,7 +1,5 @@
 """Limits of joints as shapes, in the armature's space."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -18,16 +16,7 @@ from ...drawing.sketch import Colour
 from . import arcs, limit_poses, palette
 from .body_rotations import TracedFigure
 from .limit_poses import Joints
-from .shapes import (
-    Label,
-    Look,
-    Shape,
-    Standing,
-    faded,
-    lines,
-    merged,
-    placed,
-)
+from .shapes import Label, Look, Shape, Standing, faded, lines, merged, placed
 
 CONE, ANGLE, TWIST = (kind.KIND.name for kind in (cone, joint_limit, twist_limit))
 ARC, RING = 0.55, 0.42  # radii, as shares of the bone's length

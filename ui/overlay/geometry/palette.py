@@ -1,7 +1,5 @@
 """The overlays' colours, as in the pictures (bridge/picture) but for dark viewports."""
 
-from __future__ import annotations
-
 from ...drawing.sketch import Colour
 
 PIN: Colour = (0.90, 0.13, 0.16, 1.0)

@@ -1,7 +1,5 @@
 """Pins as shapes, in the world."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

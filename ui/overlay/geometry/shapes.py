@@ -1,7 +1,5 @@
 """Shapes as arrays of triangles and lines with colours: numpy only."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto

@@ -1,7 +1,5 @@
 """Balls, arrows and bodies as shaded triangles, many copies of a template at once: numpy only."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Motions as rows of see-through figures, and the poses that are asked for as white ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,12 +1,10 @@
 """Words beside places of the world, drawn over the viewport."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import blf
 import bpy
-from mathutils import Matrix, Vector
+from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 from ...drawing.editor import ui_scale
 from ...drawing.paint import FONT_ID
@@ -26,19 +24,9 @@ def draw(labels: Iterable[Label], context: bpy.types.Context) -> None:
     blf.enable(FONT_ID, blf.SHADOW)
     blf.shadow(FONT_ID, 5, *SHADE)
     for label in labels:
-        at = on_screen(Vector(label.place), view.perspective_matrix, region.width, region.height)
-        if at is not None:
+        at = location_3d_to_region_2d(region, view, label.place)
+        if at is not None and 0.0 <= at.x <= region.width and 0.0 <= at.y <= region.height:
             blf.color(FONT_ID, *label.colour[:3], 1.0)
-            blf.position(FONT_ID, at[0] + BESIDE[0] * scale, at[1] + BESIDE[1] * scale, 0.0)
+            blf.position(FONT_ID, at.x + BESIDE[0] * scale, at.y + BESIDE[1] * scale, 0.0)
             blf.draw(FONT_ID, label.words)
     blf.disable(FONT_ID, blf.SHADOW)
-
-
-def on_screen(
-    place: Vector, perspective: Matrix, width: int, height: int
-) -> tuple[float, float] | None:
-    """Pixels from the lower left of a region; None for what is behind the viewer or outside."""
-    x, y, _, w = (perspective @ place.to_4d()).to_tuple()
-    if w <= 0.0 or max(abs(x), abs(y)) > w:
-        return None
-    return (0.5 + 0.5 * x / w) * width, (0.5 + 0.5 * y / w) * height

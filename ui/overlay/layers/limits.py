@@ -1,7 +1,5 @@
 """Cones around limbs, arcs at joints and about bones, as they are given and where the bones are."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import bpy

@@ -1,7 +1,5 @@
 """Paths of the centre of mass, parabolas, forces and angular momentum of traced motions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Contacts and held points as red balls; hollow where nothing pushes back."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import bpy

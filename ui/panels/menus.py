@@ -1,6 +1,6 @@
-"""The menus of the lists: kinds to add, presets, and what else can be done with a row."""
+"""Menus: *Hangtime* in the viewport's Object and Pose menus, where F3 finds it; those of lists."""
 
-from __future__ import annotations
+from contextlib import ExitStack
 
 import bpy
 
@@ -8,12 +8,39 @@ from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
 from ...bridge.rows.choices import BodyKind
 from ...bridge.rows.kind import Icon, MenuGroup
-from ...operators.names import MenuId, OperatorId
-from .constraint_lists import ICONS
+from ...operators.names import OperatorId
+from .lists import ICONS
+
+GROUPS = (
+    (OperatorId.FIND_BONES, OperatorId.ANALYZE, OperatorId.FIT),
+    (OperatorId.ADD_CONTACT, OperatorId.DRAG_PIN, OperatorId.PLACE_BY_EMPTY, OperatorId.PUT_BACK),
+    (OperatorId.ADAPT, OperatorId.REFINE, OperatorId.USE_BEST, OperatorId.CANCEL),
+    (
+        OperatorId.COMPARE,
+        OperatorId.SHOW_RECORDING,
+        OperatorId.SHOW_ADAPTED,
+        OperatorId.ACCEPT,
+        OperatorId.DISCARD,
+        OperatorId.SHOW_REPORT,
+    ),
+    (OperatorId.EXPORT_FBX, OperatorId.EXPORT_GLTF, OperatorId.SAVE_PLOTS),
+)
+
+
+class HangtimeMenu(bpy.types.Menu):
+    bl_idname = "HANGTIME_MT_hangtime"
+    bl_label = "Hangtime"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        for group in GROUPS:
+            for operator in group:
+                layout.operator(operator)
+            layout.separator()
 
 
 class AddConstraintMenu(bpy.types.Menu):
-    bl_idname = MenuId.ADD_CONSTRAINT
+    bl_idname = "HANGTIME_MT_add_constraint"
     bl_label = "Add Constraint"
     bl_description = "Add a constraint about the selected pose bones and the current frame"
 
@@ -24,11 +51,11 @@ class AddConstraintMenu(bpy.types.Menu):
                 entry = layout.operator(OperatorId.ADD_CONSTRAINT, text=kind.label, icon=kind.icon)
                 entry.kind = kind.name
             layout.separator()
-        layout.menu(MenuId.PRESETS, icon="PRESET")
+        layout.menu(PresetsMenu.bl_idname, icon="PRESET")
 
 
 class PresetsMenu(bpy.types.Menu):
-    bl_idname = MenuId.PRESETS
+    bl_idname = "HANGTIME_MT_presets"
     bl_label = "Add Preset"
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -42,7 +69,7 @@ class PresetsMenu(bpy.types.Menu):
 
 
 class ConstraintMoreMenu(bpy.types.Menu):
-    bl_idname = MenuId.CONSTRAINT_MORE
+    bl_idname = "HANGTIME_MT_constraint_more"
     bl_label = "Constraint Specials"
 
     def draw(self, _context: bpy.types.Context) -> None:
@@ -59,11 +86,11 @@ class ConstraintMoreMenu(bpy.types.Menu):
         for to, text, icon in ranges:
             layout.operator(OperatorId.SET_CONSTRAINT_RANGE, text=text, icon=icon).to = to
         layout.separator()
-        layout.menu(MenuId.PRESETS, icon="PRESET")
+        layout.menu(PresetsMenu.bl_idname, icon="PRESET")
 
 
 class AddBodyChangeMenu(bpy.types.Menu):
-    bl_idname = MenuId.ADD_BODY_CHANGE
+    bl_idname = "HANGTIME_MT_add_body_change"
     bl_label = "Add Body Change"
     bl_description = "Add a weight or a limb of the selected pose bones"
 
@@ -75,4 +102,14 @@ class AddBodyChangeMenu(bpy.types.Menu):
             entry.kind = kind.name
 
 
-CLASSES = (AddConstraintMenu, PresetsMenu, ConstraintMoreMenu, AddBodyChangeMenu)
+def add(undo: ExitStack) -> None:
+    """Appends the menu, until `undo` is closed."""
+    for menu in (bpy.types.VIEW3D_MT_object, bpy.types.VIEW3D_MT_pose):
+        menu.append(_draw)
+        undo.callback(menu.remove, _draw)
+
+
+def _draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    layout = present(menu.layout)
+    layout.separator()
+    layout.menu(HangtimeMenu.bl_idname)

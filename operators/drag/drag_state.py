@@ -1,16 +1,15 @@
-"""State machine of dragging a pin, without Blender."""
+"""State machines of dragging a pin, or one number such as an angle; without Blender."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
-from math import hypot
+from math import hypot, radians
 
 Vector = tuple[float, float, float]
 
 PRECISE = 0.1
 SNAP = 0.05  # m
 FURTHEST = 10.0  # m
+ANGLE_STEP = radians(5.0)
 
 
 class Axis(Enum):
@@ -30,13 +29,27 @@ class DragState(Enum):
 
 
 @dataclass
-class PinDrag:
+class _Drag:
+    """Base: after its end nothing moves a drag, and asking for that raises ValueError."""
+
+    state: DragState = field(default=DragState.DRAGGING, init=False)
+
+    def _require_dragging(self) -> None:
+        if self.state is not DragState.DRAGGING:
+            raise ValueError(f"the drag is {self.state.value}")
+
+    def _end(self, state: DragState) -> None:
+        self._require_dragging()
+        self.state = state
+
+
+@dataclass
+class PinDrag(_Drag):
     """One drag of a pin that was at `start` (m, world). Slides over the ground unless held to an
-    axis; after its end nothing moves it, and asking for that raises ValueError."""
+    axis."""
 
     start: Vector
     axis: Axis | None = None
-    state: DragState = DragState.DRAGGING
     _shift: Vector = (0.0, 0.0, 0.0)
     _loose: Vector = (0.0, 0.0, 0.0)  # how far it is pulled, before steps and axes
     _mouse: Vector = (0.0, 0.0, 0.0)
@@ -44,7 +57,7 @@ class PinDrag:
     def key(self, axis: Axis) -> None:
         """An axis's key: holds to it, or lets go of it again. The mouse's next move counts from
         where the drag began, on that axis."""
-        self._require(DragState.DRAGGING)
+        self._require_dragging()
         self.axis = None if self.axis is axis else axis
         self._shift = self._loose = self._mouse = (0.0, 0.0, 0.0)
 
@@ -52,7 +65,7 @@ class PinDrag:
         """The mouse is `shift` (m) from where it began, on the plane or axis of the drag. Returns
         where the pin is now. precise: goes a tenth of the mouse's way, from here on and without
         a jump at either end; snap: to whole steps."""
-        self._require(DragState.DRAGGING)
+        self._require_dragging()
         share = PRECISE if precise else 1.0
         x, y, z = (
             was + share * (now - before)
@@ -79,16 +92,50 @@ class PinDrag:
 
     def let_go(self) -> bool:
         """The artist lets go. Returns whether the pin has moved at all."""
-        self._require(DragState.DRAGGING)
-        self.state = DragState.LET_GO
+        self._end(DragState.LET_GO)
         return any(self._shift)
 
     def put_back(self) -> Vector:
         """The artist thinks better of it. Returns where the pin was."""
-        self._require(DragState.DRAGGING)
-        self.state, self._shift = DragState.PUT_BACK, (0.0, 0.0, 0.0)
+        self._end(DragState.PUT_BACK)
+        self._shift = (0.0, 0.0, 0.0)
         return self.start
 
-    def _require(self, state: DragState) -> None:
-        if self.state is not state:
-            raise ValueError(f"the drag is {self.state.value}")
+
+@dataclass
+class ValueDrag(_Drag):
+    """One drag of a value from `start` between `low` and `high`; snapping goes to whole `step`s."""
+
+    start: float
+    low: float
+    high: float
+    step: float
+    _value: float | None = None
+    _loose: float = 0.0  # how far it is pulled, before bounds and steps
+    _mouse: float = 0.0
+
+    @property
+    def value(self) -> float:
+        return self.start if self._value is None else self._value
+
+    def move(self, mouse: float, *, precise: bool = False, snap: bool = False) -> float:
+        """The mouse is `mouse` from where it began. Returns the value now."""
+        self._require_dragging()
+        self._loose += (PRECISE if precise else 1.0) * (mouse - self._mouse)
+        self._mouse = mouse
+        value = self.start + self._loose
+        if snap:
+            value = self.step * round(value / self.step)
+        self._value = min(max(value, self.low), self.high)
+        return self._value
+
+    def let_go(self) -> bool:
+        """Returns whether the value has changed."""
+        self._end(DragState.LET_GO)
+        return self.value != self.start
+
+    def put_back(self) -> float:
+        """Returns the value that it had."""
+        self._end(DragState.PUT_BACK)
+        self._value = None
+        return self.start

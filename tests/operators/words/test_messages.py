@@ -10,8 +10,8 @@ from typing import get_type_hints
 
 import hangtime.solver
 import pytest
-from hangtime.operators.words import wording
-from hangtime.operators.words.wording import OUTCOMES, TEMPLATES, sentence
+from hangtime.operators.words import messages
+from hangtime.operators.words.messages import OUTCOMES, TEMPLATES, sentence
 from hangtime.solver.data.faults import BadRecipe, Fault, MissingPart, NoSolution, RequestFault
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.status import Status
@@ -74,7 +74,7 @@ def test_every_template_can_be_filled(kind: type[Fault]) -> None:
 
 
 def test_every_template_is_one_literal_for_translators() -> None:
-    body = ast.parse(inspect.getsource(wording)).body
+    body = ast.parse(inspect.getsource(messages)).body
     tables = [each.value for each in body if isinstance(each, ast.Assign | ast.AnnAssign)]
     built = ast.JoinedStr, ast.BinOp, ast.Call
     assert not [node for table in tables for node in ast.walk(table) if isinstance(node, built)]
@@ -90,7 +90,7 @@ def test_what_is_left_is_translated_as_well() -> None:
     fault = NoSolution(Status.STALLED, (pin,), reached=0.25)
     seen: list[str] = []
     sentence(fault, lambda template: seen.append(template) or template)
-    assert seen[1:] == [OUTCOMES[Status.STALLED], wording.MISSED[RowKind.PIN]]
+    assert seen[1:] == [OUTCOMES[Status.STALLED], messages.MISSED[RowKind.PIN]]
 
 
 def test_a_fault_without_words_is_noticed() -> None:

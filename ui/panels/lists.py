@@ -1,19 +1,17 @@
-"""The lists of constraints and of body changes, and what their kinds look like."""
-
-from __future__ import annotations
+"""The lists of contacts, constraints and body changes, and what their kinds look like."""
 
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS
 from ...bridge.constraints.linked_rows import linked_count
-from ...bridge.properties.settings import HangtimeSettings
+from ...bridge.properties.settings import HangtimeContact, HangtimeSettings
 from ...bridge.rows.choices import BodyKind, Met
 from ...bridge.rows.kind import Icon, Row
-from ...operators.names import ListId
 from ..drawing.editor import ui_scale
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
+CONTACT_WIDE = 400  # px; one in which the places find room too
 ICONS: dict[str, Icon] = {
     **{kind.name: kind.icon for kind in KINDS.values()},
     BodyKind.LOAD.name: "PACKAGE",
@@ -69,7 +67,7 @@ class _RowList(bpy.types.UIList):
 
 
 class ConstraintList(_RowList):
-    bl_idname = ListId.CONSTRAINTS
+    bl_idname = "HANGTIME_UL_constraints"
     rows = "constraints"
 
     def told(self, row: Row) -> str:
@@ -77,7 +75,7 @@ class ConstraintList(_RowList):
 
 
 class BodyChangeList(_RowList):
-    bl_idname = ListId.BODY_CHANGES
+    bl_idname = "HANGTIME_UL_body_changes"
     rows = "body_changes"
 
     def told(self, row: Row) -> str:
@@ -86,4 +84,29 @@ class BodyChangeList(_RowList):
         return f"{100.0 * row.share:.0f} %" if row.by_share else f"{row.mass:.3g} kg"
 
 
-CLASSES = (ConstraintList, BodyChangeList)
+class ContactList(bpy.types.UIList):
+    bl_idname = "HANGTIME_UL_contacts"
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _settings: HangtimeSettings | None,
+        contact: HangtimeContact | None,
+        _icon: int | None,
+        _active_owner: HangtimeSettings | None,
+        _active_name: str | None,
+        _index: int | None,
+        _filter: int | None,
+    ) -> None:
+        row = present(contact)
+        line = layout.row(align=True)
+        line.prop(row, "used", text="")
+        line = line.row(align=True)
+        line.active = row.used
+        wide = present(context.region).width > CONTACT_WIDE * ui_scale(context)
+        line = line.split(factor=0.4 if wide else 0.6, align=True)
+        line.label(text=row.name)
+        if wide:
+            line.label(text=row.phase)
+        line.label(text=f"{row.start_frame:.0f} – {row.end_frame:.0f}")

@@ -3,8 +3,7 @@
 from math import inf, radians
 
 import pytest
-from hangtime.operators.drag.pin_state import Axis, DragState, PinDrag
-from hangtime.operators.drag.value_state import ValueDrag
+from hangtime.operators.drag.drag_state import Axis, DragState, PinDrag, ValueDrag
 
 START = (1.0, 2.0, 0.0)
 STEP = radians(5.0)
