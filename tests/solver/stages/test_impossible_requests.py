@@ -53,7 +53,7 @@ def check(found: Adaptation, problem: MotionProblem, names: tuple[str, ...]) -> 
     assert found.reached < 1.0
     assert sum(len(o.steps) for o in found.outcomes) < MOST_STEPS
     worst = worst_constraints(found, problem)
-    assert any(part in name for name, _, _ in worst for part in names), worst
+    assert any(part in each.name for each in worst for part in names), worst
     assert np.isfinite(found.motion.x).all()
     if found.reached > 0.0:  # the best motion found obeys physics, it only falls short
         left = dynamics_residual(found.motion, np.linspace(0.01, found.motion.duration - 0.01, 300))
