@@ -52,12 +52,8 @@ def export_gltf(armature: bpy.types.Object, action: bpy.types.Action, path: str 
     with (
         _delivered("export.glb", Path(path)) as made,
         _alone(armature, action),
-        _selection_kept() as layer,
+        _selected_alone(armature),
     ):
-        # the exporter wants only the armature selected, and active
-        for thing in layer.objects:
-            thing.select_set(thing == armature)
-        layer.objects.active = armature
         bpy.ops.export_scene.gltf(
             filepath=str(made),
             export_format="GLB",
@@ -84,16 +80,33 @@ def _delivered(name: str, target: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def _selection_kept() -> Iterator[bpy.types.ViewLayer]:
-    """Context in a view layer after which as much is selected and active as before."""
+def _selection_restored() -> Iterator[list[bpy.types.Object]]:
+    """Context with the selected objects, after which these are selected, and what was active is.
+
+    What was removed inside is not looked at: Blender 4.2 crashes over it.
+    """
     layer = present(bpy.context.view_layer)
     active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
     try:
-        yield layer
+        yield selected
     finally:
-        for thing in filter(None, layer.objects):  # what was removed just now is None
-            thing.select_set(thing in selected)
+        for thing in selected:
+            thing.select_set(True)
         layer.objects.active = active
+
+
+@contextmanager
+def _selected_alone(armature: bpy.types.Object) -> Iterator[None]:
+    """Context in which only the armature is selected, and active, as the exporter wants it."""
+    with _selection_restored() as selected:
+        for thing in selected:
+            thing.select_set(False)
+        armature.select_set(True)
+        present(bpy.context.view_layer).objects.active = armature
+        try:
+            yield
+        finally:
+            armature.select_set(False)
 
 
 def reimport_fbx(path: str | Path, frames: FloatArray) -> Recording:
@@ -141,7 +154,7 @@ def _alone(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[Non
 def _removed_afterwards() -> Iterator[None]:
     """Context that removes the data-blocks made inside; the selection comes back."""
     before = data_blocks()
-    with _selection_kept():
+    with _selection_restored():
         try:
             yield
         finally:
