@@ -84,7 +84,7 @@ def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
     each.add_argument("--first", type=_number, metavar="FRAME", help="first frame")
     each.add_argument("--last", type=_number, metavar="FRAME", help="last frame")
     each.add_argument("--mass", type=_positive, metavar="KG", help="mass (default: 70)")
-    each.add_argument("--height", type=_positive, metavar="M", help="scale the figure to this")
+    each.add_argument("--height", type=_positive, metavar="M", help="the performer's true height")
     each.add_argument("--unit", type=_positive, metavar="M", help="metres per unit of the file")
     each.add_argument("--up", choices=("Y", "Z"), type=str.upper, help="axis that points up")
     each.add_argument("--rate", type=_positive, metavar="HZ", help="an AMC file's frames a second")
