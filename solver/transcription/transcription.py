@@ -16,6 +16,7 @@ A contact carries force for a short while before its point has come to rest and 
 to lift (SETTLING_TIME): shoes and feet give, and a spline cannot stop a foot in no time.
 """
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field, replace
 
@@ -84,6 +85,16 @@ class Transcription:
         twin = copy(self)
         twin.discretised = [each.relaxed(x, share) for each in self.discretised]
         return twin
+
+    def retimed(self, warp: Callable[[FloatArray], FloatArray]) -> "Transcription":
+        """The same unknowns at other instants, without the artist's constraints.
+
+        Control points and force values stay where they are in their phase. warp: new instants
+        (T,) s of old ones, ascending.
+        """
+        basis = replace(self.basis, breaks=warp(self.basis.breaks))
+        contacts = tuple(contact.retimed(warp) for contact in self.contacts)
+        return replace(self, basis=basis, contacts=contacts, constraints=())
 
     @property
     def n_unknowns(self) -> int:

@@ -146,7 +146,7 @@ def _floor(view: ViewContext) -> float:
 
 
 def _axes(view: ViewContext, row: HangtimeConstraint) -> Matrix:
-    """Columns: the directions of a point's bounds; as in solver/stages/constraint_builder.py."""
+    """Columns: the directions of a point's bounds; as in solver/constraints."""
     up = Vector((0.0, 0.0, 1.0))
     if row.axes == PointAxes.TRAVEL.name and len(view.settings.stances):
         forward = Vector(view.settings.stances[0].forward_axis)
