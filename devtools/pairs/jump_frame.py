@@ -48,13 +48,13 @@ def landing_phase(schedule: ContactSchedule, flight: Phase) -> str:
 def jump_frame(performance: Performance, schedule: ContactSchedule) -> JumpFrame:
     """Frame of the longest flight, its origin on the floor.
 
-    The feet's place is that of their balls: the median over time of their middle while they stand.
+    The feet's place is that of their balls: the mean over time of their middle while they stand.
     """
     flight = longest_flight(schedule)
     feet = [_ball(performance, side) for side in (Side.LEFT, Side.RIGHT)]
     middle = 0.5 * (feet[0] + feet[1])
-    start = _median(performance.times - flight.start, middle, BEFORE)
-    moved = _median(performance.times - flight.end, middle, AFTER) - start
+    start = _standing(performance.times - flight.start, middle, BEFORE)
+    moved = _standing(performance.times - flight.end, middle, AFTER) - start
     distance = float(np.hypot(*moved[:2]))
     step = float(moved[2]) if abs(moved[2]) > LEVEL else 0.0
     ahead = np.array([moved[0], moved[1], 0.0]) / distance
@@ -74,6 +74,6 @@ def _ball(performance: Performance, side: Side) -> FloatArray:
     return np.asarray(performance.centres[:, foot] + tip)
 
 
-def _median(times: FloatArray, place: FloatArray, span: tuple[float, float]) -> FloatArray:
+def _standing(times: FloatArray, place: FloatArray, span: tuple[float, float]) -> FloatArray:
     inside = (times >= span[0]) & (times <= span[1])
-    return np.asarray(np.median(place[inside], axis=0))
+    return np.asarray(np.mean(place[inside], axis=0))

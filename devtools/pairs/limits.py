@@ -22,15 +22,15 @@ class PairsLimit:
     aim: tuple[float, float] = ANY
 
 
-MEASURES = {  # of a jump, in words
-    "crouch_cm": "crouch",
-    "take_off_speed": "take-off velocity, up",
-    "forward_speed": "take-off velocity, forward",
-    "apex_cm": "apex",
-    "flight_time_ms": "flight time",
-    "arm_swing_deg": "arm swing",
-    "push_time_ms": "push time",
-    "peak_push_bw": "peak push",
+MEASURES = {  # of a jump: words, unit
+    "crouch_cm": ("crouch", "cm"),
+    "take_off_speed": ("take-off up", "m/s"),
+    "forward_speed": ("take-off forward", "m/s"),
+    "apex_cm": ("apex", "cm"),
+    "flight_time_ms": ("flight time", "ms"),
+    "arm_swing_deg": ("arm swing", "°"),
+    "push_time_ms": ("push time", "ms"),
+    "peak_push_bw": ("peak push", "BW"),
 }
 TIMES = PairsLimit("1", (0.5, 1.2), (0.8, 1.1))
 AMPLITUDES = PairsLimit("1", (0.3, 1.2), (0.6, 1.2))
@@ -82,7 +82,7 @@ def figures(pairs: Sequence[ComparedPair], solution: str) -> Iterator[PairsFigur
     ) -> PairsFigure:
         return PairsFigure(name, value, limit.unit, limit.must, limit.aim, len(over), solution)
 
-    for measure, words in MEASURES.items():
+    for measure, (words, _) in MEASURES.items():
         limit = SLOPES.get(measure, TOLD)
         yield tell(f"{words}: slope", slope(moved, measure), limit, moved)
         yield tell(f"{words}: slope, 10 cm or more", slope(far, measure), limit, far)
@@ -103,7 +103,7 @@ def figures(pairs: Sequence[ComparedPair], solution: str) -> Iterator[PairsFigur
     for words, some in (("own landing", own), ("landing within 2 cm", near)):
         for measure, limit in NULLS.items():
             worst = max((abs(pair.found_change(measure)) for pair in some), default=None)
-            yield tell(f"null pairs, {words}: {MEASURES[measure]}, worst", worst, limit, some)
+            yield tell(f"null pairs, {words}: {MEASURES[measure][0]}, worst", worst, limit, some)
 
 
 def slope(pairs: Sequence[ComparedPair], measure: str) -> float | None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -73,5 +74,5 @@ def _phased(
     centres: Callable[[FloatArray], FloatArray], flight: Phase, frame: JumpFrame
 ) -> PhasedJump:
     edges = (flight.start - AROUND, flight.start, flight.end, flight.end + AROUND)
-    spans = zip(edges[:-1], edges[1:], strict=True)
+    spans = pairwise(edges)
     return PhasedJump(*(frame.of(centres(np.linspace(*span, INSTANTS))) for span in spans))
