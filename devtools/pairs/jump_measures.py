@@ -22,7 +22,8 @@ class JumpMeasures:
     """Measures of one jump.
 
     crouch_cm: lowest pelvis before take-off, above the floor. take_off_speed, forward_speed: m/s
-    of the centre of mass at take-off. apex_cm: its highest place above the floor.
+    of the centre of mass at take-off. lean_cm, reach_cm: how far it is before the feet's place at
+    take-off, and behind theirs at landing. apex_cm: its highest place above the floor.
     arm_swing_deg: range of the upper arms' flexion against the trunk from `PUSH` before take-off to
     landing. push_time_ms: from the lowest pelvis to take-off. peak_push_bw: largest
     vertical force before take-off.
@@ -31,6 +32,8 @@ class JumpMeasures:
     crouch_cm: float
     take_off_speed: float
     forward_speed: float
+    lean_cm: float
+    reach_cm: float
     apex_cm: float
     flight_time_ms: float
     arm_swing_deg: float
@@ -38,17 +41,20 @@ class JumpMeasures:
     peak_push_bw: float
 
 
-def jump_measures(motion: Motion, flight: Phase, frame: JumpFrame) -> JumpMeasures:
-    """Measures of a solved motion's jump. flight: in its own time."""
+def jump_measures(motion: Motion, flight: Phase, frame: JumpFrame, distance: float) -> JumpMeasures:
+    """Measures of a solved motion's jump. flight: in its own time. distance: m, of the feet."""
     before = _instants(max(0.0, flight.start - PUSH), flight.start)
     during = _instants(flight.start, flight.end)
     pelvis = frame.of(motion.joint_centres(before)[:, 0])[:, 2]
     lowest = before[pelvis.argmin()]
+    ahead = frame.of(motion.com(np.array([flight.start, flight.end])))[:, 0]
     speed = motion.com(np.array([flight.start]), 1)[0] @ frame.axes
     return JumpMeasures(
         crouch_cm=100.0 * float(pelvis.min()),
         take_off_speed=float(speed[2]),
         forward_speed=float(speed[0]),
+        lean_cm=100.0 * float(ahead[0]),
+        reach_cm=100.0 * (distance - float(ahead[1])),
         apex_cm=100.0 * float(frame.of(motion.com(during))[:, 2].max()),
         flight_time_ms=1000.0 * (flight.end - flight.start),
         arm_swing_deg=arm_swing(motion, _instants(float(before[0]), flight.end), frame.axes[:, 0]),

@@ -26,6 +26,8 @@ MEASURES = {  # of a jump: words, unit
     "crouch_cm": ("crouch", "cm"),
     "take_off_speed": ("take-off up", "m/s"),
     "forward_speed": ("take-off forward", "m/s"),
+    "lean_cm": ("lean at take-off", "cm"),
+    "reach_cm": ("reach at landing", "cm"),
     "apex_cm": ("apex", "cm"),
     "flight_time_ms": ("flight time", "ms"),
     "arm_swing_deg": ("arm swing", "°"),
@@ -114,13 +116,28 @@ def slope(pairs: Sequence[ComparedPair], measure: str) -> float | None:
     return float(found @ person) / squared if squared > 0.0 else None
 
 
-def explained(pairs: Sequence[ComparedPair], measure: str) -> tuple[float, float] | None:
-    """What distance alone tells of the person's change: change per metre, and the share of its
-    squares that this explains, which is also the slope that the best such prediction would have."""
+@dataclass(frozen=True)
+class WithDistance:
+    """Changes of a measure in proportion to how much further the landing is, least squares.
+
+    person, ours: change per metre. share: of the squares of the person's changes that this
+    explains; it is also the slope that so good a prediction would have.
+    """
+
+    person: float
+    ours: float
+    share: float
+
+
+def with_distance(pairs: Sequence[ComparedPair], measure: str) -> WithDistance | None:
+    """What distance alone tells of a measure; None where no landing or no measure differs."""
     person = np.array([pair.persons_change(measure) for pair in pairs])
+    found = np.array([pair.found_change(measure) for pair in pairs])
     further = np.array([pair.further for pair in pairs])
-    squares = float(person @ person), float(further @ further)
-    if min(squares) <= 0.0:
+    squares, changes = float(further @ further), float(person @ person)
+    if min(squares, changes) <= 0.0:
         return None
-    product = float(person @ further)
-    return product / squares[1], product**2 / (squares[0] * squares[1])
+    told = float(person @ further)
+    return WithDistance(
+        told / squares, float(found @ further) / squares, told**2 / squares / changes
+    )

@@ -29,7 +29,7 @@ def solve_source(task: SourceTask) -> SolvedSource:
     flight, clock = longest_flight(subject.schedule), StageClock()
     fitted = fit_subject(subject, clock)
     phases = motion_phases(fitted.motion, flight, frame)
-    measures = jump_measures(fitted.motion, flight, frame)
+    measures = jump_measures(fitted.motion, flight, frame, float(frame.landing[0]))
     status, seconds = fitted.outcome.status.value, clock.done[-1].seconds
     done = SolvedJump(fitted.solved, status, seconds, phases, measures)
     if not fitted.solved:
@@ -67,7 +67,7 @@ def adapt_to(
         result.adaptation.outcome.status.value,
         clock.done[-1].seconds,
         motion_phases(motion, now, frame),
-        jump_measures(motion, now, frame),
+        jump_measures(motion, now, frame, float((frame.landing + offset @ frame.axes)[0])),
     )
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 
 from .compare import ComparedPair
-from .limits import MEASURES, PairsFigure, explained
+from .limits import MEASURES, PairsFigure, with_distance
 from .results import Results
 
 Row = Sequence[str]
@@ -31,16 +31,17 @@ HOW = """
   so that the feet land where they should. *Its fit* is the physical fit of the target itself.
 - Changes are those against the source's fit; the person's are from the source's fit to the
   target's. Crouch: lowest pelvis in the last 0.5 s before take-off. Velocities: of the centre of
-  mass at take-off. Apex: its highest place. Arm swing: range of the upper arms' flexion against the
-  trunk, in the plane of the jump, from 0.5 s before take-off to landing. Push time: from the lowest
-  pelvis to take-off. Peak push: vertical force of all contacts, low-passed at 15 Hz.
+  mass at take-off. Lean and reach: it before the feet at take-off, the feet before it at landing.
+  Apex: its highest place. Arm swing: range of the upper arms' flexion against the trunk, in the
+  plane of the jump, from 0.5 s before take-off to landing. Push time: from the lowest pelvis to
+  take-off. Peak push: vertical force of all contacts, low-passed at 15 Hz.
 - Slope: found change by the person's, least squares through the origin; 1 is all of it.
 - Null pairs: each jump adapted to its own landing, and pairs that land within 2 cm of each other.
 """
-TOLD = """What the distance alone tells of the person's changes, over the same pairs. The share is
-that of the changes' squares which a change in proportion to the distance explains, at best; it is
-also the slope that this best prediction has. The rest differs from take to take: no landing's place
-tells it.
+TOLD = """What changes in proportion to the distance, by least squares over the pairs: the
+person's, and ours. The share is that of the squares of the person's changes which this explains; it
+is also the slope that so good a prediction would have. The rest differs from take to take: no
+landing's place tells it.
 """
 
 
@@ -86,27 +87,16 @@ def jump_rows(results: Results) -> Iterator[Row]:
 
 
 def told_rows(results: Results) -> Iterator[Row]:
-    """What distance alone tells of the person's changes."""
-    yield (
-        "person's change",
-        "per 10 cm",
-        "unit",
-        "share explained",
-        "10 cm or more",
-        "unit",
-        "share",
-    )
+    """What distance alone tells of the person's changes, and what ours are by it."""
     first = results.solutions[0]
+    yield ("change per 10 cm further", "person", "ours", "unit", "share explained", "10 cm or more")
     for measure, (words, unit) in MEASURES.items():
-        row = [words]
-        for some in (results.moved(first), results.far(first)):
-            told = explained(some, measure)
-            row += (
-                ["–", unit, "–"]
-                if told is None
-                else [f"{0.1 * told[0]:+.2g}", unit, f"{told[1]:.2f}"]
-            )
-        yield row
+        every, far = (with_distance(p, measure) for p in (results.moved(first), results.far(first)))
+        slopes = (
+            ("–", "–") if every is None else (f"{0.1 * x:+.2g}" for x in (every.person, every.ours))
+        )
+        shares = ("–" if told is None else f"{told.share:.2f}" for told in (every, far))
+        yield (words, *slopes, unit, *shares)
 
 
 def pair_rows(results: Results, solution: str) -> Iterator[Row]:

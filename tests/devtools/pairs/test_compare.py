@@ -4,7 +4,7 @@ import json
 
 import pytest
 from hangtime.devtools.pairs.compare import FailedPair
-from hangtime.devtools.pairs.limits import MEASURES, explained, figures, slope
+from hangtime.devtools.pairs.limits import MEASURES, WithDistance, figures, slope, with_distance
 from hangtime.devtools.pairs.results import Results
 from hangtime.devtools.pairs.table import page, text
 from hangtime.tests.devtools.pairs.made_up import pair
@@ -28,10 +28,13 @@ def test_slope_weighs_large_changes_and_keeps_the_sign() -> None:
 
 
 def test_a_change_in_proportion_to_the_distance_is_explained_by_it() -> None:
-    told = explained([pair(x, person=7.0 * x, ours=0.0) for x in (-0.2, 0.1, 0.3)], "crouch_cm")
-    assert told == pytest.approx((7.0, 1.0))
-    none = explained([pair(x, person=1.0, ours=0.0) for x in (-0.2, 0.2)], "crouch_cm")
-    assert none == pytest.approx((0.0, 0.0))
+    pairs = [pair(x, person=7.0 * x, ours=2.0 * x) for x in (-0.2, 0.1, 0.3)]
+    told = with_distance(pairs, "crouch_cm")
+    assert told is not None
+    assert (told.person, told.ours, told.share) == pytest.approx((7.0, 2.0, 1.0))
+    same = [pair(x, person=1.0, ours=0.0) for x in (-0.2, 0.2)]
+    assert with_distance(same, "crouch_cm") == WithDistance(0.0, 0.0, 0.0)
+    assert with_distance([], "crouch_cm") is None
 
 
 def test_figures_tell_far_pairs_and_null_pairs_apart() -> None:

@@ -65,11 +65,14 @@ def test_measures_of_a_fit_obey_the_law_of_falling() -> None:
     fitted = fitted_hop()
     frame = jump_frame(fitted.performance, fitted.schedule)
     flight = longest_flight(fitted.schedule)
-    measures = jump_measures(fitted.motion, flight, frame)
+    measures = jump_measures(fitted.motion, flight, frame, float(frame.landing[0]))
     start = frame.of(fitted.motion.com(np.array([flight.start])))[0, 2]
     rise = measures.take_off_speed**2 / (2.0 * STANDARD_GRAVITY)
     assert measures.apex_cm == pytest.approx(100.0 * (start + rise), abs=0.1)
     assert measures.flight_time_ms == pytest.approx(1000.0 * (flight.end - flight.start))
+    travel = measures.forward_speed * (flight.end - flight.start)
+    whole = measures.lean_cm + 100.0 * travel + measures.reach_cm
+    assert whole == pytest.approx(100.0 * frame.landing[0], abs=0.1)
     assert 50.0 < measures.crouch_cm < 100.0
     assert 1.2 < measures.peak_push_bw < 4.0
     assert 0.0 < measures.arm_swing_deg < 180.0
