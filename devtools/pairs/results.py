@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .compare import ComparedPair, FailedPair
 from .jump_measures import JumpMeasures
-from .limits import FAR, MEASURES, PairsFigure, figures
+from .limits import FAR, MEASURES, NULL, PairsFigure, figures
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,10 @@ class Results:
     def moved(self, solution: str) -> list[ComparedPair]:
         """The pairs of two jumps by a solution."""
         return [p for p in self.pairs if p.solution == solution and not p.to_itself]
+
+    def near(self, solution: str) -> list[ComparedPair]:
+        """Those that land within `NULL` of each other: two takes of one jump."""
+        return [pair for pair in self.moved(solution) if abs(pair.further) < NULL]
 
     def far(self, solution: str) -> list[ComparedPair]:
         """Those whose landing moves by `FAR` or more."""

@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from statistics import fmean
 
-from .compare import ComparedPair
+from .compare import ComparedPair, Distances
 from .limits import MEASURES, PairsFigure, with_distance
 from .results import Results
 
@@ -38,6 +39,11 @@ HOW = """
 - Slope: found change by the person's, least squares through the origin; 1 is all of it.
 - Null pairs: each jump adapted to its own landing, and pairs that land within 2 cm of each other.
 """
+APART = """
+Mean distance of the joint centres to the target, cm, in crouch / flight / landing. Two takes of one
+jump are as far from each other as the last row tells: nothing that knows only the landing can be
+expected to come much nearer.
+"""
 TOLD = """What changes in proportion to the distance, by least squares over the pairs: the
 person's, and ours. The share is that of the squares of the person's changes which this explains; it
 is also the slope that so good a prediction would have. The rest differs from take to take: no
@@ -53,13 +59,14 @@ def text(results: Results) -> str:
         [""],
     )
     parts += [aligned(jump_rows(results)), [""], aligned(told_rows(results)), [""]]
-    parts.append(aligned(figure_rows(results)))
+    parts += [aligned(distance_rows(results)), [""], aligned(figure_rows(results))]
     return "\n".join(line for part in parts for line in part)
 
 
 def page(results: Results) -> str:
     """docs/pairs.md."""
-    lines = [HEAD, "## Figures\n", *markdown(figure_rows(results)), HOW]
+    lines = [HEAD, "## Figures\n", *markdown(figure_rows(results)), APART]
+    lines += [*markdown(distance_rows(results)), HOW]
     lines += ["## The performers' own jumps\n", *markdown(jump_rows(results))]
     lines += ["", TOLD, *markdown(told_rows(results)), "\n## The pairs"]
     for solution in results.solutions:
@@ -97,6 +104,23 @@ def told_rows(results: Results) -> Iterator[Row]:
         )
         shares = ("–" if told is None else f"{told.share:.2f}" for told in (every, far))
         yield (words, *slopes, unit, *shares)
+
+
+def distance_rows(results: Results) -> Iterator[Row]:
+    """Mean distances to the target over pairs, by phase."""
+    first = results.solutions[0]
+    fixed = ("unchanged", "slid", "bound")
+    yield ("landing", "pairs", "unchanged", "slid", "its fit", *results.solutions)
+    for words, some in (
+        ("all", results.moved),
+        ("moved by 10 cm or more", results.far),
+        ("within 2 cm: two takes", results.near),
+    ):
+        if not some(first):
+            continue
+        distances = [[getattr(pair, kind) for pair in some(first)] for kind in fixed]
+        distances += [[pair.ours for pair in some(solution)] for solution in results.solutions]
+        yield (words, str(len(some(first))), *(_mean(each) for each in distances))
 
 
 def pair_rows(results: Results, solution: str) -> Iterator[Row]:
@@ -140,6 +164,13 @@ def _value(figure: PairsFigure, *, judged: bool) -> str:
 def _share(pair: ComparedPair, measure: str) -> str:
     value = pair.share(measure)
     return "–" if value is None else f"{value:.2f}"
+
+
+def _mean(distances: Sequence[Distances]) -> str:
+    """Mean by phase, cm."""
+    if not distances:
+        return "–"
+    return " / ".join(f"{fmean(each[phase] for each in distances):.1f}" for phase in distances[0])
 
 
 def _limits(limits: tuple[float, float]) -> str:

@@ -71,3 +71,4 @@ def test_results_are_told_in_json_in_lines_and_on_a_page(tmp_path) -> None:
         assert "source → target" in told
         assert "MISSED" in told
         assert "no way" in told
+        assert "4.0 / 4.0 / 4.0" in told
