@@ -29,7 +29,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.report_text import as_text
+from ..words.report_text import as_text, retimed
 from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, session
@@ -219,6 +219,10 @@ def summary(answer: Adapted) -> str:
             f"{said} in {seconds:.1f} s",
             f"Pins: {worst.worst_violation_mm:.2f} mm off at most ({worst.name})",
             *(f"{each.name}: {_held(each)}" for each in report.conditions),
+            *(
+                f"{p.phase.capitalize()}: {p.adapted_s:.2f} s, was {p.recorded_s:.2f} s"
+                for p in retimed(report)
+            ),
             f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
         ]
     )

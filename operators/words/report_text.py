@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from ...solver.data.contacts import PhaseKind
-from ...solver.data.report import Report
+from ...solver.data.report import PhaseReport, Report
 from .messages import outcome
 
 LEFT_AT_MOST = {
@@ -11,6 +11,7 @@ LEFT_AT_MOST = {
     PhaseKind.GROUND: 0.02,
 }  # BW·m, rms; what the project promises
 GRIPPING = 1.2  # friction coefficient of sports shoes on a good floor, at most
+LEAST_RETIMED = 0.0005  # s
 BEARABLE = 12.0  # times the body's weight; the hardest landings of gymnasts
 
 
@@ -62,6 +63,11 @@ def _changes(report: Report) -> Iterator[str]:
             deeper = jump.crouch_deeper_cm
             way = "deeper" if deeper >= 0.0 else "less deep"
             yield f"            the crouch before it is {abs(deeper):.1f} cm {way}"
+    for phase in retimed(report):
+        yield (
+            f"{phase.phase.capitalize():<11} takes {phase.adapted_s:.3f} s instead of "
+            f"{phase.recorded_s:.3f} s"
+        )
     for peak in report.forces.peaks:
         beyond = ": more than people can bear" if peak.peak_bw > BEARABLE else ""
         yield (
@@ -71,6 +77,11 @@ def _changes(report: Report) -> Iterator[str]:
         grip = peak.friction_coefficient_needed
         if grip > GRIPPING:
             yield f"            it must grip with a friction of {grip:.1f}: more than shoes have"
+
+
+def retimed(report: Report) -> list[PhaseReport]:
+    """The phases that take another time than they took."""
+    return [p for p in report.phases if abs(p.adapted_s - p.recorded_s) > LEAST_RETIMED]
 
 
 def _quality(report: Report) -> Iterator[str]:

@@ -253,6 +253,15 @@ class JumpReport:
 
 
 @dataclass(frozen=True)
+class PhaseReport:
+    """How long a phase of the recording took, and takes now."""
+
+    phase: str
+    recorded_s: float
+    adapted_s: float
+
+
+@dataclass(frozen=True)
 class StageReport:
     """Time that a stage of the pipeline took; iterations: of the optimiser, where it ran."""
 
@@ -287,6 +296,7 @@ class Report:
     fit_to_recording: FitQuality
     change: MotionChange
     jumps: tuple[JumpReport, ...]
+    phases: tuple[PhaseReport, ...]
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
 
 

@@ -20,6 +20,7 @@ from ..data.report import (
     ForcesReport,
     MotionChange,
     Origin,
+    PhaseReport,
     PhaseResidual,
     PinReport,
     RecordingSummary,
@@ -83,6 +84,7 @@ def report(
         fit_to_recording=fit_quality(fit),
         change=change(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
+        phases=_phases(adaptation),
         stages=None if stages is None else tuple(stages),
     )
 
@@ -293,6 +295,17 @@ def _torques(adaptation: Adaptation, problem: MotionProblem) -> TorquesReport:
 
 
 # ---------------------------------------------------------------- what changed
+
+
+def _phases(adaptation: Adaptation) -> tuple[PhaseReport, ...]:
+    """Durations of the recording's phases that the motion still has."""
+    line = adaptation.setup.context.timeline
+    reports = []
+    for phase in adaptation.fit.schedule.phases:
+        start, end = (float(line.to_new(t)) for t in (phase.start, phase.end))
+        if end > start:
+            reports.append(PhaseReport(phase.name, phase.end - phase.start, end - start))
+    return tuple(reports)
 
 
 def change(adaptation: Adaptation) -> MotionChange:

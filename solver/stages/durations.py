@@ -6,8 +6,8 @@ Who jumps further flies longer. Which duration goes with a moved landing is what
     min  1/2 (x - x0)' W (x - x0)   subject to   C(x, s) = 0
 
 x0: the motion carried to its new places. W: the distance between poses at the same phase, since
-control points keep their place in their phase while a phase stretches. Neither the accelerations
-nor the forces of a longer flight are those of a shorter one, so they hardly count in W. The few
+control points keep their place in their phase while a phase stretches. People jump further by a
+longer push, not by the same forces, so that forces hardly count in W. The few
 durations border the banded matrix of a step: with D = dx/ds on the linearised rows, from the factor
 that is there, their Schur complement is D' W D (Nocedal & Wright, 16.2). Where nothing is moved
 x = x0, s = 0 is the solution exactly.
@@ -28,7 +28,8 @@ from ..transcription.motion import Motion
 from ..transcription.tracking_cost import CostWeights
 from .fit import motion_metric
 
-POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.03, force=1e-5)
+# As in an adaptation, but for forces and the centre of mass: they settle what no pose shows.
+POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.1, force=1e-5)
 DERIVATIVE_STEP = 1e-4  # of s, of the finite differences of the rows
 PROBE = 0.03  # of s, for which D is taken: a step with its bounds is only piecewise linear in it
 MAX_STEP = 0.3  # of s in one step

@@ -98,6 +98,11 @@ class Setup:
         return metric
 
     @property
+    def anticipates(self) -> bool:
+        """Whether durations other than those asked for go with the pins."""
+        return self.start.places is not self.fitted_places
+
+    @property
     def schedule(self) -> ContactSchedule:
         return self.context.schedule
 

@@ -22,6 +22,7 @@ from hangtime.solver.data.report import (
     ForcesReport,
     JumpReport,
     MotionChange,
+    PhaseReport,
     PhaseResidual,
     PinReport,
     RecordedFlight,
@@ -120,6 +121,7 @@ REPORT = Report(
     fit_to_recording=FitQuality(1.0, 0.1),
     change=MotionChange(2.0, 1.0),
     jumps=(JumpReport("flight 1", 0.0, 0.1, 0, 3, RecordedFlight(1.0), FLIGHT, FLIGHT, None, 0.0),),
+    phases=(PhaseReport("flight 1", 0.1, 0.125),),
     stages=(StageReport("Adapting", 1.5),),
 )
 MESSAGES: tuple[Message, ...] = (
