@@ -7,7 +7,7 @@ Arms swing with the speed of the body, so by v'/v as far. Smaller jumps likewise
 or take-off moves nothing changes.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -30,6 +30,7 @@ SCALED_PARTS = {
 }  # powers of v'/v; head and neck look where they did
 SPEED_RATIO = (0.7, 1.3)  # at most: beyond it, it is another kind of jump
 MIN_RISING_SPEED = 0.3  # m/s; a slower take-off is no jump (a step, a drop)
+MAX_STANDING_SPEED = 0.5  # m/s, along the floor; half of a slow walk's
 MIN_DEPTH = 0.02  # m, of a crouch
 STANDING_SHARE = 0.1  # of a crouch's depth, above which the body still stands
 FALLEN_SHARE = 0.2  # of a crouch's depth; lower than this before it is another movement
@@ -37,16 +38,12 @@ SAMPLING_RATE = 240.0  # Hz
 
 
 @dataclass(frozen=True)
-class Push:
-    """A push before a flight: from `start`, where the body begins to sink, to `end`, take-off; s.
+class Jump:
+    """A flight from a push: the body stands until `push`, then sinks and rises; s."""
 
-    ratio: v'/v, of the upward speeds at take-off.
-    """
-
-    start: float
-    end: float
+    push: float
+    take_off: float
     landing: float
-    ratio: float
 
 
 def anticipate(
@@ -54,19 +51,21 @@ def anticipate(
 ) -> TimedMotion | None:
     """The motion as a performer would begin to change it for contacts at target (n_contacts, 3) m.
 
-    kept: intervals whose durations are to stay. None where no flight changes, or no such motion is
+    kept: intervals whose durations are to stay. None where no jump changes, or no such motion is
     found.
     """
     moves = tuple(replace(move, turn=0.0) for move in stance_moves(schedule, start.places, target))
-    flights = [
-        flight
-        for before, after in pairwise(moves)
-        for flight in schedule.flights
-        if (before.end, after.start) == (flight.start, flight.end)
-        and np.linalg.norm(after.shift - before.shift) > MIN_MOVE
-        and not _overlaps(flight.start, flight.end, kept)
-    ]
-    if not flights:
+    jumps = tuple(
+        jump
+        for jump in _jumps(start, schedule)
+        if not _overlaps(jump.take_off, jump.landing, kept)
+        and any(
+            (before.end, after.start) == (jump.take_off, jump.landing)
+            and np.linalg.norm(after.shift - before.shift) > MIN_MOVE
+            for before, after in pairwise(moves)
+        )
+    )
+    if not jumps:
         return None
     places = start.places.copy()
     for move in moves:
@@ -74,79 +73,84 @@ def anticipate(
             touches = contact.start < move.end and contact.end > move.start
             if touches and not contact.asked_for:
                 places[i] = start.places[i] + move.shift
+    flights = [Interval(jump.take_off, jump.landing) for jump in jumps]
     found = find_durations(start, warm_start(start, moves), places, flights)
-    return None if found is None else _grown(start, schedule, found, kept)
+    return None if found is None else _resized(start, jumps, found, kept)
 
 
 def _overlaps(start: float, end: float, intervals: Iterable[Interval]) -> bool:
     return any(each.start < end and each.end > start for each in intervals)
 
 
+def _jumps(motion: Motion, schedule: ContactSchedule) -> Iterator[Jump]:
+    """The flights that a push from standing begins.
+
+    A bounce, as in a run, is none: it takes its energy from the flight before it and keeps its
+    rhythm.
+    """
+    for flight in schedule.flights:
+        landed = max((f.end for f in schedule.flights if f.end < flight.start), default=0.0)
+        times = np.arange(flight.start, landed, -1.0 / SAMPLING_RATE)
+        height = motion.com(times)[:, 2]
+        rising = np.append(np.diff(height) <= 0.0, False)  # backwards in time
+        low = int(np.argmin(rising))
+        times, height = times[low:], height[low:]
+        top = np.maximum.accumulate(height)
+        depth = top - height[0]
+        sank = (depth > MIN_DEPTH) & (top - height > FALLEN_SHARE * depth)
+        if landed > 0.0 and not sank.any():
+            continue
+        last = int(np.argmax(sank)) if sank.any() else len(height) - 1
+        stood = times[np.argmax(height >= top[last] - STANDING_SHARE * depth[last])]
+        speed = np.linalg.norm(motion.com(np.array([stood]), 1)[0, :2])
+        if speed < MAX_STANDING_SPEED:
+            yield Jump(float(stood), flight.start, flight.end)
+
+
 # ---------------------------------------------------------------- amplitude
 
 
-def _grown(
-    start: Motion, schedule: ContactSchedule, found: TimedMotion, kept: tuple[Interval, ...]
+def _resized(
+    start: Motion, jumps: tuple[Jump, ...], found: TimedMotion, kept: tuple[Interval, ...]
 ) -> TimedMotion:
     """The found motion with its pushes as much bigger, or smaller, as its flights are."""
     warp = TimeWarp.of(found.stretches, start.duration)
-    pushes = []
-    for flight in found.stretches:
-        push_start = _push_start(start, schedule, flight.start)
-        was = _take_off_speed(start, flight.start)
-        now = _take_off_speed(found.motion, float(warp(flight.start)))
-        if push_start is None or was < MIN_RISING_SPEED:
-            continue
-        ratio = float(np.clip(now / was, *SPEED_RATIO))
-        pushes.append(Push(push_start, flight.start, flight.end, ratio))
+    ratios = []
+    for jump in jumps:
+        was = _upward_speed(start, jump.take_off)
+        now = _upward_speed(found.motion, float(warp(jump.take_off)))
+        ratios.append(np.clip(now / was, *SPEED_RATIO) if was > MIN_RISING_SPEED else 1.0)
     longer = tuple(
-        Stretch(push.start, push.end, push.ratio)
-        for push in pushes
-        if not _overlaps(push.start, push.end, kept)
+        Stretch(jump.push, jump.take_off, float(ratio))
+        for jump, ratio in zip(jumps, ratios, strict=True)
+        if not _overlaps(jump.push, jump.take_off, kept)
     )
     stretches = (*longer, *found.stretches)
-    new = start.transcription.retimed(TimeWarp.of(stretches, start.duration))
-    motion = Motion(new, found.motion.x, found.motion.places)
-    for push in pushes:
-        motion = _amplified(start, motion, push)
+    retimed = start.transcription.retimed(TimeWarp.of(stretches, start.duration))
+    motion = Motion(retimed, found.motion.x, found.motion.places)
+    for jump, ratio in zip(jumps, ratios, strict=True):
+        motion = _amplified(start, motion, jump, float(ratio))
     return TimedMotion(motion, stretches)
 
 
-def _take_off_speed(motion: Motion, take_off: float) -> float:
-    """Upward speed of the centre of mass, m/s, at the end of a ground phase, s."""
-    return float(motion.com(np.array([take_off]), 1)[0, 2])
+def _upward_speed(motion: Motion, time: float) -> float:
+    """Of the centre of mass, m/s."""
+    return float(motion.com(np.array([time]), 1)[0, 2])
 
 
-def _push_start(motion: Motion, schedule: ContactSchedule, take_off: float) -> float | None:
-    """The instant, s, at which a body that stood begins to sink for a jump.
+def _amplified(start: Motion, motion: Motion, jump: Jump, ratio: float) -> Motion:
+    """A motion whose take-off is `ratio` as fast; what the push began dies away in the flight.
 
-    None where it does not stand before: a bounce takes its energy from the flight before it.
+    start: before any change, with the same unknowns.
     """
-    begin = max((f.end for f in schedule.flights if f.end < take_off), default=0.0)
-    times = np.arange(take_off, begin, -1.0 / SAMPLING_RATE)
-    height = motion.com(times)[:, 2]
-    if (np.diff(height) > 0.0).any():  # backwards in time: the last of the sinking
-        low = int(np.argmax(np.diff(height) > 0.0))
-        times, height = times[low:], height[low:]
-    top = np.maximum.accumulate(height)
-    depth = top - height[0]
-    sank = (depth > MIN_DEPTH) & (top - height > FALLEN_SHARE * depth)
-    end = int(np.argmax(sank)) if sank.any() else len(height)
-    stood = np.flatnonzero(height[:end] > top[end - 1] - STANDING_SHARE * depth[end - 1])
-    starts = float(times[stood[0]])
-    return starts if depth[end - 1] > MIN_DEPTH and (begin == 0.0 or sank.any()) else None
-
-
-def _amplified(start: Motion, motion: Motion, push: Push) -> Motion:
-    """A motion whose push is `ratio` as fast. start: before any change, with the same unknowns."""
     t = motion.transcription
-    standing = start.angles(np.array([push.start]))[0]
+    standing = start.angles(np.array([jump.push]))[0]
     at = greville_abscissae(start.transcription.basis)
-    fading = np.interp(at, [push.end, push.landing], [1.0, 0.0]) * (at >= push.start)
+    fading = np.interp(at, [jump.take_off, jump.landing], [1.0, 0.0]) * (at >= jump.push)
     x = motion.x.copy()
     angles = x[:, t.layout.angles]
     for body, joint in zip(t.character.bodies, t.character.joints, strict=True):
-        growth = (push.ratio ** SCALED_PARTS.get(body.part, 0) - 1.0) * fading[:, None]
+        growth = (ratio ** SCALED_PARTS.get(body.part, 0) - 1.0) * fading[:, None]
         bend = growth * (angles[:, joint.dofs] - standing[joint.dofs])
         if joint.axes.dofs == 1:  # a hinge bends further, but straightens as far as it did
             most = bend.flat[np.abs(bend).argmax()]

@@ -4,7 +4,8 @@ Moving a pin changes the rows' values, not their Jacobian, so most steps go on w
 (chord steps); a new one is made where they no longer come near. Each update steps from the last one
 by the smallest change: measured against steps towards the motion nearest to the fit, that is as
 near to what the solve will find and does not jitter. Far moves are made by continuation, one step
-an update. The solve proper, once the pin is let go, starts from the fit again.
+an update. The solve proper, once the pin is let go, starts from the fit again. While a pin is
+dragged phases last as long as where the drag began; the solve finds the durations that go with it.
 """
 
 from dataclasses import replace
@@ -37,12 +38,13 @@ class Follower:
 
     def __init__(self, fit: Fit, problem: MotionProblem, last: Adaptation | None = None) -> None:
         self._fit, self._problem = fit, problem
-        self.setup = set_up(fit, problem)
-        self.motion = self.setup.start
-        if last is not None:
-            self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
+        if last is None:
+            self.setup = set_up(fit, problem)
+            self.motion, self._metric = self.setup.start, self.setup.metric
+        else:
             self.setup = last.setup
-        self._metric = self.setup.metric if last is None else self.setup.metric_of(self.motion)
+            self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
+            self._metric = self.setup.metric_of(self.motion)
         self._linearised: LinearisedProblem | None = None
         self._held = self.motion
         self.violation = np.inf
