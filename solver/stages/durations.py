@@ -15,6 +15,7 @@ x = x0, s = 0 is the solution exactly.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from ..numerics.block_banded import BlockBanded
 from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet
 from ..transcription.motion import Motion
+from ..transcription.rows import Rows
 from ..transcription.tracking_cost import CostWeights
 from .fit import motion_metric
 
@@ -51,45 +53,41 @@ def find_durations(
 ) -> TimedMotion | None:
     """Durations of flights for contacts at other places, and the motion that goes with them.
 
-    start: a motion that obeys physics. reference: x0 (K, n_block), of the same transcription,
+    start: what it violates is let be. reference: x0 (K, n_block), of the same transcription,
     carried to places (n_contacts, 3) m. None where no such motion is found.
     """
     problem = _BorderedProblem(start, places, tuple(flights))
     metric = motion_metric(start, POSE_COST_WEIGHTS)
+    linearised = FeasibleSet(start.transcription, start.places).linearise(problem.rows, metric)
     x, s = reference, np.zeros(len(flights))
-    feasible = problem.feasible(s)
-    linearised = feasible.linearise(feasible.rows(x), metric)
-    before = linearised.violation(feasible.values(x))
+    before = linearised.violation(problem.values(x, s))
     for _ in range(MAX_STEPS):
-        value = problem.feasible(s).values(x)
-        slope = problem.derivatives(x, s, value)
         gradient = metric.times(x - reference)
-        change = _change(linearised, metric, value, slope, gradient)
+        change = _change(linearised, metric, problem, x, s, gradient)
         s = s + change
-        x = x + linearised.step(problem.feasible(s).values(x), gradient)[0]
+        x = x + linearised.step(problem.values(x, s), gradient)[0]
         if np.abs(change).max() < MIN_STEP:
             break
-    feasible = problem.feasible(s)
-    if not linearised.violation(feasible.values(x)) < MAX_RATIO * before:
+    if not linearised.violation(problem.values(x, s)) < MAX_RATIO * before:
         return None
-    return TimedMotion(feasible.motion(x), problem.stretches(s))
+    return TimedMotion(problem.feasible(s).motion(x), problem.stretches(s))
 
 
 def _change(
     linearised: LinearisedProblem,
     metric: BlockBanded,
-    value: FloatArray,
-    slope: FloatArray,
+    problem: "_BorderedProblem",
+    x: FloatArray,
+    s: FloatArray,
     gradient: FloatArray,
 ) -> FloatArray:
-    """(n,) change of s, of the linearised problem.
-
-    value: (R,) of the rows. slope: (R, n) by s. gradient: W (x - x0), (K, n_block).
-    """
+    """(n,) change of s, of the linearised problem. gradient: W (x - x0), (K, n_block)."""
+    value = problem.values(x, s)
     still = linearised.step(value, gradient)[0]
-    moves = [
-        (linearised.step(value + PROBE * column, gradient)[0] - still) / PROBE for column in slope.T
-    ]
+    moves = []
+    for unit in np.eye(len(s)):
+        slope = (problem.values(x, s + DERIVATIVE_STEP * unit) - value) / DERIVATIVE_STEP
+        moves.append((linearised.step(value + PROBE * slope, gradient)[0] - still) / PROBE)
     pulls = [metric.times(move) for move in moves]
     schur = np.array([[float((pull * move).sum()) for move in moves] for pull in pulls])
     slopes = [
@@ -108,6 +106,11 @@ class _BorderedProblem:
     places: FloatArray
     flights: tuple[Interval, ...]
 
+    @cached_property
+    def rows(self) -> Rows:
+        """Of the start, with the contacts where they are."""
+        return self.start.transcription.rows(self.start.x, self.start.places)
+
     def stretches(self, s: FloatArray) -> tuple[Stretch, ...]:
         return tuple(
             Stretch(f.start, f.end, float(k)) for f, k in zip(self.flights, np.exp(s), strict=True)
@@ -118,7 +121,7 @@ class _BorderedProblem:
         warp = TimeWarp.of(self.stretches(s), self.start.duration)
         return FeasibleSet(self.start.transcription.retimed(warp), self.places)
 
-    def derivatives(self, x: FloatArray, s: FloatArray, value: FloatArray) -> FloatArray:
-        """(R, n) derivatives of the rows' values (R,) by the durations."""
-        ahead = [self.feasible(s + DERIVATIVE_STEP * unit).values(x) for unit in np.eye(len(s))]
-        return np.stack([(each - value) / DERIVATIVE_STEP for each in ahead], axis=1)
+    def values(self, x: FloatArray, s: FloatArray) -> FloatArray:
+        """(R,) values of the rows, less what the start violates of the equations."""
+        left = np.where(self.rows.equal, self.rows.value, 0.0)
+        return np.asarray(self.feasible(s).values(x) - left)

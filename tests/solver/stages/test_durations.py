@@ -16,6 +16,7 @@ from ...helpers.clips import load_recording
 from ...helpers.fitted_hop import HOP_CLIP
 
 FLIGHT, LANDING = "flight 1", "ground 2"
+DISTANCE = 0.77  # m, of the feet from take-off to landing
 
 
 @cache
@@ -69,22 +70,16 @@ def arm_swing(adaptation: Adaptation) -> float:
 def test_a_longer_jump_flies_longer_and_a_shorter_one_shorter() -> None:
     """Near the square root of the distance, as where the take-off's angle stays."""
     was = recorded()[FLIGHT]
-    length = float(np.linalg.norm(np.diff(whole_hop().motion.com(flight_ends()), axis=0)[0, :2]))
     for forward in (0.15, -0.15):
         now = durations(adapted(forward))[FLIGHT]
-        share = np.log(now / was) / (0.5 * np.log((length + forward) / length))
-        assert 0.3 < share < 2.5, forward
-
-
-def flight_ends() -> np.ndarray:
-    flight = whole_hop().schedule.flights[0]
-    return np.array([flight.start, flight.end])
+        share = np.log(now / was) / (0.5 * np.log((DISTANCE + forward) / DISTANCE))
+        assert 0.3 < share < 2.0, forward
 
 
 def test_a_bigger_jump_is_performed_bigger_and_a_smaller_one_smaller() -> None:
     shorter, same, longer = (adapted(forward) for forward in (-0.15, 0.0, 0.15))
     assert crouch(longer) < crouch(same) - 0.01 < crouch(shorter) - 0.02
-    assert arm_swing(longer) > arm_swing(same) + 0.03 > arm_swing(shorter) + 0.06
+    assert arm_swing(longer) > arm_swing(same) + 0.02 > arm_swing(shorter) + 0.04
     pushes = [durations(each)["ground 1"] for each in (shorter, same, longer)]
     assert pushes == sorted(pushes)
 
