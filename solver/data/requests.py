@@ -340,10 +340,10 @@ class Reduction:
 class SolverOptions:
     """Solver options. objectives: (kind, weight) of the explicit solution, weights as shares.
 
-    keep_times: phases last as long as recorded where no PhaseTiming says otherwise; else those that
-    a moved landing or take-off adjoins take the time that goes with it.
     longest_span: s, between knots; torque_span: s, between knots of the torques' own splines;
-    None chooses them automatically.
+    None chooses them automatically. keep_times: phases last as long as recorded where no
+    PhaseTiming says otherwise; else those that a moved landing or take-off adjoins take the time
+    that goes with it.
     """
 
     method: Method = Method.IMPLICIT
@@ -353,9 +353,9 @@ class SolverOptions:
         (ObjectiveKind.CLOSENESS, 1.0),
     )
     reduction: Reduction | None = None
-    keep_times: bool = False
     longest_span: float | None = None
     torque_span: float | None = None
+    keep_times: bool = False
 
 
 @dataclass(frozen=True)
