@@ -67,6 +67,9 @@ def parser() -> argparse.ArgumentParser:
         metavar="DIR",
         help="for the results (default: out)",
     )
+    adapting.add_argument(
+        "--no-picture", action="store_true", help="leave out sheet.png, half of the time"
+    )
     analyzing = commands.add_parser("analyze", help="print a clip's phases and contacts")
     analyzing.set_defaults(act=analyze, recipe=None)
     analyzing.add_argument(
@@ -140,7 +143,7 @@ def adapt(options: argparse.Namespace) -> None:
             outputs.write_failure()
             outbox.deliver()
             raise result.fault
-        outputs.write()
+        outputs.write(picture=not options.no_picture)
         files = outbox.deliver()
     print(f"{'Total':<{WIDTH}}{stages.total:6.1f} s", "Written:", sep="\n")
     for path in files:
