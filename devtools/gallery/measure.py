@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.body.passive_joints import evaluate_passive_torques
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.row_kinds import RowKind
@@ -74,11 +75,14 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
         entry: Json = {"name": c.name, "kind": c.kind.label, "by": "MuJoCo"}
         if isinstance(c.function, TorqueFunction):
             columns = [int(np.flatnonzero(order == a)[0]) for a in c.function.angles]
-            applied = torques[during][:, columns]
+            times = residual.times[during]
+            passive = evaluate_passive_torques(
+                t.character, motion.angles(times), motion.angles(times, 1)
+            )
+            applied = torques[during][:, columns] - passive[:, c.function.angles]
             lower, upper = weight * c.bounds.lower, weight * c.bounds.upper
             over = np.maximum(np.maximum(applied - upper, lower - applied), 0.0)
-            share = over / (0.5 * (upper - lower))
-            entry |= {"worst": 100.0 * float(share.max(initial=0.0)), "unit": "% of the bound"}
+            entry |= {"worst": float(over.max(initial=0.0)), "unit": "N·m"}
             entry |= {"bound_nm": (0.5 * (upper - lower)).tolist()}
         elif isinstance(c.function, PeakForce):
             total = np.linalg.norm(_needed(adaptation, residual)[during], axis=1)

@@ -22,7 +22,7 @@ def as_text(report: Report) -> str:
     lines += [*_quality(report), ""]
     lines += [*_contacts(report), ""]
     if report.conditions:
-        lines += [*_conditions(report), ""]
+        lines += [*_conditions(report), *_torque_limits(report), ""]
     lines += [*_objective(report), *_stages(report)]
     return "\n".join(lines) + "\n"
 
@@ -109,6 +109,14 @@ def _conditions(report: Report) -> Iterator[str]:
                 f"(frame {each.worst_violation_frame:.0f})"
             )
         yield f"{each.name:<24}{each.kind.label:<14}{held}"
+
+
+def _torque_limits(report: Report) -> Iterator[str]:
+    for each in report.torque_limits:
+        yield (
+            f"{each.name:<24}muscles at most {each.muscles_peak_nm:.3g} N·m "
+            f"(rms {each.muscles_rms_nm:.2g}), passive tissue {each.passive_peak_nm:.2g} N·m"
+        )
 
 
 def _objective(report: Report) -> Iterator[str]:

@@ -188,6 +188,16 @@ class TorquesReport:
 
 
 @dataclass(frozen=True)
+class TorqueUse:
+    """Torques at the joint angles that a torque limit names: the muscles', and passive tissue's."""
+
+    name: str
+    muscles_peak_nm: float
+    muscles_rms_nm: float
+    passive_peak_nm: float
+
+
+@dataclass(frozen=True)
 class FitQuality:
     """Distance of the fit from the recording, at the recording's frames."""
 
@@ -284,6 +294,7 @@ class Report:
     objective_end_over_start: float | None
     reduction: ReductionReport | None
     torques: TorquesReport | None
+    torque_limits: tuple[TorqueUse, ...]
     fit_to_recording: FitQuality
     change: MotionChange
     jumps: tuple[JumpReport, ...]

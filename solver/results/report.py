@@ -1,12 +1,13 @@
 """Measures a report (data/report.py): what was found and how well it holds."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..body.character import Character
+from ..body.passive_joints import evaluate_passive_torques
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase, PhaseKind
 from ..data.problem import MotionProblem, OffsetAxes, Pin
@@ -29,6 +30,7 @@ from ..data.report import (
     StageReport,
     TorquePeak,
     TorquesReport,
+    TorqueUse,
 )
 from ..data.requests import ConeShape, Dynamics, Method, Vector
 from ..optimisation.sqp import Outcome
@@ -37,6 +39,8 @@ from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion, dynamics_residual, pinned_instants
+from ..transcription.sampling import Instants, State
+from ..transcription.torque_constraint import TorqueFunction
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
@@ -80,6 +84,7 @@ def report(
         objective_end_over_start=adaptation.gain,
         reduction=_reduction(adaptation),
         torques=_torques(adaptation, problem) if _in_play(problem) else None,
+        torque_limits=tuple(_torque_uses(motion)),
         fit_to_recording=fit_quality(fit),
         change=change(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
@@ -290,6 +295,22 @@ def _torques(adaptation: Adaptation, problem: MotionProblem) -> TorquesReport:
     )
     curve = torque_curve(motion, torques, longest=problem.requests.solution.torque_span)
     return TorquesReport(peaks, curve.n_coefficients * sizes.shape[1], curve.error)
+
+
+def _torque_uses(motion: Motion) -> Iterator[TorqueUse]:
+    t = motion.transcription
+    for limit in t.constraints:
+        if isinstance(limit.function, TorqueFunction):
+            times = limit.start + instants(limit.end - limit.start, SAMPLE_RATE)
+            state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
+            muscles = limit.function.value(state) * t.character.mass * STANDARD_GRAVITY
+            passive = evaluate_passive_torques(t.character, state.angles(), state.angles(1))
+            yield TorqueUse(
+                limit.name,
+                float(np.abs(muscles).max()),
+                _rms(muscles),
+                float(np.abs(passive[:, limit.function.angles]).max()),
+            )
 
 
 # ---------------------------------------------------------------- what changed

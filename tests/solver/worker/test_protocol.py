@@ -32,6 +32,7 @@ from hangtime.solver.data.report import (
     StageReport,
     TorquePeak,
     TorquesReport,
+    TorqueUse,
 )
 from hangtime.solver.data.requests import ReductionKind
 from hangtime.solver.data.row_kinds import RowKind, Violation
@@ -117,6 +118,7 @@ REPORT = Report(
     objective_end_over_start=None,
     reduction=ReductionReport(ReductionKind.PCA, 5, (1.0,), (1.0,)),
     torques=TorquesReport((TorquePeak("hips", 10.0),), 8, 0.1),
+    torque_limits=(TorqueUse("Limp arm", 0.2, 0.1, 1.5),),
     fit_to_recording=FitQuality(1.0, 0.1),
     change=MotionChange(2.0, 1.0),
     jumps=(JumpReport("flight 1", 0.0, 0.1, 0, 3, RecordedFlight(1.0), FLIGHT, FLIGHT, None, 0.0),),
