@@ -29,6 +29,7 @@ from ..numerics.rotations import perpendicular, rotation_matrix, unit
 from .anatomy import Part
 from .character import Body, Character
 from .dynamics import evaluate, times_axis_rotation
+from .inverse_dynamics import moment_components
 
 MEASURED_MASS = 70.0  # kg, of the body that the figures below are for
 
@@ -53,10 +54,11 @@ PASSIVE_JOINTS: Mapping[Part, Viscoelasticity] = {
 HANGING = (Part.THIGH, Part.UPPER_ARM)
 
 
-def passive_torques(character: Character, q: ca.SX, v: ca.SX) -> ca.SX:
+def passive_torques(character: Character, q: ca.SX, v: ca.SX, *, orthogonal: bool = False) -> ca.SX:
     """(n_angles,) N·m along the joint angles; none at the root's.
 
-    q, v: (n_angles,) joint angles, rad, and their derivatives by s.
+    q, v: (n_angles,) joint angles, rad, and their derivatives by s. orthogonal: see
+    `moment_components`.
     """
     torques = ca.SX.zeros(character.n_angles)
     share = character.mass / MEASURED_MASS
@@ -64,24 +66,26 @@ def passive_torques(character: Character, q: ca.SX, v: ca.SX) -> ca.SX:
         tissue = PASSIVE_JOINTS.get(body.part)
         if tissue is None or joint.parent < 0:
             continue
-        R, omega, axes = ca.SX(joint.axes.before), ca.SX.zeros(3), []
+        before, neutral = ca.SX(joint.axes.before), ca.SX(neutral_rotation(body))
+        R, omega, angles = before, ca.SX.zeros(3), q[joint.dofs]
         for k in range(joint.axes.dofs):
-            axes.append(R[:, k])
-            omega += axes[k] * v[joint.first + k]
-            R = times_axis_rotation(R, k, q[joint.first + k])
-        R, neutral = R @ ca.SX(joint.axes.after), ca.SX(neutral_rotation(body))
+            omega += R[:, k] * v[joint.first + k]
+            R = times_axis_rotation(R, k, angles[k])
+        R = R @ ca.SX(joint.axes.after)
         away = 0.5 * sum((ca.cross(neutral[:, k], R[:, k]) for k in range(3)), ca.SX.zeros(3))
         moment = -share * (tissue.stiffness * away + tissue.damping * omega)
-        for k, axis in enumerate(axes):
-            torques[joint.first + k] = ca.dot(axis, moment)
+        torques[joint.dofs] = moment_components(before, angles, moment, orthogonal=orthogonal)
     return torques
 
 
-def evaluate_passive_torques(character: Character, q: FloatArray, v: FloatArray) -> FloatArray:
+def evaluate_passive_torques(
+    character: Character, q: FloatArray, v: FloatArray, *, orthogonal: bool = False
+) -> FloatArray:
     """(T, n_angles) N·m of joint angles (T, n_angles), rad, and their derivatives by s."""
     n = character.n_angles
     x = ca.SX.sym("x", 2 * n)
-    function = ca.Function("passive", [x], [ca.densify(passive_torques(character, x[:n], x[n:]))])
+    torques = passive_torques(character, x[:n], x[n:], orthogonal=orthogonal)
+    function = ca.Function("passive", [x], [ca.densify(torques)])
     (found,) = evaluate(function, np.concatenate([q, v], axis=1), [(n,)])
     return found
 

@@ -300,7 +300,8 @@ def _torque_uses(motion: Motion) -> Iterator[TorqueUse]:
             times = limit.start + instants(limit.end - limit.start, SAMPLE_RATE)
             state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
             muscles = limit.function.value(state) * t.character.mass * STANDARD_GRAVITY
-            passive = evaluate_passive_torques(t.character, state.angles(), state.angles(1))
+            q, v = state.angles(), state.angles(1)
+            passive = evaluate_passive_torques(t.character, q, v, orthogonal=True)
             yield TorqueUse(
                 limit.name,
                 float(np.abs(muscles).max()),

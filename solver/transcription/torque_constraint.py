@@ -30,7 +30,8 @@ class TorqueFunction:
     """Joint torques (U, m) in body weights x m, a constraint function.
 
     angles: (m,) indices of joint angles, none of the root's. points: where contact forces act.
-    of_muscles: without the share that passive tissue gives (body/passive_joints.py).
+    of_muscles: without the share that passive tissue gives (body/passive_joints.py), and about
+    orthogonal axes, so that a bound on each bounds the moment (inverse_dynamics.py).
     """
 
     kind = RowKind.TORQUE
@@ -50,10 +51,12 @@ class TorqueFunction:
         fall = ca.SX.sym("fall", 3)
         forces = ca.SX.sym("forces", 3, len(points))
         weight = character.mass * STANDARD_GRAVITY
-        every = inverse_dynamics(character, points, q, v, a, fall, weight * forces)
+        pushes = weight * forces
+        every = inverse_dynamics(character, points, q, v, a, fall, pushes, orthogonal=of_muscles)
         torques = every[(self.angles + ROOT_FORCES).tolist()] / weight
         if of_muscles:
-            torques -= passive_torques(character, q, v)[self.angles.tolist()] / weight
+            passive = passive_torques(character, q, v, orthogonal=True)
+            torques -= passive[self.angles.tolist()] / weight
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))
         jacobian = ca.densify(ca.jacobian(torques, x))
         self._value = ca.Function("torques", [x], [ca.densify(torques)])

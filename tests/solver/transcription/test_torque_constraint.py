@@ -60,10 +60,8 @@ def test_jacobians(angles: tuple[int, ...]) -> None:
 
 def test_muscles_give_what_passive_tissue_does_not() -> None:
     state = seen(standing(), random_state(4))
-    whole, muscles = (
-        torque_function(ALL),
-        TorqueFunction(figure(), standing().points, ALL, of_muscles=True),
-    )
+    whole = torque_function(ALL)
+    muscles = TorqueFunction(figure(), standing().points, ALL, of_muscles=True)
     passive = evaluate_passive_torques(figure(), state.angles(), state.angles(1))[:, list(ALL)]
     assert np.abs(passive).max() > 1.0
     weight = figure().mass * STANDARD_GRAVITY
