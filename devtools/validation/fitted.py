@@ -1,4 +1,4 @@
-"""A trial's fit, by the way that the command line goes, and its ground forces in the trial's axes."""
+"""A trial's fit, made as the command line makes it, and its ground forces in the trial's axes."""
 
 import sys
 from dataclasses import dataclass

@@ -1,5 +1,6 @@
 """The summed contact force against the plates': errors, shape, peaks and impulse."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,12 +8,12 @@ import numpy as np
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.requests import Vector
 from .filters import CUT_OFFS, differentiated, low_pass, resampled
-from .trials import GroundForces, Trial
+from .trials import FEET, GroundForces, Trial
 
-LOADED = 20.0  # N, under which the plates' files have zero
-PEAK_CUT_OFF = 20.0  # Hz, for peaks and loading rates, which are told of both sides alike
+PEAK_CUT_OFF = 15.0  # Hz, for peaks and loading rates, which are told of both sides alike
 STEP = 0.002  # s
-UP = 2
+SHORTEST_FLIGHT = 0.01  # s; between two stances
+FORWARD, LEFT, UP = 0, 1, 2
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class RmsError:
 def rms_errors(trial: Trial, ours: GroundForces) -> list[RmsError]:
     """Both sides low-passed alike, at the instants of the trial's centre of mass."""
     at = trial.com_times
-    inside = (at >= trial.compared[0] - 1e-9) & (at <= trial.compared[1] + 1e-9)
+    inside = _inside(at, trial.compared)
     stance = inside & (resampled(trial.plates.times, trial.plates.total, at)[:, UP] > 0.0)
     rate = (len(at) - 1) / float(at[-1] - at[0])
     plain = differentiated(trial.com, rate)
@@ -55,6 +56,15 @@ def rms_errors(trial: Trial, ours: GroundForces) -> list[RmsError]:
     return found
 
 
+def foot_errors(trial: Trial, ours: GroundForces, cut_off: float = 15.0) -> tuple[Vector, ...]:
+    """Rms error of the left and the right foot's force, body weights: forward, left, up."""
+    at = trial.com_times[_inside(trial.com_times, trial.compared)]
+    mine, theirs = (
+        resampled(f.times, low_pass(f.feet, f.rate, cut_off), at) for f in (ours, trial.plates)
+    )
+    return tuple(_rms((mine - theirs)[:, side]) for side in range(len(FEET)))
+
+
 def filtered(forces: GroundForces, cut_off: float, at: FloatArray) -> FloatArray:
     """(U, 3) summed force, low-passed, at instants (U,) s."""
     return resampled(forces.times, low_pass(forces.total, forces.rate, cut_off), at)
@@ -74,25 +84,39 @@ def total_variation(forces: GroundForces, window: tuple[float, float]) -> float:
     return float(np.abs(np.diff(forces.total[_inside(forces.times, window), UP])).sum())
 
 
-def largest_step(
-    forces: GroundForces, window: tuple[float, float], explained: list[float]
-) -> tuple[float, float]:
+@dataclass(frozen=True)
+class Step:
     """Largest change of the vertical force within 2 ms, body weights, and its instant, s.
 
-    explained: s, instants at which the whole body lands or leaves; steps across them do not count.
+    jump: the same beyond what the slopes of the 2 ms before and after it explain: of a force that
+    only rises steeply there is none, of one that jumps it is the jump.
     """
-    count = max(1, round(STEP * forces.rate))
-    vertical = forces.total[:, UP]
-    steps = np.abs(vertical[count:] - vertical[:-count])
-    start, end = forces.times[:-count], forces.times[count:]
-    counted = (start >= window[0]) & (end <= window[1])
-    slack = 1e-3 / forces.rate
-    for instant in explained:
-        counted &= (end < instant - slack) | (start > instant + slack)
-    if not counted.any():
-        return 0.0, window[0]
-    at = int(np.argmax(np.where(counted, steps, -1.0)))
-    return float(steps[at]), float(start[at])
+
+    change: float
+    change_at: float
+    jump: float
+    jump_at: float
+
+
+def largest_step(forces: GroundForces, window: tuple[float, float], explained: list[float]) -> Step:
+    """The largest step in a window that no instant in `explained`, s, lies in.
+
+    explained: when the whole body lands or leaves; there the sum may jump.
+    """
+    n = max(1, round(STEP * forces.rate))
+    times, vertical = forces.times, forces.total[:, UP]
+    changes = vertical[n:] - vertical[:-n]
+    beside = 0.5 * (changes[: -2 * n] + changes[2 * n :])
+    jumps = np.abs(changes[n:-n] - beside)
+    found = []
+    for sizes, reach, first in ((np.abs(changes), 0, times[:-n]), (jumps, n, times[n : -2 * n])):
+        before, after = (reach + 0.5) / forces.rate, (reach + n + 0.5) / forces.rate
+        counted = (first - before >= window[0]) & (first + after <= window[1])
+        for instant in explained:
+            counted &= (first + after < instant) | (first - before > instant)
+        at = int(np.argmax(np.where(counted, sizes, -1.0)))
+        found += [float(sizes[at]) if counted[at] else 0.0, float(first[at])]
+    return Step(*found)
 
 
 @dataclass(frozen=True)
@@ -111,30 +135,40 @@ class Stance:
 
 
 def stances(trial: Trial, ours: GroundForces) -> list[Stance]:
-    """The stances that lie wholly within the valid seconds and our motion."""
-    loaded = trial.plates.total[:, UP] > 0.0
-    return [
-        _stance(trial.plates, ours, start, end)
-        for start, end in loaded_intervals(trial.plates.times, loaded)
-        if start > trial.valid[0] and end < trial.valid[1] and end < trial.plates.times[-1]
-    ]
+    """The stances before and after which the plates saw a flight, within the valid seconds."""
+    flights = itertools.pairwise(measured_flights(trial))
+    return [_stance(trial.plates, ours, before, after) for before, after in flights]
 
 
-def _stance(plates: GroundForces, ours: GroundForces, start: float, end: float) -> Stance:
-    mine, theirs = _facts(ours, start, end), _facts(plates, start, end)
-    peak, peak_time, impulse, loading_rate = zip(mine, theirs, strict=True)
-    return Stance(start, end, peak, peak_time, impulse, loading_rate)
+def measured_flights(trial: Trial) -> list[tuple[float, float]]:
+    """First and last instant, s, at which neither plate carried, within the valid seconds."""
+    times, free = trial.plates.times, trial.plates.total[:, UP] <= 0.0
+    inside = _inside(times, trial.valid)
+    found = loaded_intervals(times[inside], free[inside])
+    return [(start, end) for start, end in found if end - start >= SHORTEST_FLIGHT]
 
 
-def _facts(forces: GroundForces, start: float, end: float) -> tuple[float, float, float, float]:
-    margin = 0.05  # s: ours may begin earlier and end later than the plates'
-    near = _inside(forces.times, (start - margin, end + margin))
-    times = forces.times[near]
-    smooth = low_pass(forces.total, forces.rate, PEAK_CUT_OFF)[near, UP]
+def _stance(
+    plates: GroundForces,
+    ours: GroundForces,
+    before: tuple[float, float],
+    after: tuple[float, float],
+) -> Stance:
+    """From the middle of one flight to the middle of the next: ours may last longer."""
+    window = (0.5 * sum(before), 0.5 * sum(after))
+    peak, peak_time, impulse, loading_rate = zip(
+        _facts(ours, window), _facts(plates, window), strict=True
+    )
+    return Stance(before[1], after[0], peak, peak_time, impulse, loading_rate)
+
+
+def _facts(forces: GroundForces, window: tuple[float, float]) -> tuple[float, float, float, float]:
+    inside = _inside(forces.times, window)
+    times = forces.times[inside]
+    smooth = low_pass(forces.total, forces.rate, PEAK_CUT_OFF)[inside, UP]
     at = int(np.argmax(smooth))
-    impulse = float(np.trapz(forces.total[near, UP], times))
-    rising = np.gradient(smooth, times)
-    return float(smooth[at]), float(times[at]), impulse, float(rising.max())
+    impulse = float(np.trapz(forces.total[inside, UP], times))
+    return float(smooth[at]), float(times[at]), impulse, float(np.gradient(smooth, times).max())
 
 
 def loaded_intervals(times: FloatArray, loaded: BoolArray) -> list[tuple[float, float]]:
