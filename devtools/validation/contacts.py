@@ -1,5 +1,6 @@
 """Contact times, centre of pressure and friction of each foot against the plates'."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -8,7 +9,6 @@ import numpy as np
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
 from .filters import resampled
-from .fitted import FittedTrial
 from .forces import UP, loaded_intervals
 from .trials import FEET, GroundForces, Trial
 
@@ -18,6 +18,8 @@ LEAST_LOAD = 0.1  # body weights on a foot, from which its friction is told
 CHATTER = 0.02  # s; a foot that is unloaded for less has not left
 SHORTEST = 0.03  # s, of a foot's contact
 MARGIN = 0.01  # s from the ends of the valid seconds, where nothing begins or ends truly
+
+Spans = list[tuple[float, float]]  # s, first and last instant of each
 
 
 class EventKind(Enum):
@@ -59,37 +61,39 @@ class Friction:
     largest_95: float  # percentile
 
 
-def events(fitted: FittedTrial, ours: GroundForces) -> list[Event]:
-    """Every touch-down and lift-off that the plates saw within the valid seconds."""
-    trial, plates = fitted.trial, fitted.trial.plates
-    weight = trial.mass * STANDARD_GRAVITY
-    found = []
+def events(trial: Trial, ours: GroundForces, found: Sequence[Spans]) -> list[Event]:
+    """Every touch-down and lift-off that the plates saw within the valid seconds.
 
-    def cut_off(time: float) -> bool:
-        return not ours.times[0] + MARGIN < time < ours.times[-1] - MARGIN
+    found: of each foot, when it touches by our analysis.
+    """
+    plates, least = trial.plates, LOADED / (trial.mass * STANDARD_GRAVITY)
+    begun = []
+
+    def late(mine: tuple[float, float] | None, end: int, time: float) -> float | None:
+        if mine is None or not ours.times[0] + MARGIN < mine[end] < ours.times[-1] - MARGIN:
+            return None
+        return 1000.0 * (mine[end] - time)
 
     for side, foot in enumerate(FEET):
-        mine = found_contacts(fitted, foot)
-        loaded = ours.feet[:, side, UP] > LOADED / weight
-        carried = _joined(loaded_intervals(ours.times, loaded))
+        carried = joined(loaded_intervals(ours.times, ours.feet[:, side, UP] > least))
         for interval in measured_contacts(plates.times, plates.feet[:, side, UP]):
-            by_contact, by_force = _overlapping(interval, mine), _overlapping(interval, carried)
+            by_contact, by_force = (_overlapping(interval, x) for x in (found[side], carried))
             for end, kind in enumerate(EventKind):
                 time = interval[end]
                 if trial.valid[0] + MARGIN < time < trial.valid[1] - MARGIN:
-                    late = [
-                        None if each is None or cut_off(each[end]) else 1000.0 * (each[end] - time)
-                        for each in (by_contact, by_force)
-                    ]
-                    found.append(Event(foot, kind, time, *late))
-    return found
+                    begun.append(
+                        Event(
+                            foot, kind, time, late(by_contact, end, time), late(by_force, end, time)
+                        )
+                    )
+    return begun
 
 
-def measured_contacts(times: FloatArray, vertical: FloatArray) -> list[tuple[float, float]]:
+def measured_contacts(times: FloatArray, vertical: FloatArray) -> Spans:
     """Contacts of one foot by its plate, s: where the force, drawn on from its first samples or
     back from its last, would be zero. Slow plates tell more than their samples so."""
     loaded = vertical > 0.0
-    found = _joined(loaded_intervals(times, loaded))
+    found = joined(loaded_intervals(times, loaded))
     return [
         (_zero_before(times, vertical, start), -_zero_before(-times[::-1], vertical[::-1], -end))
         for start, end in found
@@ -107,30 +111,18 @@ def _zero_before(times: FloatArray, vertical: FloatArray, first: float) -> float
     return float(first - step * min(vertical[at] / rise, 1.0))
 
 
-def found_contacts(fitted: FittedTrial, foot: str) -> list[tuple[float, float]]:
-    """Intervals in which heel or toe of a foot touch by our analysis, in the trial's time, s."""
-    spans = sorted(
-        (fitted.start + c.start, fitted.start + c.end)
-        for c in fitted.fit.schedule.contacts
-        if c.point.startswith(foot) and not c.point.endswith("hand")
-    )
-    return _joined(spans)
-
-
-def _joined(spans: list[tuple[float, float]]) -> list[tuple[float, float]]:
+def joined(spans: Spans) -> Spans:
     """Intervals in order, with gaps below CHATTER closed."""
-    joined: list[tuple[float, float]] = []
+    kept: Spans = []
     for start, end in spans:
-        if joined and start < joined[-1][1] + CHATTER:
-            joined[-1] = joined[-1][0], max(joined[-1][1], end)
+        if kept and start < kept[-1][1] + CHATTER:
+            kept[-1] = kept[-1][0], max(kept[-1][1], end)
         else:
-            joined.append((start, end))
-    return joined
+            kept.append((start, end))
+    return kept
 
 
-def _overlapping(
-    interval: tuple[float, float], others: list[tuple[float, float]]
-) -> tuple[float, float] | None:
+def _overlapping(interval: tuple[float, float], others: Spans) -> tuple[float, float] | None:
     """The one that shares the most time with an interval, None where none does."""
     shared = [min(interval[1], o[1]) - max(interval[0], o[0]) for o in others]
     return others[int(np.argmax(shared))] if shared and max(shared) > 0.0 else None

@@ -12,6 +12,7 @@ from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MotionProblem
 from ...solver.stages.fit import Fit
 from ...solver.worker.pipeline import fit_subject, no_fit
+from .contacts import joined
 from .trials import FEET, UNIT, GroundForces, Trial
 
 RATE = 1000.0  # Hz, at which the fit's forces are sampled
@@ -28,6 +29,21 @@ class FittedTrial:
     fit: Fit
     start: float
     seconds: float
+
+    @property
+    def contacts(self) -> list[list[tuple[float, float]]]:
+        """Of each foot, when its heel or toe touches by our analysis, in the trial's time, s."""
+        every = [c for c in self.fit.schedule.contacts if not c.point.endswith("hand")]
+        return [
+            joined(
+                sorted(
+                    (self.start + c.start, self.start + c.end)
+                    for c in every
+                    if c.point.startswith(foot)
+                )
+            )
+            for foot in FEET
+        ]
 
     @property
     def flights(self) -> list[tuple[float, float]]:

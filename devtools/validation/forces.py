@@ -26,7 +26,7 @@ class RmsError:
     cut_off: float
     ours: Vector
     baseline: Vector
-    stored: Vector
+    stored: Vector | None
     ours_stance: Vector
     baseline_stance: Vector
 
@@ -48,7 +48,7 @@ def rms_errors(trial: Trial, ours: GroundForces) -> list[RmsError]:
                 cut_off,
                 _rms(wrong[inside]),
                 _rms(wrong_plain[inside]),
-                _vector(trial.stored_baseline(cut_off)),
+                trial.stored_baseline(cut_off),
                 _rms(wrong[stance]),
                 _rms(wrong_plain[stance]),
             )
@@ -71,11 +71,7 @@ def filtered(forces: GroundForces, cut_off: float, at: FloatArray) -> FloatArray
 
 
 def _rms(errors: FloatArray) -> Vector:
-    return _vector(np.sqrt((errors**2).mean(axis=0)))
-
-
-def _vector(values: FloatArray) -> Vector:
-    forward, left, up = values.tolist()
+    forward, left, up = np.sqrt((errors**2).mean(axis=0)).tolist()
     return forward, left, up
 
 

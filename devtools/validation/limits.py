@@ -96,7 +96,6 @@ def _forces(fast: Trials) -> Iterator[tuple[str, float, str]]:
         yield f"{axis} rms at 15 Hz, mean", mean(e.ours[index] for _, e in errors), ""
     name = "total variation of the vertical over the plates', mean"
     yield name, mean(m.total_variation[0] / m.total_variation[1] for _, m in fast), ""
-    yield "largest step within 2 ms", *max((m.steps[0].jump, trial) for trial, m in fast)
 
 
 def _contacts(every: Trials) -> Iterator[tuple[str, float, str]]:
@@ -118,6 +117,7 @@ def _contacts(every: Trials) -> Iterator[tuple[str, float, str]]:
 
 
 def _motions(every: Trials) -> Iterator[tuple[str, float, str]]:
+    yield "largest step within 2 ms", *max((m.steps[0].jump, trial) for trial, m in every)
     yield "loaded point: slide", *max((m.hold.slide_mm, trial) for trial, m in every)
     yield "loaded point: under its surface", *max((m.hold.under_mm, trial) for trial, m in every)
     yield "loaded point: above its surface", *max((m.hold.above_mm, trial) for trial, m in every)

@@ -29,9 +29,9 @@ any folder in the same format will do.
 - **A refused trial** is one on which the command line stops with that sentence; it counts as
   missed. A walk is judged by its error in body weights, for its baseline is near the noise.
 
-**Constants.** Heights and speeds that tell a contact (`ContactThresholds`) were set on
-recordings with measured forces, trials of this page among them. The fit's weights were set on
-jumps and hops without plates (`docs/figures.md`). Nothing was tuned to a single trial.
+**Constants.** Heights and speeds that tell a contact (`ContactThresholds`) were set on recordings
+with measured forces, trials of this page among them. The comments at the other constants of the fit
+say where they come from.
 """
 
 

@@ -24,7 +24,7 @@ from .trials import GroundForces, read
 def main(argv: list[str]) -> int:
     folder, name, out = Path(argv[0]), argv[1], Path(argv[2])
     trial = read(folder, name)
-    result = TrialResult(name, str(trial.facts["kind"]))
+    result = TrialResult(name, trial.kind)
     try:
         fitted = fit_trial(trial)
     except Fault as fault:
@@ -55,7 +55,7 @@ def measured(fitted: FittedTrial, ours: GroundForces) -> Measured:
         total_variation=(mine, theirs),
         steps=(steps[0], steps[1]),
         stances=tuple(stances(trial, ours)),
-        events=tuple(events(fitted, ours)),
+        events=tuple(events(trial, ours, fitted.contacts)),
         pressure=pressure(trial, ours),
         friction=(friction(trial, ours), friction(trial, trial.plates)),
         closeness=closeness(fitted.fit),

@@ -1,4 +1,4 @@
-"""Trials: recordings with measured ground forces, in the format that the manual page tells.
+"""Trials: recordings with measured ground forces, in the format that docs/validation.md tells.
 
 X.bvh (cm, Y up, +Z forward, +X left), X_grf.csv (per foot: force on the body, N, and centre of
 pressure, m), X_com.csv (the model's centre of mass, m) and X.json, all in the same axes and times.
@@ -13,9 +13,11 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
+from ...solver.data.requests import Vector
 
 UNIT = 0.01  # m per unit of the BVH
 AXES = np.array([2, 0, 1])  # forward, left and up among the files' x, y, z
+EDGE = 0.06  # s, that a filter spoils at an end
 FEET = ("Left", "Right")
 
 
@@ -59,9 +61,9 @@ class Trial:
         return float(self.facts["subject_mass_kg"])
 
     @property
-    def walks(self) -> bool:
-        """A walk has no flight, and is judged by its error alone."""
-        return bool(self.facts["kind"] == "walk")
+    def kind(self) -> str:
+        """Of movement, such as "run"; a "walk" has no flight."""
+        return str(self.facts.get("kind", ""))
 
     @property
     def valid(self) -> tuple[float, float]:
@@ -80,13 +82,18 @@ class Trial:
     @property
     def compared(self) -> tuple[float, float]:
         """The seconds that are compared: valid ones, without the ends that the filters spoil."""
-        start, end = self.facts["baseline_window_s"]
+        start, end = self.facts.get("baseline_window_s", (self.valid[0], self.valid[1] - EDGE))
         return float(start), float(end)
 
-    def stored_baseline(self, cut_off: float) -> FloatArray:
-        """(3,) rms of plain differentiation as the trial's own file tells it, body weights."""
-        stored = self.facts["direct_differentiation_baseline"][f"{cut_off:g}Hz"]
-        return np.array([stored[f"rmse_{axis}_BW"] for axis in ("forward", "lateral", "vertical")])
+    def stored_baseline(self, cut_off: float) -> Vector | None:
+        """Rms of plain differentiation by the trial's own file, body weights: forward, left, up."""
+        stored = self.facts.get("direct_differentiation_baseline", {}).get(f"{cut_off:g}Hz")
+        if stored is None:
+            return None
+        forward, left, up = (
+            stored[f"rmse_{axis}_BW"] for axis in ("forward", "lateral", "vertical")
+        )
+        return forward, left, up
 
 
 def names(folder: Path) -> list[str]:
