@@ -97,7 +97,6 @@ MOTION: tuple[Column, ...] = (
     ("hip (N·m/kg)", lambda m: f"{m.torques_per_kg.hip:.1f}"),
     ("knee", lambda m: f"{m.torques_per_kg.knee:.1f}"),
     ("ankle", lambda m: f"{m.torques_per_kg.ankle:.1f}"),
-    ("fit (s)", lambda m: f"{m.seconds:.1f}"),
 )
 ERRORS = """Summed contact force, rms error in body weights. *plain* is the recording's centre
 of mass differentiated twice, *(its file)* what the trial's own file has of that. *in stances*

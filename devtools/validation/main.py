@@ -18,9 +18,8 @@ from pathlib import Path
 
 from ..environment.virtual_environment import ROOT
 from .limits import figures
-from .page import page
 from .result import TrialResult
-from .table import tables
+from .table import page, tables
 from .trials import names
 
 HELD = ROOT / "examples" / "recordings"

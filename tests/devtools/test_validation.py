@@ -28,7 +28,7 @@ from hangtime.devtools.validation.limits import figures
 from hangtime.devtools.validation.main import main
 from hangtime.devtools.validation.motions import held, holds, jerk
 from hangtime.devtools.validation.result import TrialResult
-from hangtime.devtools.validation.table import tables
+from hangtime.devtools.validation.table import page, tables
 from hangtime.devtools.validation.trials import AXES, GroundForces, Trial, read
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.tests.helpers.toy_problems import stood
@@ -199,7 +199,9 @@ def test_a_refused_trial_is_a_row_and_a_miss() -> None:
     refused = [TrialResult("walk", "walk", refused="No flight was found.")]
     (only,) = figures(refused)
     assert (only.name, only.value, only.ok) == ("trials refused", 1, False)
-    assert ("walk", "No flight was found.") in tables(refused, [only])[-1].rows
+    parts = tables(refused, [only])
+    assert ("walk", "No flight was found.") in parts[-1].rows
+    assert "| walk | No flight was found. |" in page(parts)
 
 
 def test_a_name_that_is_not_there_is_told(
