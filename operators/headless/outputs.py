@@ -39,7 +39,7 @@ class Outputs:
     outbox: Outbox
     stages: Stages
 
-    def write(self, *, picture: bool = True) -> None:
+    def write(self, *, picture: bool = True) -> Report:
         """All files of a result that is what was asked for; the picture where wanted."""
         with self.stages.stage("Writing keyframes"):
             performer, adapted = self._write_actions("adapted")
@@ -57,6 +57,7 @@ class Outputs:
                 raise not_writable(self.outbox.folder / "trajectory.npz", error) from error
             report = self._report()
         self._write_report(report)
+        return report
 
     def _draw(self) -> None:
         adaptation = self.result.adaptation
