@@ -46,9 +46,10 @@ def test_the_parts_of_the_body_are_listed_with_what_is_missing() -> None:
 
 def test_the_fit_says_in_words_how_near_it_is(analysed: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.fit() == {"FINISHED"}
-    first, second = analysed.hangtime.fit_quality.splitlines()
+    first, second, third = analysed.hangtime.fit_quality.splitlines()
     assert first == "Very close to the recording"
     assert " cm apart" in second
+    assert third.startswith("At worst ")
     assert current_action(analysed).hangtime.recording is None
 
 
