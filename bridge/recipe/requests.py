@@ -39,7 +39,7 @@ stretch = [1, 1.5]              # wider sideways, forwards
 
 [[torque]]                      # of the bones' joints to their parents (when)
 bones = ["Foot.L"]
-bound = 50                      # N·m; or share = 0.5 of the recording's own peak; 0 is limp
+bound = 50                      # N·m of muscle; or share = 0.5 of the recording's peak; 0 is limp
 value = 20                      # N·m, about which the bound lies; default: 0
 dof = 0                         # only this angle of the joint: 0, 1 or 2
 

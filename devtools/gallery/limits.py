@@ -19,7 +19,12 @@ class GalleryLimit:
     aim: float
 
 
-SLACK = {"mm": 1.0, "degrees": 0.5, "% of the bound": 1.0}  # of a constraint, by its unit
+SLACK = {
+    "mm": 1.0,
+    "degrees": 0.5,
+    "N·m": 0.05,
+    "% of the bound": 1.0,
+}  # of a constraint, by its unit
 RESIDUALS = {
     "flight_force": GalleryLimit("BW", 0.003, 0.0005),
     "flight_moment": GalleryLimit("BW·m", 0.001, 0.0003),

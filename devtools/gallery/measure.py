@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.body.passive_joints import evaluate_passive_torques
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.row_kinds import RowKind
@@ -11,6 +12,8 @@ from ...solver.results.mjcf import hinge_order
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.constraint import dense_violation
 from ...solver.transcription.constraint_functions import PeakForce
+from ...solver.transcription.motion import Motion
+from ...solver.transcription.rows import ROOT_ANGLES
 from ...solver.transcription.torque_constraint import TorqueFunction
 from ..checks.mujoco_check import Residual, check_motion
 from .jobs import Json
@@ -73,12 +76,11 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
         during = (residual.times >= c.start) & (residual.times <= c.end)
         entry: Json = {"name": c.name, "kind": c.kind.label, "by": "MuJoCo"}
         if isinstance(c.function, TorqueFunction):
-            columns = [int(np.flatnonzero(order == a)[0]) for a in c.function.angles]
-            applied = torques[during][:, columns]
+            applied = _of_muscles(motion, residual.times, torques[:, np.argsort(order)])
+            applied = applied[during][:, c.function.angles - ROOT_ANGLES]
             lower, upper = weight * c.bounds.lower, weight * c.bounds.upper
             over = np.maximum(np.maximum(applied - upper, lower - applied), 0.0)
-            share = over / (0.5 * (upper - lower))
-            entry |= {"worst": 100.0 * float(share.max(initial=0.0)), "unit": "% of the bound"}
+            entry |= {"worst": float(over.max(initial=0.0)), "unit": "N·m"}
             entry |= {"bound_nm": (0.5 * (upper - lower)).tolist()}
         elif isinstance(c.function, PeakForce):
             total = np.linalg.norm(_needed(adaptation, residual)[during], axis=1)
@@ -92,6 +94,25 @@ def conditions(adaptation: Adaptation, residual: Residual, torques: FloatArray) 
             entry |= {"worst": worst, "unit": off.kind.reported_unit, "by": "the solver"}
         found.append(entry)
     return found
+
+
+def _of_muscles(motion: Motion, times: FloatArray, torques: FloatArray) -> FloatArray:
+    """(T, n_angles - 3) N·m as limits are on them: without passive tissue's, about orthogonal axes.
+
+    torques: (T, n_angles - 3) about the angles' own axes, in their order. The third axis of a ball
+    joint is the first times the middle angle's sine and the one across times its cosine.
+    """
+    character = motion.transcription.character
+    q, v = motion.angles(times), motion.angles(times, 1)
+    found = torques.copy()
+    for joint in character.joints[1:]:
+        if joint.axes.dofs == 3:
+            first, third = joint.first - ROOT_ANGLES, joint.first - ROOT_ANGLES + 2
+            middle = q[:, joint.first + 1]
+            found[:, third] -= np.sin(middle) * torques[:, first]
+            found[:, third] /= np.cos(middle)
+    passive = evaluate_passive_torques(character, q, v, orthogonal=True)
+    return np.asarray(found - passive[:, ROOT_ANGLES:])
 
 
 def from_fit(adaptation: Adaptation) -> Json:

@@ -22,17 +22,17 @@ class PairsLimit:
     aim: tuple[float, float] = ANY
 
 
-MEASURES = {  # of a jump: words, unit
-    "crouch_cm": ("crouch", "cm"),
-    "take_off_speed": ("take-off up", "m/s"),
-    "forward_speed": ("take-off forward", "m/s"),
-    "lean_cm": ("lean at take-off", "cm"),
-    "reach_cm": ("reach at landing", "cm"),
-    "apex_cm": ("apex", "cm"),
-    "flight_time_ms": ("flight time", "ms"),
-    "arm_swing_deg": ("arm swing", "°"),
-    "push_time_ms": ("push time", "ms"),
-    "peak_push_bw": ("peak push", "BW"),
+MEASURES = {  # of a jump: words, unit, and the least change of which a share says anything
+    "crouch_cm": ("crouch", "cm", 1),
+    "take_off_speed": ("take-off up", "m/s", 0.05),
+    "forward_speed": ("take-off forward", "m/s", 0.05),
+    "lean_cm": ("lean at take-off", "cm", 1),
+    "reach_cm": ("reach at landing", "cm", 1),
+    "apex_cm": ("apex", "cm", 1),
+    "flight_time_ms": ("flight time", "ms", 10),
+    "arm_swing_deg": ("arm swing", "°", 5),
+    "push_time_ms": ("push time", "ms", 10),
+    "peak_push_bw": ("peak push", "BW", 0.1),
 }
 TIMES = PairsLimit("1", (0.5, 1.2), (0.8, 1.1))
 AMPLITUDES = PairsLimit("1", (0.3, 1.2), (0.6, 1.2))
@@ -84,7 +84,7 @@ def figures(pairs: Sequence[ComparedPair], solution: str) -> Iterator[PairsFigur
     ) -> PairsFigure:
         return PairsFigure(name, value, limit.unit, limit.must, limit.aim, len(over), solution)
 
-    for measure, (words, _) in MEASURES.items():
+    for measure, (words, _, _) in MEASURES.items():
         limit = SLOPES.get(measure, TOLD)
         yield tell(f"{words}: slope", slope(moved, measure), limit, moved)
         yield tell(f"{words}: slope, 10 cm or more", slope(far, measure), limit, far)

@@ -74,7 +74,7 @@ class Results:
     def write(self, path: Path) -> None:
         """figures.json."""
         content = {
-            "measures": MEASURES,
+            "measures": {name: words[:2] for name, words in MEASURES.items()},
             "figures": [_as_json(figure) for figure in self.figures],
             "jumps": [asdict(jump) for jump in self.jumps],
             "pairs": [pair.record() for pair in self.pairs],

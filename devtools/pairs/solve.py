@@ -58,7 +58,7 @@ def adapt_to(
     clock = StageClock()
     try:
         result = adapt_fit(subject.asked(problem), fitted, clock)
-    except Fault as fault:
+    except (Fault, RuntimeError, ValueError) as fault:  # also of CasADi and numpy: others go on
         return f"{type(fault).__name__}: {fault}"
     motion = result.adaptation.motion
     now = next(p for p in result.schedule.phases if p.name == flight.name)

@@ -37,6 +37,7 @@ HOW = """
   plane of the jump, from 0.5 s before take-off to landing. Push time: from the lowest pelvis to
   take-off. Peak push: vertical force of all contacts, low-passed at 15 Hz.
 - Slope: found change by the person's, least squares through the origin; 1 is all of it.
+- Shares are left out where the person changed by less than 1 cm, 0.05 m/s, 10 ms, 5° or 0.1 BW.
 - Null pairs: each jump adapted to its own landing, and pairs that land within 2 cm of each other.
 """
 APART = """
@@ -87,7 +88,7 @@ def figure_rows(results: Results) -> Iterator[Row]:
 
 def jump_rows(results: Results) -> Iterator[Row]:
     """A jump's fit a row, by distance."""
-    yield ("jump", "distance (m)", *(f"{words} ({unit})" for words, unit in MEASURES.values()))
+    yield ("jump", "distance (m)", *(f"{words} ({unit})" for words, unit, _ in MEASURES.values()))
     for jump in sorted(results.jumps, key=lambda jump: jump.distance):
         values = (getattr(jump.measures, name) for name in MEASURES)
         yield (jump.name, f"{jump.distance:.2f}", *(f"{value:.4g}" for value in values))
@@ -97,7 +98,7 @@ def told_rows(results: Results) -> Iterator[Row]:
     """What distance alone tells of the person's changes, and what ours are by it."""
     first = results.solutions[0]
     yield ("change per 10 cm further", "person", "ours", "unit", "share explained", "10 cm or more")
-    for measure, (words, unit) in MEASURES.items():
+    for measure, (words, unit, _) in MEASURES.items():
         every, far = (with_distance(p, measure) for p in (results.moved(first), results.far(first)))
         slopes = (
             ("–", "–") if every is None else (f"{0.1 * x:+.2g}" for x in (every.person, every.ours))
@@ -126,7 +127,7 @@ def distance_rows(results: Results) -> Iterator[Row]:
 def pair_rows(results: Results, solution: str) -> Iterator[Row]:
     """A pair a row: distances by phase, and shares of the person's change."""
     kinds = ("unchanged", "slid", "ours", "its fit")
-    yield ("pair", "further (cm)", *kinds, *(words for words, _ in MEASURES.values()))
+    yield ("pair", "further (cm)", *kinds, *(words for words, _, _ in MEASURES.values()))
     for pair in results.moved(solution):
         distances = (pair.unchanged, pair.slid, pair.ours, pair.bound)
         yield (
@@ -162,8 +163,9 @@ def _value(figure: PairsFigure, *, judged: bool) -> str:
 
 
 def _share(pair: ComparedPair, measure: str) -> str:
-    value = pair.share(measure)
-    return "–" if value is None else f"{value:.2f}"
+    value, least = pair.share(measure), MEASURES[measure][2]
+    told = value is not None and abs(pair.persons_change(measure)) >= least
+    return f"{value:.2f}" if told else "–"
 
 
 def _mean(distances: Sequence[Distances]) -> str:

@@ -14,6 +14,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.messages import recipe_place, sentence
+from ..words.report_text import headline
 from .clip import Clip, load
 from .outbox import Outbox, not_writable
 from .outputs import Outputs
@@ -66,6 +67,9 @@ def parser() -> argparse.ArgumentParser:
         default=Path("out"),
         metavar="DIR",
         help="for the results (default: out)",
+    )
+    adapting.add_argument(
+        "--no-picture", action="store_true", help="leave out sheet.png, half of the time"
     )
     analyzing = commands.add_parser("analyze", help="print a clip's phases and contacts")
     analyzing.set_defaults(act=analyze, recipe=None)
@@ -140,9 +144,10 @@ def adapt(options: argparse.Namespace) -> None:
             outputs.write_failure()
             outbox.deliver()
             raise result.fault
-        outputs.write()
+        report = outputs.write(picture=not options.no_picture)
         files = outbox.deliver()
-    print(f"{'Total':<{WIDTH}}{stages.total:6.1f} s", "Written:", sep="\n")
+    total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
+    print(total, *headline(report), "Written:", sep="\n")
     for path in files:
         print(f"  {path}")
 

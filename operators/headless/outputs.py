@@ -39,9 +39,8 @@ class Outputs:
     outbox: Outbox
     stages: Stages
 
-    def write(self) -> None:
-        """All files of a result that is what was asked for."""
-        adaptation = self.result.adaptation
+    def write(self, *, picture: bool = True) -> Report:
+        """All files of a result that is what was asked for; the picture where wanted."""
         with self.stages.stage("Writing keyframes"):
             performer, adapted = self._write_actions("adapted")
             _save_blend(self.outbox.path("adapted.blend"))
@@ -49,19 +48,25 @@ class Outputs:
             from ...bridge.files.export import export_fbx
 
             export_fbx(performer, adapted, self.outbox.path("adapted.fbx"))
+        if picture:
+            self._draw()
+        with self.stages.stage("Measuring"):
+            try:
+                save(self.result.adaptation.motion, self.outbox.path("trajectory.npz"))
+            except OSError as error:
+                raise not_writable(self.outbox.folder / "trajectory.npz", error) from error
+            report = self._report()
+        self._write_report(report)
+        return report
+
+    def _draw(self) -> None:
+        adaptation = self.result.adaptation
         with self.stages.stage("Drawing the picture"), quiet():
             from .annotate import marks_of
             from .picture import draw
 
             marks = marks_of(adaptation, self.result.subject.problem)
             draw(adaptation, self.problem, self.outbox.path("sheet.png"), marks)
-        with self.stages.stage("Measuring"):
-            try:
-                save(adaptation.motion, self.outbox.path("trajectory.npz"))
-            except OSError as error:
-                raise not_writable(self.outbox.folder / "trajectory.npz", error) from error
-            report = self._report()
-        self._write_report(report)
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""

@@ -29,7 +29,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.report_text import as_text, retimed
+from ..words.report_text import as_text, certificate_lines, retimed
 from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, session
@@ -210,20 +210,21 @@ def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
 def summary(answer: Adapted) -> str:
     """Lines for the sidebar: how well it holds, how long it took, how hard the ground pushes."""
     report = answer.report
-    worst = max(report.contacts, key=lambda contact: contact.worst_violation_mm)
+    worst = max(report.contacts, key=lambda contact: contact.loaded_slide_mm)
     seconds = sum(stage.seconds for stage in report.stages or ())
     peak = max(report.forces.peaks, key=lambda peak: peak.peak_bw)
     said = "Solved" if answer.fault is None else "Best found, not all is met;"
     return "\n".join(
         [
             f"{said} in {seconds:.1f} s",
-            f"Pins: {worst.worst_violation_mm:.2f} mm off at most ({worst.name})",
+            f"Loaded points slide {worst.loaded_slide_mm:.1f} mm at most ({worst.name})",
             *(f"{each.name}: {_held(each)}" for each in report.conditions),
             *(
                 f"{p.phase.capitalize()}: {p.adapted_s:.2f} s, was {p.recorded_s:.2f} s"
                 for p in retimed(report)
             ),
             f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
+            *certificate_lines(report),
         ]
     )
 

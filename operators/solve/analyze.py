@@ -141,5 +141,6 @@ def quality(fit: FitQuality) -> str:
     return (
         f"{words[0].upper()}{words[1:]}\n"
         f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
-        f"apex {fit.pelvis_apex_difference_cm:+.1f} cm"
+        f"apex {fit.pelvis_apex_difference_cm:+.1f} cm\n"
+        f"At worst {fit.worst_frame_rms_cm:.1f} cm (frame {fit.worst_frame:.0f})"
     )

@@ -3,29 +3,110 @@
 from collections.abc import Iterator
 
 from ...solver.data.contacts import PhaseKind
-from ...solver.data.report import PhaseReport, Report
+from ...solver.data.report import CertificateItem, CertificateLine, PhaseReport, Report
+from ...solver.data.status import Status
 from .messages import outcome
 
 LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,
     PhaseKind.GROUND: 0.02,
 }  # BW·m, rms; what the project promises
-GRIPPING = 1.2  # friction coefficient of sports shoes on a good floor, at most
 LEAST_RETIMED = 0.0005  # s
-BEARABLE = 12.0  # times the body's weight; the hardest landings of gymnasts
+MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
+FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
+
+Item = CertificateItem
+CERTIFICATE = {
+    Item.RESIDUAL_FORCE_RMS_SHARE: "unexplained force, rms, of the peak force",
+    Item.RESIDUAL_FORCE_PEAK_SHARE: "unexplained force, peak, of the same",
+    Item.RESIDUAL_MOMENT_RMS_SHARE: "unexplained moment, rms, of that × height",
+    Item.RESIDUAL_MOMENT_PEAK_SHARE: "unexplained moment, peak, of the same",
+    Item.RESIDUAL_FORCE_RMS: "unexplained force, rms",
+    Item.RESIDUAL_FORCE_PEAK: "unexplained force, peak",
+    Item.RESIDUAL_MOMENT_RMS: "unexplained moment, rms",
+    Item.RESIDUAL_MOMENT_PEAK: "unexplained moment, peak",
+    Item.FRICTION: "friction coefficient used",
+    Item.PEAK_FORCE: "peak force",
+    Item.LOADING_RATE: "loading rate",
+    Item.HIP_TORQUE: "hip torque",
+    Item.KNEE_TORQUE: "knee torque",
+    Item.ANKLE_TORQUE: "ankle torque",
+    Item.SLIDE: "a loaded point slides by",
+    Item.UNDER: "a loaded point is under its surface by",
+    Item.ABOVE: "a loaded point is above its surface by",
+    Item.FIT_RMS: "fit off the recording, rms",
+    Item.FIT_WORST_FRAME: "fit off the recording, worst frame",
+}
 
 
 def as_text(report: Report) -> str:
-    """A report in plain words, some twenty lines."""
-    lines = [outcome(report.status), ""]
+    """A report in plain words, some forty lines."""
+    lines = [*headline(report), ""]
     lines += [*_input(report), ""]
     lines += [*_changes(report), ""]
     lines += [*_quality(report), ""]
     lines += [*_contacts(report), ""]
+    lines += [*_certificate(report), ""]
     if report.conditions:
-        lines += [*_conditions(report), ""]
+        lines += [*_conditions(report), *_torque_limits(report), ""]
     lines += [*_objective(report), *_stages(report)]
     return "\n".join(lines) + "\n"
+
+
+def headline(report: Report) -> list[str]:
+    """How the solve ended, and what the certificate has against the motion: lines."""
+    failed, count = report.failed, len(report.certificate)
+    if not failed or report.status is not Status.SOLVED:
+        return [outcome(report.status)]
+    do = "does" if len(failed) == 1 else "do"
+    first = (
+        f"Solved: everything asked for holds, but {len(failed)} of the certificate's {count} "
+        f"lines {do} not."
+    )
+    return [first, *(f"  {_told(line)}" for line in most_telling(failed))]
+
+
+def certificate_lines(report: Report) -> list[str]:
+    """The certificate for the sidebar: how many lines hold, and the worst that do not."""
+    failed, count = report.failed, len(report.certificate)
+    if not failed:
+        return [f"Certificate: all {count} lines hold"]
+    named = [f"Not: {_told(line)}" for line in most_telling(failed)]
+    return [f"Certificate: {count - len(failed)} of {count} lines hold", *named]
+
+
+def most_telling(failed: tuple[CertificateLine, ...]) -> list[CertificateLine]:
+    """A bad fit, and the few that are furthest beyond their limits."""
+    fit = [line for line in failed if line.item in FITS]
+    others = [line for line in failed if line.item not in FITS]
+    others.sort(key=lambda line: line.value / line.limit, reverse=True)
+    return [*fit, *others[:MOST_NAMED]]
+
+
+def _told(line: CertificateLine) -> str:
+    """Such as "a loaded point slides by 45 mm (Left toe 2, frame 231)"."""
+    where = f" ({_where(line)})" if _where(line) else ""
+    return f"{CERTIFICATE[line.item]} {_amount(line.value, line.unit)}{where}"
+
+
+def _where(line: CertificateLine) -> str:
+    frame = "" if line.frame is None else f"frame {line.frame:.0f}"
+    return ", ".join(word for word in (line.where, frame) if word)
+
+
+def _certificate(report: Report) -> Iterator[str]:
+    yield f"{'Certificate':<42}{'':>16}{'limit':>14}  holds"
+    for line in report.certificate:
+        value, limit = _amount(line.value, line.unit), _amount(line.limit, line.unit)
+        holds = "yes" if line.holds else "no"
+        said = f"{CERTIFICATE[line.item]:<42}{value:>16}{limit:>14}  {holds:<3}  {_where(line)}"
+        yield said.rstrip()
+
+
+def _amount(amount: float, unit: str) -> str:
+    """To three digits, or two places where there is less."""
+    text = f"{amount:.0f}" if amount >= 100.0 else f"{amount:.3g}" if amount >= 0.01 else "0"
+    return f"{text} {unit}".rstrip()
 
 
 def _input(report: Report) -> Iterator[str]:
@@ -69,14 +150,10 @@ def _changes(report: Report) -> Iterator[str]:
             f"{phase.recorded_s:.3f} s"
         )
     for peak in report.forces.peaks:
-        beyond = ": more than people can bear" if peak.peak_bw > BEARABLE else ""
         yield (
             f"{peak.phase.capitalize():<11} what carries the body pushes with at most "
-            f"{peak.peak_bw:.1f} times the body's weight (frame {peak.frame:.0f}){beyond}"
+            f"{peak.peak_bw:.1f} times the body's weight (frame {peak.frame:.0f})"
         )
-        grip = peak.friction_coefficient_needed
-        if grip > GRIPPING:
-            yield f"            it must grip with a friction of {grip:.1f}: more than shoes have"
 
 
 def retimed(report: Report) -> list[PhaseReport]:
@@ -103,11 +180,19 @@ def _quality(report: Report) -> Iterator[str]:
 
 
 def _contacts(report: Report) -> Iterator[str]:
-    yield f"{'Contact':<20}{'frames':>18}{'off its place':>16}  pin"
+    yield f"{'Contact, loaded':<20}{'frames':>18}{'slides':>11}{'under':>9}{'above':>9}  pin"
     for contact in report.contacts:
         span = f"{contact.start_frame:.1f} to {contact.end_frame:.1f}"
-        off = f"{contact.worst_violation_mm:.2f} mm"
-        yield f"{contact.name:<20}{span:>18}{off:>16}  {contact.pin or ''}".rstrip()
+        slide, under, above = (
+            f"{amount:.1f} mm"
+            for amount in (
+                contact.loaded_slide_mm,
+                contact.loaded_under_mm,
+                contact.loaded_above_mm,
+            )
+        )
+        said = f"{contact.name:<20}{span:>18}{slide:>11}{under:>9}{above:>9}  {contact.pin or ''}"
+        yield said.rstrip()
 
 
 def _conditions(report: Report) -> Iterator[str]:
@@ -120,6 +205,14 @@ def _conditions(report: Report) -> Iterator[str]:
                 f"(frame {each.worst_violation_frame:.0f})"
             )
         yield f"{each.name:<24}{each.kind.label:<14}{held}"
+
+
+def _torque_limits(report: Report) -> Iterator[str]:
+    for each in report.torque_limits:
+        yield (
+            f"{each.name:<24}muscles at most {each.muscles_peak_nm:.3g} N·m "
+            f"(rms {each.muscles_rms_nm:.2g}), passive tissue {each.passive_peak_nm:.2g} N·m"
+        )
 
 
 def _objective(report: Report) -> Iterator[str]:

@@ -3,7 +3,9 @@
 Isometric maxima of men of 18 to 25 years, by Anderson, Madigan and Nussbaum (Maximum voluntary
 joint torque as a function of joint angle and angular velocity, Journal of Biomechanics 40, 2007,
 table 3, C1), as shares of body weight times height; the stronger direction of each joint. Muscles
-that are stretched while they work, as in a landing, hold more; those that shorten quickly, less.
+that are stretched while they work, as in a landing, hold more, up to half as much again (Katz, The
+relation between force and speed in muscular contraction, Journal of Physiology 96, 1939; models of
+muscles take 1.4 to 1.8); those that shorten quickly, less.
 """
 
 from collections.abc import Mapping
@@ -13,6 +15,7 @@ from .anatomy import Part
 
 # By the part below the joint: hip extension, knee extension, plantar flexion.
 PEAK_TORQUE_SHARES: Mapping[Part, float] = {Part.THIGH: 0.161, Part.SHANK: 0.163, Part.FOOT: 0.095}
+ECCENTRIC_FACTOR = 1.5
 LEG_JOINTS: Mapping[Part, str] = {Part.THIGH: "Hip", Part.SHANK: "Knee", Part.FOOT: "Ankle"}
 
 

@@ -78,12 +78,15 @@ def inverse_dynamics(
     a: ca.SX,
     com_acceleration: ca.SX,
     forces: ca.SX,
+    *,
+    orthogonal: bool = False,
 ) -> ca.SX:
     """(6 + n_angles - 3,) residual force and moment at the root, then joint torques, N, N·m.
 
     Newton-Euler per body, wrenches summed from the leaves inwards (Featherstone 2008, ch. 5.3,
     backward pass). q, v, a: (n_angles,) rad, s. com_acceleration: (3,) m/s², forces: (3, P) N on
     the body at `points`; both in world axes. The root's moment is about the centre of mass.
+    orthogonal: see `moment_components`.
     """
     frames = body_frames(character, q, v, a)
     moving = [point_motion(f, ca.SX(b.com)) for f, b in zip(frames, character.bodies, strict=True)]
@@ -107,11 +110,26 @@ def inverse_dynamics(
     for i in reversed(range(1, len(character.joints))):
         joint = character.joints[i]
         R = frames[joint.parent].R @ ca.SX(joint.axes.before)
-        for k in range(joint.axes.dofs):
-            torques[joint.first + k] = ca.dot(R[:, k], wrenches[i].moment)
-            R = times_axis_rotation(R, k, q[joint.first + k])
+        moment, angles = wrenches[i].moment, q[joint.dofs]
+        torques[joint.dofs] = moment_components(R, angles, moment, orthogonal=orthogonal)
         wrenches[joint.parent] = _sum(wrenches[joint.parent], wrenches[i])
     return ca.vertcat(wrenches[0].force, wrenches[0].about(com), torques[3:])
+
+
+def moment_components(R: ca.SX, q: ca.SX, moment: ca.SX, *, orthogonal: bool) -> ca.SX:
+    """(dofs,) components of a joint's moment (3,) about the axes of its angles q (dofs,), rad.
+
+    R: (3, 3) the joint's frame before it turns, in the moment's axes. orthogonal: the third about
+    the axis across the first two, not about the third angle's, which near gimbal lock is parallel
+    to the first and tells nothing of a moment across it.
+    """
+    axes = []
+    for k in range(q.shape[0]):
+        axes.append(R[:, k])
+        R = times_axis_rotation(R, k, q[k])
+    if orthogonal and len(axes) == 3:
+        axes[2] = ca.cross(axes[0], axes[1])
+    return ca.vertcat(*(ca.dot(axis, moment) for axis in axes))
 
 
 def _sum(held: _Wrench, added: _Wrench) -> _Wrench:

@@ -100,8 +100,9 @@ class ConstraintReport:
 class ContactReport:
     """One contact: its pin, friction, interval, place and drift.
 
-    friction_cone: the cone's shape in words. worst_violation_mm: while pinned;
-    worst_while_settling_mm: while it carries force but may still move.
+    friction_cone: the cone's shape in words. worst_violation_mm: while pinned. loaded_slide_mm,
+    loaded_under_mm, loaded_above_mm: worst along, under and above its surface while its force is
+    above 5 % of the body's weight, over the whole contact.
     """
 
     name: str
@@ -120,7 +121,9 @@ class ContactReport:
     place_m: Vector
     worst_violation_mm: float
     worst_violation_frame: float
-    worst_while_settling_mm: float
+    loaded_slide_mm: float
+    loaded_under_mm: float
+    loaded_above_mm: float
 
 
 @dataclass(frozen=True)
@@ -188,11 +191,66 @@ class TorquesReport:
 
 
 @dataclass(frozen=True)
+class TorqueUse:
+    """Torques at the joint angles that a torque limit names: the muscles', and passive tissue's."""
+
+    name: str
+    muscles_peak_nm: float
+    muscles_rms_nm: float
+    passive_peak_nm: float
+
+
+@dataclass(frozen=True)
 class FitQuality:
-    """Distance of the fit from the recording, at the recording's frames."""
+    """Distance of the fit from the recording, at the recording's frames.
+
+    worst_frame: the one whose joint centres are furthest off, worst_frame_rms_cm of rms.
+    """
 
     joint_centres_rms_cm: float
     pelvis_apex_difference_cm: float
+    worst_frame_rms_cm: float
+    worst_frame: float
+
+
+class CertificateItem(Enum):
+    """What a line of the certificate is about."""
+
+    RESIDUAL_FORCE_RMS_SHARE = "residual force, rms, of peak force"
+    RESIDUAL_FORCE_PEAK_SHARE = "residual force, peak, of peak force"
+    RESIDUAL_MOMENT_RMS_SHARE = "residual moment, rms, of peak force x height"
+    RESIDUAL_MOMENT_PEAK_SHARE = "residual moment, peak, of peak force x height"
+    RESIDUAL_FORCE_RMS = "residual force, rms"
+    RESIDUAL_FORCE_PEAK = "residual force, peak"
+    RESIDUAL_MOMENT_RMS = "residual moment, rms"
+    RESIDUAL_MOMENT_PEAK = "residual moment, peak"
+    FRICTION = "friction coefficient used"
+    PEAK_FORCE = "peak force"
+    LOADING_RATE = "loading rate"
+    HIP_TORQUE = "peak hip torque"
+    KNEE_TORQUE = "peak knee torque"
+    ANKLE_TORQUE = "peak ankle torque"
+    SLIDE = "loaded point slides"
+    UNDER = "loaded point under its surface"
+    ABOVE = "loaded point above its surface"
+    FIT_RMS = "fit from the recording, rms"
+    FIT_WORST_FRAME = "fit from the recording, worst frame"
+
+
+@dataclass(frozen=True)
+class CertificateLine:
+    """One figure of the certificate. where: a contact or a side. frame: None for a mean.
+
+    holds: whether the value is at most the limit.
+    """
+
+    item: CertificateItem
+    value: float
+    unit: str
+    limit: float
+    holds: bool
+    frame: float | None
+    where: str
 
 
 @dataclass(frozen=True)
@@ -274,11 +332,13 @@ class StageReport:
 class Report:
     """Everything about an adaptation.
 
+    certificate: what a laboratory asks of a motion, line by line, with its limits.
     equations: every constraint, worst first. rows: constraint rows. torques: None where the problem
     does not involve them. stages: None where nobody timed them.
     """
 
     status: Status
+    certificate: tuple[CertificateLine, ...]
     recording: RecordingSummary
     figure: FigureSummary
     pins: tuple[PinReport, ...]
@@ -293,11 +353,17 @@ class Report:
     objective_end_over_start: float | None
     reduction: ReductionReport | None
     torques: TorquesReport | None
+    torque_limits: tuple[TorqueUse, ...]
     fit_to_recording: FitQuality
     change: MotionChange
     jumps: tuple[JumpReport, ...]
     phases: tuple[PhaseReport, ...]
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
+
+    @property
+    def failed(self) -> tuple[CertificateLine, ...]:
+        """The certificate's lines that do not hold."""
+        return tuple(line for line in self.certificate if not line.holds)
 
 
 def as_json(report: Report) -> Json:

@@ -136,7 +136,9 @@ class TwistLimit:
 
 @dataclass(frozen=True)
 class TorqueLimit:
-    """Torque constraint on joints (thesis 3.2.3, 6.2), on each component.
+    """Limit on the muscles' torque at joints (thesis 3.2.3, 6.2), on each component.
+
+    What passive tissue gives (body/passive_joints.py) comes on top.
 
     bones: whose joints to their parents. bound: N·m; or share: of the fit's own peak in `when`,
     bone by bone. One of the two is given; zero is limp. dof: only this angle of the joint (0, 1,

@@ -1,6 +1,6 @@
 """Flight summaries: the pelvis's crouch and apex heights, and the flight's length."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -10,6 +10,8 @@ from ..data.report import FlightSummary, JumpReport, RecordedFlight
 from ..numerics.interpolation import interpolate
 from ..stages.fit import Fit
 from ..transcription.motion import Motion
+
+FrameOf = Callable[[float], float]  # the scene's frame at an instant, s
 
 
 def frames_per_second(fit: Fit) -> float:

@@ -16,7 +16,10 @@ def sample(motion: Motion, rate: float = 1000.0) -> dict[str, NDArray[Any]]:
     time (T,) s; body_names (B,); mass (B,) kg; inertia (B, 3, 3) kg·m² about each centre of mass,
     in the body's frame; com (T, B, 3) m; rotation (T, B, 3, 3) body to world; contact_names (C,)
     the points that touch; contact_point (T, C, 3) m; contact_force (T, C, 3) N on the body, zero
-    when not in contact; gravity (3,) m/s². World, Z up.
+    when not in contact; gravity (3,) m/s². World, Z up. What holds the points (NaN, False when not
+    in contact): contact_place (T, C, 3) m, of the point; contact_normal (T, C, 3), unit, of the
+    surface; contact_friction (T, C), infinite for a grip; contact_slides (T, C), whether the point
+    may slide along the surface.
     """
     character, transcription = motion.transcription.character, motion.transcription
     times = instants(motion.duration, rate)
@@ -36,6 +39,26 @@ def sample(motion: Motion, rate: float = 1000.0) -> dict[str, NDArray[Any]]:
         "contact_point": points,
         "contact_force": motion.forces(times),
         "gravity": np.array([0.0, 0.0, -character.gravity]),
+        **_holds(motion, times),
+    }
+
+
+def _holds(motion: Motion, times: FloatArray) -> dict[str, NDArray[Any]]:
+    shape = len(times), len(motion.transcription.points)
+    place, normal = np.full((*shape, 3), np.nan), np.full((*shape, 3), np.nan)
+    friction, slides = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
+    for each, at in zip(motion.transcription.contacts, motion.places, strict=True):
+        during = (times >= each.contact.start) & (times <= each.contact.end)
+        moves = 0.0 if each.track is None else each.track.at(times[during])
+        place[during, each.point] = at + moves
+        normal[during, each.point] = each.normal
+        friction[during, each.point] = np.inf if each.friction is None else each.friction
+        slides[during, each.point] = each.held is not None and len(each.held) < 3
+    return {
+        "contact_place": place,
+        "contact_normal": normal,
+        "contact_friction": friction,
+        "contact_slides": slides,
     }
 
 

@@ -1,12 +1,13 @@
 """Measures a report (data/report.py): what was found and how well it holds."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..body.character import Character
+from ..body.passive_joints import evaluate_passive_torques
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase, PhaseKind
 from ..data.problem import MotionProblem, OffsetAxes, Pin
@@ -30,6 +31,7 @@ from ..data.report import (
     StageReport,
     TorquePeak,
     TorquesReport,
+    TorqueUse,
 )
 from ..data.requests import ConeShape, Dynamics, Method, Vector
 from ..optimisation.sqp import Outcome
@@ -38,13 +40,15 @@ from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion, dynamics_residual, pinned_instants
+from ..transcription.sampling import Instants, State
+from ..transcription.torque_constraint import TorqueFunction
+from .certificate import LoadedDrift, certificate, friction_used, loaded_drifts
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
 from .violations import missed_conditions, pins_of_contacts, worst_constraints
 
 SAMPLE_RATE = 1000.0  # Hz, of what is measured between the nodes
-LEAST_CARRIED = 0.2  # BW; below, a shoe may slip a little, which is no need of friction
 
 
 def report(
@@ -60,8 +64,10 @@ def report(
     fit, motion, schedule = adaptation.fit, adaptation.motion, adaptation.setup.schedule
     transcription = motion.transcription
     pins = pins_of_contacts(fit, problem)
+    drifts, quality = loaded_drifts(motion), fit_quality(fit)
     return Report(
         status=adaptation.outcome.status,
+        certificate=certificate(motion, drifts, quality, lambda time: scene_frame(fit, time)),
         recording=_recording(fit, origin),
         figure=_figure(fit, motion, problem),
         pins=tuple(_pin(pin) for pin in problem.pins),
@@ -73,7 +79,7 @@ def report(
             _condition(each, fit, transcription.character) for each in missed_conditions(adaptation)
         ),
         contacts=tuple(
-            _contact(adaptation, i, pins.get(each.contact.name))
+            _contact(adaptation, i, pins.get(each.contact.name), drifts[i])
             for i, each in enumerate(transcription.contacts)
         ),
         between_nodes=dense_residuals(motion, schedule.phases),
@@ -81,7 +87,8 @@ def report(
         objective_end_over_start=adaptation.gain,
         reduction=_reduction(adaptation),
         torques=_torques(adaptation, problem) if _in_play(problem) else None,
-        fit_to_recording=fit_quality(fit),
+        torque_limits=tuple(_torque_uses(motion)),
+        fit_to_recording=quality,
         change=change(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
         phases=_phases(adaptation),
@@ -159,13 +166,12 @@ def _condition(missed: DenseViolation, fit: Fit, character: Character) -> Constr
     )
 
 
-def _contact(adaptation: Adaptation, i: int, pin: str | None) -> ContactReport:
+def _contact(adaptation: Adaptation, i: int, pin: str | None, loaded: LoadedDrift) -> ContactReport:
     fit, motion = adaptation.fit, adaptation.motion
     at = motion.transcription.contacts[i]
     contact = at.contact
     pinned = pinned_instants(at, SAMPLE_RATE)
     drift = motion.drift(i, pinned)
-    settling = motion.drift(i, _settling(at))
     return ContactReport(
         name=contact.name,
         pin=pin,
@@ -183,7 +189,9 @@ def _contact(adaptation: Adaptation, i: int, pin: str | None) -> ContactReport:
         place_m=_vector(motion.places[i]),
         worst_violation_mm=1000.0 * float(drift.max()),
         worst_violation_frame=scene_frame(fit, float(pinned[drift.argmax()])),
-        worst_while_settling_mm=1000.0 * float(settling.max()),
+        loaded_slide_mm=1000.0 * float(loaded.slide.max(initial=0.0)),
+        loaded_under_mm=1000.0 * float((-loaded.height).max(initial=0.0)),
+        loaded_above_mm=1000.0 * float(loaded.height.max(initial=0.0)),
     )
 
 
@@ -197,14 +205,6 @@ def _cone(contact: PointContact) -> str:
         return "none: a grip"
     shape = ConeShape.PYRAMID if contact.pyramid else ConeShape.EXACT
     return shape.value
-
-
-def _settling(contact: PointContact) -> FloatArray:
-    """Instants at which a contact carries force but may still move, its pinned ends among them."""
-    span = contact.contact
-    before = span.start + instants(contact.pin_start - span.start, SAMPLE_RATE)
-    after = contact.pin_end + instants(span.end - contact.pin_end, SAMPLE_RATE)
-    return np.concatenate([before, after])
 
 
 def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> DenseResiduals:
@@ -233,10 +233,8 @@ def _forces(adaptation: Adaptation) -> ForcesReport:
     fit, motion = adaptation.fit, adaptation.motion
     times = instants(motion.duration, SAMPLE_RATE)
     forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
-    ground = forces.sum(axis=1)
-    total = np.linalg.norm(ground, axis=1)
-    carried = np.where(ground[:, 2] > LEAST_CARRIED, ground[:, 2], np.inf)
-    friction = np.linalg.norm(ground[:, :2], axis=1) / carried
+    total = np.linalg.norm(forces.sum(axis=1), axis=1)
+    friction = friction_used(motion.transcription.contacts, times, forces)
     peaks = []
     for phase in adaptation.setup.schedule.phases:
         inside = (times >= phase.start) & (times <= phase.end)
@@ -252,10 +250,13 @@ def fit_quality(fit: Fit) -> FitQuality:
     """Distance of the fit from the recording, at the recording's frames."""
     performance = fit.performance
     apart = fit.motion.joint_centres(performance.times) - performance.centres
+    each = np.sqrt((apart**2).sum(axis=2).mean(axis=1))  # frame by frame
     lost = [apex(fit.motion, f) - recorded_apex(fit, f) for f in flights(fit)]
     return FitQuality(
-        joint_centres_rms_cm=100.0 * _rms(np.linalg.norm(apart, axis=2)),
+        joint_centres_rms_cm=100.0 * _rms(each),
         pelvis_apex_difference_cm=100.0 * max(lost, key=abs, default=0.0),
+        worst_frame_rms_cm=100.0 * float(each.max()),
+        worst_frame=float(performance.recording.frames[each.argmax()]),
     )
 
 
@@ -292,6 +293,23 @@ def _torques(adaptation: Adaptation, problem: MotionProblem) -> TorquesReport:
     )
     curve = torque_curve(motion, torques, longest=problem.requests.solution.torque_span)
     return TorquesReport(peaks, curve.n_coefficients * sizes.shape[1], curve.error)
+
+
+def _torque_uses(motion: Motion) -> Iterator[TorqueUse]:
+    t = motion.transcription
+    for limit in t.constraints:
+        if isinstance(limit.function, TorqueFunction):
+            times = limit.start + instants(limit.end - limit.start, SAMPLE_RATE)
+            state = State(t.character, t.layout, Instants(t.basis, times), motion.x)
+            muscles = limit.function.value(state) * t.character.mass * STANDARD_GRAVITY
+            q, v = state.angles(), state.angles(1)
+            passive = evaluate_passive_torques(t.character, q, v, orthogonal=True)
+            yield TorqueUse(
+                limit.name,
+                float(np.abs(muscles).max()),
+                _rms(muscles),
+                float(np.abs(passive[:, limit.function.angles]).max()),
+            )
 
 
 # ---------------------------------------------------------------- what changed

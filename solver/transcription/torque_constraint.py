@@ -16,6 +16,7 @@ from ..body.character import Character
 from ..body.dynamics import evaluate
 from ..body.inverse_dynamics import inverse_dynamics
 from ..body.kinematics import BodyPoint
+from ..body.passive_joints import passive_torques
 from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
 from .rows import ROOT_ANGLES
@@ -29,12 +30,19 @@ class TorqueFunction:
     """Joint torques (U, m) in body weights x m, a constraint function.
 
     angles: (m,) indices of joint angles, none of the root's. points: where contact forces act.
+    of_muscles: without the share that passive tissue gives (body/passive_joints.py), and about
+    orthogonal axes, so that a bound on each bounds the moment (inverse_dynamics.py).
     """
 
     kind = RowKind.TORQUE
 
     def __init__(
-        self, character: Character, points: Sequence[BodyPoint], angles: Sequence[int] | IntArray
+        self,
+        character: Character,
+        points: Sequence[BodyPoint],
+        angles: Sequence[int] | IntArray,
+        *,
+        of_muscles: bool = False,
     ) -> None:
         n = character.n_angles
         self.angles = np.asarray(angles, dtype=int)
@@ -43,8 +51,12 @@ class TorqueFunction:
         fall = ca.SX.sym("fall", 3)
         forces = ca.SX.sym("forces", 3, len(points))
         weight = character.mass * STANDARD_GRAVITY
-        every = inverse_dynamics(character, points, q, v, a, fall, weight * forces)
+        pushes = weight * forces
+        every = inverse_dynamics(character, points, q, v, a, fall, pushes, orthogonal=of_muscles)
         torques = every[(self.angles + ROOT_FORCES).tolist()] / weight
+        if of_muscles:
+            passive = passive_torques(character, q, v, orthogonal=True)
+            torques -= passive[self.angles.tolist()] / weight
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))
         jacobian = ca.densify(ca.jacobian(torques, x))
         self._value = ca.Function("torques", [x], [ca.densify(torques)])

@@ -117,7 +117,7 @@ def row(**changes: object) -> jobs.Json:
 
 
 def limp(worst: float) -> jobs.Json:
-    return {"name": "Limp", "kind": "torque", "worst": worst, "unit": "% of the bound", "by": "us"}
+    return {"name": "Limp", "kind": "torque", "worst": worst, "unit": "N·m", "by": "us"}
 
 
 @pytest.mark.parametrize(

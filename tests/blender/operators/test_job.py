@@ -167,6 +167,17 @@ def _assert_written_as_the_worker_answers(clip: Path, written: Path) -> None:
     np.testing.assert_allclose(shown.rotations[:, bones], track.rotations, atol=1e-5)
 
 
+def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Path, capsys) -> None:
+    assert run(tmp_path, clip, "frames = [100, 290]\n", "--no-picture") == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"sheet.png"}
+    said = capsys.readouterr().out
+    assert "picture" not in said
+    assert "Solved: " in said
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    assert report["status"] == "solved"
+    assert max(report["change"].values()) < 1e-3
+
+
 def test_a_blend_is_a_clip_too(clip: Path, tmp_path: Path, capsys) -> None:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     import_clip(clip)

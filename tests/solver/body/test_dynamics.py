@@ -14,7 +14,7 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
 from hangtime.solver.body.dynamics import MomentFunction, evaluate, momentum_rate
-from hangtime.solver.body.inverse_dynamics import InverseDynamics
+from hangtime.solver.body.inverse_dynamics import InverseDynamics, moment_components
 from hangtime.solver.body.joint_axes import JointAxes
 from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics, point_velocity
 from hangtime.solver.data.constants import STANDARD_GRAVITY
@@ -137,6 +137,16 @@ def test_root_rows_of_random_trees_are_mujocos(seed: int) -> None:
     assert relative(ours_moment, moment) < 1e-9
     scaled = MomentFunction(character).value(q, v, a) * character.mass * STANDARD_GRAVITY
     assert relative(scaled, rate) < 1e-12
+
+
+def test_orthogonal_components_are_the_whole_moment_near_gimbal_lock_too() -> None:
+    frame, moment = ca.DM(rotation_matrix(np.array([0.2, -0.4, 0.1]))), ca.DM([3.0, -4.0, 12.0])
+    for middle in (0.1, 0.5 * np.pi):
+        angles = ca.DM([0.3, middle, -0.4])
+        whole = moment_components(frame, angles, moment, orthogonal=True)
+        assert float(ca.norm_2(whole)) == pytest.approx(13.0)
+    along = moment_components(frame, angles, moment, orthogonal=False)
+    assert float(along[2]) == pytest.approx(float(along[0]))  # its own axes tell two of three
 
 
 def test_a_wrong_inertia_is_noticed() -> None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
+from hangtime.solver.body.passive_joints import evaluate_passive_torques
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.status import Status
 from hangtime.solver.transcription.constraint import Bounds, Constraint, dense_violation
@@ -55,6 +56,17 @@ def test_jacobians(angles: tuple[int, ...]) -> None:
     for seed in range(3):
         torques_at = torque_function(angles)
         assert jacobian_error(seen(standing(), random_state(seed)), torques_at, 40 + seed) < 1e-6
+
+
+def test_muscles_give_what_passive_tissue_does_not() -> None:
+    state = seen(standing(), random_state(4))
+    whole = torque_function(ALL)
+    muscles = TorqueFunction(figure(), standing().points, ALL, of_muscles=True)
+    passive = evaluate_passive_torques(figure(), state.angles(), state.angles(1))[:, list(ALL)]
+    assert np.abs(passive).max() > 1.0
+    weight = figure().mass * STANDARD_GRAVITY
+    assert muscles.value(state) == pytest.approx(whole.value(state) - passive / weight)
+    assert jacobian_error(state, muscles, 44) < 1e-6
 
 
 def test_jacobians_where_nothing_touches() -> None:

@@ -12,6 +12,8 @@ from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.problem import MassTable, MotionProblem, Pin
 from hangtime.solver.data.recording import Bone, PoseTrack, Recording
 from hangtime.solver.data.report import (
+    CertificateItem,
+    CertificateLine,
     ConstraintReport,
     DenseResiduals,
     DragSummary,
@@ -33,6 +35,7 @@ from hangtime.solver.data.report import (
     StageReport,
     TorquePeak,
     TorquesReport,
+    TorqueUse,
 )
 from hangtime.solver.data.requests import ReductionKind
 from hangtime.solver.data.row_kinds import RowKind, Violation
@@ -104,6 +107,7 @@ FAULT = faults.NoSolution(Status.STOPPED, (Violation("pin", RowKind.PIN, 1.0),))
 FLIGHT = FlightSummary(None, 1.1, 0.5)
 REPORT = Report(
     status=Status.SOLVED,
+    certificate=(CertificateLine(CertificateItem.SLIDE, 4.0, "mm", 5.0, True, 3.0, "Left toe 1"),),
     recording=RecordingSummary("a.bvh", "walk", 0.0, 4.0, 0.1, 30.0, None, False, "Z", True),
     figure=FigureSummary(70.0, MassTable.DE_LEVA, 1.7, 9.81, 1, 6, 0.0),
     pins=(PinReport("further", "ground 1", (), None, (0.3, 0.0, 0.2), None, 0.0),),
@@ -118,7 +122,8 @@ REPORT = Report(
     objective_end_over_start=None,
     reduction=ReductionReport(ReductionKind.PCA, 5, (1.0,), (1.0,)),
     torques=TorquesReport((TorquePeak("hips", 10.0),), 8, 0.1),
-    fit_to_recording=FitQuality(1.0, 0.1),
+    torque_limits=(TorqueUse("Limp arm", 0.2, 0.1, 1.5),),
+    fit_to_recording=FitQuality(1.0, 0.1, 2.5, 3.0),
     change=MotionChange(2.0, 1.0),
     jumps=(JumpReport("flight 1", 0.0, 0.1, 0, 3, RecordedFlight(1.0), FLIGHT, FLIGHT, None, 0.0),),
     phases=(PhaseReport("flight 1", 0.1, 0.125),),

@@ -1,0 +1,217 @@
+"""The certificate: a motion's figures in the laboratory's words, each with the limit that it keeps.
+
+Limits and where they come from are in LIMITS; those of torques follow from the body's height.
+Contacts are looked at while a point carries load, from its first instant to its last.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..body.human_strength import ECCENTRIC_FACTOR, LEG_JOINTS, peak_torque
+from ..body.inverse_dynamics import InverseDynamics
+from ..data.constants import STANDARD_GRAVITY
+from ..data.report import CertificateItem, CertificateLine, FitQuality
+from ..transcription.contact_pins import PointContact
+from ..transcription.motion import Motion, dynamics_residual, motion_inverse_dynamics
+from ..transcription.transcription import SETTLING_TIME
+from .flight_summary import FrameOf
+from .npz_export import instants
+
+SAMPLE_RATE = 1000.0  # Hz
+FINE_RATE = 5000.0  # Hz, at a contact's ends, where points may be fast and load comes in no time
+EDGE = 1e-6  # s; forces jump at a contact's ends, which are looked at from inside
+LOADED = 0.05  # BW; a point with less may slip
+STANDING = 0.2  # BW; below, a shoe may slip a little, which is no need of friction
+RISE_TIME = 0.002  # s, over which a loading rate is taken
+
+Item = CertificateItem
+LIMITS: Mapping[CertificateItem, tuple[float, str]] = {
+    # Hicks et al., Is my model good enough?, Journal of Biomechanical Engineering 137 (2015): of
+    # the largest external force, and of that times the height of the centre of mass.
+    Item.RESIDUAL_FORCE_RMS_SHARE: (5.0, "%"),
+    Item.RESIDUAL_FORCE_PEAK_SHARE: (5.0, "%"),
+    Item.RESIDUAL_MOMENT_RMS_SHARE: (1.0, "%"),
+    Item.RESIDUAL_MOMENT_PEAK_SHARE: (1.0, "%"),
+    # The checklist of OpenSim's residual reduction, the upper ends of "okay".
+    Item.RESIDUAL_FORCE_RMS: (15.0, "N"),
+    Item.RESIDUAL_FORCE_PEAK: (25.0, "N"),
+    Item.RESIDUAL_MOMENT_RMS: (50.0, "N·m"),
+    Item.RESIDUAL_MOMENT_PEAK: (75.0, "N·m"),
+    # Force plates under jumps and runs of public trials show 0.25 to 0.6, and 60 to 210 BW/s;
+    # gymnasts' hardest landings 12 BW.
+    Item.FRICTION: (0.6, ""),
+    Item.PEAK_FORCE: (12.0, "BW"),
+    Item.LOADING_RATE: (210.0, "BW/s"),
+    # What shoes and feet give.
+    Item.SLIDE: (5.0, "mm"),
+    Item.UNDER: (5.0, "mm"),
+    Item.ABOVE: (10.0, "mm"),
+    # What is seen to be another pose.
+    Item.FIT_RMS: (5.0, "cm"),
+    Item.FIT_WORST_FRAME: (10.0, "cm"),
+}
+TORQUES = {"Hip": Item.HIP_TORQUE, "Knee": Item.KNEE_TORQUE, "Ankle": Item.ANKLE_TORQUE}
+
+
+@dataclass(frozen=True)
+class LoadedDrift:
+    """Where a contact's point is off its place at instants (T,) s while it carries load, m.
+
+    slide: (T,) along the surface. height: (T,) above it, negative under it.
+    """
+
+    times: FloatArray
+    slide: FloatArray
+    height: FloatArray
+
+
+def certificate(
+    motion: Motion, drifts: Sequence[LoadedDrift], fit: FitQuality, frame: FrameOf
+) -> tuple[CertificateLine, ...]:
+    """Every line of a motion with such drifts of its contacts, and of its fit."""
+    return (
+        *_residuals(motion, frame),
+        *_forces(motion, frame),
+        *_torques(motion, frame),
+        *_contacts(motion, drifts, frame),
+        _line(Item.FIT_RMS, fit.joint_centres_rms_cm),
+        _line(Item.FIT_WORST_FRAME, fit.worst_frame_rms_cm, fit.worst_frame),
+    )
+
+
+def _line(
+    item: CertificateItem, value: float, frame: float | None = None, where: str = ""
+) -> CertificateLine:
+    limit, unit = LIMITS[item]
+    return CertificateLine(item, value, unit, limit, value <= limit, frame, where)
+
+
+def _residuals(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
+    character = motion.transcription.character
+    times = _grid(motion)
+    left = dynamics_residual(motion, times)
+    weight = character.mass * STANDARD_GRAVITY
+    force, moment = (weight * np.linalg.norm(part, axis=1) for part in (left.force, left.moment))
+    largest = float(np.linalg.norm(motion.forces(times).sum(axis=1), axis=1).max(initial=0.0))
+    floor = min((place[2] for place in motion.places), default=0.0)
+    height = float((motion.com(times)[:, 2] - floor).mean())
+    worst = [frame(float(times[each.argmax()])) for each in (force, moment)]
+    sizes = [(_rms(each), float(each.max())) for each in (force, moment)]
+    shares = [100.0 / max(unit, weight * EDGE) for unit in (largest, largest * height)]
+    yield _line(Item.RESIDUAL_FORCE_RMS_SHARE, sizes[0][0] * shares[0])
+    yield _line(Item.RESIDUAL_FORCE_PEAK_SHARE, sizes[0][1] * shares[0], worst[0])
+    yield _line(Item.RESIDUAL_MOMENT_RMS_SHARE, sizes[1][0] * shares[1])
+    yield _line(Item.RESIDUAL_MOMENT_PEAK_SHARE, sizes[1][1] * shares[1], worst[1])
+    yield _line(Item.RESIDUAL_FORCE_RMS, sizes[0][0])
+    yield _line(Item.RESIDUAL_FORCE_PEAK, sizes[0][1], worst[0])
+    yield _line(Item.RESIDUAL_MOMENT_RMS, sizes[1][0])
+    yield _line(Item.RESIDUAL_MOMENT_PEAK, sizes[1][1], worst[1])
+
+
+def _forces(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
+    times = instants(motion.duration, SAMPLE_RATE)
+    forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
+    total = forces.sum(axis=1)
+    friction = friction_used(motion.transcription.contacts, times, forces)
+    size = np.linalg.norm(total, axis=1)
+    step = round(RISE_TIME * SAMPLE_RATE)
+    rate = (total[step:, 2] - total[:-step, 2]) / RISE_TIME
+    for item, values in (
+        (Item.FRICTION, friction),
+        (Item.PEAK_FORCE, size),
+        (Item.LOADING_RATE, rate),
+    ):
+        yield _line(item, float(values.max()), frame(float(times[values.argmax()])))
+
+
+def friction_used(
+    contacts: Sequence[PointContact], times: FloatArray, forces: FloatArray
+) -> FloatArray:
+    """(T,) coefficient that the forces of all contacts together need; 0 where they hardly carry.
+
+    forces: (T, P, 3) body weights. Grips, which need none, are left out.
+    """
+    pressed, along = np.zeros(len(times)), np.zeros((len(times), 3))
+    for each in contacts:
+        if each.friction is not None:
+            during = (times >= each.contact.start) & (times <= each.contact.end)
+            mine = forces[:, each.point] * during[:, None]
+            across = mine @ each.normal
+            pressed += across
+            along += mine - across[:, None] * each.normal
+    carried = np.where(pressed > STANDING, pressed, np.inf)
+    return np.asarray(np.linalg.norm(along, axis=1) / carried)
+
+
+def _torques(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
+    """Largest torque components of the legs' joints, both sides."""
+    t = motion.transcription
+    times = _grid(motion)
+    dynamics = InverseDynamics(t.character, t.points)
+    torques = np.abs(motion_inverse_dynamics(dynamics, motion, times).torques)
+    mass = t.character.mass
+    for part, name in LEG_JOINTS.items():
+        found = [
+            (torques[:, joint.first - 3 : joint.dofs.stop - 3].max(axis=1), body)
+            for body, joint in zip(t.character.bodies, t.character.joints, strict=True)
+            if body.part is part
+        ]
+        sizes, body = max(found, key=lambda each: float(each[0].max()))
+        value = float(sizes.max()) / mass
+        limit = ECCENTRIC_FACTOR * peak_torque(part, mass, t.character.height) / mass
+        at = frame(float(times[sizes.argmax()]))
+        yield CertificateLine(
+            TORQUES[name], value, "N·m/kg", limit, value <= limit, at, body.side.value
+        )
+
+
+def loaded_drifts(motion: Motion) -> list[LoadedDrift]:
+    """Of every contact, over the whole of it: first and last instants too."""
+    contacts = motion.transcription.contacts
+    fine = EDGE + instants(SETTLING_TIME, FINE_RATE)
+    ends = [t for c in contacts for t in (c.contact.start + fine, c.contact.end - fine)]
+    times = np.unique(np.concatenate([instants(motion.duration, SAMPLE_RATE), *ends]))
+    times = times[(times >= 0.0) & (times <= motion.duration)]
+    forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
+    places = motion.contact_points(times) if contacts else np.zeros((len(times), 0, 3))
+    drifts = []
+    for i, each in enumerate(contacts):
+        loaded = np.linalg.norm(forces[:, each.point], axis=1) > LOADED
+        loaded &= (times >= each.contact.start) & (times <= each.contact.end)
+        at = times[loaded]
+        off = each.pin_error(places[loaded, each.point], motion.places[i], at)
+        off = off if each.held is None else off @ each.held
+        height = off @ each.normal
+        slide = np.linalg.norm(off - height[:, None] * each.normal, axis=1)
+        drifts.append(LoadedDrift(at, slide, height))
+    return drifts
+
+
+def _contacts(
+    motion: Motion, drifts: Sequence[LoadedDrift], frame: FrameOf
+) -> Iterator[CertificateLine]:
+    names = [each.contact.name for each in motion.transcription.contacts]
+    for item, sizes in (
+        (Item.SLIDE, [each.slide for each in drifts]),
+        (Item.UNDER, [-each.height for each in drifts]),
+        (Item.ABOVE, [each.height for each in drifts]),
+    ):
+        worst = [float(each.max(initial=0.0)) for each in sizes]
+        which = int(np.argmax(worst)) if worst else 0
+        if not worst or not worst[which]:
+            yield _line(item, 0.0)
+            continue
+        at = frame(float(drifts[which].times[sizes[which].argmax()]))
+        yield _line(item, 1000.0 * worst[which], at, names[which])
+
+
+def _grid(motion: Motion) -> FloatArray:
+    """(T,) s, off the knots, where accelerations jump."""
+    return (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
