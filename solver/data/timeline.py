@@ -148,7 +148,9 @@ class Timeline:
                 end = self.duration
             if contact.start < self.old[-1] - 1e-9 and end > start:
                 moved.append(replace(contact, start=start, end=end))
-        return replace(schedule, contacts=tuple(moved), duration=self.duration)
+        spans = [(float(self.to_new(u.start)), float(self.to_new(u.end))) for u in schedule.unseen]
+        unseen = tuple(Interval(start, end) for start, end in spans if end > start)
+        return replace(schedule, contacts=tuple(moved), duration=self.duration, unseen=unseen)
 
 
 def timeline(

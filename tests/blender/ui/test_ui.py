@@ -535,6 +535,15 @@ def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
     assert [load.share for load in problem.requests.body.added] == [0.1]
 
 
+def test_times_are_kept_where_that_is_chosen(analysed: bpy.types.Object) -> None:
+    recording = read_recorded(analysed, FIRST, LAST)
+    assert not problem_of(analysed.hangtime, recording).requests.solution.keep_times
+    analysed.hangtime.keep_times = True
+    ask_by_text(analysed, "[solution]\nlongest_span = 0.1\n")
+    solution = problem_of(analysed.hangtime, recording).requests.solution
+    assert (solution.keep_times, solution.longest_span) == (True, 0.1)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

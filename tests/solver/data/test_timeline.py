@@ -1,9 +1,11 @@
 """Retimed phases and held frames: the map of time, its contacts, and what cannot be asked."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.data.contacts import Contact, ContactSchedule
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval
 from hangtime.solver.data.faults import BadTiming, UnknownPhaseIn
 from hangtime.solver.data.requests import ALWAYS, Hold, Moment, PhaseTiming, When
 from hangtime.solver.data.timeline import Stretch, Timeline, TimeWarp, active_interval, timeline
@@ -236,6 +238,15 @@ def test_two_holds_of_one_frame_are_both_held() -> None:
     line = made(holds=(Hold("a", frame(0.5), 0.2), Hold("b", frame(0.5), 0.3)))
     assert [span.name for span in line.holds] == ["a", "b"]
     assert line.duration == pytest.approx(DURATION + 0.5)
+
+
+def test_unseen_support_moves_along() -> None:
+    """What stays behind would be a flight where something carries."""
+    carried = replace(schedule(), unseen=(Interval(0.4, 0.7),))
+    line = timeline(carried, FIRST, RATE, retimed({"ground 1": 1.5}), ())
+    moved = line.schedule(carried)
+    assert moved.flights == ()
+    assert (moved.unseen[0].end - moved.unseen[0].start) == pytest.approx(0.45)
 
 
 STRETCHES = (Stretch(0.1, 0.4, 1.25), Stretch(0.4, 0.7, 0.8))
