@@ -62,10 +62,8 @@ def find_durations(
     x, s = reference, np.zeros(len(flights))
     before = linearised.violation(problem.values(x, s))
     for _ in range(MAX_STEPS):
-        gradient = metric.times(x - reference)
-        change = _change(linearised, metric, problem, x, s, gradient)
-        s = s + change
-        x = x + linearised.step(problem.values(x, s), gradient)[0]
+        step, change = _step(linearised, metric, problem, (x, s), metric.times(x - reference))
+        x, s = x + step, s + change
         if np.abs(change).max() < MIN_STEP:
             break
     if not linearised.violation(problem.values(x, s)) < MAX_RATIO * before:
@@ -73,15 +71,15 @@ def find_durations(
     return TimedMotion(problem.feasible(s).motion(x), problem.stretches(s))
 
 
-def _change(
+def _step(
     linearised: LinearisedProblem,
     metric: BlockBanded,
     problem: "_BorderedProblem",
-    x: FloatArray,
-    s: FloatArray,
+    at: tuple[FloatArray, FloatArray],
     gradient: FloatArray,
-) -> FloatArray:
-    """(n,) change of s, of the linearised problem. gradient: W (x - x0), (K, n_block)."""
+) -> tuple[FloatArray, FloatArray]:
+    """Step of x (K, n_block) and s (n,) from `at`. gradient: W (x - x0), (K, n_block)."""
+    x, s = at
     value = problem.values(x, s)
     still = linearised.step(value, gradient)[0]
     moves = []
@@ -94,8 +92,9 @@ def _change(
         float((gradient * move).sum() + (pull * still).sum())
         for move, pull in zip(moves, pulls, strict=True)
     ]
-    change = -np.linalg.solve(schur, np.array(slopes))
-    return np.clip(change, -MAX_STEP, MAX_STEP)
+    change = np.clip(-np.linalg.solve(schur, np.array(slopes)), -MAX_STEP, MAX_STEP)
+    step = still + sum(each * move for each, move in zip(change, moves, strict=True))
+    return step, change
 
 
 @dataclass(frozen=True)
