@@ -284,6 +284,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     performer: declared(target(), options=HIDDEN)
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
+    times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
 
 
 def settings_of(armature: bpy.types.Object) -> HangtimeSettings:

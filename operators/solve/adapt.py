@@ -18,6 +18,7 @@ from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import problem_of, wanted_range
 from ...bridge.constraints.status import write_status
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ...bridge.properties.shown_times import store_times
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import digest, same_motion
@@ -190,6 +191,7 @@ def _note(
     settings.status = summary(answer)
     write_status(settings, answer.report)
     action_settings(action).report = as_text(answer.report)
+    store_times(action, answer.report.times)
     action_settings(action).performer = performer
 
 

@@ -320,6 +320,14 @@ class PhaseReport:
 
 
 @dataclass(frozen=True)
+class TimeMap:
+    """Corners of the piecewise linear map of the recording's frames to the adapted motion's."""
+
+    recorded_frame: tuple[float, ...]
+    adapted_frame: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class StageReport:
     """Time that a stage of the pipeline took; iterations: of the optimiser, where it ran."""
 
@@ -358,6 +366,7 @@ class Report:
     change: MotionChange
     jumps: tuple[JumpReport, ...]
     phases: tuple[PhaseReport, ...]
+    times: TimeMap
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
 
     @property

@@ -29,6 +29,7 @@ from ..data.report import (
     Report,
     SolveReport,
     StageReport,
+    TimeMap,
     TorquePeak,
     TorquesReport,
     TorqueUse,
@@ -92,6 +93,7 @@ def report(
         change=change(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
         phases=_phases(adaptation),
+        times=_times(adaptation),
         stages=None if stages is None else tuple(stages),
     )
 
@@ -324,6 +326,15 @@ def _phases(adaptation: Adaptation) -> tuple[PhaseReport, ...]:
         if end > start:
             reports.append(PhaseReport(phase.name, phase.end - phase.start, end - start))
     return tuple(reports)
+
+
+def _times(adaptation: Adaptation) -> TimeMap:
+    line = adaptation.setup.context.timeline
+    recorded, adapted = (
+        tuple(scene_frame(adaptation.fit, t) for t in times.tolist())
+        for times in (line.old, line.new)
+    )
+    return TimeMap(recorded, adapted)
 
 
 def change(adaptation: Adaptation) -> MotionChange:
