@@ -1,15 +1,15 @@
 """Heel and toe contact points on the foot bones, and floor height, from standing frames."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..data.contacts import ContactPoint, PointKind
 
-HEEL_OFFSET_RATIO = 0.25  # of the level distance from ankle to ball; where the heel presses
-TOE_OFFSET_RATIO = 0.75  # of the way from ball to tip; where the toe leaves last
+HEEL_OFFSET_RATIO = 0.3  # of the level distance from ankle to ball; where the heel presses
+TOE_OFFSET_RATIO = 0.3  # of the way from ball to tip; where the toe leaves last
 MAX_SOLE_THICKNESS = 0.08  # m from the ball joint to the floor
 DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
@@ -21,14 +21,15 @@ MIN_STANDING_FRAMES = 4
 class FootTracks:
     """Joint tracks of one foot over the clip, world, Z up.
 
-    side: as in the points' names ("Left"). ankle, ball, tip: (T, 3) m; the heads of the foot bone
-    and the toe bone, and the toe bone's tail. foot_rotation, toe_rotation: (T, 3, 3), bone to
+    side: as in the points' names ("Left"). hip, ankle, ball, tip: (T, 3) m; the heads of the thigh,
+    foot and toe bones, and the toe bone's tail. foot_rotation, toe_rotation: (T, 3, 3), bone to
     world. A rig without toes names its foot bone twice, with the foot's tail as ball and tip.
     """
 
     side: str
     foot_bone: str
     toe_bone: str
+    hip: FloatArray
     ankle: FloatArray
     ball: FloatArray
     tip: FloatArray
@@ -59,12 +60,14 @@ def foot_points(
         heel = _on_floor(foot.ankle - HEEL_OFFSET_RATIO * ahead, floor_m)
         toe = _on_floor(foot.ball + TOE_OFFSET_RATIO * _level(foot.tip - foot.ball), floor_m)
         toe_head = foot.ankle if foot.toe_bone == foot.foot_bone else foot.ball
-        points[f"{foot.side} heel"] = _fixed_in(
-            PointKind.HEEL, foot.foot_bone, foot.ankle, foot.foot_rotation, heel, flat
-        )
-        points[f"{foot.side} toe"] = _fixed_in(
-            PointKind.TOE, foot.toe_bone, toe_head, foot.toe_rotation, toe, flat
-        )
+        fixed = {
+            "heel": _fixed_in(
+                PointKind.HEEL, foot.foot_bone, foot.ankle, foot.foot_rotation, heel, flat
+            ),
+            "toe": _fixed_in(PointKind.TOE, foot.toe_bone, toe_head, foot.toe_rotation, toe, flat),
+        }
+        for end, point in fixed.items():
+            points[f"{foot.side} {end}"] = replace(point, hip=foot.hip)
     return points
 
 

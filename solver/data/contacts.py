@@ -30,7 +30,6 @@ class ContactThresholds:
     max_speed: float
     landing_height: float
     lift_off_height: float
-    lead_time: float
     max_slip_speed: float
     min_duration: float
 
@@ -39,21 +38,19 @@ class PointKind(Enum):
     """Kinds of contact point; thresholds set on recordings with measured ground forces."""
 
     HEEL = ContactThresholds(
-        max_height=0.03,
+        max_height=0.02,
         max_speed=0.5,
-        landing_height=0.005,
-        lift_off_height=0.005,
-        lead_time=0.02,
-        max_slip_speed=2.5,
+        landing_height=0.015,
+        lift_off_height=0.01,
+        max_slip_speed=2.0,
         min_duration=0.04,
     )
     TOE = ContactThresholds(
         max_height=0.05,
         max_speed=0.5,
-        landing_height=0.004,
-        lift_off_height=0.015,
-        lead_time=0.0,
-        max_slip_speed=2.5,
+        landing_height=0.02,
+        lift_off_height=0.027,
+        max_slip_speed=2.0,
         min_duration=0.04,
     )
     HAND = ContactThresholds(
@@ -61,7 +58,6 @@ class PointKind(Enum):
         max_speed=0.15,
         landing_height=0.005,
         lift_off_height=0.005,
-        lead_time=0.0,
         max_slip_speed=0.3,
         min_duration=0.15,
     )
@@ -69,12 +65,16 @@ class PointKind(Enum):
 
 @dataclass(frozen=True)
 class ContactPoint:
-    """A candidate contact point. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up."""
+    """A candidate contact point. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up.
+
+    hip: (T, 3) m, world; where the leg that ends in the point begins.
+    """
 
     kind: PointKind
     bone: str
     offset: FloatArray
     track: FloatArray
+    hip: FloatArray | None = None
 
 
 @dataclass(frozen=True)
