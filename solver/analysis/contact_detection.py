@@ -16,7 +16,6 @@ from ..data.contacts import (
     gaps,
     numbered,
 )
-from ..data.faults import NoFlight
 from ..numerics.interpolation import interpolate
 from .force_timing import timed_by_forces
 from .point_movement import STEP, PointMovement, even_clock, point_movement
@@ -65,13 +64,6 @@ def detect_contacts(
     carried = ((c.start, c.end) for c in contacts)
     unseen = tuple(gap for gap in gaps(carried, duration) if not _falls(times, com, gap))
     return ContactSchedule(numbered(contacts), duration, floor_m, unseen)
-
-
-def require_flight(schedule: ContactSchedule, points: Mapping[str, ContactPoint]) -> None:
-    """Raises NoFlight, with the largest ground clearance, if the schedule has no flight."""
-    if not schedule.flights:
-        lowest = np.min([point.track[:, 2] for point in points.values()], axis=0)
-        raise NoFlight(lowest_cm=max(100.0 * float(lowest.max() - schedule.floor_m), 0.0))
 
 
 def _touches(

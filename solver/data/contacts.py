@@ -20,10 +20,10 @@ class ContactThresholds:
     """Contact-detection thresholds of one kind of point.
 
     max_height (m above the floor) and max_speed (m/s) must both hold for a point to touch at all.
-    landing_height, lift_off_height: m above the point's own height in this contact, at which its
-    force begins and ends (a sole is still pressed when it is a little up). lead_time: s before
-    reaching landing_height at which the force begins (a heel's pad gives). max_slip_speed: m/s
-    along the floor. min_duration: s; the shortest contact believed.
+    landing_height: m above the lowest to which the point then sinks, lift_off_height: m above its
+    usual height in this contact; at which its force begins and ends, roughly: a sole is pressed
+    when it is a little up. max_slip_speed: m/s along the floor. min_duration: s; the shortest
+    contact believed.
     """
 
     max_height: float
