@@ -81,16 +81,17 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
             answer = yield from answered(job, Analysed)
         except Fault as fault:
             raise _telling(fault, armature, recording, problem) from None
+        contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
+        odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
+        if odd is not None and not flights:
+            raise odd
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
         scene_settings(context.scene).armature = armature
-        contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
         found = (
             f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
         )
-        if problem.height is None and (odd := _odd_height(armature.name, answer.height)):
-            return f"{found}; but {said(odd)}"
-        return found
+        return f"{found}; but {said(odd)}" if odd is not None else found
 
 
 def _telling(
