@@ -1,0 +1,126 @@
+"""What the tables tell of each trial: a column's name and its words, and the notes."""
+
+from collections.abc import Callable
+
+from .contacts import EventKind
+from .forces import FORWARD, LEFT, UP, RmsError
+from .result import Measured
+
+Column = tuple[str, Callable[[Measured], str]]
+
+
+def _of_error(cut_off: float) -> tuple[Column, ...]:
+    def column(name: str, of: Callable[[RmsError], str]) -> Column:
+        return name, lambda m: of(m.error(cut_off))
+
+    return (
+        column("vertical", lambda e: f"{e.ours[UP]:.3f}"),
+        column("plain", lambda e: f"{e.baseline[UP]:.3f}"),
+        column("(its file)", lambda e: f"{e.stored[UP]:.3f}" if e.stored else "–"),
+        column("ratio", lambda e: f"{e.ours[UP] / e.baseline[UP]:.2f}"),
+        column("in stances", lambda e: f"{e.ours_stance[UP]:.3f}"),
+        column("plain", lambda e: f"{e.baseline_stance[UP]:.3f}"),
+        column("forward", lambda e: f"{e.ours[FORWARD]:.3f}"),
+        column("plain", lambda e: f"{e.baseline[FORWARD]:.3f}"),
+        column("sideways", lambda e: f"{e.ours[LEFT]:.3f}"),
+        column("plain", lambda e: f"{e.baseline[LEFT]:.3f}"),
+    )
+
+
+def _late(kind: EventKind, *, by_force: bool = False) -> Callable[[Measured], str]:
+    def words(m: Measured) -> str:
+        late = m.late(kind, by_force=by_force)
+        if not late:
+            return "–"
+        return f"{sum(late) / len(late):+.0f} ({max(late, key=abs):+.0f})"
+
+    return words
+
+
+def _peak(m: Measured) -> str:
+    worst = max((s.peak[0] - s.peak[1] for s in m.stances), key=abs, default=None)
+    return "–" if worst is None else f"{worst:+.2f}"
+
+
+def _mean(words: str, of: Callable[[Measured], list[float]]) -> Callable[[Measured], str]:
+    def cell(m: Measured) -> str:
+        values = of(m)
+        return words.format(sum(values) / len(values)) if values else "–"
+
+    return cell
+
+
+SHAPE: tuple[Column, ...] = (
+    ("variation", lambda m: f"{m.total_variation[0] / m.total_variation[1]:.2f}"),
+    ("step (BW)", lambda m: f"{m.steps[0].jump:.2f}"),
+    ("at (s)", lambda m: f"{m.steps[0].jump_at:.3f}"),
+    ("plates'", lambda m: f"{m.steps[1].jump:.2f}"),
+    ("change (BW)", lambda m: f"{m.steps[0].change:.2f}"),
+    ("plates'", lambda m: f"{m.steps[1].change:.2f}"),
+    ("peak (BW)", _peak),
+    (
+        "its time (ms)",
+        _mean("{:+.0f}", lambda m: [1e3 * (s.peak_time[0] - s.peak_time[1]) for s in m.stances]),
+    ),
+    (
+        "impulse (%)",
+        _mean("{:+.1f}", lambda m: [100 * (s.impulse[0] / s.impulse[1] - 1) for s in m.stances]),
+    ),
+    (
+        "loading rate",
+        _mean("{:.2f}", lambda m: [s.loading_rate[0] / s.loading_rate[1] for s in m.stances]),
+    ),
+    ("left foot", lambda m: f"{m.foot_errors[0][UP]:.3f}"),
+    ("right", lambda m: f"{m.foot_errors[1][UP]:.3f}"),
+)
+CONTACTS: tuple[Column, ...] = (
+    ("touch-down (ms)", _late(EventKind.TOUCH_DOWN)),
+    ("lift-off (ms)", _late(EventKind.LIFT_OFF)),
+    ("by force: down", _late(EventKind.TOUCH_DOWN, by_force=True)),
+    ("off", _late(EventKind.LIFT_OFF, by_force=True)),
+    ("not found", lambda m: f"{m.not_found} of {len(m.events)}"),
+    ("pressure (cm)", lambda m: f"{m.pressure.distance_cm:.1f}" if m.pressure else "–"),
+    ("forward (cm)", lambda m: f"{m.pressure.forward_cm:+.1f}" if m.pressure else "–"),
+    ("friction 95 %", lambda m: f"{m.friction[0].largest_95:.2f}"),
+    ("most", lambda m: f"{m.friction[0].largest:.2f}"),
+    ("plates' 95 %", lambda m: f"{m.friction[1].largest_95:.2f}"),
+    ("most", lambda m: f"{m.friction[1].largest:.2f}"),
+)
+MOTION: tuple[Column, ...] = (
+    ("centres (cm)", lambda m: f"{m.closeness.whole_cm:.2f}"),
+    ("first ten", lambda m: f"{m.closeness.first_cm:.2f}"),
+    ("last ten", lambda m: f"{m.closeness.last_cm:.2f}"),
+    ("hands' jerk", lambda m: f"{m.hand_jerk.ratio:.2f}" if m.hand_jerk else "–"),
+    ("slide (mm)", lambda m: f"{m.hold.slide_mm:.1f}"),
+    ("under", lambda m: f"{m.hold.under_mm:.1f}"),
+    ("above", lambda m: f"{m.hold.above_mm:.1f}"),
+    ("hip (N·m/kg)", lambda m: f"{m.torques_per_kg.hip:.1f}"),
+    ("knee", lambda m: f"{m.torques_per_kg.knee:.1f}"),
+    ("ankle", lambda m: f"{m.torques_per_kg.ankle:.1f}"),
+)
+ERRORS = """Summed contact force, rms error in body weights. *plain* is the recording's centre
+of mass differentiated twice, *(its file)* what the trial's own file has of that. *in stances*
+leaves out the flights, where ours is zero by construction."""
+SHAPES = """*variation*: total variation of the vertical force over the plates'. *step*: the
+largest change within 2 ms beyond what the slopes of the 2 ms before and after explain, where
+the whole body neither lands nor leaves; *change*: the same without taking the slopes off.
+Plates at 100 Hz cannot tell either. *peak*: the worst stance's, ours minus the plates'; *its
+time*, *impulse* and *loading rate* (largest slope, ours over the plates'): means over the
+stances; all at 15 Hz but the impulse. *left foot*, *right*: rms error of each one's vertical
+force at 15 Hz, BW."""
+CONTACT_WORDS = """How much later than the plates', mean (worst): of the contacts that were
+found, and of when the fit's force passes 20 N. *not found*: no contact of ours, or one that the
+clip's end cuts off. *pressure*: distance of the centres of pressure of a foot, mean weighted by
+force. *friction*: tangential over vertical force of a foot that carries 0.1 BW or more, 95th
+percentile and maximum."""
+MOTIONS = """Joint centres of the fit against the recording, rms; jerk of the wrists within 0.1
+s of landings, fit over recording; worst of any point while it carries more than 5 % of the
+weight, against the place that its contact has, first and last instant included; peak torques."""
+TABLES = (
+    ("Forces at 15 Hz", ERRORS, _of_error(15.0)),
+    ("Forces at 10 Hz", "", _of_error(10.0)),
+    ("Forces at 20 Hz", "", _of_error(20.0)),
+    ("Shape of the vertical force", SHAPES, SHAPE),
+    ("Contacts", CONTACT_WORDS, CONTACTS),
+    ("Motion", MOTIONS, MOTION),
+)

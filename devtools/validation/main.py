@@ -1,0 +1,89 @@
+"""Compares the fit's contact forces with force plates: python3 dev.py validate [FOLDER].
+
+FOLDER holds trials: X.bvh, X_grf.csv, X_com.csv and X.json; examples/recordings has one. Each goes
+the way of `dev.py adapt` up to the fit. Leaves figures.json and a picture of each trial's curves.
+"""
+
+import argparse
+import json
+import pickle
+import subprocess
+import sys
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
+from functools import partial
+from operator import attrgetter
+from pathlib import Path
+
+from ..environment.virtual_environment import ROOT
+from .limits import figures
+from .result import TrialResult
+from .table import page, tables
+from .trials import names
+
+HELD = ROOT / "examples" / "recordings"
+PAGE = ROOT / "docs" / "validation.md"
+LONGEST = 300.0  # s, that one trial may take
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="dev.py validate", description=__doc__)
+    parser.add_argument("folder", nargs="?", type=Path, default=HELD, metavar="FOLDER")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="trials; default: all")
+    parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="trials at once")
+    parser.add_argument("--no-curves", action="store_true", help="leave out the pictures")
+    parser.add_argument("--page", action="store_true", help="write docs/validation.md anew")
+    options = parser.parse_args(argv)
+    known = names(options.folder)
+    chosen = options.only or known
+    unknown = [name for name in chosen if name not in known]
+    if unknown or not chosen:
+        what = f"trial '{unknown[0]}'" if unknown else "trial"
+        print(f"No {what} in {options.folder}; there are: {', '.join(known) or 'none'}.")
+        return 2
+    options.out.mkdir(parents=True, exist_ok=True)
+    work = partial(solve, options.folder, options.out, curves=not options.no_curves)
+    with ThreadPoolExecutor(options.jobs) as pool:
+        results = tuple(pool.map(work, chosen))
+    tell(results, options.out, write_page=options.page)
+    return 0
+
+
+def tell(results: Sequence[TrialResult], out: Path, *, write_page: bool) -> None:
+    """Prints the tables and the misses; writes figures.json and, where asked, the page."""
+    found = tuple(figures(results))
+    content = {"figures": [*map(asdict, found)], "trials": [*map(asdict, results)]}
+    text = json.dumps(content, indent=1, ensure_ascii=False, default=attrgetter("value")) + "\n"
+    (out / "figures.json").write_text(text, encoding="utf-8")
+    parts = tables(results, found)
+    print("\n\n".join(part.text for part in (*parts[1:], parts[0])))
+    if write_page:
+        PAGE.write_text(page(parts), encoding="utf-8")
+    missed = [f for f in found if not f.ok]
+    print(f"\n{len(results)} trials, {len(missed)} limits missed; all in {out / 'figures.json'}")
+
+
+def solve(folder: Path, out: Path, name: str, *, curves: bool) -> TrialResult:
+    """Measures one trial in a process of its own, for a crash is its own too."""
+    path = out / f"{name}.pickle"
+    path.unlink(missing_ok=True)
+    launcher = str(ROOT / "devtools" / "package.py")
+    command = [sys.executable, launcher, "devtools.validation.solve", str(folder), name, str(out)]
+    try:
+        done = subprocess.run(
+            [*command, *([] if curves else ["--no-curves"])],
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=LONGEST,
+        )
+    except subprocess.TimeoutExpired:
+        return TrialResult(name, "", refused=f"took longer than {LONGEST:g} s")
+    if done.returncode or not path.is_file():
+        lines = done.stderr.strip().splitlines() or [f"ended with code {done.returncode}"]
+        return TrialResult(name, "", refused=lines[-1])
+    result: TrialResult = pickle.loads(path.read_bytes())  # of our own making
+    path.unlink()
+    return result

@@ -1,0 +1,134 @@
+"""The fit's motion beside the recording: closeness, hands, loaded points and joint torques."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...solver.arrays import BoolArray, FloatArray
+from ...solver.body.anatomy import Part
+from ...solver.data.constants import STANDARD_GRAVITY
+from ...solver.stages.fit import Fit
+from ...solver.transcription.motion import Motion, motion_inverse_dynamics
+from ...solver.worker.pipeline import dynamics_of
+
+RATE = 1000.0  # Hz
+END_FRAMES = 10
+AROUND_LANDING = 0.1  # s, on both sides of a touch-down
+LEG_PARTS = (Part.THIGH, Part.SHANK, Part.FOOT)  # below hip, knee and ankle
+LOADED = 0.05  # body weights on a point
+ONE_SIDED = 1e-9  # s inside a contact's first and last instant, where its force may jump
+
+
+@dataclass(frozen=True)
+class Closeness:
+    """Joint centres of the fit against the recording, rms, cm: all frames, first and last ten."""
+
+    whole_cm: float
+    first_cm: float
+    last_cm: float
+
+
+def closeness(fit: Fit) -> Closeness:
+    """At the recording's frames."""
+    performance = fit.performance
+    apart = fit.motion.joint_centres(performance.times) - performance.centres
+    parts = apart, apart[:END_FRAMES], apart[-END_FRAMES:]
+    return Closeness(*(100.0 * _rms(part) for part in parts))
+
+
+@dataclass(frozen=True)
+class HandJerk:
+    """Rms jerk of both wrists within 0.1 s of the whole body's landings, m/s³."""
+
+    fit: float
+    recording: float
+
+    @property
+    def ratio(self) -> float:
+        """Fit over recording."""
+        return self.fit / self.recording
+
+
+def hand_jerk(fit: Fit) -> HandJerk | None:
+    """By third differences of the frames, of both alike; None where nothing lands."""
+    performance, character = fit.performance, fit.performance.character
+    landings = [f.end for f in fit.schedule.flights if f.end < fit.schedule.duration]
+    hands = [i for i, body in enumerate(character.bodies) if body.part is Part.HAND]
+    middles = performance.times[1:-2] + 0.5 / performance.recording.rate
+    near = np.zeros(len(middles), dtype=np.bool_)
+    for landing in landings:
+        near |= np.abs(middles - landing) <= AROUND_LANDING
+    if not hands or not near.any():
+        return None
+    centres = fit.motion.joint_centres(performance.times)
+    return HandJerk(
+        *(
+            jerk(tracks[:, hands], performance.recording.rate, near)
+            for tracks in (centres, performance.centres)
+        )
+    )
+
+
+def jerk(tracks: FloatArray, rate: float, counted: BoolArray) -> float:
+    """Rms third difference of tracks (T, P, 3) m at `rate` Hz, m/s³. counted: (T - 3,)."""
+    return _rms(np.diff(tracks, 3, axis=0)[counted] * rate**3)
+
+
+@dataclass(frozen=True)
+class Hold:
+    """Worst of one loaded contact: slide from its place, depth under and height above it, mm."""
+
+    contact: str
+    slide_mm: float
+    under_mm: float
+    above_mm: float
+
+
+def holds(motion: Motion) -> list[Hold]:
+    """Every contact while its force is above 5 % of the body's weight, first and last instant
+    included."""
+    found = []
+    for i, contact in enumerate(motion.transcription.contacts):
+        span = contact.contact
+        count = max(2, int((span.end - span.start) * RATE) + 1)
+        times = np.linspace(span.start + ONE_SIDED, span.end - ONE_SIDED, count)
+        weight = motion.transcription.character.mass * STANDARD_GRAVITY
+        force = np.linalg.norm(motion.forces(times)[:, contact.point], axis=1) / weight
+        off = (motion.contact_points(times)[:, contact.point] - motion.places[i])[force > LOADED]
+        if len(off):
+            found.append(held(span.name, off))
+    return found
+
+
+def held(name: str, off: FloatArray) -> Hold:
+    """Of a point's displacements (T, 3) m from its place, Z up."""
+    slide = np.linalg.norm(off[:, :2], axis=1).max()
+    lowest, highest = off[:, 2].min(), off[:, 2].max()
+    return Hold(name, 1e3 * float(slide), 1e3 * max(-float(lowest), 0.0), 1e3 * max(highest, 0.0))
+
+
+@dataclass(frozen=True)
+class LegTorques:
+    """Largest torque about any axis of either leg's joints, N·m per kg of the body."""
+
+    hip: float
+    knee: float
+    ankle: float
+
+
+def peak_torques(motion: Motion) -> LegTorques:
+    """Over the whole motion, by inverse dynamics."""
+    times = (np.arange(int(motion.duration * RATE)) + 0.5) / RATE
+    torques = np.abs(motion_inverse_dynamics(dynamics_of(motion), motion, times).torques)
+    character = motion.transcription.character
+    peaks = dict.fromkeys(LEG_PARTS, 0.0)
+    for body, joint in zip(character.bodies[1:], character.joints[1:], strict=True):
+        if body.part in peaks:
+            of_joint = torques[:, joint.first - 3 : joint.dofs.stop - 3].max() / character.mass
+            peaks[body.part] = max(peaks[body.part], float(of_joint))
+    return LegTorques(*(peaks[part] for part in LEG_PARTS))
+
+
+def _rms(vectors: FloatArray) -> float:
+    """Root mean square length of (..., 3)."""
+    return float(np.sqrt((vectors**2).sum(axis=-1).mean()))

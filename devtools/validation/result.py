@@ -1,0 +1,69 @@
+"""Everything that is measured of one trial, as records."""
+
+from dataclasses import dataclass
+
+from ...solver.data.requests import Vector
+from .contacts import Event, EventKind, Friction, Pressure
+from .forces import RmsError, Stance, Step
+from .motions import Closeness, HandJerk, Hold, LegTorques
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was measured of a trial's fit. Pairs are ours, then the plates'.
+
+    seconds: the fit's. compared: s, in which the forces are. foot_errors: at 15 Hz, of the left
+    and the right foot.
+    """
+
+    seconds: float
+    compared: tuple[float, float]
+    errors: tuple[RmsError, ...]
+    foot_errors: tuple[Vector, ...]
+    total_variation: tuple[float, float]
+    steps: tuple[Step, Step]
+    stances: tuple[Stance, ...]
+    events: tuple[Event, ...]
+    pressure: Pressure | None
+    friction: tuple[Friction, Friction]
+    closeness: Closeness
+    hand_jerk: HandJerk | None
+    holds: tuple[Hold, ...]
+    torques_per_kg: LegTorques
+
+    def error(self, cut_off: float = 15.0) -> RmsError:
+        """The rms error at a cut-off, Hz."""
+        return next(error for error in self.errors if error.cut_off == cut_off)
+
+    def late(self, kind: EventKind, *, by_force: bool = False) -> list[float]:
+        """How late those events are that ours has, ms."""
+        mine = [e for e in self.events if e.kind is kind]
+        late = [e.force_late_ms if by_force else e.late_ms for e in mine]
+        return [each for each in late if each is not None]
+
+    def mean_late(self, kind: EventKind) -> float | None:
+        """None where ours has no such event."""
+        late = self.late(kind)
+        return sum(late) / len(late) if late else None
+
+    @property
+    def not_found(self) -> int:
+        """Number of the plates' events that ours has not."""
+        return sum(e.late_ms is None for e in self.events)
+
+    @property
+    def hold(self) -> Hold:
+        """The worst over all contacts."""
+        slide = max((h.slide_mm for h in self.holds), default=0.0)
+        under = max((h.under_mm for h in self.holds), default=0.0)
+        return Hold("worst", slide, under, max((h.above_mm for h in self.holds), default=0.0))
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """One trial. refused: the sentence that says why there is nothing to measure."""
+
+    trial: str
+    kind: str
+    refused: str | None = None
+    measured: Measured | None = None

@@ -1,0 +1,116 @@
+"""The trials' figures in tables, for the terminal, and docs/validation.md, which has them too."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .columns import TABLES
+from .limits import ValidationFigure
+from .result import TrialResult
+
+HEAD = """# Against force plates
+
+`python3 dev.py validate [FOLDER] --page` wrote this page. It takes recordings with measured
+ground forces, finds the contacts, fits, and sets the contact forces beside the plates'. The fit
+knows the recording and the body's mass, nothing of the forces. `examples/recordings` holds one
+such trial, `BMC_run`; the others here may not be redistributed (README of their folder), but
+any folder in the same format will do.
+
+- **Format.** `X.bvh` in centimetres, Y up, forward +Z, left +X. `X_grf.csv`: per foot force on
+  the body (N) and centre of pressure (m) in the same axes, zero below 20 N. `X_com.csv`: the
+  centre of mass of the laboratory's own model. `X.json`: `subject_mass_kg`, `kind`, `bvh_fps`,
+  `bvh_frames`, `valid_window_s`, `baseline_window_s`, `direct_differentiation_baseline`.
+- **Frames.** Those of the valid window, in which all support was measured; read through Blender,
+  as `dev.py adapt` reads a clip.
+- **Filter.** Butterworth of order 2, both ways (no delay), on both sides alike, at 10, 15 and 20
+  Hz.
+- **Window.** `baseline_window_s`: the valid window without the 60 ms that a filter's edge spoils,
+  flights included; the same for all columns. Errors over the stances alone are told beside.
+- **Plain differentiation**, the yardstick: the laboratory's centre of mass, by central
+  differences twice, low-passed after. It needs no contacts and no body, and is no floor: the
+  recording's own noise is in it. What it gives here is within 0.001 BW at 15 Hz of what the
+  trials' files have stored.
+- **A refused trial** is one on which the command line stops with that sentence; it counts as
+  missed, and no mean has it. A walk is judged by its error in body weights, for its baseline is
+  near the noise.
+
+**Constants.** Heights and speeds that tell a contact (`ContactThresholds`) were set on recordings
+with measured forces, trials of this page among them. The comments at the other constants of the fit
+say where they come from.
+"""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A heading, a note below it, the columns' names, and rows of as many words."""
+
+    title: str
+    note: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+    @property
+    def text(self) -> str:
+        """For a terminal: columns of equal width, numbers to the right."""
+        lines = [self.columns, *self.rows]
+        columns = [self._aligned(column) for column in zip(*lines, strict=True)]
+        return "\n".join([self.title, *("  ".join(x).rstrip() for x in zip(*columns, strict=True))])
+
+    @staticmethod
+    def _aligned(column: tuple[str, ...]) -> list[str]:
+        width = max(map(len, column))
+        words = any(cell[:1].isalpha() for cell in column[1:])
+        return [cell.ljust(width) if words else cell.rjust(width) for cell in column]
+
+    @property
+    def markdown(self) -> str:
+        lines = [self.columns, ("---",) * len(self.columns), *self.rows]
+        parts = [f"## {self.title}", *([self.note] if self.note else [])]
+        return "\n\n".join([*parts, "\n".join(f"| {' | '.join(line)} |" for line in lines)])
+
+
+def tables(results: Sequence[TrialResult], found: Sequence[ValidationFigure]) -> list[Table]:
+    """All of them: the limits, and a row for each trial that was solved."""
+    parts = [_limits(found)]
+    parts += [
+        Table(
+            title,
+            note,
+            ("trial", *(name for name, _ in columns)),
+            tuple((r.trial, *(of(r.measured) for _, of in columns)) for r in results if r.measured),
+        )
+        for title, note, columns in TABLES
+        if any(r.measured for r in results)
+    ]
+    refused = tuple((r.trial, r.refused) for r in results if r.refused)
+    if refused:
+        parts.append(Table("Refused", "", ("trial", "because"), refused))
+    return parts
+
+
+def page(parts: Sequence[Table]) -> str:
+    """The whole of docs/validation.md."""
+    return "\n\n".join([HEAD.rstrip(), *(part.markdown for part in parts)]) + "\n"
+
+
+def _limits(found: Sequence[ValidationFigure]) -> Table:
+    return Table(
+        "Limits",
+        "",
+        ("figure", "found", "unit", "must", "aim", "", "where"),
+        tuple(
+            (f.name, f"{f.value:.3g}", f.unit, _or(f.must), _or(f.aim), _verdict(f), f.trial)
+            for f in found
+        ),
+    )
+
+
+def _or(value: float | None) -> str:
+    return "" if value is None else f"{value:g}"
+
+
+def _verdict(found: ValidationFigure) -> str:
+    if found.must is None:
+        return "told"
+    if not found.ok:
+        return "MISSED"
+    return "aim" if found.aim is None or found.value <= found.aim else "must"
