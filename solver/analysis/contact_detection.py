@@ -47,7 +47,7 @@ def detect_contacts(
     """
     duration = float(times[-1])
     clock = even_clock(duration)
-    movements = {name: point_movement(times, p.track, clock) for name, p in points.items()}
+    movements = {name: point_movement(times, p, clock) for name, p in points.items()}
     touches = [
         touch
         for name, point in points.items()
@@ -102,15 +102,16 @@ def _candidates_around(
     clock: FloatArray, thresholds: ContactThresholds, movement: PointMovement, first: int, last: int
 ) -> Iterable[_Candidate]:
     """Region growing from a rest to where the point leaves its place; usually one candidate."""
-    velocity = movement.velocity
-    place, low = _resting_place(movement.track, first, last)
-    away, above = movement.track - place, movement.track[:, 2] - low
+    level, height = movement.track[:, :2], movement.track[:, 2:]
+    away = level - _at_rest(np.nanmedian, level, CREEP_WINDOW, (first, last))
+    above = height - _at_rest(np.nanmin, height, SINK_WINDOW, (first, last))
+    up = movement.leaving - _at_rest(np.nanmedian, movement.leaving, CREEP_WINDOW, (first, last))
     along = np.maximum(
-        np.linalg.norm(velocity[:, :2], axis=1) / thresholds.max_slip_speed,
-        np.linalg.norm(away[:, :2], axis=1) / MAX_SLIDE,
+        np.linalg.norm(movement.velocity[:, :2], axis=1) / thresholds.max_slip_speed,
+        np.linalg.norm(away, axis=1) / MAX_SLIDE,
     )
-    landing = np.maximum(above / thresholds.landing_height, along)
-    lifting = np.maximum(away[:, 2] / thresholds.lift_off_height, along)
+    landing = np.maximum(above[:, 0] / thresholds.landing_height, along)
+    lifting = np.maximum(up[:, 0] / thresholds.lift_off_height, along)
     for a, b in _runs(np.minimum(landing, lifting) <= 1.0):
         if a <= last and b >= first:
             start, end = _first_below(clock, landing, a), _last_below(clock, lifting, b)
@@ -118,27 +119,20 @@ def _candidates_around(
                 yield _Candidate(start, end, max(a, first), min(b, last))
 
 
-def _resting_place(track: FloatArray, first: int, last: int) -> tuple[FloatArray, FloatArray]:
-    """Running median (N, 3) m of the track over the rest, and running low (N,) m of its height.
+def _at_rest(
+    statistic: Callable[..., FloatArray], samples: FloatArray, window: float, rest: tuple[int, int]
+) -> FloatArray:
+    """(N, k): a running statistic of samples (N, k) at rest, over `window` s around each.
 
     Soles sink and feet creep while they stand, and floors are not level: "off the ground" is told
-    from where the point stood just then. Both are held constant outside the rest.
+    from where the point stood just then. It is held constant outside the rest.
     """
-    rest = track[first : last + 1]
-    during = np.clip(np.arange(len(track)), first, last) - first
-    place = _running(np.nanmedian, rest, CREEP_WINDOW)
-    low = _running(np.nanmin, rest[:, 2:], SINK_WINDOW)[:, 0]
-    return place[during], low[during]
-
-
-def _running(
-    statistic: Callable[..., FloatArray], samples: FloatArray, window: float
-) -> FloatArray:
-    """(n, k): a statistic of samples (n, k) over `window` s around each."""
+    first, last = rest
     half = round(window / (2.0 * STEP))
-    padded = np.pad(samples, ((half, half), (0, 0)), constant_values=np.nan)
+    padded = np.pad(samples[first : last + 1], ((half, half), (0, 0)), constant_values=np.nan)
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0)
-    return np.asarray(statistic(windows, axis=-1))
+    during = np.clip(np.arange(len(samples)), first, last) - first
+    return np.asarray(statistic(windows, axis=-1)[during])
 
 
 def _first_below(times: FloatArray, excess: FloatArray, frame: int) -> float:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.contacts import ContactPoint
 from ..numerics.interpolation import interpolate
 
 STEP = 0.005  # s; tracks are looked at so finely
@@ -14,10 +15,14 @@ HALF = round(SMOOTHING / STEP)
 
 @dataclass(frozen=True)
 class PointMovement:
-    """Movement of a point at N even instants. track: (N, 3) m. velocity: (N, 3) m/s."""
+    """Movement of a point at N even instants.
+
+    track: (N, 3) m. velocity: (N, 3) m/s. leaving: (N, 1) m, height of the part that leaves last.
+    """
 
     track: FloatArray
     velocity: FloatArray
+    leaving: FloatArray
 
 
 def even_clock(duration: float) -> FloatArray:
@@ -25,15 +30,20 @@ def even_clock(duration: float) -> FloatArray:
     return np.linspace(0.0, duration, max(2 * HALF, round(duration / STEP)) + 1)
 
 
-def point_movement(times: FloatArray, track: FloatArray, clock: FloatArray) -> PointMovement:
-    """Movement of a track (T, 3) m at instants `times` (T,) s: at those of `clock` (N,) s.
+def point_movement(times: FloatArray, point: ContactPoint, clock: FloatArray) -> PointMovement:
+    """Movement of a point that is recorded at `times` (T,) s, at the instants `clock` (N,) s.
 
     The velocity is the mean over 2 SMOOTHING, or what is left of it at the clip's ends.
     """
     before = np.maximum(clock - SMOOTHING, clock[0])
     after = np.minimum(clock + SMOOTHING, clock[-1])
-    moved = interpolate(times, track, after) - interpolate(times, track, before)
-    return PointMovement(interpolate(times, track, clock), moved / (after - before)[:, None])
+    moved = interpolate(times, point.track, after) - interpolate(times, point.track, before)
+    last = point.track if point.last is None else point.last
+    return PointMovement(
+        interpolate(times, point.track, clock),
+        moved / (after - before)[:, None],
+        interpolate(times, last[:, 2:], clock),
+    )
 
 
 def rate(samples: FloatArray) -> FloatArray:

@@ -20,10 +20,10 @@ class ContactThresholds:
     """Contact-detection thresholds of one kind of point.
 
     max_height (m above the floor) and max_speed (m/s) must both hold for a point to touch at all.
-    landing_height: m above the lowest to which the point then sinks, lift_off_height: m above its
-    usual height in this contact; at which its force begins and ends, roughly: a sole is pressed
-    when it is a little up. max_slip_speed: m/s along the floor. min_duration: s; the shortest
-    contact believed.
+    landing_height: m above the lowest to which the point then sinks, lift_off_height: m by which
+    its sole is above its usual height in this contact; at which its force begins and ends, roughly:
+    a sole is pressed when it is a little up. max_slip_speed: m/s along the floor. min_duration: s;
+    the shortest contact believed.
     """
 
     max_height: float
@@ -49,7 +49,7 @@ class PointKind(Enum):
         max_height=0.05,
         max_speed=0.5,
         landing_height=0.02,
-        lift_off_height=0.027,
+        lift_off_height=0.024,
         max_slip_speed=2.0,
         min_duration=0.04,
     )
@@ -67,7 +67,8 @@ class PointKind(Enum):
 class ContactPoint:
     """A candidate contact point. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up.
 
-    hip: (T, 3) m, world; where the leg that ends in the point begins.
+    hip: (T, 3) m, world; where the leg that ends in the point begins. last: (T, 3) m, world; the
+    part of the sole that leaves the floor last, where that is not the point itself.
     """
 
     kind: PointKind
@@ -75,6 +76,7 @@ class ContactPoint:
     offset: FloatArray
     track: FloatArray
     hip: FloatArray | None = None
+    last: FloatArray | None = None
 
 
 @dataclass(frozen=True)
