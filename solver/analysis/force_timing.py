@@ -1,7 +1,7 @@
 """When the forces under a foot begin and end, told by what they do to the foot and the leg.
 
 Heights alone err by 20 ms and more, since shoes give, heels roll and toes point. The centre of mass
-tells less: beside force plates its acceleration leaves -g up to 20 ms late where a heel strikes (the
+tells less: beside force plates its acceleration leaves -g up to 20 ms late where heels strike (the
 shank takes the first blow alone), and up to 20 ms early where one lands on toes. The constants were
 set on three drop jumps, a walk and a run at 2 m/s with measured forces.
 """

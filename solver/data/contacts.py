@@ -41,7 +41,7 @@ class PointKind(Enum):
         max_height=0.02,
         max_speed=0.5,
         landing_height=0.015,
-        lift_off_height=0.01,
+        lift_off_height=0.015,
         max_slip_speed=2.0,
         min_duration=0.04,
     )
