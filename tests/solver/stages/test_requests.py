@@ -47,7 +47,7 @@ FALLING = When(frames=(79.0, 104.0))
 FREE = (None, None)
 LEGS = ("LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg")
 FIRST, LAST = 20.0, 176.0  # scene frames of the hop
-TAKE_OFF, TOUCH_DOWN = 0.389, 0.772  # s
+TAKE_OFF, TOUCH_DOWN = 0.394, 0.7575  # s
 
 
 def degrees(*angles: float) -> list[float]:
