@@ -86,7 +86,8 @@ class Contact:
     name: the point and its count in time, such as "Left heel 2"; point: "Left heel".
     offset: (3,) m, bone-local, from the bone's head. place: (3,) m, world, Z up.
     start, end: s; the instants at which the force begins and ends. A contact that the clip cuts
-    off starts at 0 or ends at the schedule's duration.
+    off starts at 0 or ends at the schedule's duration. rise: m above its place at these two; the
+    sole gives as much.
     """
 
     name: str
@@ -96,6 +97,7 @@ class Contact:
     start: float
     end: float
     place: FloatArray
+    rise: tuple[float, float] = (0.0, 0.0)
 
     @property
     def asked_for(self) -> bool:
@@ -161,6 +163,15 @@ class ContactSchedule:
         ends = {0.0, self.duration}
         ends |= {t for c in self.contacts for t in (c.start, c.end)}
         ends |= {t for u in self.unseen for t in (u.start, u.end)}
+        return tuple(sorted(ends))
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Instants, s, ascending, at which accelerations may jump: the body lands or leaves as a
+        whole, or the clip begins or ends."""
+        ends = {0.0, self.duration}
+        ends |= {t for flight in self.flights for t in (flight.start, flight.end)}
+        ends |= {t for gap in self.unseen for t in (gap.start, gap.end)}
         return tuple(sorted(ends))
 
     def of_phase(self, phase: Phase) -> tuple[Contact, ...]:

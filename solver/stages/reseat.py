@@ -33,7 +33,8 @@ def _com_shift(motion: Motion, character: Character, times: FloatArray) -> Float
     t = motion.transcription
     old, new = motion.pose(times), forward_kinematics(character, motion.angles(times))
     off = old.centres[:, 0] - new.centres[:, 0]  # with the root where it was
-    pinned = np.array([(c.pin_start <= times) & (times <= c.pin_end) for c in t.contacts])
+    spans = [(c.contact.start, c.contact.end) for c in t.contacts]
+    pinned = np.array([(start <= times) & (times <= end) for start, end in spans])
     if not pinned.any():
         return off
     points = changed_points(t.points, t.character, character)

@@ -113,7 +113,7 @@ def landing(settings: bpy.types.PropertyGroup) -> list[bpy.types.PropertyGroup]:
 def drift(armature: bpy.types.Object, row: bpy.types.PropertyGroup) -> float:
     """How far, m, a contact's point gets from its place in Blender's evaluated pose.
 
-    The first and last 30 ms apart, in which it settles and rolls.
+    The first and last 30 ms apart, in which its sole sinks and rises.
     """
     schedule = analyse(read_recorded(armature, FIRST, LAST), MotionProblem()).schedule
     contact = next(c for c in schedule.contacts if c.name == row.name)

@@ -33,4 +33,4 @@ def test_a_jump_belongs_to_the_stretch_after_it() -> None:
     edge = curve.pieces[1].basis.breaks[0]
     at = curve.at(np.array([edge]))
     after = exact_torques(motion, torques, np.array([edge + 1e-5]))
-    assert at[0] == pytest.approx(after[0], abs=0.05 * np.abs(after).max())
+    assert at[0] == pytest.approx(after[0], abs=0.1 * np.abs(after).max())
