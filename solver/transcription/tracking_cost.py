@@ -142,7 +142,7 @@ class TrackingCost:
                 axis=(1, 2)
             )
             each = mean / len(self.points) + p.com * (at.com**2).sum(axis=1)
-            moved = np.einsum("npij,nj->npi", at.posed.point_jacobian(self.points), at.acceleration)
+            moved = at.posed.point_rates(self.points, at.acceleration)
             each += self._smooth * self._marker_weight * (moved**2).sum(axis=(1, 2))
             each += self._load * (at.com_acceleration**2).sum(axis=1)
             total += 0.5 * float(at.weight @ each)
