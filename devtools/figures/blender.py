@@ -12,21 +12,18 @@ from ...bridge.armature.read import read_recording
 from ...bridge.armature.write import write_action
 from ...bridge.files.export import export_fbx, reimport_fbx
 from ...bridge.files.import_clip import import_clip
-from ...solver.arrays import BoolArray, FloatArray
-from ...solver.data.contacts import Contact
 from ...solver.data.recording import Recording
 from ...solver.transcription.motion import Motion
 from .clips import Clip
 
-SETTLING = 0.03  # s at either end of a contact, told apart
-
 
 @dataclass(frozen=True)
 class Drift:
-    """Largest distance of a pinned point from its place, m: while it is held, and at the ends."""
+    """Largest distances of a pinned point from its place over the whole contact, m: beside it or
+    under it, and above it, as its sole gives."""
 
     held: float
-    ends: float
+    above: float
 
 
 def open_clip(clip: Clip) -> tuple[bpy.types.Object, Recording]:
@@ -55,23 +52,13 @@ def drifts(
 def drift(motion: Motion, shown: Recording) -> Drift:
     """Of every contact's point, fixed in its bone, in what Blender shows."""
     contacts = [c.contact for c in motion.transcription.contacts]
-    held = ends = 0.0
+    held = above = 0.0
     for contact, place in zip(contacts, motion.places, strict=True):
         bone = shown.index(contact.bone)  # keeps its own axes through FBX, though not its rest pose
         point = shown.heads[:, bone] + shown.rotations[:, bone] @ contact.offset
-        off = np.linalg.norm(point - place, axis=1)
-        inside, settling = _instants(contact, shown.times)
-        held = max(held, float(off[inside].max(initial=0.0)))
-        ends = max(ends, float(off[settling].max(initial=0.0)))
-    return Drift(held, ends)
-
-
-def _instants(contact: Contact, times: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Frames in which the point is held, and those in which it may settle or roll."""
-    slack = 1e-6
-    touching = (times > contact.start - slack) & (times < contact.end + slack)
-    # A contact that the clip cuts off neither begins nor ends there.
-    begins = contact.start + (SETTLING if contact.start > times[0] else 0.0)
-    ends = contact.end - (SETTLING if contact.end < times[-1] else 0.0)
-    inside = touching & (times > begins - slack) & (times < ends + slack)
-    return inside, touching & ~inside
+        touching = (shown.times > contact.start) & (shown.times < contact.end)
+        off = (point - place)[touching]
+        sunk = off * [1.0, 1.0, 0.0] + np.minimum(off, 0.0) * [0.0, 0.0, 1.0]
+        held = max(held, float(np.linalg.norm(sunk, axis=1).max(initial=0.0)))
+        above = max(above, float(off[:, 2].max(initial=0.0)))
+    return Drift(held, above)

@@ -140,13 +140,12 @@ def _contacts(adaptation: Adaptation) -> Iterator[PointCheck]:
     contacts = adaptation.motion.transcription.contacts
     for contact, place in zip(contacts, adaptation.places, strict=True):
         axes = np.eye(3) if contact.held is None else contact.held.T
-        times, places = np.zeros(1), place[None]
-        if contact.track is not None:
-            times, places = contact.track.times, place + contact.track.moves
+        span = contact.contact
+        times = np.linspace(span.start, span.end, 500)
+        places = place + contact.moves(times)
         edges = np.zeros(axes.shape[1])
-        found = contact.contact
-        span = found.name, contact.pin_start, contact.pin_end
-        yield PointCheck(*span, found.bone, found.offset, times, places, axes, edges, edges)
+        when = span.name, span.start, span.end
+        yield PointCheck(*when, span.bone, span.offset, times, places, axes, edges, edges)
 
 
 def _condition(condition: Constraint, adaptation: Adaptation) -> Iterator[Check]:

@@ -12,9 +12,9 @@ from ...bridge.worker_client import shared
 from ...solver.data.faults import (
     Fault,
     MissingPart,
-    NoFlight,
     OddHeight,
     OutsideKeys,
+    Treadmill,
     UnseenSupport,
 )
 from ...solver.data.problem import MotionProblem
@@ -68,6 +68,9 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         armature = required_armature(context)
         settings = settings_of(armature)
         recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
+        first, last = present(recorded_action(armature)).frame_range.to_tuple()
+        if recording.frames[0] >= last or recording.frames[-1] <= first:
+            raise OutsideKeys(armature.name, first, last)
         find_parts(armature)
         for missing in missing_parts(settings):
             raise MissingPart(missing)
@@ -78,26 +81,25 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
             answer = yield from answered(job, Analysed)
         except Fault as fault:
             raise _telling(fault, armature, recording, problem) from None
+        contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
+        odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
+        if odd is not None and not flights:
+            raise odd
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
         scene_settings(context.scene).armature = armature
-        contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
-        found = f"Found {contacts} contacts and {flights} flight{'s' if flights > 1 else ''}"
-        if problem.height is None and (odd := _odd_height(armature.name, answer.height)):
-            return f"{found}; but {said(odd)}"
-        return found
+        found = (
+            f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
+        )
+        return f"{found}; but {said(odd)}" if odd is not None else found
 
 
 def _telling(
     fault: Fault, armature: bpy.types.Object, recording: Recording, problem: MotionProblem
 ) -> Fault:
-    """Diagnosis of a failed analysis: beside the keys nothing moves, and at a wrong scale feet
-    seem to slide and bodies to float."""
-    if not isinstance(fault, NoFlight | UnseenSupport):
+    """Diagnosis of a failed analysis: at a wrong scale feet seem to slide and bodies to float."""
+    if not isinstance(fault, UnseenSupport | Treadmill):
         return fault
-    first, last = present(recorded_action(armature)).frame_range.to_tuple()
-    if recording.frames[0] >= last or recording.frames[-1] <= first:
-        return OutsideKeys(armature.name, first, last)
     from ...solver.body.character import build_character  # numpy's, but half of the solver
 
     height = build_character(recording, mass=problem.mass, chosen=problem.bones).height

@@ -105,11 +105,11 @@ def _bones(problem: MotionProblem) -> list[str]:
 
 
 def _first_landing(analysis: Analysis) -> Phase:
-    """The first stance after a flight, or the only one before it."""
+    """The first stance after a flight, or the first of all."""
     phases = analysis.schedule.phases
     ground = [p for p in phases if p.kind is PhaseKind.GROUND]
-    flight = next(p for p in phases if p.kind is PhaseKind.FLIGHT)
-    return next((p for p in ground if p.start >= flight.end - 1e-9), ground[0])
+    flown = next((p.end for p in phases if p.kind is PhaseKind.FLIGHT), 0.0)
+    return next((p for p in ground if p.start >= flown - 1e-9), ground[0])
 
 
 def _relative(clip: Path, recipe: Path) -> str:

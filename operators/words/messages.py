@@ -37,9 +37,6 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",
-    faults.NoFlight: "No flight was found: in the chosen frames the feet are never off the ground "
-    "together (the lower foot comes {lowest_cm:.1f} cm up at most). Choose frames that hold a "
-    "jump; if they do, check the scale and the up axis.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (
@@ -83,6 +80,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.UnseenSupport: "From frame {first:g} to {last:g} neither foot touches the ground, yet "
     "the body does not fall, so something unseen carries it (a box, a rail, a hand); choose frames "
     "without it. If nothing does, give the scene the recording's frame rate.",
+    faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
+    "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
+    "motion, or choose a recording that moves over the ground.",
     faults.OddHeight: "“{armature}” is {metres:.3g} m tall, so gravity does not fit its motion; "
     "import it again at {factor:plain} times the scale, or scale its object so.",
     faults.OutsideKeys: "In the chosen frames “{armature}” has no keys; they lie from frame "

@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 
 from ..body.character import Character, build_character
 from ..data.contacts import Contact, ContactSchedule, snap
-from ..data.faults import BadTiming, ClipTooShort, UnknownContactName, UnseenSupport
+from ..data.faults import BadTiming, ClipTooShort, Treadmill, UnknownContactName, UnseenSupport
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
-from .contact_detection import require_flight
+from .belt import belt_speed
+from .grounding import grounded
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
 
 MIN_CLIP_DURATION = 0.3  # s
@@ -32,15 +33,17 @@ class Analysis:
 def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     """Character and contacts in the problem's frames of a recording.
 
-    Raises ClipTooShort, NoFlight, UnseenSupport, MissingPart, ZeroLengthBone, UnknownContactName,
+    Raises ClipTooShort, UnseenSupport, Treadmill, MissingPart, ZeroLengthBone, UnknownContactName,
     BadTiming.
     """
     recording, character = build_figure(recording, problem)
     performance = perform(recording, character)
     schedule = _corrected(find_contacts(performance), problem, performance)
+    schedule = grounded(schedule, performance)
     for gap in schedule.unseen:
+        if speed := belt_speed(performance.times, contact_points(performance)[0]):
+            raise Treadmill(speed)
         raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
-    require_flight(schedule, contact_points(performance)[0])
     return Analysis(performance, schedule)
 
 

@@ -1,18 +1,29 @@
 """Contact detection by height and speed thresholds; free-fall check of the gaps between."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..data.constants import STANDARD_GRAVITY
-from ..data.contacts import Contact, ContactPoint, ContactSchedule, Interval, gaps, numbered
-from ..data.faults import NoFlight
+from ..data.contacts import (
+    Contact,
+    ContactPoint,
+    ContactSchedule,
+    ContactThresholds,
+    Interval,
+    gaps,
+    numbered,
+)
+from ..numerics.interpolation import interpolate
+from .force_timing import timed_by_forces
+from .point_movement import STEP, PointMovement, even_clock, point_movement
 
 MIN_SEPARATION = 0.03  # s; between two contacts of one point
 MAX_SLIDE = 0.06  # m; a point that slides further makes a new contact
-MEDIAN_HALF_WINDOW = 0.2  # s; of the running median of a resting point's place
+CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
+SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
@@ -31,41 +42,47 @@ def detect_contacts(
     times: (T,) s, from 0. points: by name ("Left heel"). com: (T, 3) m, the centre of mass: an
     interval without contact in which it does not fall freely is `unseen` support, not a flight.
     Gaps below shortest_flight_s are closed. A point that is low and slow touches; the contact
-    lasts while it candidates at its height of that contact, to a fraction of a frame.
+    lasts while it stays at its height of that contact, and a foot's as long as its force acts, to
+    a fraction of a frame.
     """
     duration = float(times[-1])
-    touches = [t for name, point in points.items() for t in _touches(times, name, point, floor_m)]
+    clock = even_clock(duration)
+    movements = {name: point_movement(times, p, clock) for name, p in points.items()}
+    touches = [
+        touch
+        for name, point in points.items()
+        for touch in _touches(clock, name, point, movements[name], floor_m)
+    ]
+    heights = {name: movement.track[:, 2] for name, movement in movements.items()}
+    legs = {
+        name: np.linalg.norm(interpolate(times, p.track - p.hip, clock), axis=1)
+        for name, p in points.items()
+        if p.hip is not None
+    }
+    touches = timed_by_forces(clock, touches, heights, legs)
     contacts = _closed(touches, duration, shortest_flight_s)
     carried = ((c.start, c.end) for c in contacts)
     unseen = tuple(gap for gap in gaps(carried, duration) if not _falls(times, com, gap))
     return ContactSchedule(numbered(contacts), duration, floor_m, unseen)
 
 
-def require_flight(schedule: ContactSchedule, points: Mapping[str, ContactPoint]) -> None:
-    """Raises NoFlight, with the largest ground clearance, if the schedule has no flight."""
-    if not schedule.flights:
-        lowest = np.min([point.track[:, 2] for point in points.values()], axis=0)
-        raise NoFlight(lowest_cm=max(100.0 * float(lowest.max() - schedule.floor_m), 0.0))
-
-
 def _touches(
-    times: FloatArray, name: str, point: ContactPoint, floor_m: float
+    clock: FloatArray, name: str, point: ContactPoint, movement: PointMovement, floor_m: float
 ) -> Iterable[Contact]:
-    """Contacts of one point, in order and disjoint."""
+    """Contacts of one point, in order and disjoint. clock: (N,) s, of the movement."""
     thresholds = point.kind.value
-    velocity = np.gradient(point.track, times, axis=0)
-    low = point.track[:, 2] < floor_m + thresholds.max_height
-    at_rest = low & (np.linalg.norm(velocity, axis=1) < thresholds.max_speed)
+    low = movement.track[:, 2] < floor_m + thresholds.max_height
+    at_rest = low & (np.linalg.norm(movement.velocity, axis=1) < thresholds.max_speed)
     candidates = [
         candidate
         for first, last in _runs(at_rest)
-        for candidate in _candidates_around(times, point, velocity, first, last)
+        for candidate in _candidates_around(clock, thresholds, movement, first, last)
     ]
-    for candidate in _joined(candidates, point.track):
-        cut_off = candidate.start <= times[0] or candidate.end >= times[-1]
+    for candidate in _joined(candidates, movement.track):
+        cut_off = candidate.start <= clock[0] or candidate.end >= clock[-1]
         if candidate.end - candidate.start > (0.0 if cut_off else thresholds.min_duration):
             during = slice(candidate.first, candidate.last + 1)
-            place = np.median(point.track[during][at_rest[during]], axis=0)
+            place = np.median(movement.track[during][at_rest[during]], axis=0)
             yield Contact(
                 name, name, point.bone, point.offset, candidate.start, candidate.end, place
             )
@@ -73,7 +90,7 @@ def _touches(
 
 @dataclass(frozen=True)
 class _Candidate:
-    """Candidate contact: start and end, s, and the first and last frame at rest."""
+    """Candidate contact: start and end, s, and the first and last instant at rest."""
 
     start: float
     end: float
@@ -82,35 +99,40 @@ class _Candidate:
 
 
 def _candidates_around(
-    times: FloatArray, point: ContactPoint, velocity: FloatArray, first: int, last: int
+    clock: FloatArray, thresholds: ContactThresholds, movement: PointMovement, first: int, last: int
 ) -> Iterable[_Candidate]:
     """Region growing from a rest to where the point leaves its place; usually one candidate."""
-    thresholds = point.kind.value
-    away = point.track - _resting_place(times, point.track, first, last)
+    level, height = movement.track[:, :2], movement.track[:, 2:]
+    away = level - _at_rest(np.nanmedian, level, CREEP_WINDOW, (first, last))
+    above = height - _at_rest(np.nanmin, height, SINK_WINDOW, (first, last))
+    up = movement.leaving - _at_rest(np.nanmedian, movement.leaving, CREEP_WINDOW, (first, last))
     along = np.maximum(
-        np.linalg.norm(velocity[:, :2], axis=1) / thresholds.max_slip_speed,
-        np.linalg.norm(away[:, :2], axis=1) / MAX_SLIDE,
+        np.linalg.norm(movement.velocity[:, :2], axis=1) / thresholds.max_slip_speed,
+        np.linalg.norm(away, axis=1) / MAX_SLIDE,
     )
-    reach = away[:, 2] + thresholds.lead_time * np.minimum(velocity[:, 2], 0.0)
-    landing = np.maximum(reach / thresholds.landing_height, along)
-    lifting = np.maximum(away[:, 2] / thresholds.lift_off_height, along)
+    landing = np.maximum(above[:, 0] / thresholds.landing_height, along)
+    lifting = np.maximum(up[:, 0] / thresholds.lift_off_height, along)
     for a, b in _runs(np.minimum(landing, lifting) <= 1.0):
         if a <= last and b >= first:
-            start, end = _first_below(times, landing, a), _last_below(times, lifting, b)
+            start, end = _first_below(clock, landing, a), _last_below(clock, lifting, b)
             if end > start:
                 yield _Candidate(start, end, max(a, first), min(b, last))
 
 
-def _resting_place(times: FloatArray, track: FloatArray, first: int, last: int) -> FloatArray:
-    """(T, 3) m: running median of the track over the rest, held constant outside it.
+def _at_rest(
+    statistic: Callable[..., FloatArray], samples: FloatArray, window: float, rest: tuple[int, int]
+) -> FloatArray:
+    """(N, k): a running statistic of samples (N, k) at rest, over `window` s around each.
 
-    Feet creep while they stand, and floors are not level: "off the ground" is told from here.
+    Soles sink and feet creep while they stand, and floors are not level: "off the ground" is told
+    from where the point stood just then. It is held constant outside the rest.
     """
-    half = max(1, round(MEDIAN_HALF_WINDOW / float(np.median(np.diff(times)))))
-    padded = np.pad(track[first : last + 1], ((half, half), (0, 0)), constant_values=np.nan)
+    first, last = rest
+    half = round(window / (2.0 * STEP))
+    padded = np.pad(samples[first : last + 1], ((half, half), (0, 0)), constant_values=np.nan)
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1, axis=0)
-    own = np.nanmedian(windows, axis=-1)
-    return np.asarray(own[np.clip(np.arange(len(track)), first, last) - first])
+    during = np.clip(np.arange(len(samples)), first, last) - first
+    return np.asarray(statistic(windows, axis=-1)[during])
 
 
 def _first_below(times: FloatArray, excess: FloatArray, frame: int) -> float:
@@ -141,8 +163,12 @@ def _joined(candidates: Iterable[_Candidate], track: FloatArray) -> list[_Candid
         if before is None or candidate.start > before.end + MIN_SEPARATION:
             joined.append(candidate)
         elif np.linalg.norm((track[candidate.first] - track[before.last])[:2]) < MAX_SLIDE:
-            end, last = max(before.end, candidate.end), max(before.last, candidate.last)
-            joined[-1] = replace(before, end=end, last=last)
+            joined[-1] = replace(
+                before,
+                end=max(before.end, candidate.end),
+                first=min(before.first, candidate.first),
+                last=max(before.last, candidate.last),
+            )
         else:
             turn = (before.end + candidate.start) / 2
             joined[-1] = replace(before, end=min(before.end, turn))

@@ -104,7 +104,9 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
     """Joint tracks of one foot."""
     character, recording = performance.character, performance.recording
     foot, toe = character.body(Part.FOOT, side), character.body(Part.TOE, side)
+    thigh = character.body(Part.THIGH, side)
     assert foot is not None
+    assert thigh is not None
     last = foot if toe is None else toe
     ankle = performance.centres[:, foot]
     tip = performance.centres[:, last] + performance.rotations[:, last] @ character.bodies[last].tip
@@ -113,6 +115,7 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
         side=side.value.capitalize(),
         foot_bone=character.bodies[foot].bone,
         toe_bone=character.bodies[last].bone,
+        hip=performance.centres[:, thigh],
         ankle=ankle,
         ball=tip if toe is None else performance.centres[:, toe],
         tip=tip,

@@ -1,15 +1,16 @@
 """Heel and toe contact points on the foot bones, and floor height, from standing frames."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..data.contacts import ContactPoint, PointKind
 
-HEEL_OFFSET_RATIO = 0.25  # of the level distance from ankle to ball; where the heel presses
-TOE_OFFSET_RATIO = 0.75  # of the way from ball to tip; where the toe leaves last
+HEEL_OFFSET_RATIO = 0.3  # of the level distance from ankle to ball; where plates see it press
+TOE_OFFSET_RATIO = 0.3  # of the way from ball to tip; likewise, until it leaves
+LAST_OFFSET_RATIO = 0.75  # of the same way; where the sole leaves the floor last
 MAX_SOLE_THICKNESS = 0.08  # m from the ball joint to the floor
 DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
@@ -21,14 +22,15 @@ MIN_STANDING_FRAMES = 4
 class FootTracks:
     """Joint tracks of one foot over the clip, world, Z up.
 
-    side: as in the points' names ("Left"). ankle, ball, tip: (T, 3) m; the heads of the foot bone
-    and the toe bone, and the toe bone's tail. foot_rotation, toe_rotation: (T, 3, 3), bone to
+    side: as in the points' names ("Left"). hip, ankle, ball, tip: (T, 3) m; the heads of the thigh,
+    foot and toe bones, and the toe bone's tail. foot_rotation, toe_rotation: (T, 3, 3), bone to
     world. A rig without toes names its foot bone twice, with the foot's tail as ball and tip.
     """
 
     side: str
     foot_bone: str
     toe_bone: str
+    hip: FloatArray
     ankle: FloatArray
     ball: FloatArray
     tip: FloatArray
@@ -55,16 +57,31 @@ def foot_points(
     points = {}
     for foot in feet:
         flat, _ = _standing(times, foot)
-        ahead = _level(foot.ball - foot.ankle)
-        heel = _on_floor(foot.ankle - HEEL_OFFSET_RATIO * ahead, floor_m)
-        toe = _on_floor(foot.ball + TOE_OFFSET_RATIO * _level(foot.tip - foot.ball), floor_m)
+        heel = foot.ankle - HEEL_OFFSET_RATIO * _level(foot.ball - foot.ankle)
         toe_head = foot.ankle if foot.toe_bone == foot.foot_bone else foot.ball
-        points[f"{foot.side} heel"] = _fixed_in(
-            PointKind.HEEL, foot.foot_bone, foot.ankle, foot.foot_rotation, heel, flat
+        toe, last = (
+            _fixed_in(
+                PointKind.TOE,
+                foot.toe_bone,
+                toe_head,
+                foot.toe_rotation,
+                _on_floor(foot.ball + ratio * _level(foot.tip - foot.ball), floor_m),
+                flat,
+            )
+            for ratio in (TOE_OFFSET_RATIO, LAST_OFFSET_RATIO)
         )
-        points[f"{foot.side} toe"] = _fixed_in(
-            PointKind.TOE, foot.toe_bone, toe_head, foot.toe_rotation, toe, flat
+        points[f"{foot.side} heel"] = replace(
+            _fixed_in(
+                PointKind.HEEL,
+                foot.foot_bone,
+                foot.ankle,
+                foot.foot_rotation,
+                _on_floor(heel, floor_m),
+                flat,
+            ),
+            hip=foot.hip,
         )
+        points[f"{foot.side} toe"] = replace(toe, hip=foot.hip, last=last.track)
     return points
 
 

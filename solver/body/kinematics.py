@@ -66,6 +66,18 @@ class Pose:
         moved -= self._com_jacobian[..., None]
         return np.ascontiguousarray(moved.transpose(0, 3, 2, 1))
 
+    def point_rates(self, points: Sequence[BodyPoint], rates: FloatArray) -> FloatArray:
+        """(N, P, 3) product of `point_jacobian` with (N, n_angles) rates, without the Jacobian."""
+        moves, owner = _path_matrix(self.character), _body_of_angle(self.character)
+        spin = self.axes * rates[..., None]
+        turn, moment = moves @ spin, moves @ np.cross(spin, self.centres[:, owner])
+        masses = np.array([body.mass for body in self.character.bodies])
+        coms = np.cross(turn, self.body_coms) - moment
+        com = np.einsum("b,nbi->ni", masses / masses.sum(), coms)
+        bodies = [p.body for p in points]
+        at = np.cross(turn[:, bodies], self.points(points)) - moment[:, bodies]
+        return np.asarray(at - com[:, None])
+
     @cached_property
     def _com_jacobian(self) -> FloatArray:
         """(N, n_angles, 3) Jacobian of the centre of mass with the root's centre fixed, m/rad."""

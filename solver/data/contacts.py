@@ -20,17 +20,16 @@ class ContactThresholds:
     """Contact-detection thresholds of one kind of point.
 
     max_height (m above the floor) and max_speed (m/s) must both hold for a point to touch at all.
-    landing_height, lift_off_height: m above the point's own height in this contact, at which its
-    force begins and ends (a sole is still pressed when it is a little up). lead_time: s before
-    reaching landing_height at which the force begins (a heel's pad gives). max_slip_speed: m/s
-    along the floor. min_duration: s; the shortest contact believed.
+    landing_height: m above the lowest to which the point then sinks, lift_off_height: m by which
+    its sole is above its usual height in this contact; at which its force begins and ends, roughly:
+    a sole is pressed when it is a little up. max_slip_speed: m/s along the floor. min_duration: s;
+    the shortest contact believed.
     """
 
     max_height: float
     max_speed: float
     landing_height: float
     lift_off_height: float
-    lead_time: float
     max_slip_speed: float
     min_duration: float
 
@@ -39,21 +38,19 @@ class PointKind(Enum):
     """Kinds of contact point; thresholds set on recordings with measured ground forces."""
 
     HEEL = ContactThresholds(
-        max_height=0.03,
+        max_height=0.02,
         max_speed=0.5,
-        landing_height=0.005,
-        lift_off_height=0.005,
-        lead_time=0.02,
-        max_slip_speed=2.5,
+        landing_height=0.015,
+        lift_off_height=0.015,
+        max_slip_speed=2.0,
         min_duration=0.04,
     )
     TOE = ContactThresholds(
         max_height=0.05,
         max_speed=0.5,
-        landing_height=0.004,
-        lift_off_height=0.015,
-        lead_time=0.0,
-        max_slip_speed=2.5,
+        landing_height=0.02,
+        lift_off_height=0.024,
+        max_slip_speed=2.0,
         min_duration=0.04,
     )
     HAND = ContactThresholds(
@@ -61,7 +58,6 @@ class PointKind(Enum):
         max_speed=0.15,
         landing_height=0.005,
         lift_off_height=0.005,
-        lead_time=0.0,
         max_slip_speed=0.3,
         min_duration=0.15,
     )
@@ -69,12 +65,18 @@ class PointKind(Enum):
 
 @dataclass(frozen=True)
 class ContactPoint:
-    """A candidate contact point. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up."""
+    """A candidate contact point. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up.
+
+    hip: (T, 3) m, world; where the leg that ends in the point begins. last: (T, 3) m, world; the
+    part of the sole that leaves the floor last, where that is not the point itself.
+    """
 
     kind: PointKind
     bone: str
     offset: FloatArray
     track: FloatArray
+    hip: FloatArray | None = None
+    last: FloatArray | None = None
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,8 @@ class Contact:
     name: the point and its count in time, such as "Left heel 2"; point: "Left heel".
     offset: (3,) m, bone-local, from the bone's head. place: (3,) m, world, Z up.
     start, end: s; the instants at which the force begins and ends. A contact that the clip cuts
-    off starts at 0 or ends at the schedule's duration.
+    off starts at 0 or ends at the schedule's duration. rise: m above its place at these two; the
+    sole gives as much.
     """
 
     name: str
@@ -94,6 +97,7 @@ class Contact:
     start: float
     end: float
     place: FloatArray
+    rise: tuple[float, float] = (0.0, 0.0)
 
     @property
     def asked_for(self) -> bool:
@@ -159,6 +163,15 @@ class ContactSchedule:
         ends = {0.0, self.duration}
         ends |= {t for c in self.contacts for t in (c.start, c.end)}
         ends |= {t for u in self.unseen for t in (u.start, u.end)}
+        return tuple(sorted(ends))
+
+    @property
+    def jumps(self) -> tuple[float, ...]:
+        """Instants, s, ascending, at which accelerations may jump: the body lands or leaves as a
+        whole, or the clip begins or ends."""
+        ends = {0.0, self.duration}
+        ends |= {t for flight in self.flights for t in (flight.start, flight.end)}
+        ends |= {t for gap in self.unseen for t in (gap.start, gap.end)}
         return tuple(sorted(ends))
 
     def of_phase(self, phase: Phase) -> tuple[Contact, ...]:

@@ -54,13 +54,6 @@ class ClipTooShort(Fault):
 
 
 @dataclass
-class NoFlight(Fault):
-    """No instant found at which every foot is off the ground; how high the lower one comes."""
-
-    lowest_cm: float
-
-
-@dataclass
 class ZeroLengthBone(Fault):
     """A bone that must carry mass has no length."""
 
@@ -149,6 +142,13 @@ class UnseenSupport(Fault):
 
     first: float
     last: float
+
+
+@dataclass
+class Treadmill(Fault):
+    """The feet slide along the floor at one steady speed, m/s, so no place holds them."""
+
+    speed: float
 
 
 @dataclass

@@ -115,8 +115,6 @@ class ContactReport:
     end_s: float
     start_frame: float
     end_frame: float
-    pinned_from_s: float
-    pinned_to_s: float
     fitted_place_m: Vector
     place_m: Vector
     worst_violation_mm: float

@@ -64,7 +64,12 @@ def _times(factor: float, vector: Vector) -> Vector:
 def scaled_schedule(schedule: ContactSchedule, factor: float) -> ContactSchedule:
     """The schedule with places, offsets and floor height times `factor`."""
     contacts = (
-        replace(c, place=np.asarray(factor * c.place), offset=np.asarray(factor * c.offset))
+        replace(
+            c,
+            place=np.asarray(factor * c.place),
+            offset=np.asarray(factor * c.offset),
+            rise=(factor * c.rise[0], factor * c.rise[1]),
+        )
         for c in schedule.contacts
     )
     return replace(schedule, contacts=tuple(contacts), floor_m=factor * schedule.floor_m)

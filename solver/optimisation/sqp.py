@@ -29,6 +29,7 @@ MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
 NEAR_FEASIBLE = 1e3  # times the tolerances: the end of a solve
 MIN_PROJECTION_DECREASE = 0.05  # of the objective: what a further step must gain
+NEARLY_FEASIBLE = 1e3  # times the tolerances: what a projection leaves to restoration
 
 
 @dataclass(frozen=True)
@@ -264,7 +265,7 @@ def project(
 ) -> Outcome:
     """Projection: SQP steps that minimise an objective in the feasible set (thesis 4.2).
 
-    x: (K, n_block). Ends when a step changes the objective little; the rows then nearly hold, and
+    x: (K, n_block). Ends when a step changes the objective little and the rows nearly hold;
     `restore` finishes what is left.
     """
     steps: list[Step] = []
@@ -286,7 +287,8 @@ def project(
             progress(steps[-1], feasible.motion(x))
         before, value = value, objective.value(x)
         little = abs(before - value) < MIN_PROJECTION_DECREASE * before
-        if length == 0.0 or (len(steps) > 1 and little):
+        near = linearised.violation(feasible.values(x)) < NEARLY_FEASIBLE
+        if length == 0.0 or (near and little):
             status = Status.SOLVED
             break
     return feasible.outcome(x, status, steps, feasible.violation(x))
@@ -316,6 +318,10 @@ class _L1Merit:
         """The merit of an objective's value and the rows' values (R,)."""
         return value + self.penalty * self.linearised.l1_violation(rows)
 
+    def correction(self, x: FloatArray) -> FloatArray:
+        """The shortest step (K, n_block) from x to the rows as they were linearised."""
+        return self.linearised.step(self.feasible.values(x))[0]
+
     def __call__(self, x: FloatArray) -> float:
         return self.combined(self.objective.value(x), self.feasible.values(x))
 
@@ -323,11 +329,18 @@ class _L1Merit:
 def _backtrack(
     merit: _L1Merit, before: float, x: FloatArray, d: FloatArray
 ) -> tuple[FloatArray, float]:
-    """Backtracking line search from x along d (K, n_block); x itself and 0 if nothing lowers it."""
+    """Backtracking line search from x along d (K, n_block); x itself and 0 if nothing lowers it.
+
+    A trial point that fails gets a second-order correction (Nocedal & Wright, 18.3): rows curve,
+    and without it good steps are refused (the Maratos effect).
+    """
     length = 1.0
     while length > MIN_PROJECTION_LENGTH:
         trial = x + length * d
         if merit(trial) < before:
             return trial, length
+        corrected = trial + merit.correction(trial)
+        if merit(corrected) < before:
+            return corrected, length
         length *= 0.5
     return x, 0.0

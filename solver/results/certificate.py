@@ -5,7 +5,7 @@ Contacts are looked at while a point carries load, from its first instant to its
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,9 +14,9 @@ from ..body.human_strength import ECCENTRIC_FACTOR, LEG_JOINTS, peak_torque
 from ..body.inverse_dynamics import InverseDynamics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.report import CertificateItem, CertificateLine, FitQuality
+from ..transcription.compliant_sole import SINKING_TIME
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion, dynamics_residual, motion_inverse_dynamics
-from ..transcription.transcription import SETTLING_TIME
 from .flight_summary import FrameOf
 from .npz_export import instants
 
@@ -171,7 +171,7 @@ def _torques(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
 def loaded_drifts(motion: Motion) -> list[LoadedDrift]:
     """Of every contact, over the whole of it: first and last instants too."""
     contacts = motion.transcription.contacts
-    fine = EDGE + instants(SETTLING_TIME, FINE_RATE)
+    fine = EDGE + instants(SINKING_TIME, FINE_RATE)
     ends = [t for c in contacts for t in (c.contact.start + fine, c.contact.end - fine)]
     times = np.unique(np.concatenate([instants(motion.duration, SAMPLE_RATE), *ends]))
     times = times[(times >= 0.0) & (times <= motion.duration)]
@@ -182,7 +182,8 @@ def loaded_drifts(motion: Motion) -> list[LoadedDrift]:
         loaded = np.linalg.norm(forces[:, each.point], axis=1) > LOADED
         loaded &= (times >= each.contact.start) & (times <= each.contact.end)
         at = times[loaded]
-        off = each.pin_error(places[loaded, each.point], motion.places[i], at)
+        rigid = replace(each, sole=None)  # what the sole gives counts
+        off = rigid.pin_error(places[loaded, each.point], motion.places[i], at)
         off = off if each.held is None else off @ each.held
         height = off @ each.normal
         slide = np.linalg.norm(off - height[:, None] * each.normal, axis=1)

@@ -185,8 +185,6 @@ def _contact(adaptation: Adaptation, i: int, pin: str | None, loaded: LoadedDrif
         end_s=contact.end,
         start_frame=scene_frame(fit, contact.start),
         end_frame=scene_frame(fit, contact.end),
-        pinned_from_s=at.pin_start,
-        pinned_to_s=at.pin_end,
         fitted_place_m=_vector(adaptation.setup.fitted_places[i]),
         place_m=_vector(motion.places[i]),
         worst_violation_mm=1000.0 * float(drift.max()),

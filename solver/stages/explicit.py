@@ -8,10 +8,9 @@ from collections.abc import Mapping
 from ..arrays import FloatArray
 from ..constraints.constraint_builder import preferred_poses
 from ..data.requests import ObjectiveKind
-from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
-from ..optimisation.kkt_step import LinearisedProblem
-from ..optimisation.sqp import FeasibleSet, Outcome, Progress, Step, restore
+from ..optimisation.gauss_newton import minimise
+from ..optimisation.sqp import Outcome, Progress, restore
 from ..transcription.motion import Motion
 from ..transcription.objectives import (
     AngleDerivatives,
@@ -30,14 +29,9 @@ from ..transcription.transcription import Transcription
 from .fit import ADAPT_COST_WEIGHTS, motion_target
 from .setup import Setup
 
-MAX_GAUSS_NEWTON_STEPS = 12
 DAMPING_SHARE = 0.02  # of what REFERENCE_DRIFT costs: Levenberg damping of the steps
 REFERENCE_DRIFT = 0.05  # m, rms; its tracking cost weighs like the whole objective at the start
 MIN_OBJECTIVE = 1e-9  # by which terms are divided at least
-MIN_EXPLICIT_DECREASE = 0.02  # of the objective: what a further step must gain
-MIN_STEP_LENGTH = 0.05
-MAX_CORRECTIONS = 4  # second-order, a trial point
-CORRECTION_TOLERANCE = 20.0  # times the tolerances: near enough to compare objectives
 
 
 class TrackingTerm:
@@ -68,77 +62,13 @@ def explicit(
     """
     feasible = setup.feasible_set(outcome.transcription)
     objective = weighted_objective(outcome.transcription, outcome.x, setup, objectives)
-    near = minimise(feasible, objective, outcome.x, progress)
+    near = minimise(feasible, objective, outcome.x, stage="explicit", progress=progress)
     damping = objective.damping(near.x)
     restored = restore(feasible, damping, near.x, stage="explicit", progress=progress)
     before = objective.value(outcome.x)
     if not restored.solved or (after := objective.value(restored.x)) >= before:
         return [], 1.0
     return [near, restored], after / before
-
-
-def minimise(
-    feasible: FeasibleSet,
-    objective: WeightedObjective,
-    x: FloatArray,
-    progress: Progress | None,
-) -> Outcome:
-    """Gauss-Newton steps in the feasible set from x (K, n_block), until one gains little.
-
-    A trial point is brought back to the set before its objective is judged, for a small violation
-    would buy a lot of it: second-order corrections (Nocedal & Wright, 18.3).
-    """
-    steps: list[Step] = []
-    value, working = objective.value(x), None
-    violation, length = 0.0, 1.0
-    for _ in range(MAX_GAUSS_NEWTON_STEPS):
-        rows = feasible.rows(x)
-        gradient, hessian = objective.expand(x)
-        linearised = feasible.linearise(rows, hessian, working)
-        d, _ = linearised.step(rows.value, gradient)
-        working = linearised.working
-        violation = linearised.violation(rows.value)
-        begin = (value, min(1.0, 2.0 * length))
-        found = _corrected_step(feasible, objective, linearised, x, d, begin)
-        length = found[2] if found else 0.0
-        steps.append(Step("explicit", violation, length, linearised.worst_owner(rows.value)))
-        if found is None:
-            break
-        before, (x, value, _) = value, found
-        if progress is not None:
-            progress(steps[-1], feasible.motion(x))
-        if before - value < MIN_EXPLICIT_DECREASE * before:
-            break
-    return feasible.outcome(x, Status.SOLVED, steps, violation)
-
-
-def _corrected_step(
-    feasible: FeasibleSet,
-    objective: WeightedObjective,
-    linearised: LinearisedProblem,
-    x: FloatArray,
-    d: FloatArray,
-    begin: tuple[float, float],
-) -> tuple[FloatArray, float, float] | None:
-    """Backtracking line search with second-order corrections: unknowns, objective and length.
-
-    None where no length lowers the objective. begin: the objective at x, and the first length.
-    """
-    value, length = begin
-    while length > MIN_STEP_LENGTH:
-        trial = x + length * d
-        values = feasible.values(trial)
-        for _ in range(MAX_CORRECTIONS):
-            if linearised.violation(values) <= CORRECTION_TOLERANCE:
-                break
-            trial = trial + linearised.step(values)[0]
-            values = feasible.values(trial)
-        if linearised.violation(values) <= CORRECTION_TOLERANCE:
-            reached = objective.value(trial)
-            if reached < value:
-                return trial, reached, length
-        length *= 0.5
-    return None
 
 
 def weighted_objective(

@@ -9,20 +9,23 @@ from functools import cached_property
 
 import numpy as np
 
+from ..analysis.accelerations import angle_accelerations, com_acceleration
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
 from ..body.dynamics import MomentFunction
 from ..body.kinematics import BodyPoint, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
-from ..data.contacts import Contact, ContactSchedule
+from ..data.contacts import ContactSchedule
 from ..data.recording import Recording
 from ..data.requests import BodyChange
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..numerics.interpolation import interpolate
 from ..numerics.splines import SplineBasis, gauss_instants, phase_breaks
+from ..optimisation.gauss_newton import minimise
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
+from ..transcription.compliant_sole import sole_trajectory
 from ..transcription.contact_pins import PointContact, touching_spans
 from ..transcription.motion import (
     DenseTolerance,
@@ -34,17 +37,29 @@ from ..transcription.motion import (
 from ..transcription.objectives import torque_metric
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_points
-from ..transcription.transcription import SETTLING_TIME, Transcription
+from ..transcription.transcription import Transcription
 
-CANDIDATE_SPANS = (0.08, 0.06, 0.045, 0.035, 0.025)  # s, longest knot spans to choose from
+CANDIDATE_SPANS = (0.04, 0.03, 0.025)  # s, longest knot spans to choose from
 SPLINE_FIT_TOLERANCE = 0.004  # m, rms spline-fit error of a joint centre
 MIN_SPAN = 0.015  # s, between breaks
-FIT_COST_WEIGHTS = CostWeights(position=1.0, acceleration_time=0.05, force=1e-4)
+FIT_COST_WEIGHTS = CostWeights(
+    position=1.0,
+    acceleration_time=0.05,
+    com_acceleration=1e-2,
+    force=1e-5,
+    force_rate_time=0.15,
+    friction=1e-3,
+)
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
 # weigh too: what a person does to jump further is push longer, not only harder.
 ADAPT_COST_WEIGHTS = CostWeights(shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3)
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
+MAX_PROJECTION_STEPS = 6
+MAX_IMPROVEMENTS = 4  # Gauss-Newton steps on the refined knots
+EDGE_SPAN = 0.02  # s; the span before a landing and after a lift-off, in which feet stop and start
+MIN_LOAD = 0.25  # of the weight, with which the direction of the contact force is known
+MAX_SLOPE = 0.5  # of that direction; runners and jumpers on force plates use 0.25 to 0.6
 THIRD_DERIVATIVE_WEIGHT = 1e-9  # regularises splines through samples that jump between contacts
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
@@ -113,10 +128,12 @@ def fit(
     x = initial_guess(transcription, performance)
     places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
     tracking_cost = TrackingCost(
-        transcription, recorded_target(transcription, performance, x), FIT_COST_WEIGHTS
+        transcription, recorded_target(transcription, performance, schedule), FIT_COST_WEIGHTS
     )
     feasible = FeasibleSet(transcription, places)
-    near = project(feasible, tracking_cost, x, stage="fit", max_steps=8, progress=progress)
+    near = project(
+        feasible, tracking_cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
+    )
     metric = tracking_cost.expand(near.x)[1]
     outcomes, last = [near], near
     for _ in range(1 + MAX_PLACE_UPDATES):
@@ -124,6 +141,7 @@ def fit(
         outcomes.append(last)
         if last.status is Status.SOLVED:
             outcomes += refine(last, fit_metric, FIT_TOLERANCE, progress=progress)
+            outcomes += _improved(outcomes[-1], performance, schedule, progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
         feasible = replace(feasible, places=places)
@@ -132,6 +150,26 @@ def fit(
         for contact, place in zip(schedule.contacts, places, strict=True)
     )
     return Fit(tuple(outcomes), places, performance, replace(schedule, contacts=settled))
+
+
+def _improved(
+    outcome: Outcome,
+    performance: Performance,
+    schedule: ContactSchedule,
+    progress: Progress | None,
+) -> list[Outcome]:
+    """Nearer to the recording on the refined knots: the steps that refine go the shortest way."""
+    t = outcome.transcription
+    feasible = FeasibleSet(t, outcome.places)
+    cost = TrackingCost(t, recorded_target(t, performance, schedule), FIT_COST_WEIGHTS)
+    nearer = minimise(
+        feasible, cost, outcome.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
+    )
+    metric = cost.expand(nearer.x)[1]
+    restored = restore(feasible, metric, nearer.x, stage="fit", progress=progress)
+    if not restored.solved:
+        return []
+    return [nearer, restored, *refine(restored, fit_metric, ADAPT_TOLERANCE, progress=progress)]
 
 
 def reached_places(motion: Motion) -> FloatArray:
@@ -215,7 +253,9 @@ def motion_target(motion: Motion) -> TrackingTarget:
     com = t.basis.combine(motion.x[:, t.layout.com], t.node_times)
     q, a = (t.angles_at_nodes(motion.x, k) for k in (0, 2))
     markers = forward_kinematics(t.character, q).points(marker_points(t.character)) + com[:, None]
-    return TrackingTarget(markers, com, a, motion.x[:, t.layout.forces])
+    com_acceleration = t.basis.combine(motion.x[:, t.layout.com], t.node_times, 2)
+    level = np.zeros((t.basis.n_coefficients, 2))
+    return TrackingTarget(markers, com, a, com_acceleration, motion.x[:, t.layout.forces], level)
 
 
 def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcription:
@@ -225,7 +265,7 @@ def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcrip
     contacts, extra = point_contacts(schedule, which)
     return Transcription(
         character,
-        _coarsest_basis(performance, schedule.boundaries, extra),
+        _coarsest_basis(performance, schedule.jumps, [*schedule.boundaries, *extra]),
         points,
         contacts,
         MomentFunction(character),
@@ -235,50 +275,35 @@ def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcrip
 def point_contacts(
     schedule: ContactSchedule, which: Sequence[int]
 ) -> tuple[tuple[PointContact, ...], list[float]]:
-    """Contacts with their pins' intervals, and the ends of these that are no phase boundaries, s.
+    """Contacts in the equations, and instants, s, shortly before landings and after lift-offs.
 
     which: each contact's index of a touching point.
     """
-    contacts: list[PointContact] = []
-    extra: list[float] = []
-    for contact, point in zip(schedule.contacts, which, strict=True):
-        start, end = (
-            _snapped_instant(t, schedule.boundaries, extra)
-            for t in _pin_interval(contact, schedule.duration)
-        )
-        contacts.append(PointContact(contact, point, start, end))
-    return tuple(contacts), extra
+    contacts = tuple(
+        PointContact(contact, point, sole=sole_trajectory(contact))
+        for contact, point in zip(schedule.contacts, which, strict=True)
+    )
+    edges: list[float] = []
+    for contact in schedule.contacts:
+        for t in (contact.start - EDGE_SPAN, contact.end + EDGE_SPAN):
+            near = min(abs(t - other) for other in (*schedule.boundaries, *edges))
+            if 0.0 < t < schedule.duration and near > MIN_SPAN:
+                edges.append(t)
+    return contacts, edges
 
 
 def _coarsest_basis(
-    performance: Performance, boundaries: Sequence[float], extra: Sequence[float]
+    performance: Performance, jumps: Sequence[float], extra: Sequence[float]
 ) -> SplineBasis:
     """Basis with the fewest knots that follows the recording; `refine` adds more for physics."""
     for longest in CANDIDATE_SPANS:
-        basis = SplineBasis(*phase_breaks(boundaries, extra, longest))
+        basis = SplineBasis(*phase_breaks(jumps, extra, longest))
         angles = recorded_spline(basis, performance, performance.angles)
         posed = forward_kinematics(performance.character, basis.combine(angles, performance.times))
         off = posed.centres - forward_kinematics(performance.character, performance.angles).centres
         if np.sqrt((off**2).sum(axis=2).mean(axis=0)).max() < SPLINE_FIT_TOLERANCE:
             break
     return basis
-
-
-def _pin_interval(contact: Contact, duration: float) -> tuple[float, float]:
-    """Start and end, s, of a contact's pin: the contact without a settling time at either end."""
-    settle = min(SETTLING_TIME, 0.25 * (contact.end - contact.start))
-    start = contact.start if contact.start <= 0.0 else contact.start + settle
-    end = contact.end if contact.end >= duration else contact.end - settle
-    return start, end
-
-
-def _snapped_instant(t: float, boundaries: Sequence[float], extra: list[float]) -> float:
-    """The existing break near t, or t itself, added to `extra`."""
-    near = min((*boundaries, *extra), key=lambda b: abs(b - t))
-    if abs(near - t) < MIN_SPAN:
-        return near
-    extra.append(t)
-    return t
 
 
 def body_points(
@@ -335,15 +360,23 @@ def recorded_spline(
 
 
 def recorded_target(
-    transcription: Transcription, performance: Performance, x: FloatArray
+    transcription: Transcription, performance: Performance, schedule: ContactSchedule
 ) -> TrackingTarget:
-    """The recording as a tracking target; accelerations and forces as in the initial guess x."""
-    times = transcription.node_times
+    """The recording as a tracking target; its forces are small and as its acceleration directs."""
+    times, basis = transcription.node_times, transcription.basis
+    instants = np.zeros(basis.n_coefficients)
+    spans = np.arange(basis.n_spans)
+    blocks = transcription.layout.force_block(basis.force_nodes(spans))
+    instants[blocks] = np.stack([basis.breaks[:-1], basis.breaks[1:]], axis=1)
+    load = com_acceleration(performance, schedule, instants) / STANDARD_GRAVITY
+    load[:, 2] += performance.character.gravity / STANDARD_GRAVITY
     return TrackingTarget(
         markers=performance.points(marker_points(performance.character), times),
         com=interpolate(performance.times, performance.com, times),
-        accelerations=transcription.angles_at_nodes(x, 2),
-        forces=x[:, transcription.layout.forces],
+        accelerations=angle_accelerations(performance, times),
+        com_acceleration=com_acceleration(performance, schedule, times),
+        forces=np.zeros((basis.n_coefficients, 3 * transcription.layout.n_points)),
+        slope=np.clip(load[:, :2] / np.maximum(load[:, 2:], MIN_LOAD), -MAX_SLOPE, MAX_SLOPE),
     )
 
 

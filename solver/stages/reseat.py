@@ -40,7 +40,8 @@ def com_shift(
     t = motion.transcription
     old = motion.pose(times)
     off = old.centres[:, 0] - new.centres[:, 0]  # with the root where it was
-    pinned = np.array([(c.pin_start <= times) & (times <= c.pin_end) for c in t.contacts])
+    spans = [(c.contact.start, c.contact.end) for c in t.contacts]
+    pinned = np.array([(start <= times) & (times <= end) for start, end in spans])
     if not pinned.any():
         return off
     apart = old.points(t.points) - new.points(points) - off[:, None]

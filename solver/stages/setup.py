@@ -38,7 +38,6 @@ from ..transcription.transcription import Transcription
 from .anticipation import anticipate
 from .fit import (
     ADAPT_COST_WEIGHTS,
-    CANDIDATE_SPANS,
     MIN_SPAN,
     THIRD_DERIVATIVE_WEIGHT,
     Fit,
@@ -49,6 +48,7 @@ from .fit import (
 )
 from .reseat import reseat
 
+MAX_SPAN = 0.08  # s, between knots that are not the fit's
 MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
 TORQUE_OBJECTIVES = (
     ObjectiveKind.TORQUE_SMOOTHNESS.value,
@@ -304,7 +304,7 @@ def _start(
     if coarse is None:
         basis = _mapped_basis(t.basis, context, extra)
     else:
-        basis = SplineBasis(*phase_breaks(schedule.boundaries, extra, coarse))
+        basis = SplineBasis(*phase_breaks(schedule.jumps, [*schedule.boundaries, *extra], coarse))
     new = Transcription(t.character, basis, points, contacts, t.moment)
     x = _resampled(reference, new, context.timeline.eased)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
@@ -315,8 +315,8 @@ def _mapped_basis(
     old: SplineBasis, context: EvaluationContext, extra: Sequence[float]
 ) -> SplineBasis:
     """The old knots at their new instants, and those that new boundaries and holds need."""
-    retiming, boundaries = context.timeline, context.schedule.boundaries
-    fixed = sorted({*boundaries, *extra})
+    retiming, schedule = context.timeline, context.schedule
+    fixed = sorted({*schedule.boundaries, *extra})
     kept: list[float] = []
     held = [
         np.linspace(hold.start, hold.end, 1 + int(np.ceil((hold.end - hold.start) / MAX_HELD_SPAN)))
@@ -326,7 +326,7 @@ def _mapped_basis(
         near = min(abs(t - other) for other in (*fixed, *kept))
         if 0.0 < t < retiming.duration and near > MIN_SPAN:
             kept.append(t)
-    return SplineBasis(*phase_breaks(boundaries, [*extra, *kept], CANDIDATE_SPANS[0]))
+    return SplineBasis(*phase_breaks(schedule.jumps, [*fixed, *kept], MAX_SPAN))
 
 
 def _resampled(
@@ -368,7 +368,7 @@ def _current_places(motion: Motion, fit: Fit) -> FloatArray:
         if contact.contact.name in known:
             places.append(known[contact.contact.name])
         else:
-            times = np.linspace(contact.pin_start, contact.pin_end, 20)
+            times = np.linspace(contact.contact.start, contact.contact.end, 20)
             places.append(motion.contact_points(times)[:, contact.point].mean(axis=0))
     return np.array(places).reshape(-1, 3)
 

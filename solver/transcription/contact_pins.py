@@ -65,38 +65,46 @@ def interpolate_places(times: FloatArray, places: FloatArray, at: FloatArray) ->
 class PointContact:
     """A contact in the equations; `point` indexes the transcription's points. World axes.
 
-    pin_start, pin_end: s. held: (k, 3) unit directions in which the point is held; None in all.
-    track: trajectory of its place. friction: coefficient, None for a grip, which may pull as well
-    as push. normal: (3,) of the surface. pyramid: a four-sided friction pyramid inside the cone.
+    held: (k, 3) unit directions in which the point is held; None in all. track: trajectory of its
+    place. sole: how the point sinks to its place and rises from it (compliant_sole.py). friction:
+    coefficient, None for a grip, which may pull as well as push. normal: (3,) of the surface.
+    pyramid: a four-sided friction pyramid inside the cone.
     """
 
     contact: Contact
     point: int
-    pin_start: float
-    pin_end: float
     held: FloatArray | None = None
     track: PlaceTrajectory | None = None
+    sole: PlaceTrajectory | None = None
     friction: float | None = DEFAULT_FRICTION
     normal: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     pyramid: bool = False
 
     def retimed(self, warp: Callable[[FloatArray], FloatArray]) -> "PointContact":
         """The same contact at other instants. warp: new instants (T,) s of old ones."""
-        instants = [self.contact.start, self.contact.end, self.pin_start, self.pin_end]
-        start, end, pin_start, pin_end = warp(np.array(instants)).tolist()
+        start, end = warp(np.array([self.contact.start, self.contact.end])).tolist()
         contact = replace(self.contact, start=start, end=end)
-        track = None if self.track is None else replace(self.track, times=warp(self.track.times))
-        return replace(self, contact=contact, pin_start=pin_start, pin_end=pin_end, track=track)
+        track, sole = (
+            None if each is None else replace(each, times=warp(each.times))
+            for each in (self.track, self.sole)
+        )
+        return replace(self, contact=contact, track=track, sole=sole)
 
     def pin_error(self, at: FloatArray, place: FloatArray, times: FloatArray) -> FloatArray:
         """(T, k) errors of points at (T, 3) against where they are held at instants (T,) s, m.
 
         place: (3,) m, where the contact's track begins.
         """
-        error = at - place
-        if self.track is not None:
-            error = error - self.track.at(times)
+        error = at - place - self.moves(times)
         return error if self.held is None else np.asarray(error @ self.held.T)
+
+    def moves(self, times: FloatArray, *, velocity: bool = False) -> FloatArray:
+        """(T, 3) m from its place to where the point is held at instants (T,) s, or velocity."""
+        moves = np.zeros((len(times), 3))
+        for each in (self.track, self.sole):
+            if each is not None:
+                moves += each.velocity(times) if velocity else each.at(times)
+        return moves
 
 
 @dataclass(frozen=True)
@@ -127,14 +135,14 @@ class Pins:
         slack = 1e-9
         pinned = np.array(
             [
-                (basis.breaks >= c.pin_start - slack) & (basis.breaks <= c.pin_end + slack)
+                (basis.breaks >= c.contact.start - slack) & (basis.breaks <= c.contact.end + slack)
                 for c in contacts
             ],
             dtype=bool,
         ).reshape(len(contacts), len(basis.breaks))
         ends = np.array(
             [
-                np.isclose(basis.breaks, c.pin_start) | np.isclose(basis.breaks, c.pin_end)
+                np.isclose(basis.breaks, c.contact.start) | np.isclose(basis.breaks, c.contact.end)
                 for c in contacts
             ],
             dtype=bool,
@@ -156,9 +164,7 @@ class Pins:
         moves = np.zeros((len(contact), 3))
         for i, each in enumerate(contacts):
             mine = contact == i
-            if each.track is not None:
-                times = self.times[at[mine]]
-                moves[mine] = each.track.velocity(times) if velocity else each.track.at(times)
+            moves[mine] = each.moves(self.times[at[mine]], velocity=velocity)
             if each.held is not None:
                 count = len(each.held)
                 axes[mine, :count], kept[mine, count:] = each.held, False

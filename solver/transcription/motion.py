@@ -132,8 +132,8 @@ def dynamics_residual(motion: Motion, times: FloatArray) -> DynamicsResidual:
 
 def pinned_instants(contact: PointContact, rate: float) -> FloatArray:
     """Instants, s, at `rate` Hz (two at least) while a contact's point is pinned."""
-    count = max(2, int(np.ceil((contact.pin_end - contact.pin_start) * rate)))
-    return np.linspace(contact.pin_start, contact.pin_end, count)
+    start, end = contact.contact.start, contact.contact.end
+    return np.linspace(start, end, max(2, int(np.ceil((end - start) * rate))))
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ def spans_to_refine(motion: Motion, tolerance: DenseTolerance) -> IntArray:
         at = motion.contact_points(times)
         spans = np.repeat(np.arange(basis.n_spans), per)
         for i, contact in enumerate(transcription.contacts):
-            pinned = (times > contact.pin_start) & (times < contact.pin_end)
+            pinned = (times > contact.contact.start) & (times < contact.contact.end)
             off = contact.pin_error(at[:, contact.point], motion.places[i], times)
             weak[spans[pinned & (np.linalg.norm(off, axis=1) > tolerance.drift)]] = True
     return np.flatnonzero(weak)

@@ -13,6 +13,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..body.character import Character
 from ..body.kinematics import BodyPoint, Pose, forward_kinematics
+from ..data.constants import STANDARD_GRAVITY
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import ORDER
 from .rows import FORCE_BLOCKS
@@ -27,15 +28,19 @@ class CostWeights:
 
     position: of markers in the world; shape: of markers relative to the centre of mass; com: of
     the centre of mass itself. acceleration_time: s, its fourth power weighs marker accelerations.
-    force: (m/BW)², of force errors. force_rate_time: s, its square weighs their rate of change.
+    com_acceleration: (m/g)², of the centre of mass's acceleration: one of g weighs as much as so
+    many metres. force: (m/BW)², of force errors. force_rate_time: s, its square weighs their rate
+    of change. friction: (m/BW)², of each point's force across the target's direction.
     """
 
     position: float = 0.0
     shape: float = 0.0
     com: float = 0.0
     acceleration_time: float = 0.05
+    com_acceleration: float = 0.0
     force: float = 1e-6
     force_rate_time: float = 0.05
+    friction: float = 0.0
 
 
 def marker_points(character: Character) -> tuple[BodyPoint, ...]:
@@ -53,13 +58,17 @@ class TrackingTarget:
     """Reference motion at the dynamics nodes (N,).
 
     markers: (N, M, 3) m world. com: (N, 3) m world. accelerations: (N, n_angles) rad/s².
-    forces: (K, 3 P) force values, body weights, laid out as in the unknowns.
+    com_acceleration: (N, 3) m/s², world. forces: (K, 3 P) force values, body weights, laid out as
+    in the unknowns. slope: (K, 2) horizontal over vertical component of the force that explains
+    the target's movement, at the force values.
     """
 
     markers: FloatArray
     com: FloatArray
     accelerations: FloatArray
+    com_acceleration: FloatArray
     forces: FloatArray
+    slope: FloatArray
 
 
 @dataclass(frozen=True)
@@ -68,7 +77,7 @@ class _NodeErrors:
 
     values: basis values and second derivatives (N, 4). weight: (N,) s. world, shape: (N, M, 3) m,
     of markers, absolute and relative to the centre of mass. com: (N, 3) m. acceleration:
-    (N, n_angles) rad/s².
+    (N, n_angles) rad/s². com_acceleration: (N, 3) m/s².
     """
 
     values: list[FloatArray]
@@ -78,6 +87,7 @@ class _NodeErrors:
     shape: FloatArray
     com: FloatArray
     acceleration: FloatArray
+    com_acceleration: FloatArray
 
 
 class TrackingCost:
@@ -94,6 +104,7 @@ class TrackingCost:
         times, spans = transcription.node_times, transcription.node_spans
         self._values = [basis.evaluate(times, k, spans) for k in (0, 2)]
         self._smooth = weights.acceleration_time**4
+        self._load = weights.com_acceleration / STANDARD_GRAVITY**2
         self._force_windows = self._force_metric()
 
     def _batches(self) -> Iterator[slice]:
@@ -119,6 +130,7 @@ class TrackingCost:
             shape=relative - (markers - centre[:, None]),
             com=com - centre,
             acceleration=second[:, t.layout.angles] - target.accelerations[nodes],
+            com_acceleration=second[:, t.layout.com] - target.com_acceleration[nodes],
         )
 
     def value(self, x: FloatArray) -> float:
@@ -130,8 +142,9 @@ class TrackingCost:
                 axis=(1, 2)
             )
             each = mean / len(self.points) + p.com * (at.com**2).sum(axis=1)
-            moved = np.einsum("npij,nj->npi", at.posed.point_jacobian(self.points), at.acceleration)
+            moved = at.posed.point_rates(self.points, at.acceleration)
             each += self._smooth * self._marker_weight * (moved**2).sum(axis=(1, 2))
+            each += self._load * (at.com_acceleration**2).sum(axis=1)
             total += 0.5 * float(at.weight @ each)
         forces = self._force_error(x)
         return total + 0.5 * float((forces * self._force_windows.times(forces)).sum())
@@ -175,6 +188,8 @@ class TrackingCost:
         matrix.add_windows(first, self._windows(at, metric, angle), layout.motion)
         value, second = at.values
         local = (at.weight[:, None] * value)[..., None] * slope[:, None]
+        load = self._load * at.com_acceleration
+        local[..., com] += (at.weight[:, None] * second)[..., None] * load[:, None]
         local[..., angles] += (at.weight[:, None] * second)[..., None] * curvature[:, None]
         summed = local.reshape(len(first), GAUSS_NODES, ORDER, n_motion).sum(axis=1)
         for k in range(ORDER):
@@ -193,6 +208,9 @@ class TrackingCost:
         bending = np.swapaxes(pairs, 1, 2) @ angle.reshape(spans, GAUSS_NODES, -1)
         angles = self.transcription.layout.angles
         windows[..., angles, angles] += bending.reshape(spans, ORDER, ORDER, n, n)
+        load = self._load * _products(second, at.weight)
+        for axis in range(self.transcription.layout.com.stop):
+            windows[..., axis, axis] += load.reshape(spans, GAUSS_NODES, ORDER, ORDER).sum(axis=1)
         return np.asarray(windows.transpose(0, 1, 3, 2, 4))
 
     # -- forces ----------------------------------------------------------------------------
@@ -205,27 +223,41 @@ class TrackingCost:
         return error
 
     def _force_metric(self) -> BlockBanded:
-        """Integral of squared force errors and of their rates: piecewise linear, exact."""
+        """Integral of squared force errors, their rates and their parts across the target's slope:
+        piecewise linear, exact."""
         t, p = self.transcription, self.weights
         basis, layout = t.basis, t.layout
-        h = np.diff(basis.breaks)
-        mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
-        stiff = np.array([[1.0, -1.0], [-1.0, 1.0]])
-        each = p.force * (h[:, None, None] * mass + p.force_rate_time**2 / h[:, None, None] * stiff)
+        h = np.diff(basis.breaks)[:, None, None]
+        mass = h * np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
+        stiff = np.array([[1.0, -1.0], [-1.0, 1.0]]) / h
+        alike = p.force * (mass + p.force_rate_time**2 * stiff)
         matrix = BlockBanded(basis.n_coefficients, layout.n_block)
         exists = t.active[:, layout.forces]
-        index = np.arange(layout.forces.start, layout.forces.stop)
+        across = self._across()
         first = basis.first_coefficient + FORCE_BLOCKS.start  # of each span's first force value
+        identity = np.eye(exists.shape[1])
         for row in range(2):
             for column in range(row + 1):
-                both = exists[first + row] & exists[first + column]
-                block = matrix.lower[row - column]
-                np.add.at(
-                    block,
-                    ((first + column)[:, None], index, index),
-                    each[:, row, column, None] * both,
-                )
+                a, b = first + row, first + column
+                each = alike[:, row, column, None, None] * identity
+                if p.friction:
+                    pair = np.swapaxes(across[a], 1, 2) @ across[b]
+                    each = each + p.friction * mass[:, row, column, None, None] * pair
+                each = each * exists[a][:, :, None] * exists[b][:, None, :]
+                block = matrix.lower[row - column][:, layout.forces, layout.forces]
+                np.add.at(block, b, each)
         return matrix
+
+    def _across(self) -> FloatArray:
+        """(K, 2 P, 3 P) maps of the force values to their parts across the target's slope."""
+        t = self.transcription
+        points = t.layout.n_points
+        across = np.zeros((t.basis.n_coefficients, points, 2, points, 3))
+        each = np.arange(points)
+        for axis in range(2):
+            across[:, each, axis, each, axis] = 1.0
+            across[:, each, axis, each, 2] = -self.target.slope[:, axis, None]
+        return across.reshape(len(across), 2 * points, 3 * points)
 
 
 def _products(values: FloatArray, weight: FloatArray) -> FloatArray:

@@ -12,8 +12,9 @@ push      forces push and stay in their friction cones, at every force node and 
           instant: both sets are convex (friction_cones.py)
 others    the artist's constraints (constraint.py)
 
-A contact carries force for a short while before its point has come to rest and after it starts
-to lift (SETTLING_TIME): shoes and feet give, and a spline cannot stop a foot in no time.
+A point is pinned while it carries force; at a landing and a lift-off its place gives as soles do
+(compliant_sole.py). Each point's force begins and ends at zero, and accelerations may jump only
+where the body lands or leaves as a whole: so the forces' sum is continuous within a stance.
 """
 
 from collections.abc import Callable
@@ -37,7 +38,6 @@ from .rows import FORCE_BLOCKS, Layout, Rows
 from .sampling import ChannelJacobian, Instants
 
 GAUSS_NODES = 3  # dynamics nodes a span
-SETTLING_TIME = 0.03  # s
 
 
 @dataclass

@@ -96,7 +96,7 @@ def contacts() -> tuple[PointContact, ...]:
         Contact(f"{bone} 1", bone, bone, np.zeros(3), 0.0, end, place)
         for bone, end, place in zip(bones, ends, at, strict=True)
     ]
-    return tuple(PointContact(c, i, 0.0, c.end) for i, c in enumerate(made))
+    return tuple(PointContact(c, i) for i, c in enumerate(made))
 
 
 def places() -> np.ndarray:

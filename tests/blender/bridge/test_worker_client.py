@@ -14,7 +14,6 @@ import pytest
 from hangtime.bridge.worker_client import DragStream, PendingRequest, RequestKind, Worker
 from hangtime.solver.data.faults import (
     ClipTooShort,
-    NoFlight,
     UnknownContactName,
     UnknownPhase,
     WorkerDied,
@@ -112,7 +111,6 @@ def test_the_second_adaptation_starts_from_the_stored_fit(worker: Worker, jump: 
 def test_a_fault_is_an_answer_and_the_worker_lives_on(worker: Worker, jump: Recording) -> None:
     asked: list[tuple[MotionProblem, type[Exception]]] = [
         (MotionProblem(frames=(1.0, 5.0)), ClipTooShort),
-        (MotionProblem(frames=(73.0, 150.0)), NoFlight),
         (MotionProblem(frames=SPAN, contacts=(ContactEdit("Nose 1"),)), UnknownContactName),
     ]
     numbers = set()

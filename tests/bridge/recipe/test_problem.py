@@ -16,10 +16,10 @@ from hangtime.solver.data.faults import (
     BadRecipe,
     ContradictoryPins,
     MissingPart,
-    NoFlight,
     UnknownContact,
     UnknownContactName,
     UnknownPhase,
+    UnseenSupport,
 )
 from hangtime.solver.data.problem import ContactEdit, MassTable, MotionProblem, OffsetAxes, Pin
 from hypothesis import given
@@ -270,7 +270,7 @@ def test_faults_of_the_solver_are_found_in_the_recipe(fault, part: str) -> None:
 
 
 def test_faults_that_the_recipe_is_not_about_have_no_line() -> None:
-    assert locate(FULL, NoFlight(3.0)) is None
+    assert locate(FULL, UnseenSupport(1.0, 5.0)) is None
     assert locate(FULL, MissingPart("head")) is None
     assert locate(FULL, UnknownPhase("another", "ground 1", ())) is None
 

@@ -39,8 +39,10 @@ def test_point_jacobians(make: type) -> None:
     ahead, behind = (
         forward_kinematics(character, q + s * step * d).points(points) for s in (1.0, -1.0)
     )
-    ours = np.einsum("npij,nj->npi", forward_kinematics(character, q).point_jacobian(points), d)
+    posed = forward_kinematics(character, q)
+    ours = np.einsum("npij,nj->npi", posed.point_jacobian(points), d)
     assert ours == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-7)
+    assert posed.point_rates(points, d) == pytest.approx(ours, abs=1e-12)
 
 
 @pytest.mark.parametrize("make", [figure, human])

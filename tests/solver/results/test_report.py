@@ -101,7 +101,7 @@ def test_pins_hold_and_the_worst_frame_is_while_pinned() -> None:
         assert contact["worst_violation_mm"] < 1.0
         recording = fitted_hop().performance.recording
         at = (contact["worst_violation_frame"] - recording.frames[0]) / 120.0
-        assert contact["pinned_from_s"] - 1e-4 <= at <= contact["pinned_to_s"] + 1e-4
+        assert contact["start_s"] - 1e-4 <= at <= contact["end_s"] + 1e-4
         drift = further().motion.drift(i, np.array([at]))
         assert 1000.0 * drift[0] == pytest.approx(contact["worst_violation_mm"], abs=0.01)
 

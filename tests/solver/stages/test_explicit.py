@@ -123,7 +123,7 @@ def other_terms(found: Adaptation, objective: ObjectiveKind) -> list[ObjectiveTe
 
 def c_times(found: Adaptation, i: int) -> np.ndarray:
     contact = found.motion.transcription.contacts[i]
-    return np.linspace(contact.pin_start, contact.pin_end, 50)
+    return np.linspace(contact.contact.start, contact.contact.end, 50)
 
 
 @pytest.mark.slow

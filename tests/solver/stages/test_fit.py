@@ -148,8 +148,8 @@ def test_a_mirrored_recording_gives_the_mirrored_fit() -> None:
     names = [b.name for b in seen.performance.recording.bones]
     assert "LeftFoot" in names
     off = np.linalg.norm(centres(seen) - centres(fitted_hop()) @ MIRROR, axis=-1)
-    assert np.sqrt((off**2).mean()) < 0.005  # joint axes, and so splines, are not mirrored
-    assert off.max() < 0.04
+    assert np.sqrt((off**2).mean()) < 0.006  # joint axes, and so splines, are not mirrored
+    assert off.max() < 0.045
 
 
 @pytest.mark.slow

@@ -39,7 +39,7 @@ def contact_places(adaptation: Adaptation) -> np.ndarray:
     """(n_contacts, 3) m: where the points really are in the middle of their contacts."""
     motion = adaptation.motion
     contacts = motion.transcription.contacts
-    middles = np.array([0.5 * (c.pin_start + c.pin_end) for c in contacts])
+    middles = np.array([0.5 * (c.contact.start + c.contact.end) for c in contacts])
     at = motion.contact_points(middles)
     return at[np.arange(len(contacts)), [c.point for c in contacts]]
 

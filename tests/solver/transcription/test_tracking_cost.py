@@ -1,5 +1,7 @@
 """Tracking cost: its gradient and Hessian against finite differences."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hangtime.solver.stages.fit import motion_target
@@ -13,10 +15,19 @@ from hangtime.solver.transcription.tracking_cost import (
 from hangtime.tests.helpers.toy_problems import figure, places, random_state, standing
 
 COST_WEIGHTS = {
-    "fit": CostWeights(position=1.0, acceleration_time=0.05, force=1e-4),
+    "fit": CostWeights(
+        position=1.0, acceleration_time=0.05, com_acceleration=0.01, force=1e-4, friction=1e-3
+    ),
     "adaptation": CostWeights(shape=1.0, com=0.02, acceleration_time=0.05, force=3e-3),
     "all": CostWeights(
-        position=0.7, shape=0.4, com=0.2, acceleration_time=0.1, force=0.02, force_rate_time=0.1
+        position=0.7,
+        shape=0.4,
+        com=0.2,
+        acceleration_time=0.1,
+        com_acceleration=0.3,
+        force=0.02,
+        force_rate_time=0.1,
+        friction=0.05,
     ),
 }
 
@@ -36,7 +47,7 @@ def test_the_gradient_is_the_value_s_slope(name: str) -> None:
     x, target = random_state(0), at_itself(random_state(1))
     t = standing()
     own = at_itself(x)
-    target = TrackingTarget(target.markers, target.com, own.accelerations, target.forces)
+    target = replace(target, accelerations=own.accelerations)
     tracking_cost = TrackingCost(t, target, COST_WEIGHTS[name])
     gradient, _ = tracking_cost.expand(x)
     for seed in range(3):
@@ -88,6 +99,24 @@ def test_a_shift_costs_what_it_moves() -> None:
     assert tracking_cost.value(far) == pytest.approx(0.5 * 0.01 * 0.3)
     shape = TrackingCost(standing(), at_itself(x), CostWeights(shape=1.0))
     assert shape.value(far) == pytest.approx(0.0, abs=1e-20)
+
+
+def test_forces_along_the_target_s_slope_cost_no_friction() -> None:
+    """A force of 1 up and 0.3 aside lies along a slope of 0.3, one straight up does not."""
+    t, x = standing(), random_state(6)
+    target = at_itself(x)
+    weights = CostWeights(force=0.0, friction=1.0)
+    sloped = replace(target, slope=target.slope + np.array([0.3, 0.0]), forces=0.0 * target.forces)
+    cost = TrackingCost(t, sloped, weights)
+    forces = {"along": (0.3, 0.0, 1.0), "up": (0.0, 0.0, 1.0)}
+    values = {}
+    for name, force in forces.items():
+        y = x.copy()
+        y[:, t.layout.forces] = np.tile(force, t.layout.n_points)
+        y[~t.active] = 0.0
+        values[name] = cost.value(y)
+    assert values["along"] == pytest.approx(0.0, abs=1e-12)
+    assert values["up"] > 1e-3
 
 
 def test_markers_span_every_body() -> None:

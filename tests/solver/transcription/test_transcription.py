@@ -160,7 +160,7 @@ def test_once_the_rows_hold_the_feet_stay() -> None:
     motion = stood()
     for i, contact in enumerate(motion.transcription.contacts):
         breaks = motion.transcription.basis.breaks
-        inside = breaks[(breaks >= contact.pin_start) & (breaks <= contact.pin_end)]
+        inside = breaks[(breaks >= contact.contact.start) & (breaks <= contact.contact.end)]
         assert motion.drift(i, inside).max() < 2e-5
 
 

@@ -144,7 +144,7 @@ MESSAGES: tuple[Message, ...] = (
     Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, FAULT),
     Followed(1, TRACES, DragStatus.CONVERGED, DragSummary(3.0, 1.0, 2.0, 4.5)),
     Cancelled(1),
-    Failed(1, faults.NoFlight(lowest_cm=1.5)),
+    Failed(1, faults.UnseenSupport(1.0, 5.0)),
 )
 
 

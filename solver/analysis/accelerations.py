@@ -1,0 +1,34 @@
+"""Accelerations of a recording: of its joint angles and of its centre of mass."""
+
+from ..arrays import FloatArray
+from ..data.contacts import ContactSchedule
+from ..numerics.local_regression import second_derivative
+from .performance import Performance
+
+SMOOTHING_TIME = 0.012  # s; feet strike and knees give way within twice as long
+SMOOTHING_FRAMES = 1.2  # where frames are further apart
+
+
+def smoothing_width(performance: Performance) -> float:
+    """Standard deviation, s, of the weights by which accelerations are estimated."""
+    return max(SMOOTHING_TIME, SMOOTHING_FRAMES / performance.recording.rate)
+
+
+def angle_accelerations(performance: Performance, at: FloatArray) -> FloatArray:
+    """(N, n_angles) accelerations of the joint angles, rad/s², at instants (N,) s."""
+    width = smoothing_width(performance)
+    return second_derivative(performance.times, performance.angles, at, width)
+
+
+def com_acceleration(
+    performance: Performance, schedule: ContactSchedule, at: FloatArray
+) -> FloatArray:
+    """(N, 3) acceleration of the centre of mass, m/s², world, at instants (N,) s.
+
+    In flight it is gravity, whatever the recording's noise says.
+    """
+    width = smoothing_width(performance)
+    found = second_derivative(performance.times, performance.com, at, width)
+    for flight in schedule.flights:
+        found[(at > flight.start) & (at < flight.end)] = [0.0, 0.0, -performance.character.gravity]
+    return found

@@ -1,0 +1,64 @@
+"""Grounding: contacts as feet can keep them, on the floor and with time to step between places.
+
+Soles and floors give by millimetres, and a recording's skeleton does not know them. A place near
+the floor is put upon it; at a landing and a lift-off the point may be as high above its place as a
+sole gives, and as the recording shows it. A foot that slides is at one place and then at the next;
+in between it is not loaded.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..data.contacts import Contact, ContactSchedule
+from ..numerics.interpolation import interpolate
+from .performance import Performance
+
+NEAR_FLOOR = 0.04  # m; a place further away is on something else
+PLACE_BAND = (-0.002, 0.0015)  # m about the floor's height, where places are
+SOLE_COMPLIANCE = 0.008  # m; heel pads and midsoles give 5 to 12 (De Clercq et al. 1994)
+
+
+MAX_STEP_SPEED = 1.0  # m/s; of a foot that is shifted from place to place
+MIN_STEP_TIME = 0.06  # s
+MAX_STEP_SHARE = 0.3  # of the shorter of two contacts that a step takes from each
+
+
+def grounded(schedule: ContactSchedule, performance: Performance) -> ContactSchedule:
+    """The schedule with its places on the floor, each contact's rise, and time to step between."""
+    parted = replace(schedule, contacts=_parted(schedule))
+    if parted.phases != schedule.phases:  # nothing else carries the body meanwhile
+        parted = schedule
+    contacts = tuple(_grounded(c, parted, performance) for c in parted.contacts)
+    return replace(parted, contacts=contacts)
+
+
+def _parted(schedule: ContactSchedule) -> tuple[Contact, ...]:
+    """The contacts, those of one point that follow each other at different places moved apart."""
+    parted = list(schedule.contacts)
+    for i, before in enumerate(schedule.contacts):
+        for j, after in enumerate(schedule.contacts):
+            gap, apart = after.start - before.end, float(np.linalg.norm(after.place - before.place))
+            needed = max(MIN_STEP_TIME, apart / MAX_STEP_SPEED)
+            if after.point != before.point or i == j or not -1e-9 < gap < MIN_STEP_TIME:
+                continue
+            shorter = min(before.end - before.start, after.end - after.start)
+            each = min(0.5 * (needed - gap), MAX_STEP_SHARE * shorter)
+            parted[i] = replace(parted[i], end=before.end - each)
+            parted[j] = replace(parted[j], start=after.start + each)
+    return tuple(parted)
+
+
+def _grounded(contact: Contact, schedule: ContactSchedule, performance: Performance) -> Contact:
+    height = float(contact.place[2]) - schedule.floor_m
+    if abs(height) < NEAR_FLOOR:
+        height = float(np.clip(height, *PLACE_BAND))
+    place = np.array([*contact.place[:2], schedule.floor_m + height])
+    recording = performance.recording
+    bone = recording.index(contact.bone)
+    track = recording.heads[:, bone] + recording.rotations[:, bone] @ contact.offset
+    ends = np.array([contact.start, contact.end])
+    above = interpolate(performance.times, track[:, 2], ends) - place[2]
+    cut_off = (ends <= 0.0) | (ends >= schedule.duration)
+    first, last = np.where(cut_off, 0.0, np.clip(above, 0.0, SOLE_COMPLIANCE)).tolist()
+    return replace(contact, place=place, rise=(first, last))

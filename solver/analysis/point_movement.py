@@ -1,0 +1,57 @@
+"""Movement of points at even instants, whatever the frame rate: tracks, velocities, differences."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.contacts import ContactPoint
+from ..numerics.interpolation import interpolate
+
+STEP = 0.005  # s; tracks are looked at so finely
+SMOOTHING = 0.01  # s; half of the time over which a speed is taken
+HALF = round(SMOOTHING / STEP)
+
+
+@dataclass(frozen=True)
+class PointMovement:
+    """Movement of a point at N even instants.
+
+    track: (N, 3) m. velocity: (N, 3) m/s. leaving: (N, 1) m, height of the part that leaves last.
+    """
+
+    track: FloatArray
+    velocity: FloatArray
+    leaving: FloatArray
+
+
+def even_clock(duration: float) -> FloatArray:
+    """(N,) instants, s, from 0 to `duration`, STEP apart or very nearly so."""
+    return np.linspace(0.0, duration, max(2 * HALF, round(duration / STEP)) + 1)
+
+
+def point_movement(times: FloatArray, point: ContactPoint, clock: FloatArray) -> PointMovement:
+    """Movement of a point that is recorded at `times` (T,) s, at the instants `clock` (N,) s.
+
+    The velocity is the mean over 2 SMOOTHING, or what is left of it at the clip's ends.
+    """
+    before = np.maximum(clock - SMOOTHING, clock[0])
+    after = np.minimum(clock + SMOOTHING, clock[-1])
+    moved = interpolate(times, point.track, after) - interpolate(times, point.track, before)
+    last = point.track if point.last is None else point.last
+    return PointMovement(
+        interpolate(times, point.track, clock),
+        moved / (after - before)[:, None],
+        interpolate(times, last[:, 2:], clock),
+    )
+
+
+def rate(samples: FloatArray) -> FloatArray:
+    """(N,) first derivative, 1/s, of samples (N,) STEP apart: central; 0 at the clip's ends."""
+    return np.pad((samples[2 * HALF :] - samples[: -2 * HALF]) / (2.0 * SMOOTHING), HALF)
+
+
+def acceleration(samples: FloatArray) -> FloatArray:
+    """(N,) second derivative, 1/s², of samples (N,) STEP apart: central; 0 at the clip's ends."""
+    bend = samples[2 * HALF :] - 2.0 * samples[HALF:-HALF] + samples[: -2 * HALF]
+    return np.pad(bend / SMOOTHING**2, HALF)

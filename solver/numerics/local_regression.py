@@ -1,0 +1,27 @@
+"""Derivatives of noisy samples by local regression (Savitzky & Golay 1964; Cleveland 1979)."""
+
+import numpy as np
+
+from ..arrays import FloatArray
+
+DEGREE = 3
+REACH = 4.0  # standard deviations of the Gaussian weight, to either side
+
+
+def second_derivative(
+    times: FloatArray, samples: FloatArray, at: FloatArray, width: float
+) -> FloatArray:
+    """(N, n) second derivative of samples (T, n), in their unit by s², at instants (N,) s.
+
+    A cubic is fitted to the samples around each instant, with Gaussian weights of standard
+    deviation `width`, s. times: (T,) s, evenly spaced, T at least 4; near the ends one side serves.
+    """
+    frame = float(times[-1] - times[0]) / (len(times) - 1)
+    count = min(len(times), 2 * max(int(np.ceil(REACH * width / frame)), DEGREE) + 1)
+    first = np.clip(np.searchsorted(times, at) - count // 2, 0, len(times) - count)
+    index = first[:, None] + np.arange(count)
+    u = (times[index] - at[:, None]) / width
+    root = np.exp(-0.25 * u**2)  # of the weight
+    powers = u[..., None] ** np.arange(DEGREE + 1)
+    quadratic = np.linalg.pinv(root[..., None] * powers)[:, 2] * root
+    return np.asarray(np.einsum("nk,nkj->nj", 2.0 / width**2 * quadratic, samples[index]))

@@ -1,0 +1,92 @@
+"""Gauss-Newton descent in the feasible set: an objective is lowered while every row holds."""
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.status import Status
+from .kkt_step import LinearisedProblem
+from .sqp import FeasibleSet, Objective, Outcome, Progress, Step
+
+MAX_STEPS = 12
+MIN_DECREASE = 0.02  # of the objective: what a further step must gain
+MIN_STEP_LENGTH = 0.05
+MAX_CORRECTIONS = 4  # second-order, a trial point
+CORRECTION_TOLERANCE = 20.0  # times the tolerances: near enough to compare objectives
+
+
+def minimise(
+    feasible: FeasibleSet,
+    objective: Objective,
+    x: FloatArray,
+    *,
+    stage: str,
+    max_steps: int = MAX_STEPS,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Gauss-Newton steps in the feasible set from x (K, n_block), until one gains little.
+
+    A trial point is brought back to the set before its objective is judged, for a small violation
+    would buy a lot of it: second-order corrections (Nocedal & Wright, 18.3).
+    """
+    steps: list[Step] = []
+    value, working = objective.value(x), None
+    violation, length = 0.0, 1.0
+    for _ in range(max_steps):
+        rows = feasible.rows(x)
+        gradient, hessian = objective.expand(x)
+        linearised = feasible.linearise(rows, hessian, working)
+        d, _ = linearised.step(rows.value, gradient)
+        working = linearised.working
+        violation = linearised.violation(rows.value)
+        begin = (value, min(1.0, 2.0 * length))
+        found = _corrected_step(feasible, objective, linearised, x, d, begin)
+        length = found[2] if found else 0.0
+        steps.append(Step(stage, violation, length, linearised.worst_owner(rows.value)))
+        if found is None:
+            break
+        before, (x, value, _) = value, found
+        if progress is not None:
+            progress(steps[-1], feasible.motion(x))
+        if before - value < MIN_DECREASE * before:
+            break
+    return feasible.outcome(x, Status.SOLVED, steps, violation)
+
+
+def _corrected_step(
+    feasible: FeasibleSet,
+    objective: Objective,
+    linearised: LinearisedProblem,
+    x: FloatArray,
+    d: FloatArray,
+    begin: tuple[float, float],
+) -> tuple[FloatArray, float, float] | None:
+    """Backtracking line search with second-order corrections: unknowns, objective and length.
+
+    None where no length lowers the objective. begin: the objective at x, and the first length.
+    """
+    value, length = begin
+    while length > MIN_STEP_LENGTH:
+        trial = _corrected(feasible, linearised, x + length * d)
+        if trial is not None:
+            reached = objective.value(trial)
+            if reached < value:
+                return trial, reached, length
+        length *= 0.5
+    return None
+
+
+def _corrected(
+    feasible: FeasibleSet, linearised: LinearisedProblem, x: FloatArray
+) -> FloatArray | None:
+    """Second-order corrections of x (K, n_block); None where they do not converge."""
+    before = np.inf
+    for _ in range(1 + MAX_CORRECTIONS):
+        values = feasible.values(x)
+        violation = linearised.violation(values)
+        if violation <= CORRECTION_TOLERANCE:
+            return x
+        if not violation < before:  # diverges, or is not a number any more
+            return None
+        before = violation
+        x = x + linearised.step(values)[0]
+    return None

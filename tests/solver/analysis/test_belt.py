@@ -1,0 +1,30 @@
+"""Treadmills are told as such; steps over the ground are not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.data.faults import Treadmill
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.recording import Recording
+from hangtime.tests.helpers.clips import load_recording
+
+RUN = "run_2.bvh"
+
+
+def on_a_belt(recording: Recording) -> tuple[Recording, float]:
+    """The recording with the hips' mean velocity taken away, and that velocity's size, m/s."""
+    hips = recording.heads[:, 0]
+    mean = (hips[-1] - hips[0]) / recording.times[-1] * [1.0, 1.0, 0.0]
+    moved = recording.heads - (recording.times[:, None] * mean)[:, None]
+    return replace(recording, heads=moved), float(np.linalg.norm(mean))
+
+
+def test_a_run_on_a_belt_is_a_treadmill() -> None:
+    run = load_recording(RUN)
+    assert analyse(run, MotionProblem()).schedule.contacts
+    belt, speed = on_a_belt(run)
+    with pytest.raises(Treadmill) as caught:
+        analyse(belt, MotionProblem())
+    assert caught.value.speed == pytest.approx(speed, rel=0.1)
