@@ -9,7 +9,7 @@ from ..arrays import BoolArray, FloatArray
 from ..data.contacts import ContactPoint, PointKind
 
 HEEL_OFFSET_RATIO = 0.3  # of the level distance from ankle to ball; where plates see it press
-TOE_OFFSET_RATIO = 0.3  # of the way from ball to tip; likewise, until it leaves
+TOE_OFFSET_RATIO = 0.75  # of the way from ball to tip; what lies beyond cannot dip under the floor
 LAST_OFFSET_RATIO = 0.75  # of the same way; where the sole leaves the floor last
 MAX_SOLE_THICKNESS = 0.08  # m from the ball joint to the floor
 DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
