@@ -36,9 +36,8 @@ any folder in the same format will do.
 **Constants.** Those of contact detection (`PointKind`, `analysis/force_timing.py`) were set on the
 trials Subject4 and run200 and on the walk; two of them on recordings without plates
 (`forward_jump_*`, `fair1_jumping`). Those of the fit (`FIT_COST_WEIGHTS`, `SMOOTHING_TIME`,
-`SOLE_COMPLIANCE`, `SINKING_TIME`, `EDGE_SPAN`) were set on Subject4_DJ1 and DJ2; BMC_run, run200 and
-LaiArnoldSubject5_DJ2 were looked at meanwhile. The other trials were not looked at but for whether
-the fit solves. No constant knows a trial.
+`SOLE_COMPLIANCE`, `SINKING_TIME`, `EDGE_SPAN`) were set on Subject4_DJ1 and DJ2; BMC_run, run200
+and LaiArnoldSubject5_DJ2 were looked at meanwhile. No constant knows a trial.
 """
 
 

@@ -55,7 +55,7 @@ def detect_contacts(
     ]
     heights = {name: movement.track[:, 2] for name, movement in movements.items()}
     legs = {
-        name: np.linalg.norm(interpolate(times, p.track - p.hip, clock), axis=1)
+        name: np.linalg.norm(movements[name].track - interpolate(times, p.hip, clock), axis=1)
         for name, p in points.items()
         if p.hip is not None
     }
@@ -82,7 +82,7 @@ def _touches(
         cut_off = candidate.start <= clock[0] or candidate.end >= clock[-1]
         if candidate.end - candidate.start > (0.0 if cut_off else thresholds.min_duration):
             during = slice(candidate.first, candidate.last + 1)
-            place = np.median(movement.track[during][at_rest[during]], axis=0)
+            place = np.median(movement.point[during][at_rest[during]], axis=0)
             yield Contact(
                 name, name, point.bone, point.offset, candidate.start, candidate.end, place
             )
@@ -105,7 +105,8 @@ def _candidates_around(
     level, height = movement.track[:, :2], movement.track[:, 2:]
     away = level - _at_rest(np.nanmedian, level, CREEP_WINDOW, (first, last))
     above = height - _at_rest(np.nanmin, height, SINK_WINDOW, (first, last))
-    up = movement.leaving - _at_rest(np.nanmedian, movement.leaving, CREEP_WINDOW, (first, last))
+    leaving = movement.point[:, 2:]
+    up = leaving - _at_rest(np.nanmedian, leaving, CREEP_WINDOW, (first, last))
     along = np.maximum(
         np.linalg.norm(movement.velocity[:, :2], axis=1) / thresholds.max_slip_speed,
         np.linalg.norm(away, axis=1) / MAX_SLIDE,

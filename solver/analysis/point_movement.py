@@ -17,12 +17,12 @@ HALF = round(SMOOTHING / STEP)
 class PointMovement:
     """Movement of a point at N even instants.
 
-    track: (N, 3) m. velocity: (N, 3) m/s. leaving: (N, 1) m, height of the part that leaves last.
+    track: (N, 3) m, and velocity: (N, 3) m/s, of the part that presses. point: (N, 3) m.
     """
 
     track: FloatArray
     velocity: FloatArray
-    leaving: FloatArray
+    point: FloatArray
 
 
 def even_clock(duration: float) -> FloatArray:
@@ -37,12 +37,12 @@ def point_movement(times: FloatArray, point: ContactPoint, clock: FloatArray) ->
     """
     before = np.maximum(clock - SMOOTHING, clock[0])
     after = np.minimum(clock + SMOOTHING, clock[-1])
-    moved = interpolate(times, point.track, after) - interpolate(times, point.track, before)
-    last = point.track if point.last is None else point.last
+    pressing = point.track if point.pressing is None else point.pressing
+    moved = interpolate(times, pressing, after) - interpolate(times, pressing, before)
     return PointMovement(
-        interpolate(times, point.track, clock),
+        interpolate(times, pressing, clock),
         moved / (after - before)[:, None],
-        interpolate(times, last[:, 2:], clock),
+        interpolate(times, point.track, clock),
     )
 
 

@@ -9,8 +9,8 @@ from ..arrays import BoolArray, FloatArray
 from ..data.contacts import ContactPoint, PointKind
 
 HEEL_OFFSET_RATIO = 0.3  # of the level distance from ankle to ball; where plates see it press
-TOE_OFFSET_RATIO = 0.3  # of the way from ball to tip; likewise, until it leaves
-LAST_OFFSET_RATIO = 0.75  # of the same way; where the sole leaves the floor last
+TOE_OFFSET_RATIO = 0.75  # of the way from ball to tip; what lies beyond cannot dip under the floor
+PRESSING_RATIO = 0.3  # of the same way; where plates see it press until it leaves
 MAX_SOLE_THICKNESS = 0.08  # m from the ball joint to the floor
 DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
@@ -59,7 +59,7 @@ def foot_points(
         flat, _ = _standing(times, foot)
         heel = foot.ankle - HEEL_OFFSET_RATIO * _level(foot.ball - foot.ankle)
         toe_head = foot.ankle if foot.toe_bone == foot.foot_bone else foot.ball
-        toe, last = (
+        toe, pressing = (
             _fixed_in(
                 PointKind.TOE,
                 foot.toe_bone,
@@ -68,7 +68,7 @@ def foot_points(
                 _on_floor(foot.ball + ratio * _level(foot.tip - foot.ball), floor_m),
                 flat,
             )
-            for ratio in (TOE_OFFSET_RATIO, LAST_OFFSET_RATIO)
+            for ratio in (TOE_OFFSET_RATIO, PRESSING_RATIO)
         )
         points[f"{foot.side} heel"] = replace(
             _fixed_in(
@@ -81,7 +81,7 @@ def foot_points(
             ),
             hip=foot.hip,
         )
-        points[f"{foot.side} toe"] = replace(toe, hip=foot.hip, last=last.track)
+        points[f"{foot.side} toe"] = replace(toe, hip=foot.hip, pressing=pressing.track)
     return points
 
 

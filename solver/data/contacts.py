@@ -67,8 +67,8 @@ class PointKind(Enum):
 class ContactPoint:
     """A candidate contact point. offset: (3,) m, bone-local. track: (T, 3) m, world, Z up.
 
-    hip: (T, 3) m, world; where the leg that ends in the point begins. last: (T, 3) m, world; the
-    part of the sole that leaves the floor last, where that is not the point itself.
+    hip: (T, 3) m, world; where the leg that ends in the point begins. pressing: (T, 3) m, world;
+    the part of the sole that the load is first and most on, where that is not the point itself.
     """
 
     kind: PointKind
@@ -76,7 +76,7 @@ class ContactPoint:
     offset: FloatArray
     track: FloatArray
     hip: FloatArray | None = None
-    last: FloatArray | None = None
+    pressing: FloatArray | None = None
 
 
 @dataclass(frozen=True)

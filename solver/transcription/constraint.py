@@ -18,6 +18,7 @@ from .rows import Layout, Rows, violation
 from .sampling import Instants, MotionFunction, State
 
 MAX_DENSE_SPACING = 0.004  # s, between the instants that tell whether a bound holds
+SAME_INSTANT = 1e-6  # s
 MIN_DENSE_PER_SPAN = 6
 
 
@@ -107,7 +108,8 @@ class Constraint:
         owner = np.concatenate(owners)
         order = np.lexsort((owner, times))
         middle = 0.5 * (first + last)[owner]  # of the span that an instant is seen from
-        inside = (times >= self.start) & (times <= self.end)
+        # Ends that are a break's may differ from it by rounding: the break counts.
+        inside = (times >= self.start - SAME_INSTANT) & (times <= self.end + SAME_INSTANT)
         inside &= (middle > self.start) | (times > self.start)
         inside &= (middle < self.end) | (times < self.end)
         order = order[inside[order]]

@@ -264,13 +264,14 @@ def test_feet_do_not_push_more_sideways_than_friction_lets_them(name: str) -> No
     mu = 0.7 if name == "friction" else 0.9
     weight = motion.transcription.character.mass * STANDARD_GRAVITY
     forces = motion.forces(np.linspace(0.0, motion.duration, 800)) / weight
-    sideways = np.linalg.norm(forces[..., :2], axis=-1)
-    if name == "pyramid":
-        sideways = np.abs(forces[..., :2]).sum(axis=-1)
-    assert (sideways - mu * forces[..., 2]).max() < RowKind.FRICTION.tolerance + 1e-6
     was = fitted_hop().motion.forces(np.linspace(0.0, motion.duration, 800)) / weight
-    slid = np.linalg.norm(was[..., :2], axis=-1) - mu * was[..., 2]
-    assert slid.max() > 5.0 * RowKind.FRICTION.tolerance
+    order = 1 if name == "pyramid" else 2  # of the norm that is bounded
+    excess, before = (
+        (np.linalg.norm(f[..., :2], ord=order, axis=-1) - mu * f[..., 2]).max()
+        for f in (forces, was)
+    )
+    assert excess < RowKind.FRICTION.tolerance + 1e-6
+    assert before > 2.0 * RowKind.FRICTION.tolerance  # else nothing was asked of it
 
 
 def test_a_briefcase_is_carried_by_the_ground() -> None:

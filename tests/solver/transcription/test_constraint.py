@@ -150,6 +150,15 @@ def test_exchange_adds_rows_until_bounds_hold_between_them(name: str) -> None:
     assert after.amount <= after.kind.tolerance
 
 
+def test_an_end_that_is_a_break_but_for_rounding_is_looked_at() -> None:
+    made = asked(Requests(torques=(TorqueLimit("Knee", ("left shank",), bound=5.0),)))
+    basis = made.basis
+    edge = float(basis.breaks[basis.double][0])
+    whole = replace(made.constraints[0], start=0.0, end=edge - 1e-9)
+    assert whole.dense(basis).times.max() == edge
+    assert basis.breaks[whole.dense(basis).spans[-1] + 1] == edge  # from the left
+
+
 def test_exchange_leaves_alone_what_holds() -> None:
     t = asked(ASKED["point at a place"])
     (constraint,) = t.constraints
