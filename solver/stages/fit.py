@@ -42,9 +42,9 @@ from ..transcription.transcription import Transcription
 CANDIDATE_SPANS = (0.04, 0.03, 0.025)  # s, longest knot spans to choose from
 SPLINE_FIT_TOLERANCE = 0.004  # m, rms spline-fit error of a joint centre
 MIN_SPAN = 0.015  # s, between breaks
-# One g of the centre of mass's acceleration weighs like a decimetre, which is ten times what markers
-# are off, as a recording's acceleration is off by a tenth of g; a body weight of force across the
-# recorded direction like 3 cm. Set beside force plates (docs/validation.md).
+# One g of the centre of mass's acceleration weighs like a decimetre: recordings are off by a tenth
+# of g and by a centimetre. A body weight of force across the recorded direction weighs like 3 cm.
+# Set beside force plates (docs/validation.md).
 FIT_COST_WEIGHTS = CostWeights(
     position=1.0,
     acceleration_time=0.05,
