@@ -26,7 +26,7 @@ def main(argv: list[str]) -> int:
         description="Without arguments: every test that is not slow. Others go to pytest.",
     )
     parser.add_argument("--reports", type=Path, metavar="DIR", help="keep the JUnit reports here")
-    parser.add_argument("--limit", type=float, default=1200, metavar="S", help="seconds a suite")
+    parser.add_argument("--limit", type=float, default=1800, metavar="S", help="seconds a suite")
     own, rest = parser.parse_known_args(argv)
     suites = {"chosen": rest} if rest else SUITES
     with tempfile.TemporaryDirectory() as scratch:

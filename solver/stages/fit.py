@@ -42,6 +42,9 @@ from ..transcription.transcription import Transcription
 CANDIDATE_SPANS = (0.04, 0.03, 0.025)  # s, longest knot spans to choose from
 SPLINE_FIT_TOLERANCE = 0.004  # m, rms spline-fit error of a joint centre
 MIN_SPAN = 0.015  # s, between breaks
+# One g of the centre of mass's acceleration weighs like a decimetre: recordings are off by a tenth
+# of g and by a centimetre. A body weight of force across the recorded direction weighs like 3 cm.
+# Set beside force plates (docs/validation.md).
 FIT_COST_WEIGHTS = CostWeights(
     position=1.0,
     acceleration_time=0.05,
@@ -50,7 +53,7 @@ FIT_COST_WEIGHTS = CostWeights(
     force_rate_time=0.15,
     friction=1e-3,
 )
-# An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces are
+# An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces
 # weigh too: what a person does to jump further is push longer, not only harder.
 ADAPT_COST_WEIGHTS = CostWeights(shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3)
 MAX_REFINEMENTS = 3
