@@ -32,12 +32,25 @@ def test_the_ghost_is_near_the_solve() -> None:
     for step in range(1, 11):
         follower.follow(moved(0.02 * step, 0.01 * step))
     settled(follower, moved(0.2, 0.1))
-    solved = adapt(fit, moved(0.2, 0.1).keeping_times())  # as the ghost does
+    solved = adapt(fit, moved(0.2, 0.1))
     times = np.linspace(0.0, fit.motion.duration, 100)
     apart = follower.motion.joint_centres(times) - solved.motion.joint_centres(times)
     assert np.linalg.norm(apart, axis=2).max() < 0.04
     left = dynamics_residual(follower.motion, np.linspace(0.01, fit.motion.duration - 0.01, 200))
     assert np.sqrt((left.moment**2).sum(axis=1).mean()) < 0.003
+
+
+def test_times_follow_once_the_pin_rests() -> None:
+    fit = fitted_hop()
+    follower = Follower(fit, moved(0.0))
+    for step in range(1, 6):
+        follower.follow(moved(0.03 * step))
+        assert follower.motion.duration == fit.motion.duration
+    settled(follower, moved(0.15))
+    assert follower.motion.duration == adapt(fit, moved(0.15)).motion.duration
+    assert follower.motion.duration > fit.motion.duration + 0.005
+    settled(follower, moved(0.0))
+    assert follower.motion.duration == fit.motion.duration
 
 
 def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
