@@ -3,8 +3,8 @@
 The flight takes as long as durations.py finds. A bigger jump is performed bigger: at the same mean
 force the travel of the push grows with the energy that it gives, so the legs bend and the trunk
 leans by (v'/v)² of what they did, v the upward speed at take-off; the push then takes v'/v as long.
-Arms swing with the speed of the body, so by v'/v as far. Smaller jumps likewise. Where no landing
-or take-off moves nothing changes.
+Arms swing by the ratio of the whole speed, for they swing up and forward. Smaller jumps likewise.
+Where no landing or take-off moves nothing changes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -24,10 +24,8 @@ from .reseat import com_shift
 from .warm_start import stance_moves, warm_start
 
 MIN_MOVE = 1e-6  # m, of a landing relative to its take-off
-SCALED_PARTS = {
-    **dict.fromkeys((Part.PELVIS, Part.SPINE, Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE), 2),
-    **dict.fromkeys((Part.CLAVICLE, Part.UPPER_ARM, Part.FOREARM, Part.HAND), 1),
-}  # powers of v'/v; head and neck look where they did
+LEGS_AND_TRUNK = (Part.PELVIS, Part.SPINE, Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE)
+ARMS = (Part.CLAVICLE, Part.UPPER_ARM, Part.FOREARM, Part.HAND)  # head and neck look where they did
 SPEED_RATIO = (0.7, 1.3)  # at most: beyond it, it is another kind of jump
 MIN_RISING_SPEED = 0.3  # m/s; a slower take-off is no jump (a step, a drop)
 MAX_STANDING_SPEED = 0.5  # m/s, along the floor; half of a slow walk's
@@ -44,6 +42,22 @@ class Jump:
     push: float
     take_off: float
     landing: float
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Ratios of the speeds of the centre of mass at take-off, new over old: upward and whole."""
+
+    upward: float
+    whole: float
+
+    @staticmethod
+    def between(was: FloatArray, now: FloatArray) -> "Growth":
+        """was, now: (3,) m/s; 1 where it was no jump."""
+        if was[2] <= MIN_RISING_SPEED:
+            return Growth(1.0, 1.0)
+        upward, whole = now[2] / was[2], np.linalg.norm(now) / np.linalg.norm(was)
+        return Growth(float(np.clip(upward, *SPEED_RATIO)), float(np.clip(whole, *SPEED_RATIO)))
 
 
 def anticipate(
@@ -115,31 +129,26 @@ def _resized(
 ) -> TimedMotion:
     """The found motion with its pushes as much bigger, or smaller, as its flights are."""
     warp = TimeWarp.of(found.stretches, start.duration)
-    ratios = []
+    growths = []
     for jump in jumps:
-        was = _upward_speed(start, jump.take_off)
-        now = _upward_speed(found.motion, float(warp(jump.take_off)))
-        ratios.append(np.clip(now / was, *SPEED_RATIO) if was > MIN_RISING_SPEED else 1.0)
+        was = start.com(np.array([jump.take_off]), 1)[0]
+        now = found.motion.com(warp(np.array([jump.take_off])), 1)[0]
+        growths.append(Growth.between(was, now))
     longer = tuple(
-        Stretch(jump.push, jump.take_off, float(ratio))
-        for jump, ratio in zip(jumps, ratios, strict=True)
+        Stretch(jump.push, jump.take_off, growth.upward)
+        for jump, growth in zip(jumps, growths, strict=True)
         if not _overlaps(jump.push, jump.take_off, kept)
     )
     stretches = (*longer, *found.stretches)
     retimed = start.transcription.retimed(TimeWarp.of(stretches, start.duration))
     motion = Motion(retimed, found.motion.x, found.motion.places)
-    for jump, ratio in zip(jumps, ratios, strict=True):
-        motion = _amplified(start, motion, jump, float(ratio))
+    for jump, growth in zip(jumps, growths, strict=True):
+        motion = _amplified(start, motion, jump, growth)
     return TimedMotion(motion, stretches)
 
 
-def _upward_speed(motion: Motion, time: float) -> float:
-    """Of the centre of mass, m/s."""
-    return float(motion.com(np.array([time]), 1)[0, 2])
-
-
-def _amplified(start: Motion, motion: Motion, jump: Jump, ratio: float) -> Motion:
-    """A motion whose take-off is `ratio` as fast; what the push began dies away in the flight.
+def _amplified(start: Motion, motion: Motion, jump: Jump, growth: Growth) -> Motion:
+    """A motion with that take-off; what the push began dies away in the flight.
 
     start: before any change, with the same unknowns.
     """
@@ -149,9 +158,10 @@ def _amplified(start: Motion, motion: Motion, jump: Jump, ratio: float) -> Motio
     fading = np.interp(at, [jump.take_off, jump.landing], [1.0, 0.0]) * (at >= jump.push)
     x = motion.x.copy()
     angles = x[:, t.layout.angles]
+    sizes = dict.fromkeys(LEGS_AND_TRUNK, growth.upward**2) | dict.fromkeys(ARMS, growth.whole)
     for body, joint in zip(t.character.bodies, t.character.joints, strict=True):
-        growth = (ratio ** SCALED_PARTS.get(body.part, 0) - 1.0) * fading[:, None]
-        bend = growth * (angles[:, joint.dofs] - standing[joint.dofs])
+        size = (sizes.get(body.part, 1.0) - 1.0) * fading[:, None]
+        bend = size * (angles[:, joint.dofs] - standing[joint.dofs])
         if joint.axes.dofs == 1:  # a hinge bends further, but straightens as far as it did
             most = bend.flat[np.abs(bend).argmax()]
             bend = np.where(bend * most > 0.0, bend, 0.0)
