@@ -77,9 +77,12 @@ def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests
     if settings.requests is not None:
         text = settings.requests
         listed = joined(listed, parse_recipe(text.as_string(), text.name).problem.requests)
-    if not settings.keep_times:
-        return listed
-    return replace(listed, solution=replace(listed.solution, keep_times=True))
+    solution = replace(
+        listed.solution,
+        keep_times=listed.solution.keep_times or settings.keep_times,
+        solid=listed.solution.solid and settings.keep_out,
+    )
+    return replace(listed, solution=solution)
 
 
 def _require_ordered(settings: HangtimeSettings) -> None:

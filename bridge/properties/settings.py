@@ -235,6 +235,13 @@ class HangtimeSettings(bpy.types.PropertyGroup):
             "a landing that was moved takes the time, and is as big, as suits it",
         )
     )
+    keep_out: chosen(
+        boolean(
+            "Keep Out",
+            "Limbs keep out of each other and of the floor, as far as they do in the recording",
+            default=True,
+        )
+    )
     objective: bpy.props.EnumProperty(
         name="Lessen",
         description="What Refine lessens, beside staying close",

@@ -83,6 +83,7 @@ SOLUTION = Kind(
         choice("method", Method),
         choice("dynamics", Dynamics),
         flag("keep_times"),
+        flag("solid"),
         number("longest_span", ABOVE_ZERO),
         number("torque_span", ABOVE_ZERO),
         one("objectives", _objectives, _weights),

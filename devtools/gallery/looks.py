@@ -1,24 +1,20 @@
 """Visible defects of a motion: limbs through each other, knees bent backwards, jerking limbs.
 
-Limbs are rods from joint to tip as thick as their boxes are at the least. Pictures are looked at,
-too; this looks at every instant.
+Limbs are the solver's capsules, but how far they are apart is measured here at points along them.
+Pictures are looked at, too; this looks at every instant.
 """
-
-from itertools import combinations
 
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ...solver.body.character import Character
 from ...solver.numerics.rotations import unit
+from ...solver.solid.shapes import Capsules, capsules, meeting_pairs
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
 from .jobs import Json
 
 RATE = 120.0  # Hz
-SOFT = 0.8  # flesh gives: the share of a box's half width that is hard
-POINTS = 7  # on a rod
-MOVING = ("upper arm", "forearm", "hand", "thigh", "shank", "foot", "toe")
+POINTS = 7  # on a capsule's axis
 
 
 def looks(adaptation: Adaptation) -> Json:
@@ -43,19 +39,17 @@ def looks(adaptation: Adaptation) -> Json:
 
 
 def _overlap(motion: Motion, times: FloatArray) -> tuple[float, str]:
-    """Deepest overlap of two limbs that are no neighbours, m; which and when."""
+    """Deepest overlap of two limbs that must not meet, m; which and when."""
     character = motion.transcription.character
-    heads, tails = _rods(motion, times)
-    radius = np.array([SOFT * 0.5 * float(np.min(b.box_size[:2])) for b in character.bodies])
+    shapes = capsules(character)
+    heads, tails = Capsules.of(shapes).ends(motion.pose(times))
     worst, where = 0.0, ""
-    for i, j in combinations(range(len(character.bodies)), 2):
-        if not _may_meet(character, i, j):
-            continue
+    for i, j in meeting_pairs(character, shapes).tolist():
         apart = _apart(heads[:, i], tails[:, i], heads[:, j], tails[:, j])
-        deep = radius[i] + radius[j] - apart
+        deep = shapes[i].radius + shapes[j].radius - apart
         at = int(deep.argmax())
         if deep[at] > worst:
-            names = (character.bodies[i].bone, character.bodies[j].bone)
+            names = [character.bodies[shapes[k].body].bone for k in (i, j)]
             worst, where = float(deep[at]), f"{names[0]}, {names[1]} at {times[at]:.2f} s"
     return worst, where
 
@@ -76,13 +70,6 @@ def _rods(motion: Motion, times: FloatArray) -> tuple[FloatArray, FloatArray]:
     posed = motion.pose(times)
     tips = np.array([body.tip for body in motion.transcription.character.bodies])
     return posed.centres, posed.centres + np.einsum("tbij,bj->tbi", posed.rotations, tips)
-
-
-def _may_meet(character: Character, i: int, j: int) -> bool:
-    """True where one is of a limb and at least two joints lie between them."""
-    parts = {character.bodies[k].part.value for k in (i, j)}
-    apart = set(character.ancestors(i)) ^ set(character.ancestors(j))
-    return bool(parts & set(MOVING)) and len(apart) > 2
 
 
 def _apart(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:

@@ -30,7 +30,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.report_text import as_text, certificate_lines, retimed
+from ..words.report_text import as_text, certificate_lines, overlap_lines, retimed
 from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, session
@@ -226,6 +226,7 @@ def summary(answer: Adapted) -> str:
                 for p in retimed(report)
             ),
             f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
+            *overlap_lines(report),
             *certificate_lines(report),
         ]
     )

@@ -167,6 +167,7 @@ MISSED = {  # of a constraint, by its type
     RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} of the body's weight",
     RowKind.FRICTION: "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
     RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} of the body's weight",
+    RowKind.SOLID: "{name} stays in by {amount:millimetres}",
     RowKind.TORQUE: "“{name}” needs {amount:.3g} N·m more than its limit",
 }
 

@@ -56,14 +56,26 @@ def as_text(report: Report) -> str:
 def headline(report: Report) -> list[str]:
     """How the solve ended, and what the certificate has against the motion: lines."""
     failed, count = report.failed, len(report.certificate)
-    if not failed or report.status is not Status.SOLVED:
+    if report.status is not Status.SOLVED:
         return [outcome(report.status)]
+    if not failed:
+        return [outcome(report.status), *(f"  {line}" for line in overlap_lines(report))]
     do = "does" if len(failed) == 1 else "do"
     first = (
         f"Solved: everything asked for holds, but {len(failed)} of the certificate's {count} "
         f"lines {do} not."
     )
-    return [first, *(f"  {_told(line)}" for line in most_telling(failed))]
+    told = [*overlap_lines(report), *(_told(line) for line in most_telling(failed))]
+    return [first, *(f"  {line}" for line in told)]
+
+
+def overlap_lines(report: Report) -> list[str]:
+    """The solids that could not be kept out of each other: lines."""
+    return [
+        f"{each.name}: {each.worst_violation:.0f} mm (frame {each.worst_violation_frame:.0f}), "
+        "which what is asked for needs"
+        for each in report.overlaps
+    ]
 
 
 def certificate_lines(report: Report) -> list[str]:
@@ -167,6 +179,12 @@ def _quality(report: Report) -> Iterator[str]:
         f"Fit         joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms), "
         f"apex {_signed(fit.pelvis_apex_difference_cm)} cm"
     )
+    for i, each in enumerate(report.recorded_overlaps[:MOST_NAMED]):
+        name = "" if i else "Recording"
+        yield (
+            f"{name:<11} has {each.name[0].lower()}{each.name[1:]} by {each.deepest_mm:.0f} mm "
+            f"(frame {each.frame:.0f}), and may keep it"
+        )
     residuals = report.between_nodes
     for kind, left in ((PhaseKind.FLIGHT, residuals.flight), (PhaseKind.GROUND, residuals.ground)):
         if left is not None:

@@ -66,6 +66,15 @@ class Pose:
         moved -= self._com_jacobian[..., None]
         return np.ascontiguousarray(moved.transpose(0, 3, 2, 1))
 
+    def jacobian_at(self, bodies: IntArray, at: FloatArray) -> FloatArray:
+        """(N, 3, n_angles) Jacobian of one point an instant, at (N, 3) m on bodies (N,), m/rad.
+
+        As `point_jacobian`, of points that slide from instant to instant.
+        """
+        arm = at[:, None] - self.centres[:, _body_of_angle(self.character)]
+        moved = np.cross(self.axes, arm) * _path_matrix(self.character)[bodies, :, None]
+        return np.swapaxes(moved - self._com_jacobian, 1, 2)
+
     def point_rates(self, points: Sequence[BodyPoint], rates: FloatArray) -> FloatArray:
         """(N, P, 3) product of `point_jacobian` with (N, n_angles) rates, without the Jacobian."""
         moves, owner = _path_matrix(self.character), _body_of_angle(self.character)

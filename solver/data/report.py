@@ -252,6 +252,15 @@ class CertificateLine:
 
 
 @dataclass(frozen=True)
+class RecordedOverlap:
+    """How deep the recording (its fit) has two solids in each other, and when; it may stay so."""
+
+    name: str
+    deepest_mm: float
+    frame: float
+
+
+@dataclass(frozen=True)
 class MotionChange:
     """Distance of the adapted motion from the fit, at corresponding instants."""
 
@@ -340,7 +349,8 @@ class Report:
 
     certificate: what a laboratory asks of a motion, line by line, with its limits.
     equations: every constraint, worst first. rows: constraint rows. torques: None where the problem
-    does not involve them. stages: None where nobody timed them.
+    does not involve them. recorded_overlaps: deepest first; none where nothing is solid. stages:
+    None where nobody timed them.
     """
 
     status: Status
@@ -361,11 +371,17 @@ class Report:
     torques: TorquesReport | None
     torque_limits: tuple[TorqueUse, ...]
     fit_to_recording: FitQuality
+    recorded_overlaps: tuple[RecordedOverlap, ...]
     change: MotionChange
     jumps: tuple[JumpReport, ...]
     phases: tuple[PhaseReport, ...]
     times: TimeMap
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
+
+    @property
+    def overlaps(self) -> tuple[ConstraintReport, ...]:
+        """The solids that could not be kept out of each other."""
+        return tuple(c for c in self.conditions if c.kind is RowKind.SOLID and not c.met)
 
     @property
     def failed(self) -> tuple[CertificateLine, ...]:

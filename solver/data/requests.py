@@ -345,7 +345,8 @@ class SolverOptions:
     longest_span: s, between knots; torque_span: s, between knots of the torques' own splines;
     None chooses them automatically. keep_times: phases last as long as recorded where no
     PhaseTiming says otherwise; else those that a moved landing or take-off adjoins take the time
-    that goes with it.
+    that goes with it. solid: floor and limbs keep out of each other, as far as they do in the
+    recording.
     """
 
     method: Method = Method.IMPLICIT
@@ -358,6 +359,7 @@ class SolverOptions:
     longest_span: float | None = None
     torque_span: float | None = None
     keep_times: bool = False
+    solid: bool = True
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ class RowKind(Enum):
     FRICTION = ("friction", "BW beyond friction", 0.01)
     PEAK = ("peak", "BW beyond the cap", 0.01)
     TORQUE = ("torque", "BW·m beyond the limit", 2e-5)
+    SOLID = ("solid", "m", 1e-3)
 
     @property
     def label(self) -> str:

@@ -24,6 +24,7 @@ from ..transcription.transcription import Transcription
 from .kkt_step import LinearisedProblem
 
 MAX_CHORD_RATIO = 0.03  # of the violation that a step leaves, for the next to keep its Jacobian
+MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
@@ -141,19 +142,25 @@ def restore(
     x: FloatArray,
     *,
     stage: str,
-    max_steps: int = 30,
+    max_steps: int = MAX_STEPS,
     progress: Progress | None = None,
+    nearly: Callable[[FloatArray], FeasibleSet] | None = None,
 ) -> Outcome:
     """Feasibility restoration: minimum-norm steps until all rows hold (thesis 4.4).
 
     metric: W, fixed. x: (K, n_block). A line search on the summed squared violation guards the
     steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
-    Jacobian and factor, which costs a third of a new one (chord steps).
+    Jacobian and factor, which costs a third of a new one (chord steps). nearly: asked once, where
+    the rows nearly hold, for the set to go on with, which may have more rows.
     """
     iterate = _ChordIterate(feasible, metric, x)
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while len(steps) < max_steps:
+        if nearly is not None and iterate.violation <= NEARLY_FEASIBLE:
+            before, feasible, nearly = feasible, nearly(iterate.x), None
+            if feasible is not before:
+                iterate = _ChordIterate(feasible, metric, iterate.x)
         if iterate.violation <= 1.0:
             status = Status.SOLVED
             break

@@ -24,6 +24,7 @@ from ..data.report import (
     PhaseReport,
     PhaseResidual,
     PinReport,
+    RecordedOverlap,
     RecordingSummary,
     ReductionReport,
     Report,
@@ -90,6 +91,7 @@ def report(
         torques=_torques(adaptation, problem) if _in_play(problem) else None,
         torque_limits=tuple(_torque_uses(motion)),
         fit_to_recording=quality,
+        recorded_overlaps=tuple(_recorded_overlaps(adaptation)),
         change=change(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
         phases=_phases(adaptation),
@@ -258,6 +260,13 @@ def fit_quality(fit: Fit) -> FitQuality:
         worst_frame_rms_cm=100.0 * float(each.max()),
         worst_frame=float(performance.recording.frames[each.argmax()]),
     )
+
+
+def _recorded_overlaps(adaptation: Adaptation) -> Iterator[RecordedOverlap]:
+    if adaptation.setup.solid is not None:
+        for each in adaptation.setup.solid.recorded.worst():
+            frame = scene_frame(adaptation.fit, each.time)
+            yield RecordedOverlap(each.name, 1000.0 * each.amount, frame)
 
 
 def _reduction(adaptation: Adaptation) -> ReductionReport | None:

@@ -30,9 +30,28 @@ def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
 
 
 def missed_conditions(adaptation: Adaptation) -> list[DenseViolation]:
-    """Worst violation of each of the artist's constraints, between the nodes too."""
+    """Worst violation of each of the artist's constraints, between the nodes too, and of the
+    solids that are, or had to be kept, out of each other."""
     x, t = adaptation.motion.x, adaptation.motion.transcription
-    return [dense_violation(c, t.character, t.basis, t.layout, x) for c in t.constraints]
+    asked = [dense_violation(c, t.character, t.basis, t.layout, x) for c in t.constraints]
+    return asked + _solids(adaptation)
+
+
+def _solids(adaptation: Adaptation) -> list[DenseViolation]:
+    world, rows = adaptation.setup.solid, adaptation.motion.transcription.solid
+    if world is None or not adaptation.solved:  # of a failure what it failed for is told
+        return []
+    found = world.penetrations(adaptation.motion).worst()
+    in_the_way = {each.name for each in found}
+    kept: dict[str, float] = {}
+    if rows is not None:
+        for item, time in zip(rows.items, rows.times, strict=True):
+            kept.setdefault(rows.names[item], float(time))
+    return found + [
+        DenseViolation(name, RowKind.SOLID, 0.0, time)
+        for name, time in kept.items()
+        if name not in in_the_way
+    ]
 
 
 def worst_constraints(

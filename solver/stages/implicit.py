@@ -5,13 +5,19 @@ Far edits are made by continuation (Allgower & Georg 1990): pins and bounds move
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.requests import Method, ObjectiveKind
+from ..data.row_kinds import RowKind
 from ..data.status import Status
-from ..optimisation.sqp import Outcome, Progress, Stopped, restore
+from ..numerics.block_banded import BlockBanded
+from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
 from ..transcription.motion import Motion
+from ..transcription.transcription import Transcription
 from .arm_ik import reach_grips
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
@@ -21,6 +27,9 @@ from .warm_start import continuation_steps, partial_places, stance_moves, warm_s
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
+MAX_SOLID_ROUNDS = 8  # the same where limbs keep out of each other: one makes way for the next
+MAX_SOLID_STEPS = 10  # after which what is in the way is given up
+HARD_PULL = 0.1  # of the hardest, for a solid to be in the way as well
 MAX_DENSE_VIOLATION = 3.0  # times a constraint's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
 
@@ -159,31 +168,88 @@ def _continuation(setup: Setup, times: int, progress: Progress | None) -> Contin
         if step < steps:
             transcription = transcription.relaxed(start, 1.0 / (steps - step + 1))
         feasible = setup.feasible_set(transcription, places)
-        outcome = restore(feasible, setup.metric, start, stage="adapt", progress=progress)
+        outcome = _restored(feasible, start, setup, progress, last=step == steps)
         outcomes.append(outcome)
-        motion = feasible.motion(outcome.x)
+        motion = setup.feasible_set(outcome.transcription, places).motion(outcome.x)
         if not outcome.solved:
             break
     return ContinuationAttempt(tuple(outcomes), steps)
 
 
-def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | None) -> list[Outcome]:
-    """Refines knots and exchanges instants until rows and bounds hold between them too."""
-    outcomes: list[Outcome] = []
-    for _ in range(MAX_EXCHANGES):
-        outcomes += refine(
-            outcome, setup.metric_of, ADAPT_TOLERANCE, basis=setup.basis, progress=progress
+def _restored(
+    feasible: FeasibleSet, start: FloatArray, setup: Setup, progress: Progress | None, *, last: bool
+) -> Outcome:
+    """A continuation step; what is solid joins in at the end of the last, where that helps."""
+    world = setup.solid if last else None
+
+    def with_solids(x: FloatArray) -> FeasibleSet:
+        assert world is not None
+        t = feasible.transcription
+        rows = world.kept_out(feasible.motion(x), set())
+        return (
+            feasible if rows is t.solid else replace(feasible, transcription=replace(t, solid=rows))
         )
-        outcome = outcomes[-1] if outcomes else outcome
-        t = outcome.transcription
-        added = tuple(exchange(c, t.character, t.basis, t.layout, outcome.x) for c in t.constraints)
-        if all(new is old for new, old in zip(added, t.constraints, strict=True)):
+
+    if world is not None:
+        outcome = restore(
+            feasible, setup.metric, start, stage="adapt", progress=progress, nearly=with_solids
+        )
+        if outcome.solved or outcome.transcription.solid is None:
+            return outcome
+    return restore(feasible, setup.metric, start, stage="adapt", progress=progress)
+
+
+def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | None) -> list[Outcome]:
+    """Refines knots and exchanges instants until rows and bounds hold between them too.
+
+    What is solid keeps out likewise, by rows that begin with no instants. Where that cannot be
+    met, the solids that are in the way are given up, and reported.
+    """
+    outcomes: list[Outcome] = []
+    given_up: set[int] = set()
+    refined: Outcome | None = None
+    for _ in range(MAX_EXCHANGES if setup.solid is None else MAX_SOLID_ROUNDS):
+        if outcome is not refined:
+            outcomes += refine(
+                outcome, setup.metric_of, ADAPT_TOLERANCE, basis=setup.basis, progress=progress
+            )
+            outcome = refined = outcomes[-1] if outcomes else outcome
+        old, new = outcome.transcription, _exchanged(outcome, setup, given_up)
+        if new is old:
             break
-        feasible = setup.feasible_set(replace(t, constraints=added))
-        same = t.basis is setup.start.transcription.basis
+        feasible = setup.feasible_set(new)
+        same = old.basis is setup.start.transcription.basis
         metric = setup.metric if same else setup.metric_of(feasible.motion(outcome.x))
-        outcome = restore(feasible, metric, outcome.x, stage="bounds", progress=progress)
-        if not outcome.solved:
+        steps = MAX_STEPS if new.solid is old.solid else MAX_SOLID_STEPS
+        tried = restore(
+            feasible, metric, outcome.x, stage="bounds", max_steps=steps, progress=progress
+        )
+        if tried.solved:
+            outcomes.append(outcome := tried)
+        elif new.solid is old.solid:
             break  # what was solved for stands; what it misses in between is reported
-        outcomes.append(outcome)
+        else:
+            given_up |= blocking_solids(feasible, metric, tried.x)
     return outcomes
+
+
+def _exchanged(outcome: Outcome, setup: Setup, given_up: set[int]) -> Transcription:
+    """The outcome's transcription with instants where bounds are violated between the nodes, or
+    solids are in each other but for those given up; itself where neither is so."""
+    t = outcome.transcription
+    added = tuple(exchange(c, t.character, t.basis, t.layout, outcome.x) for c in t.constraints)
+    solid = t.solid
+    if setup.solid is not None:
+        solid = setup.solid.kept_out(setup.feasible_set(t).motion(outcome.x), given_up)
+    same = all(new is old for new, old in zip(added, t.constraints, strict=True))
+    return t if same and solid is t.solid else replace(t, constraints=added, solid=solid)
+
+
+def blocking_solids(feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> set[int]:
+    """Items of the keep-out rows that pull the hardest where a solve got stuck, at x (K, n_block):
+    what cannot be met has multipliers far beyond the others'."""
+    rows, solid = feasible.rows(x), feasible.transcription.solid
+    assert solid is not None
+    _, multipliers = feasible.linearise(rows, metric).step(rows.value)
+    pull = np.abs(multipliers[rows.kind == RowKind.SOLID])
+    return set(solid.items[pull >= HARD_PULL * pull.max()].tolist())

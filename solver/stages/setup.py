@@ -30,6 +30,7 @@ from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
+from ..solid.solid_world import SolidWorld, floor_heights, solid_world
 from ..transcription.motion import Motion
 from ..transcription.objectives import torque_metric
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
@@ -105,6 +106,22 @@ class Setup:
     @property
     def schedule(self) -> ContactSchedule:
         return self.context.schedule
+
+    @cached_property
+    def solid(self) -> SolidWorld | None:
+        """What is solid; None where limbs and floor may go through each other."""
+        if not self.requests.solution.solid:
+            return None
+        fitted, context = self.fit, self.context
+        return solid_world(
+            fitted.motion,
+            context.reference,
+            (
+                floor_heights(context.schedule, self.target_places),
+                floor_heights(fitted.schedule, fitted.places),
+            ),
+            context.timeline.to_old,
+        )
 
     @cached_property
     def torques(self) -> TorqueFunction:

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..body.character import Character
 from ..data.row_kinds import RowKind
 from ..numerics.splines import SplineBasis
@@ -28,6 +28,20 @@ class ConstraintFunction(MotionFunction, Protocol):
     @property
     def kind(self) -> RowKind:
         """Constraint type of its rows."""
+
+
+class Collocated(Protocol):
+    """A bounded motion function with the instants at which it is kept between its bounds."""
+
+    @property
+    def function(self) -> ConstraintFunction:
+        """What is bounded."""
+
+    def instants(self, basis: SplineBasis) -> Instants:
+        """Instants (U,) on a basis."""
+
+    def limits(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper (U, m) bounds at those instants, s."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +82,10 @@ class Constraint:
     @property
     def kind(self) -> RowKind:
         return self.function.kind
+
+    def limits(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper (U, m) bounds at instants (U,) s."""
+        return self.bounds.at(times)
 
     def instants(self, basis: SplineBasis) -> Instants:
         """Collocation instants on a basis: both ends, and evenly inside every span.
@@ -125,19 +143,20 @@ class Constraint:
 
 
 class DiscretisedConstraint:
-    """A constraint collocated on one basis. owner: its index among all owners of rows."""
+    """A constraint collocated on one basis. owner: its index among all owners of rows, or the
+    index for each instant (U,)."""
 
     def __init__(
         self,
-        constraint: Constraint,
+        constraint: Collocated,
         character: Character,
         basis: SplineBasis,
         layout: Layout,
-        owner: int,
+        owner: IntArray | int,
     ) -> None:
         self.constraint = constraint
         self.instants = constraint.instants(basis)
-        self.lower, self.upper = constraint.bounds.at(self.instants.times)
+        self.lower, self.upper = constraint.limits(self.instants.times)
         self._character, self._layout, self._owner = character, layout, owner
 
     def relaxed(self, x: FloatArray, share: float) -> "DiscretisedConstraint":

@@ -11,6 +11,7 @@ pin       c + p_i(theta) - place = 0 at every break while a point is pinned, and
 push      forces push and stay in their friction cones, at every force node and so at every
           instant: both sets are convex (friction_cones.py)
 others    the artist's constraints (constraint.py)
+solid     floor and limbs keep out of each other where they would not (keep_out.py)
 
 A point is pinned while it carries force; at a landing and a lift-off its place gives as soles do
 (compliant_sole.py). Each point's force begins and ends at zero, and accelerations may jump only
@@ -34,6 +35,7 @@ from ..numerics.splines import ORDER, SplineBasis, gauss_instants
 from .constraint import Constraint, DiscretisedConstraint
 from .contact_pins import Pins, PointContact, touching_spans
 from .friction_cones import FrictionCones
+from .keep_out import KeepOut
 from .rows import FORCE_BLOCKS, Layout, Rows
 from .sampling import ChannelJacobian, Instants
 
@@ -45,8 +47,8 @@ class Transcription:
     """Constraint rows of one motion problem on one basis.
 
     points: the bodies' points that touch. contacts: when and where they do. moment: the rate of
-    angular momentum about the centre of mass. active: which unknowns exist. discretised: the
-    constraints on this basis.
+    angular momentum about the centre of mass. solid: what limbs are kept out of. active: which
+    unknowns exist. discretised: the constraints on this basis, solids last.
     """
 
     character: Character
@@ -55,6 +57,7 @@ class Transcription:
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
     constraints: tuple[Constraint, ...] = ()
+    solid: KeepOut | None = None
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block)
 
@@ -73,12 +76,18 @@ class Transcription:
             DiscretisedConstraint(constraint, self.character, self.basis, self.layout, first + i)
             for i, constraint in enumerate(self.constraints)
         ]
+        if self.solid is not None:
+            owners = first + len(self.constraints) + self.solid.items
+            self.discretised.append(
+                DiscretisedConstraint(self.solid, self.character, self.basis, self.layout, owners)
+            )
 
     @property
     def owners(self) -> tuple[str, ...]:
-        """Names of the rows' owners: contacts, then constraints."""
+        """Names of the rows' owners: contacts, then constraints, then what is kept out."""
         contacts = tuple(c.contact.name for c in self.contacts)
-        return contacts + tuple(c.name for c in self.constraints)
+        solid = () if self.solid is None else self.solid.names
+        return (*contacts, *(c.name for c in self.constraints), *solid)
 
     def relaxed(self, x: FloatArray, share: float) -> "Transcription":
         """Homotopy: bounds that x (K, n_block) violates lie `share` of the way to their own."""
@@ -94,7 +103,7 @@ class Transcription:
         """
         basis = replace(self.basis, breaks=warp(self.basis.breaks))
         contacts = tuple(contact.retimed(warp) for contact in self.contacts)
-        return replace(self, basis=basis, contacts=contacts, constraints=())
+        return replace(self, basis=basis, contacts=contacts, constraints=(), solid=None)
 
     @property
     def n_unknowns(self) -> int:

@@ -50,6 +50,7 @@ class AdvancedPanel(ArmaturePanel):
         settings = settings_in(context)
         layout.prop(settings, "method")
         layout.prop(settings, "keep_times")
+        layout.prop(settings, "keep_out")
         refine = layout.column(heading="Refine")
         refine.prop(settings, "objective")
         refine.prop(settings, "stay_close")

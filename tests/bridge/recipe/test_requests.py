@@ -163,6 +163,7 @@ dynamics = "standard"
 longest_span = 0.1
 torque_span = 0.2
 keep_times = true
+solid = false
 
 [solution.objectives]
 "torque smoothness" = 2
@@ -245,6 +246,7 @@ REQUESTS = Requests(
         0.1,
         0.2,
         keep_times=True,
+        solid=False,
     ),
 )
 
@@ -275,6 +277,7 @@ def test_the_recipe_in_the_documentation_is_understood() -> None:
         "dynamics",
         "longest_span",
         "keep_times",
+        "solid",
         "gravity",
         "kind",
         "dimensions",
@@ -409,6 +412,7 @@ SOLUTIONS = st.builds(
     longest_span=st.none() | POSITIVE,
     torque_span=st.none() | POSITIVE,
     keep_times=st.booleans(),
+    solid=st.booleans(),
 )
 CONES = st.builds(
     ConeLimit,

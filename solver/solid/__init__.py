@@ -1,0 +1,1 @@
+"""What is solid: the body's shapes, the floor, and how deep one is in another."""

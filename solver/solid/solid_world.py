@@ -1,0 +1,249 @@
+"""The solid world of one adaptation: what goes into what, and the rows that keep it out.
+
+Never tighter than the recording: what the fit has through each other at the same (warped) instant
+is allowed, and no more.
+"""
+
+from collections.abc import Callable, Iterator, Set
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..data.contacts import ContactSchedule
+from ..data.row_kinds import RowKind
+from ..transcription.constraint import DenseViolation
+from ..transcription.keep_out import KeepOut
+from ..transcription.motion import Motion
+from ..transcription.sampling import Channel, ChannelJacobian, State
+from .shapes import Capsules, capsules, floor_balls, meeting_pairs
+from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
+
+SPACING = 0.004  # s, of the dense grid
+MOST_NEW = 0.002  # m, by which solids may be deeper in each other than in the fit; no one sees it
+ROW_SPACING = 0.016  # s, between rows of solids that stay in each other for longer
+SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
+
+TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (N,) s
+
+
+@dataclass(frozen=True)
+class Penetrations:
+    """What is in what: items (M,), times (M,) s, over (M,) m, how much deeper than allowed.
+
+    lower: (M,) m, the allowed distance. side: (M, 3), see Closest.side.
+    """
+
+    names: tuple[str, ...]
+    items: IntArray
+    times: FloatArray
+    over: FloatArray
+    lower: FloatArray
+    side: FloatArray
+
+    def some(self, which: IntArray | BoolArray) -> "Penetrations":
+        """Some of them."""
+        return Penetrations(
+            self.names,
+            self.items[which],
+            self.times[which],
+            self.over[which],
+            self.lower[which],
+            self.side[which],
+        )
+
+    def but(self, items: Set[int]) -> "Penetrations":
+        """All but those of some items."""
+        return self.some(~np.isin(self.items, list(items)))
+
+    def with_more(self, more: "Penetrations") -> "Penetrations":
+        """These and more."""
+        return Penetrations(
+            self.names,
+            np.concatenate([self.items, more.items]),
+            np.concatenate([self.times, more.times]),
+            np.concatenate([self.over, more.over]),
+            np.concatenate([self.lower, more.lower]),
+            np.concatenate([self.side, more.side]),
+        )
+
+    def worst(self) -> list[DenseViolation]:
+        """The deepest of each name, deepest first."""
+        found: dict[str, DenseViolation] = {}
+        for i in np.argsort(-self.over).tolist():
+            name = self.names[self.items[i]]
+            amount, time = float(self.over[i]), float(self.times[i])
+            found.setdefault(name, DenseViolation(name, RowKind.SOLID, amount, time))
+        return list(found.values())
+
+
+@dataclass(frozen=True)
+class SolidDistance:
+    """Distances of the items of penetrations (U,), each at its instant."""
+
+    surface: Surface
+    found: Penetrations
+    kind: RowKind = RowKind.SOLID
+
+    def value(self, state: State) -> FloatArray:
+        """(U, 1) m."""
+        return self._closest(state).distance[:, None]
+
+    def jacobians(self, state: State) -> list[ChannelJacobian]:
+        """normal . (J_a - J_b) of the closest points: their sliding along the solids does not
+        change the distance to first order."""
+        closest, pose = self._closest(state), state.pose
+        world = closest.bodies[:, 1] == WORLD
+        turn = pose.jacobian_at(closest.bodies[:, 0], closest.at[:, 0])
+        turn[~world] -= pose.at(np.flatnonzero(~world)).jacobian_at(
+            closest.bodies[~world, 1], closest.at[~world, 1]
+        )
+        com = closest.normal * world[:, None]
+        return [
+            ChannelJacobian(
+                Channel.ANGLES, 0, np.einsum("ni,nij->nj", closest.normal, turn)[:, None]
+            ),
+            ChannelJacobian(Channel.COM, 0, com[:, None]),
+        ]
+
+    def _closest(self, state: State) -> Closest:
+        placed = Placed(state.instants.times, state.pose, state.com())
+        each = np.arange(len(placed.times))
+        closest = self.surface.closest(placed, each, self.found.items)
+        return closest.from_side(self.found.side, placed.pose, each)
+
+
+@dataclass(frozen=True)
+class SolidWorld:
+    """Surfaces of a motion, and those of the fit, item by item the same.
+
+    to_old: the fit's instants (N,) s of the motion's.
+    """
+
+    surfaces: Surfaces
+    fitted_surfaces: Surfaces
+    fitted: Motion
+    to_old: TimeFunction
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Of the items."""
+        return self.surfaces.names
+
+    @cached_property
+    def recorded(self) -> Penetrations:
+        """What the fit itself has in each other; it is allowed."""
+        placed = placed_at(self.fitted, _grid(self.fitted.duration))
+        instants, items = self.fitted_surfaces.near(placed)
+        distance = self.fitted_surfaces.closest(placed, instants, items).distance
+        depth, none = np.maximum(-distance, 0.0), np.zeros(len(items))
+        side = np.zeros((len(items), 3))
+        found = Penetrations(self.names, items, placed.times[instants], depth, none, side)
+        return found.some(depth > MOST_NEW)
+
+    def penetrations(self, motion: Motion) -> Penetrations:
+        """Where a motion's solids are deeper in each other than the fit's, by MOST_NEW."""
+        placed = placed_at(motion, _grid(motion.duration))
+        instants, items = self.surfaces.near(placed)
+        deep = self.surfaces.closest(placed, instants, items).distance < -MOST_NEW
+        instants, items = instants[deep], items[deep]
+        now = self.surfaces.closest(placed, instants, items)
+        looked_at, place = np.unique(instants, return_inverse=True)
+        before = placed_at(self.fitted, self.to_old(placed.times[looked_at]))
+        was = self.fitted_surfaces.closest(before, place, items)
+        side = was.side(before.pose, place) * (was.distance < SIDE_REACH)[:, None]
+        lower = np.minimum(was.distance, 0.0)
+        over = lower - now.from_side(side, placed.pose, instants).distance
+        found = Penetrations(self.names, items, placed.times[instants], over, lower, side)
+        return found.some(over > MOST_NEW)
+
+    def kept_out(self, motion: Motion, given_up: Set[int]) -> KeepOut | None:
+        """A motion's keep-out rows, with more where it penetrates; the same where it does not.
+
+        given_up: items that have no rows.
+        """
+        old = motion.transcription.solid
+        found = self.penetrations(motion).but(given_up)
+        if not len(found.items):
+            return old
+        found = found.some(np.array(list(_chosen(found))))
+        if old is not None:
+            assert isinstance(old.function, SolidDistance)
+            found = old.function.found.but(given_up).with_more(found)
+        function = SolidDistance(self.surfaces, found)
+        return KeepOut(self.names, found.items, found.times, found.lower, function)
+
+
+def _chosen(found: Penetrations) -> Iterator[int]:
+    """Of every run of instants the deepest, and further ones ROW_SPACING apart."""
+    order = np.lexsort((found.times, found.items))
+    times, items = found.times[order], found.items[order]
+    ends = np.flatnonzero((np.diff(items) != 0) | (np.diff(times) > 1.5 * SPACING)) + 1
+    step = round(ROW_SPACING / SPACING)
+    for run in np.split(order, ends):
+        deepest = int(np.argmax(found.over[run]))
+        yield from run[deepest % step :: step].tolist()
+
+
+def placed_at(motion: Motion, times: FloatArray) -> Placed:
+    """A motion's poses at instants (N,) s."""
+    return Placed(times, motion.pose(times), motion.com(times))
+
+
+def _grid(duration: float) -> FloatArray:
+    return np.linspace(0.0, duration, 1 + int(np.ceil(duration / SPACING)))
+
+
+# ---------------------------------------------------------------- the body and its floor
+
+
+def solid_world(
+    fitted: Motion,
+    reference: Motion,
+    floors: tuple[TimeFunction, TimeFunction],
+    to_old: TimeFunction,
+) -> SolidWorld:
+    """The world of a motion of `reference`'s body. floors: heights, m, of the motion's and the
+    fit's."""
+    character = fitted.transcription.character
+    pairs = meeting_pairs(character, capsules(character))
+    ours, theirs = (
+        _surfaces(motion, pairs, floor)
+        for motion, floor in zip((reference, fitted), floors, strict=True)
+    )
+    return SolidWorld(ours, theirs, fitted, to_old)
+
+
+def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> Surfaces:
+    character = motion.transcription.character
+    shapes = capsules(character)
+    balls = floor_balls(character, motion.transcription.points)
+    names = [body.name for body in character.bodies]
+    both = tuple(
+        f"{names[shapes[i].body].capitalize()} in {names[shapes[j].body]}" for i, j in pairs
+    )
+    under = tuple(f"{names[ball.body].capitalize()} in the floor" for ball in balls)
+    limbs = OwnLimbs(Capsules.of(shapes), pairs, both)
+    return Surfaces((limbs, Floor(Capsules.of(balls), floor, under)))
+
+
+def floor_heights(schedule: ContactSchedule, places: FloatArray) -> TimeFunction:
+    """The floor's height, m, at instants (N,) s: where it was found, or lower where a phase's
+    contacts are lower, as a landing that is pinned below it makes its own floor.
+
+    places: (n_contacts, 3) m. In flight the lower of the floors before and after counts.
+    """
+    by_name = {c.name: z for c, z in zip(schedule.contacts, places[:, 2], strict=True)}
+    phases = schedule.phases
+    own = np.array(
+        [
+            min([schedule.floor_m, *(by_name[c.name] for c in schedule.of_phase(phase))])
+            for phase in phases
+        ]
+    )
+    flying = np.array([not schedule.of_phase(phase) for phase in phases])
+    around = np.minimum(np.append(own[1:], own[-1]), np.append(own[0], own[:-1]))
+    heights = np.where(flying, around, own)
+    ends = np.array([phase.end for phase in phases])[:-1]
+    return lambda times: heights[np.searchsorted(ends, times)]

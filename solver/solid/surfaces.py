@@ -1,0 +1,190 @@
+"""Signed distances that may not become negative: of limbs from each other, and from a floor.
+
+A surface knows its *items*, each one distance: `near` finds those worth a look at, `closest` gives
+them with what their Jacobian needs. A mesh would be one more class of this kind.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..body.kinematics import Pose
+from .segments import closest_shares
+from .shapes import Capsules
+
+WORLD = -1  # in place of a body
+CROSSED = 0.5  # of the radii: how far axes that crossed may be apart for the way back to be shorter
+OPPOSITE = 0.5  # the cosine beyond which a side is another one
+TOUCHING = 1e-4  # m between two axes, below which their separation points nowhere
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Poses at instants (N,) s, and centres of mass (N, 3) m, world."""
+
+    times: FloatArray
+    pose: Pose
+    com: FloatArray
+
+
+@dataclass(frozen=True)
+class Closest:
+    """N signed distances, m: negative where one solid is in the other.
+
+    normal: (N, 3) unit, from the second to the first. bodies: (N, 2), WORLD where the second is no
+    body. at: (N, 2, 3) m from the centre of mass, their closest points, on axes, not on skins.
+    apart: (N,) m between axes that may cross, infinite where there are none.
+    """
+
+    distance: FloatArray
+    normal: FloatArray
+    bodies: IntArray
+    at: FloatArray
+    apart: FloatArray
+
+    def side(self, pose: Pose, instants: IntArray) -> FloatArray:
+        """(N, 3) the normals in the second bodies' frames: on which side the first one is."""
+        turns = pose.rotations[instants, self.bodies[:, 1]]
+        return np.asarray(np.einsum("nji,nj->ni", turns, self.normal))
+
+    def from_side(self, side: FloatArray, pose: Pose, instants: IntArray) -> "Closest":
+        """The same seen from the side (N, 3) on which the first ones belong; zero, if any.
+
+        Where axes have crossed, the distance goes on below minus the radii: so depth stays signed,
+        and the way out stays the one back, as long as that is the shorter.
+        """
+        reach = self.apart - self.distance
+        crossed = self.apart < CROSSED * reach
+        crossed &= np.einsum("ni,ni->n", self.side(pose, instants), side) < -OPPOSITE
+        way = np.where(crossed, -1.0, 1.0)
+        distance = np.where(crossed, -self.apart - reach, self.distance)
+        return replace(self, distance=distance, normal=way[:, None] * self.normal)
+
+
+class Surface(Protocol):
+    """What solids are kept out of. Its items are counted from 0, each with a name."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the items, such as "Left hand in right thigh"."""
+
+    def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
+        """Instants (M,) and items (M,) whose distance may be negative."""
+
+    def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
+        """The distances of items (N,) at instants (N,), indices."""
+
+
+@dataclass(frozen=True)
+class OwnLimbs:
+    """Pairs (P, 2) of a body's capsules."""
+
+    shapes: Capsules
+    pairs: IntArray
+    names: tuple[str, ...]
+
+    def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
+        """By spheres around the capsules."""
+        start, end = self.shapes.ends(placed.pose)
+        middle = 0.5 * (start + end)
+        reach = 0.5 * np.linalg.norm(self.shapes.end - self.shapes.start, axis=1)
+        reach = (reach + self.shapes.radius)[self.pairs].sum(axis=1)
+        apart = middle[:, self.pairs[:, 0]] - middle[:, self.pairs[:, 1]]
+        instants, items = np.nonzero(np.einsum("npi,npi->np", apart, apart) < reach**2)
+        return instants, items
+
+    def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
+        """Between the closest points of the axes, less the radii."""
+        pairs = self.pairs[items]
+        at = instants[:, None], self.shapes.bodies[pairs]
+        turns, centres = placed.pose.rotations[at], placed.pose.centres[at]
+        start, end = (
+            centres + np.einsum("nsij,nsj->nsi", turns, local[pairs])
+            for local in (self.shapes.start, self.shapes.end)
+        )
+        along = end - start
+        shares = np.stack(
+            closest_shares(start[:, 0], along[:, 0], start[:, 1], along[:, 1]), axis=1
+        )
+        points = start + shares[..., None] * along
+        gap = points[:, 0] - points[:, 1]
+        apart = np.linalg.norm(gap, axis=1)
+        across = _directions(np.cross(along[:, 0], along[:, 1]))
+        normal = np.where((apart > TOUCHING)[:, None], _directions(gap), across)
+        radii = self.shapes.radius[pairs].sum(axis=1)
+        inside = ((shares > 0.0) & (shares < 1.0)).all(axis=1)
+        axes = np.where(inside, apart, np.inf)
+        return Closest(apart - radii, normal, at[1], points, axes)
+
+
+@dataclass(frozen=True)
+class Floor:
+    """A level floor under balls (a capsule's ends); height: m, world, at instants (N,) s."""
+
+    balls: Capsules
+    height: Callable[[FloatArray], FloatArray]
+    names: tuple[str, ...]
+
+    def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
+        """Exactly those below."""
+        centre, _ = self.balls.ends(placed.pose)
+        above = centre[..., 2] + (placed.com[:, 2] - self.height(placed.times))[:, None]
+        instants, items = np.nonzero(above < self.balls.radius)
+        return instants, items
+
+    def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
+        """Heights of the balls' lowest points above the floor."""
+        bodies = self.balls.bodies[items]
+        turns, centres = (
+            placed.pose.rotations[instants, bodies],
+            placed.pose.centres[instants, bodies],
+        )
+        at = centres + np.einsum("nij,nj->ni", turns, self.balls.start[items])
+        level = placed.com[:, 2] - self.height(placed.times)
+        above = at[:, 2] + level[instants] - self.balls.radius[items]
+        up = np.tile([0.0, 0.0, 1.0], (len(items), 1))
+        both = np.stack([bodies, np.full(len(items), WORLD)], axis=1)
+        return Closest(above, up, both, np.stack([at, at], axis=1), np.full(len(items), np.inf))
+
+
+@dataclass(frozen=True)
+class Surfaces:
+    """Several surfaces as one: items are counted on from each to the next."""
+
+    parts: tuple[Surface, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(name for part in self.parts for name in part.names)
+
+    def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
+        """Of every part."""
+        found = [part.near(placed) for part in self.parts]
+        instants = np.concatenate([when for when, _ in found])
+        items = [items + first for (_, items), first in zip(found, self._first(), strict=True)]
+        return instants, np.concatenate(items)
+
+    def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
+        """Each item by its own part."""
+        n = len(items)
+        distance, apart, normal = np.empty(n), np.empty(n), np.empty((n, 3))
+        bodies, at = np.empty((n, 2), dtype=int), np.empty((n, 2, 3))
+        for part, first in zip(self.parts, self._first(), strict=True):
+            mine = np.flatnonzero((items >= first) & (items < first + len(part.names)))
+            found = part.closest(placed, instants[mine], items[mine] - first)
+            distance[mine], normal[mine], bodies[mine] = found.distance, found.normal, found.bodies
+            at[mine], apart[mine] = found.at, found.apart
+        return Closest(distance, normal, bodies, at, apart)
+
+    def _first(self) -> list[int]:
+        counts = [len(part.names) for part in self.parts]
+        return [sum(counts[:i]) for i in range(len(counts))]
+
+
+def _directions(vectors: FloatArray) -> FloatArray:
+    """(N, 3) unit vectors; zero where there is no direction."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.asarray(vectors / np.maximum(length, 1e-12))

@@ -1,0 +1,119 @@
+"""Solid by default: nothing new goes through floor or limbs; what cannot be kept out is told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.operators.words.report_text import headline
+from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.report import Origin
+from hangtime.solver.data.requests import PointRequest, Requests, SolverOptions, When
+from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.results.report import report
+from hangtime.solver.solid.solid_world import floor_heights
+from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.tests.helpers.fitted_hop import fitted_hop
+from hangtime.tests.helpers.validity import assert_valid
+
+NEW = 0.005  # m, of what may go in
+FAR = MotionProblem(pins=(Pin("landing", "ground 2", offset=(0.6, 0.0, 0.0)),))
+
+
+def soft(problem: MotionProblem) -> MotionProblem:
+    """The same where nothing is solid."""
+    solution = replace(problem.requests.solution, solid=False)
+    return replace(problem, requests=replace(problem.requests, solution=solution))
+
+
+def new_depths(adaptation: Adaptation, problem: MotionProblem) -> dict[str, float]:
+    """m, by the names of what is in what."""
+    world = adaptation.setup.solid or adapt(fitted_hop(), problem).setup.solid
+    assert world is not None
+    return {each.name: each.amount for each in world.penetrations(adaptation.motion).worst()}
+
+
+def at_bone(bone: str, seconds: float, place: np.ndarray, **more: object) -> MotionProblem:
+    """A bone's head is asked to a place for a few frames."""
+    frame = float(fitted_hop().performance.recording.frames[0]) + 120.0 * seconds
+    when = When(frames=(frame - 3.0, frame + 3.0))
+    x, y, z = place.tolist()
+    asked = PointRequest("Reach", bone, when, offset=(0.0, 0.0, 0.0), place=(x, y, z), **more)
+    return MotionProblem(requests=Requests(points=(asked,)))
+
+
+def in_thigh() -> MotionProblem:
+    """The left wrist is asked into the middle of the left thigh, as it was in the fit."""
+    hip, knee = fitted_hop().motion.joint_centres(np.array([0.3]))[0, [1, 2]]
+    return at_bone("LeftHand", 0.3, 0.5 * (hip + knee))
+
+
+def test_a_foot_stays_above_the_floor() -> None:
+    before = new_depths(adapt(fitted_hop(), soft(FAR)), FAR)
+    assert before["Left foot in the floor"] > 0.01
+    adaptation = adapt(fitted_hop(), FAR)
+    assert adaptation.solved
+    assert_valid(adaptation.motion, adaptation.setup.schedule)
+    assert max(new_depths(adaptation, FAR).values(), default=0.0) < NEW
+
+
+def test_a_hand_stays_out_of_the_thigh() -> None:
+    before = new_depths(adapt(fitted_hop(), soft(in_thigh())), in_thigh())
+    assert before["Left hand in left thigh"] > 0.05
+    adaptation = adapt(fitted_hop(), in_thigh())
+    assert adaptation.solved
+    assert_valid(adaptation.motion, adaptation.setup.schedule)
+    assert max(new_depths(adaptation, in_thigh()).values(), default=0.0) < NEW
+    rows = report(adaptation, in_thigh(), Origin("hop")).conditions
+    kept = {row.name: row for row in rows if row.kind is RowKind.SOLID}
+    assert kept["Left hand in left thigh"].met
+
+
+def test_a_fit_alone_is_unchanged() -> None:
+    solid, without = (
+        adapt(fitted_hop(), problem) for problem in (MotionProblem(), soft(MotionProblem()))
+    )
+    np.testing.assert_array_equal(solid.outcome.x, without.outcome.x)
+
+
+def test_what_is_off_has_no_rows() -> None:
+    adaptation = adapt(fitted_hop(), soft(FAR))
+    assert adaptation.setup.solid is None
+    assert adaptation.motion.transcription.solid is None
+    told = report(adaptation, soft(FAR), Origin("hop"))
+    assert not told.recorded_overlaps
+    assert not told.conditions
+
+
+def test_what_is_asked_for_under_the_floor_is_reached_and_told() -> None:
+    """The ball of the foot is asked lower than a foot is thick, which no foot can be."""
+    height = np.array([0.0, 0.0, fitted_hop().schedule.floor_m + 0.02])
+    free = (None, None)
+    problem = at_bone("LeftToeBase", 0.6, height, bounds=(free, free, (0.0, 0.0)))
+    adaptation = adapt(fitted_hop(), problem)
+    assert adaptation.solved
+    assert_valid(adaptation.motion, adaptation.setup.schedule)
+    told = report(adaptation, problem, Origin("hop"))
+    assert [row.met for row in told.conditions if row.name == "Reach"] == [True]
+    assert {row.name for row in told.overlaps} >= {"Left foot in the floor"}
+    assert any("Left foot in the floor" in line for line in headline(told))
+
+
+def test_the_recordings_own_overlaps_are_told_once() -> None:
+    told = report(adapt(fitted_hop(), MotionProblem()), MotionProblem(), Origin("hop"))
+    assert told.recorded_overlaps
+    assert not told.overlaps
+
+
+def test_a_landing_that_is_pinned_lower_has_its_own_floor() -> None:
+    schedule = fitted_hop().schedule
+    places = np.array([contact.place for contact in schedule.contacts])
+    places[:, 2] = schedule.floor_m
+    landing = schedule.of_phase(schedule.phases[-1])
+    places[[c in landing for c in schedule.contacts], 2] -= 0.2
+    heights = floor_heights(schedule, places)(np.array([0.1, 0.6, 1.2]))
+    floor = schedule.floor_m
+    assert heights == pytest.approx([floor, floor - 0.2, floor - 0.2])
+
+
+def test_solid_is_what_is_asked_for_by_default() -> None:
+    assert SolverOptions().solid
