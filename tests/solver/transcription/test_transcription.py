@@ -22,7 +22,9 @@ from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
+from hangtime.solver.solid.solid_world import Penetrations, SolidDistance, solid_world
 from hangtime.solver.transcription.contact_pins import PlaceTrajectory, PointContact
+from hangtime.solver.transcription.keep_out import KeepOut
 from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.toy_problems import (
@@ -80,12 +82,23 @@ def discretised() -> Transcription:
     )
 
 
+@cache
+def solid() -> Transcription:
+    """Legs and floor, every pair at an instant of its own."""
+    world = solid_world(stood(), stood(), (np.zeros_like, np.zeros_like), np.array)
+    items = np.arange(len(world.names))
+    times, none = np.linspace(0.0, DURATION, len(items)), np.zeros(len(items))
+    every = Penetrations(world.names, items, times, none, none, np.zeros((len(items), 3)))
+    function = SolidDistance(world.surfaces, every)
+    return replace(standing(), solid=KeepOut(world.names, items, times, none, function))
+
+
 def directional(t: Transcription, x: np.ndarray, direction: np.ndarray) -> np.ndarray:
     ahead, behind = (t.values(x + s * STEP * direction, places()) for s in (1.0, -1.0))
     return (ahead - behind) / (2.0 * STEP)
 
 
-MAKERS = (standing, tilted, carried, discretised)
+MAKERS = (standing, tilted, carried, discretised, solid)
 
 
 @pytest.mark.parametrize("seed", range(3))
