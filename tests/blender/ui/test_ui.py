@@ -557,6 +557,16 @@ def test_times_are_kept_where_that_is_chosen(analysed: bpy.types.Object) -> None
     assert (solution.keep_times, solution.longest_span) == (True, 0.1)
 
 
+def test_limbs_keep_out_unless_switched_off(analysed: bpy.types.Object) -> None:
+    recording = read_recorded(analysed, FIRST, LAST)
+    assert problem_of(analysed.hangtime, recording).requests.solution.solid
+    analysed.hangtime.keep_out = False
+    assert not problem_of(analysed.hangtime, recording).requests.solution.solid
+    analysed.hangtime.keep_out = True
+    ask_by_text(analysed, "[solution]\nsolid = false\n")
+    assert not problem_of(analysed.hangtime, recording).requests.solution.solid
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
