@@ -7,6 +7,7 @@ redundant rows (two feet planted, pins on one rigid foot) without choosing among
 a small quadratic program (bounded_qp.py).
 """
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -120,22 +121,33 @@ class LinearisedProblem:
         basis: FloatArray | None = None,
         working: BoolArray | None = None,
     ) -> None:
-        self._transcription, self._basis = transcription, basis
-        self.rows = rows
+        self._basis = basis
         self._metric = metric if basis is None else metric.congruent(basis)
         self._blocks = transcription.basis.n_coefficients
-        self._scale = by_kind(rows.kind, ROW_SCALES)
-        self._tolerance = rows.tolerance
-        first = transcription.basis.first_coefficient
         self._equal = np.flatnonzero(rows.equal)
-        self._free = np.flatnonzero(~rows.equal)
-        self._equalities = _SpanRows.of(
-            rows.some(self._equal), self._scale[self._equal], first, basis
-        )
+        scale = by_kind(rows.kind[self._equal], ROW_SCALES)
+        first = transcription.basis.first_coefficient
+        self._equalities = _SpanRows.of(rows.some(self._equal), scale, first, basis)
         system = self._metric.copy()
         self._equalities.add_normal(system, PENALTY)
         self._factor = _factor(system)
-        bounds = _SpanRows.of(rows.some(self._free), self._scale[self._free], first, basis)
+        self._bound(transcription, rows, working)
+
+    def widened(self, transcription: Transcription, solids: Rows) -> "LinearisedProblem":
+        """The same with other keep-out rows, which are the last: they need no new factor."""
+        twin = copy(self)
+        kept = self.rows.kind != RowKind.SOLID
+        working = np.concatenate([self.working[kept], np.zeros(len(solids.value), dtype=bool)])
+        twin._bound(transcription, Rows.join([self.rows.some(kept), solids]), working)
+        return twin
+
+    def _bound(self, transcription: Transcription, rows: Rows, working: BoolArray | None) -> None:
+        """Sets the rows, all equalities being those of the factor, and the bounds' program."""
+        self._transcription, self.rows = transcription, rows
+        self._scale, self._tolerance = by_kind(rows.kind, ROW_SCALES), rows.tolerance
+        self._free = np.flatnonzero(~rows.equal)
+        first = transcription.basis.first_coefficient
+        bounds = _SpanRows.of(rows.some(self._free), self._scale[self._free], first, self._basis)
         self._bounds, blocks = bounds, self._blocks
         was = np.zeros(len(self._free), bool) if working is None else working[self._free]
         self._bounded = BoundedStep(

@@ -16,6 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
+from ..data.row_kinds import RowKind
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..transcription.motion import Motion
@@ -144,23 +145,24 @@ def restore(
     stage: str,
     max_steps: int = MAX_STEPS,
     progress: Progress | None = None,
-    nearly: Callable[[FloatArray], FeasibleSet] | None = None,
+    wider: Callable[[FeasibleSet, FloatArray], FeasibleSet] | None = None,
 ) -> Outcome:
     """Feasibility restoration: minimum-norm steps until all rows hold (thesis 4.4).
 
     metric: W, fixed. x: (K, n_block). A line search on the summed squared violation guards the
     steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
-    Jacobian and factor, which costs a third of a new one (chord steps). nearly: asked once, where
-    the rows nearly hold, for the set to go on with, which may have more rows.
+    Jacobian and factor, which costs a third of a new one (chord steps). wider: asked where
+    the rows nearly hold, and where they hold, for a set with more keep-out rows to go on in, or the
+    same; see `close_between_nodes`.
     """
-    iterate = _ChordIterate(feasible, metric, x)
+    iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while len(steps) < max_steps:
-        if nearly is not None and iterate.violation <= NEARLY_FEASIBLE:
-            before, feasible, nearly = feasible, nearly(iterate.x), None
+        if wider is not None and iterate.violation <= near:
+            before, feasible, near = feasible, wider(feasible, iterate.x), 1.0
             if feasible is not before:
-                iterate = _ChordIterate(feasible, metric, iterate.x)
+                iterate.widen(feasible)
         if iterate.violation <= 1.0:
             status = Status.SOLVED
             break
@@ -188,6 +190,7 @@ class _ChordIterate:
         self._linearised: LinearisedProblem | None = None
         self._before = np.inf  # violation before the last step
         self._stale = False
+        self._solids = int((rows.kind == RowKind.SOLID).sum())  # which are the last
 
     def advance(self, stage: str) -> Step | None:
         """Takes a step; None where a chord step was shortened, so that a new Jacobian is due."""
@@ -204,6 +207,20 @@ class _ChordIterate:
             return None
         self._before = before
         return Step(stage, before, trial.length, worst)
+
+    def widen(self, feasible: FeasibleSet) -> None:
+        """Goes on in a set with other keep-out rows, by the Jacobian and factor that are there."""
+        t, self._feasible = feasible.transcription, feasible
+        solids = t.solid_rows(self.x)
+        if self._linearised is not None:
+            self._linearised = self._linearised.widened(t, solids)
+        if self._rows is not None:
+            kept = self._rows.kind != RowKind.SOLID
+            self._rows = Rows.join([self._rows.some(kept), solids])
+        kept = np.arange(len(self._value)) < len(self._value) - self._solids
+        self._value = np.concatenate([self._value[kept], solids.value])
+        self._solids = len(solids.value)
+        self.violation, self._before = max(self.violation, worst_violation(solids)), np.inf
 
     def _linearise(self) -> LinearisedProblem:
         rows = self._feasible.rows(self.x) if self._rows is None else self._rows

@@ -182,17 +182,14 @@ def _restored(
     """A continuation step; what is solid joins in at the end of the last, where that helps."""
     world = setup.solid if last else None
 
-    def with_solids(x: FloatArray) -> FeasibleSet:
+    def with_solids(now: FeasibleSet, x: FloatArray) -> FeasibleSet:
         assert world is not None
-        t = feasible.transcription
-        rows = world.kept_out(feasible.motion(x), set())
-        return (
-            feasible if rows is t.solid else replace(feasible, transcription=replace(t, solid=rows))
-        )
+        t, rows = now.transcription, world.kept_out(now.motion(x), set())
+        return now if rows is t.solid else replace(now, transcription=replace(t, solid=rows))
 
     if world is not None:
         outcome = restore(
-            feasible, setup.metric, start, stage="adapt", progress=progress, nearly=with_solids
+            feasible, setup.metric, start, stage="adapt", progress=progress, wider=with_solids
         )
         if outcome.solved or outcome.transcription.solid is None:
             return outcome

@@ -142,6 +142,10 @@ class Transcription:
         parts += [each.rows(x) for each in self.discretised]
         return self._only_active(Rows.join(parts))
 
+    def solid_rows(self, x: FloatArray) -> Rows:
+        """The keep-out rows alone; they are the last of `rows`. There must be some."""
+        return self.discretised[-1].rows(x)
+
     def values(self, x: FloatArray, places: FloatArray) -> FloatArray:
         """(R,) values of `rows` without their Jacobian."""
         at_nodes, at_pins = self._poses(x)
