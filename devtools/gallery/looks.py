@@ -6,7 +6,7 @@ Pictures are looked at, too; this looks at every instant.
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import FloatArray, IntArray
 from ...solver.numerics.rotations import unit
 from ...solver.solid.shapes import Capsules, capsules, meeting_pairs
 from ...solver.stages.implicit import Adaptation
@@ -22,14 +22,13 @@ def looks(adaptation: Adaptation) -> Json:
     motion, fitted = adaptation.motion, adaptation.fit.motion
     times = np.arange(0.0, motion.duration, 1.0 / RATE)
     old = np.arange(0.0, fitted.duration, 1.0 / RATE)
-    deep, where = _overlap(motion, times)
-    before, _ = _overlap(fitted, old)
+    same = adaptation.setup.context.timeline.to_old(times)
+    deep, where = _overlap(motion, fitted, times, same)
     under, lowest = _below_floor(adaptation, times)
     jerk, limb = _jerk(motion, times)
     return {
         "overlap_cm": 100.0 * deep,
         "overlap_at": where,
-        "overlap_of_fit_cm": 100.0 * before,
         "below_floor_cm": 100.0 * under,
         "below_floor_at": lowest,
         "least_knee_deg": _least_bend(motion, fitted, times),
@@ -38,20 +37,25 @@ def looks(adaptation: Adaptation) -> Json:
     }
 
 
-def _overlap(motion: Motion, times: FloatArray) -> tuple[float, str]:
-    """Deepest overlap of two limbs that must not meet, m; which and when."""
-    character = motion.transcription.character
+def _overlap(
+    motion: Motion, fitted: Motion, times: FloatArray, old: FloatArray
+) -> tuple[float, str]:
+    """Deepest overlap of two limbs that must not meet, m, beyond the fit's; which and when."""
+    character = fitted.transcription.character
+    pairs = meeting_pairs(character, capsules(character))
+    deeper = _depths(motion, pairs, times) - np.maximum(_depths(fitted, pairs, old), 0.0)
+    at, pair = np.unravel_index(int(deeper.argmax()), deeper.shape)
     shapes = capsules(character)
-    heads, tails = Capsules.of(shapes).ends(motion.pose(times))
-    worst, where = 0.0, ""
-    for i, j in meeting_pairs(character, shapes).tolist():
-        apart = _apart(heads[:, i], tails[:, i], heads[:, j], tails[:, j])
-        deep = shapes[i].radius + shapes[j].radius - apart
-        at = int(deep.argmax())
-        if deep[at] > worst:
-            names = [character.bodies[shapes[k].body].bone for k in (i, j)]
-            worst, where = float(deep[at]), f"{names[0]}, {names[1]} at {times[at]:.2f} s"
-    return worst, where
+    names = [character.bodies[shapes[k].body].bone for k in pairs[pair]]
+    return max(float(deeper.max()), 0.0), f"{names[0]}, {names[1]} at {times[at]:.2f} s"
+
+
+def _depths(motion: Motion, pairs: IntArray, times: FloatArray) -> FloatArray:
+    """(T, P) m that the capsules of pairs (P, 2) are in each other."""
+    shapes = Capsules.of(capsules(motion.transcription.character))
+    heads, tails = shapes.ends(motion.pose(times))
+    apart = [_apart(heads[:, i], tails[:, i], heads[:, j], tails[:, j]) for i, j in pairs]
+    return np.asarray(shapes.radius[pairs].sum(axis=1) - np.stack(apart, axis=1))
 
 
 def _below_floor(adaptation: Adaptation, times: FloatArray) -> tuple[float, str]:

@@ -153,7 +153,7 @@ def restore(
     steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
     Jacobian and factor, which costs a third of a new one (chord steps). wider: asked where
     the rows nearly hold, and where they hold, for a set with more keep-out rows to go on in, or the
-    same; see `close_between_nodes`.
+    same.
     """
     iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
     steps: list[Step] = []
