@@ -148,27 +148,35 @@ def _resized(
 
 
 def _amplified(start: Motion, motion: Motion, jump: Jump, growth: Growth) -> Motion:
-    """A motion with that take-off; what the push began dies away in the flight.
+    """A motion with that take-off; what the arms began dies away in the flight.
 
     start: before any change, with the same unknowns.
     """
     t = motion.transcription
     standing = start.angles(np.array([jump.push]))[0]
     at = greville_abscissae(start.transcription.basis)
-    fading = np.interp(at, [jump.take_off, jump.landing], [1.0, 0.0]) * (at >= jump.push)
+    swing = np.interp(at, [jump.take_off, jump.landing], [1.0, 0.0]) * (at >= jump.push)
+    grown = dict.fromkeys(ARMS, (growth.whole - 1.0) * swing)
+    grown |= dict.fromkeys(LEGS_AND_TRUNK, (growth.upward**2 - 1.0) * _crouch(start, jump, at))
     x = motion.x.copy()
     angles = x[:, t.layout.angles]
-    sizes = dict.fromkeys(LEGS_AND_TRUNK, growth.upward**2) | dict.fromkeys(ARMS, growth.whole)
     for body, joint in zip(t.character.bodies, t.character.joints, strict=True):
-        size = (sizes.get(body.part, 1.0) - 1.0) * fading[:, None]
-        bend = size * (angles[:, joint.dofs] - standing[joint.dofs])
-        if joint.axes.dofs == 1:  # a hinge bends further, but straightens as far as it did
-            most = bend.flat[np.abs(bend).argmax()]
-            bend = np.where(bend * most > 0.0, bend, 0.0)
-        angles[:, joint.dofs] += bend
+        if body.part in grown:
+            bend = angles[:, joint.dofs] - standing[joint.dofs]
+            angles[:, joint.dofs] += grown[body.part][:, None] * bend
     x[:, t.layout.angles] = angles
     bent = replace(motion, x=x)
     times = dense_instants(t.basis)
     shift = com_shift(motion, bent.pose(times), t.points, times)
     x[:, t.layout.com] += t.basis.project(times, shift, THIRD_DERIVATIVE_WEIGHT)
     return bent
+
+
+def _crouch(motion: Motion, jump: Jump, times: FloatArray) -> FloatArray:
+    """(T,) depth of the centre of mass below standing over its greatest, during a push.
+
+    Who jumps further bends further, but straightens as far as before.
+    """
+    height = motion.com(np.clip(times, jump.push, jump.take_off))[:, 2]
+    depth = np.maximum(height[0] - height, 0.0)
+    return np.asarray(depth / max(float(depth.max()), MIN_DEPTH))
