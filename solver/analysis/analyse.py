@@ -16,7 +16,7 @@ from ..data.faults import BadTiming, ClipTooShort, Treadmill, UnknownContactName
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from .belt import belt_speed
-from .grounding import grounded
+from .grounding import grounded, parted
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
 
 MIN_CLIP_DURATION = 0.3  # s
@@ -38,8 +38,8 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     """
     recording, character = build_figure(recording, problem)
     performance = perform(recording, character)
-    schedule = _corrected(find_contacts(performance), problem, performance)
-    schedule = grounded(schedule, performance)
+    found = parted(find_contacts(performance))  # before corrections, for those are the last word
+    schedule = grounded(_corrected(found, problem, performance), performance)
     for gap in schedule.unseen:
         if speed := belt_speed(performance.times, contact_points(performance)[0]):
             raise Treadmill(speed)
