@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hangtime.bridge.formats.motion_clip import to_z_up
+from hangtime.devtools.filters import CUT_OFFS, differentiated, low_pass
 from hangtime.devtools.recordings import HELD
 from hangtime.devtools.validation.contacts import (
     EventKind,
@@ -15,7 +16,6 @@ from hangtime.devtools.validation.contacts import (
     measured_contacts,
     pressure,
 )
-from hangtime.devtools.validation.filters import CUT_OFFS, differentiated, low_pass
 from hangtime.devtools.validation.fitted import TO_TRIAL
 from hangtime.devtools.validation.forces import (
     UP,
