@@ -17,8 +17,9 @@ from ...bridge.picture.sheet import View
 from ...operators.headless.quiet import quiet
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
+from ..processes import dump, undump
 from .checks import Check, PointCheck
-from .jobs import Json, Result, dump, load, undump, write_json
+from .jobs import Json, Result, load, write_json
 
 FIGURES = 9
 WIDTH = 1600

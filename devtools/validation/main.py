@@ -6,9 +6,6 @@ the way of `dev.py adapt` up to the fit. Leaves figures.json and a picture of ea
 
 import argparse
 import json
-import pickle
-import subprocess
-import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
@@ -17,6 +14,7 @@ from operator import attrgetter
 from pathlib import Path
 
 from ..environment.virtual_environment import ROOT
+from ..processes import run_module, undump
 from .limits import figures
 from .result import TrialResult
 from .table import page, tables
@@ -24,6 +22,7 @@ from .trials import names
 
 HELD = ROOT / "examples" / "recordings"
 PAGE = ROOT / "docs" / "validation.md"
+SOLVE = "devtools.validation.solve"
 LONGEST = 300.0  # s, that one trial may take
 
 
@@ -69,21 +68,10 @@ def solve(folder: Path, out: Path, name: str, *, curves: bool) -> TrialResult:
     """Measures one trial in a process of its own, for a crash is its own too."""
     path = out / f"{name}.pickle"
     path.unlink(missing_ok=True)
-    launcher = str(ROOT / "devtools" / "package.py")
-    command = [sys.executable, launcher, "devtools.validation.solve", str(folder), name, str(out)]
-    try:
-        done = subprocess.run(
-            [*command, *([] if curves else ["--no-curves"])],
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=LONGEST,
-        )
-    except subprocess.TimeoutExpired:
-        return TrialResult(name, "", refused=f"took longer than {LONGEST:g} s")
-    if done.returncode or not path.is_file():
-        lines = done.stderr.strip().splitlines() or [f"ended with code {done.returncode}"]
-        return TrialResult(name, "", refused=lines[-1])
-    result: TrialResult = pickle.loads(path.read_bytes())  # of our own making
+    options = [] if curves else ["--no-curves"]
+    said = run_module(SOLVE, [str(folder), name, str(out), *options], LONGEST)
+    if said is not None:
+        return TrialResult(name, "", refused=said)
+    result: TrialResult = undump(path)
     path.unlink()
     return result

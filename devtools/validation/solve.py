@@ -1,10 +1,10 @@
 """The process of one trial: reads, fits, compares; leaves DIR/NAME.pickle and its curves."""
 
-import pickle
 from pathlib import Path
 
 from ...operators.words.messages import sentence
 from ...solver.data.faults import Fault
+from ..processes import dump
 from .contacts import events, friction, pressure
 from .curves import picture
 from .fitted import FittedTrial, fit_trial, ground_forces
@@ -34,7 +34,7 @@ def main(argv: list[str]) -> int:
         result = TrialResult(name, result.kind, measured=measured(fitted, ours))
         if "--no-curves" not in argv:
             (out / f"{name}.svg").write_text(picture(trial, ours), encoding="utf-8")
-    (out / f"{name}.pickle").write_bytes(pickle.dumps(result))
+    dump(result, out / f"{name}.pickle")
     return 0
 
 
