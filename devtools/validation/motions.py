@@ -6,7 +6,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.body.anatomy import Part
-from ...solver.data.constants import STANDARD_GRAVITY
+from ...solver.results.certificate import loaded_drifts
 from ...solver.stages.fit import Fit
 from ...solver.transcription.motion import Motion, motion_inverse_dynamics
 from ...solver.worker.pipeline import dynamics_of
@@ -15,8 +15,6 @@ RATE = 1000.0  # Hz
 END_FRAMES = 10
 AROUND_LANDING = 0.1  # s, on both sides of a touch-down
 LEG_PARTS = (Part.THIGH, Part.SHANK, Part.FOOT)  # below hip, knee and ankle
-LOADED = 0.05  # body weights on a point
-ONE_SIDED = 1e-9  # s inside a contact's first and last instant, where its force may jump
 
 
 @dataclass(frozen=True)
@@ -76,35 +74,19 @@ def jerk(tracks: FloatArray, rate: float, counted: BoolArray) -> float:
 
 @dataclass(frozen=True)
 class Hold:
-    """Worst of one loaded contact: slide from its place, depth under and height above it, mm."""
+    """Worst of any loaded point: slide from its place, depth under and height above it, mm."""
 
-    contact: str
     slide_mm: float
     under_mm: float
     above_mm: float
 
 
-def holds(motion: Motion) -> list[Hold]:
-    """Every contact while its force is above 5 % of the body's weight, first and last instant
-    included."""
-    found = []
-    for i, contact in enumerate(motion.transcription.contacts):
-        span = contact.contact
-        count = max(2, int((span.end - span.start) * RATE) + 1)
-        times = np.linspace(span.start + ONE_SIDED, span.end - ONE_SIDED, count)
-        weight = motion.transcription.character.mass * STANDARD_GRAVITY
-        force = np.linalg.norm(motion.forces(times)[:, contact.point], axis=1) / weight
-        off = (motion.contact_points(times)[:, contact.point] - motion.places[i])[force > LOADED]
-        if len(off):
-            found.append(held(span.name, off))
-    return found
-
-
-def held(name: str, off: FloatArray) -> Hold:
-    """Of a point's displacements (T, 3) m from its place, Z up."""
-    slide = np.linalg.norm(off[:, :2], axis=1).max()
-    lowest, highest = off[:, 2].min(), off[:, 2].max()
-    return Hold(name, 1e3 * float(slide), 1e3 * max(-float(lowest), 0.0), 1e3 * max(highest, 0.0))
+def hold(motion: Motion) -> Hold:
+    """Of all contacts, each over the whole of it, as the certificate has it."""
+    drifts = loaded_drifts(motion)
+    slides, heights = [d.slide for d in drifts], [d.height for d in drifts]
+    sizes = slides, [-height for height in heights], heights
+    return Hold(*(1e3 * max((float(x.max(initial=0.0)) for x in s), default=0.0) for s in sizes))
 
 
 @dataclass(frozen=True)

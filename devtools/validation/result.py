@@ -28,7 +28,7 @@ class Measured:
     friction: tuple[Friction, Friction]
     closeness: Closeness
     hand_jerk: HandJerk | None
-    holds: tuple[Hold, ...]
+    hold: Hold
     torques_per_kg: LegTorques
 
     def error(self, cut_off: float = 15.0) -> RmsError:
@@ -50,13 +50,6 @@ class Measured:
     def not_found(self) -> int:
         """Number of the plates' events that ours has not."""
         return sum(e.late_ms is None for e in self.events)
-
-    @property
-    def hold(self) -> Hold:
-        """The worst over all contacts."""
-        slide = max((h.slide_mm for h in self.holds), default=0.0)
-        under = max((h.under_mm for h in self.holds), default=0.0)
-        return Hold("worst", slide, under, max((h.above_mm for h in self.holds), default=0.0))
 
 
 @dataclass(frozen=True)

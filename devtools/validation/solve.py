@@ -16,7 +16,7 @@ from .forces import (
     stances,
     total_variation,
 )
-from .motions import closeness, hand_jerk, holds, peak_torques
+from .motions import closeness, hand_jerk, hold, peak_torques
 from .result import Measured, TrialResult
 from .trials import GroundForces, read
 
@@ -60,6 +60,6 @@ def measured(fitted: FittedTrial, ours: GroundForces) -> Measured:
         friction=(friction(trial, ours), friction(trial, trial.plates)),
         closeness=closeness(fitted.fit),
         hand_jerk=hand_jerk(fitted.fit),
-        holds=tuple(holds(motion)),
+        hold=hold(motion),
         torques_per_kg=peak_torques(motion),
     )
