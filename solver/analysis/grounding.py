@@ -28,25 +28,28 @@ MAX_STEP_SHARE = 0.3  # of the shorter of two contacts that a step takes from ea
 def parted(schedule: ContactSchedule) -> ContactSchedule:
     """The schedule with time for each foot to step between places that follow each other.
 
-    Places nearer than SAME_PLACE are one, and the times stay: nothing has to step.
+    Places nearer than SAME_PLACE are one, and the times stay: nothing has to step. Nor does a foot
+    where nothing else would carry the body meanwhile.
     """
-    contacts = list(schedule.contacts)
+    found = schedule
     for i, before in enumerate(schedule.contacts):
         for j, after in enumerate(schedule.contacts):
-            gap, apart = after.start - before.end, float(np.linalg.norm(after.place - before.place))
+            gap = after.start - before.end
             if after.point != before.point or i == j or not -1e-9 < gap < MIN_STEP_TIME:
                 continue
+            contacts = list(found.contacts)
+            apart = float(np.linalg.norm(after.place - before.place))
             if apart <= SAME_PLACE:
                 contacts[j] = replace(contacts[j], place=contacts[i].place)
-                continue
-            shorter = min(before.end - before.start, after.end - after.start)
-            needed = max(MIN_STEP_TIME, apart / MAX_STEP_SPEED)
-            each = min(0.5 * (needed - gap), MAX_STEP_SHARE * shorter)
-            contacts[i] = replace(contacts[i], end=before.end - each)
-            contacts[j] = replace(contacts[j], start=after.start + each)
-    stepping = replace(schedule, contacts=tuple(contacts))
-    # Where nothing else would carry the body meanwhile, the foot does not step.
-    return stepping if stepping.phases == schedule.phases else schedule
+            else:
+                shorter = min(before.end - before.start, after.end - after.start)
+                needed = max(MIN_STEP_TIME, apart / MAX_STEP_SPEED)
+                each = min(0.5 * (needed - gap), MAX_STEP_SHARE * shorter)
+                contacts[i] = replace(contacts[i], end=before.end - each)
+                contacts[j] = replace(contacts[j], start=after.start + each)
+            stepping = replace(found, contacts=tuple(contacts))
+            found = stepping if stepping.phases == schedule.phases else found
+    return found
 
 
 def grounded(schedule: ContactSchedule, performance: Performance) -> ContactSchedule:

@@ -89,8 +89,22 @@ def test_a_foot_that_stays_keeps_its_times_and_stands_on_one_place() -> None:
 
 
 def test_a_step_never_takes_the_ground_from_the_body() -> None:
-    schedule, _ = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
-    assert parted(schedule) is schedule
+    alone, _ = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
+    assert parted(alone) is alone
+
+
+def test_a_foot_that_cannot_step_keeps_no_other_from_it() -> None:
+    schedule, whole = cut(found(), 0.08)
+    late = schedule.duration + 1.0
+    halves = [
+        replace(c, start=c.start + late, end=c.end + late) for c in halves_of(whole, schedule)
+    ]
+    longer = replace(
+        schedule, contacts=(*schedule.contacts, *halves), duration=schedule.duration + late
+    )
+    first, second = halves_of(whole, parted(longer))
+    assert second.start - first.end >= MIN_STEP_TIME
+    assert parted(longer).contacts[-2:] == longer.contacts[-2:]
 
 
 def test_the_artist_s_times_are_not_shifted() -> None:
