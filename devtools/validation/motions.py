@@ -15,6 +15,7 @@ RATE = 1000.0  # Hz
 END_FRAMES = 10
 AROUND_LANDING = 0.1  # s, on both sides of a touch-down
 LEG_PARTS = (Part.THIGH, Part.SHANK, Part.FOOT)  # below hip, knee and ankle
+LANDING = 0.3  # s after a touch-down, in which the legs give and hold
 
 
 @dataclass(frozen=True)
@@ -50,11 +51,10 @@ class HandJerk:
 def hand_jerk(fit: Fit) -> HandJerk | None:
     """By third differences of the frames, of both alike; None where nothing lands."""
     performance, character = fit.performance, fit.performance.character
-    landings = [f.end for f in fit.schedule.flights if f.end < fit.schedule.duration]
     hands = [i for i, body in enumerate(character.bodies) if body.part is Part.HAND]
     middles = performance.times[1:-2] + 0.5 / performance.recording.rate
     near = np.zeros(len(middles), dtype=np.bool_)
-    for landing in landings:
+    for landing in landings(fit):
         near |= np.abs(middles - landing) <= AROUND_LANDING
     if not hands or not near.any():
         return None
@@ -98,9 +98,8 @@ class LegTorques:
     ankle: float
 
 
-def peak_torques(motion: Motion) -> LegTorques:
-    """Over the whole motion, by inverse dynamics."""
-    times = (np.arange(int(motion.duration * RATE)) + 0.5) / RATE
+def leg_torques(motion: Motion, times: FloatArray) -> LegTorques:
+    """At instants (T,) s, by inverse dynamics."""
     torques = np.abs(motion_inverse_dynamics(dynamics_of(motion), motion, times).torques)
     character = motion.transcription.character
     peaks = dict.fromkeys(LEG_PARTS, 0.0)
@@ -109,6 +108,37 @@ def peak_torques(motion: Motion) -> LegTorques:
             of_joint = torques[:, joint.first - 3 : joint.dofs.stop - 3].max() / character.mass
             peaks[body.part] = max(peaks[body.part], float(of_joint))
     return LegTorques(*(peaks[part] for part in LEG_PARTS))
+
+
+@dataclass(frozen=True)
+class MotionMeasures:
+    """What is told of a fit's motion. landing_knee: N·m/kg, within 0.3 s after the body lands."""
+
+    closeness: Closeness
+    hand_jerk: HandJerk | None
+    hold: Hold
+    torques_per_kg: LegTorques
+    landing_knee: float | None
+
+
+def motion_measures(fit: Fit) -> MotionMeasures:
+    """All of them."""
+    times = (np.arange(int(fit.motion.duration * RATE)) + 0.5) / RATE
+    landing = np.zeros(len(times), dtype=np.bool_)
+    for instant in landings(fit):
+        landing |= (times > instant) & (times < instant + LANDING)
+    return MotionMeasures(
+        closeness(fit),
+        hand_jerk(fit),
+        hold(fit.motion),
+        leg_torques(fit.motion, times),
+        leg_torques(fit.motion, times[landing]).knee if landing.any() else None,
+    )
+
+
+def landings(fit: Fit) -> list[float]:
+    """Instants, s, at which the whole body lands."""
+    return [f.end for f in fit.schedule.flights if f.end < fit.schedule.duration]
 
 
 def _rms(vectors: FloatArray) -> float:
