@@ -111,10 +111,10 @@ def figures(results: Sequence[TrialResult]) -> list[ValidationFigure]:
 def figure(name: str, value: float, trial: str, trials: int) -> ValidationFigure:
     """A value and its verdict. trials: that have plates."""
     limit = LIMITS[name]
-    must = limit.must if trials >= limit.trials else None
+    must, aim = (limit.must, limit.aim) if trials >= limit.trials else (None, None)
     ok = must is None or bool(value <= must)
     known = not ok and bool(value <= KNOWN_MISSES.get(name, -math.inf))
-    return ValidationFigure(name, float(value), limit.unit, must, limit.aim, ok, known, trial)
+    return ValidationFigure(name, float(value), limit.unit, must, aim, ok, known, trial)
 
 
 def _found(results: Sequence[TrialResult]) -> Iterator[tuple[str, float, str]]:
