@@ -76,7 +76,12 @@ KNOWN_MISSES = {
     "joint centres, first and last ten frames, worst": 4.5,
     OF_RECORDINGS + JERK: 1.6,
     OF_RECORDINGS + KNEE: 4.8,
-    OF_RECORDINGS + "joint centres, rms, worst": 2.2,
+    OF_RECORDINGS + "joint centres, rms, worst": 1.7,
+}
+# Recordings whose fit is not in order, and why. Tables show them; no figure has them.
+KNOWN_DEFECTS = {
+    "131_03_hop": "where one leg lands, the places of heel and toe are 11 cm apart, "
+    "of a foot of 19",
 }
 KNOWN_REFUSALS = ("HamnerSubject04_run300",)  # on a treadmill: no place on the ground holds a foot
 
@@ -131,7 +136,11 @@ def _found(results: Sequence[TrialResult]) -> Iterator[tuple[str, float, str]]:
         yield from _contacts(every)
         yield "largest step within 2 ms", *max((m.steps[0].jump, trial) for trial, m in every)
     yield from _motions([(r.trial, r.motion) for r in results if r.motion and r.measured])
-    recorded = [(r.trial, r.motion) for r in results if r.motion and not r.measured]
+    recorded = [
+        (r.trial, r.motion)
+        for r in results
+        if r.motion and not r.measured and r.trial not in KNOWN_DEFECTS
+    ]
     for name, value, where in _motions(recorded):
         yield OF_RECORDINGS + name, value, where
 

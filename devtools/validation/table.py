@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from .columns import MOTION, MOTIONS, TABLES
-from .limits import ValidationFigure
+from .limits import KNOWN_DEFECTS, ValidationFigure
 from .result import TrialResult
 
 T = TypeVar("T")
@@ -109,7 +109,7 @@ def page(parts: Sequence[Table]) -> str:
 def _limits(found: Sequence[ValidationFigure]) -> Table:
     return Table(
         "Limits",
-        "",
+        "\n".join(f"Not in these figures: {clip}; {why}." for clip, why in KNOWN_DEFECTS.items()),
         ("figure", "found", "unit", "must", "aim", "", "where"),
         tuple(
             (f.name, f"{f.value:.3g}", f.unit, _or(f.must), _or(f.aim), _verdict(f), f.trial)

@@ -25,6 +25,7 @@ from hangtime.devtools.validation.forces import (
     total_variation,
 )
 from hangtime.devtools.validation.limits import (
+    KNOWN_DEFECTS,
     KNOWN_MISSES,
     KNOWN_REFUSALS,
     LIMITS,
@@ -260,6 +261,17 @@ def test_every_known_miss_is_of_a_must_that_is_lower() -> None:
         must = LIMITS[name].must
         assert must is not None
         assert value > must
+
+
+def test_a_known_defect_is_in_no_figure_but_on_the_page(tmp_path: Path) -> None:
+    name = next(iter(KNOWN_DEFECTS))
+    bad = TrialResult(name, moved(hold=Hold(30.0, 0.1, 5.0)))
+    assert code_of(bad, out=tmp_path) == 0
+    (only,) = figures([bad])
+    assert only.name == REFUSED
+    text = page(tables([bad], [only]))
+    assert f"Not in these figures: {name}" in text
+    assert f"| {name} | 1.00 |" in text
 
 
 def test_means_of_few_trials_are_told_and_judged_of_many() -> None:
