@@ -46,7 +46,8 @@ def main(argv: list[str]) -> int:
     unknown = [name for name in chosen if name not in known]
     if unknown or not trials:
         what = f"trial '{unknown[0]}'" if unknown else "trial"
-        print(f"No {what} in {options.folder}; there are: {', '.join(known) if trials else 'none'}.")
+        there = ", ".join(known) if trials else "none"
+        print(f"No {what} in {options.folder}; there are: {there}.")
         return 2
     options.out.mkdir(parents=True, exist_ok=True)
     work = partial(solve, options.folder, options.out, curves=not options.no_curves)
