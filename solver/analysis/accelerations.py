@@ -17,7 +17,7 @@ def smoothing_width(performance: Performance) -> float:
 def angle_accelerations(performance: Performance, at: FloatArray) -> FloatArray:
     """(N, n_angles) accelerations of the joint angles, rad/s², at instants (N,) s."""
     width = smoothing_width(performance)
-    return second_derivative(performance.times, performance.angles, at, width)
+    return second_derivative(performance.take.times, performance.take.angles, at, width)
 
 
 def com_acceleration(
@@ -28,7 +28,7 @@ def com_acceleration(
     In flight it is gravity, whatever the recording's noise says.
     """
     width = smoothing_width(performance)
-    found = second_derivative(performance.times, performance.com, at, width)
+    found = second_derivative(performance.take.times, performance.take.com, at, width)
     for flight in schedule.flights:
         found[(at > flight.start) & (at < flight.end)] = [0.0, 0.0, -performance.character.gravity]
     return found
