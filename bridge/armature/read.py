@@ -28,8 +28,8 @@ def read_recording(
     """Sample the evaluated pose of every bone at every whole scene frame in [first, last].
 
     The range defaults to the action's. beyond: s, on both sides of a stated range that are read too
-    where there are keys. World space, m, s; the rotations carry no scale. The scene
-    is left as it was. The recording is called what the action is called.
+    as far as the action goes. World space, m, s; the rotations carry no scale. The scene is left as
+    it was. The recording is called what the action is called.
 
     Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
     this armature), NonFiniteKey, BadScale.
@@ -49,13 +49,15 @@ def whole_frames(
     for curve in curves:
         _require_finite(armature, curve)
     action = present(current_action(armature))
-    keyed = np.array([curve.range() for curve in curves])
-    spans = np.array([action.frame_range]) if action.use_frame_range else keyed
+    if action.use_frame_range:
+        spans = np.array([action.frame_range])
+    else:
+        spans = np.array([curve.range() for curve in curves])
     start = np.ceil((spans.min() if first is None else first) - _EPSILON)
     end = max(start, np.floor((spans.max() if last is None else last) + _EPSILON))
     reach = np.floor(beyond * frames_per_second(current_scene()))
-    before = start if first is None else max(start - reach, np.ceil(keyed.min() - _EPSILON))
-    after = end if last is None else min(end + reach, np.floor(keyed.max() + _EPSILON))
+    before = start if first is None else max(start - reach, np.ceil(spans.min() - _EPSILON))
+    after = end if last is None else min(end + reach, np.floor(spans.max() + _EPSILON))
     return np.arange(min(before, start), max(after, end) + 1.0)
 
 

@@ -25,6 +25,7 @@ MAX_SLIDE = 0.06  # m; a point that slides further makes a new contact
 CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
+MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
 
@@ -180,9 +181,13 @@ def _joined(candidates: Iterable[_Candidate], track: FloatArray) -> list[_Candid
 
 
 def _within(contacts: Iterable[Contact], duration: float) -> list[Contact]:
-    """The contacts as far as they are in [0, duration]."""
-    cut = (replace(c, start=max(c.start, 0.0), end=min(c.end, duration)) for c in contacts)
-    return [c for c in cut if c.start < c.end]
+    """The contacts as far as they are in [0, duration], but for the shortest pieces of cut ones."""
+    pieces = []
+    for c in contacts:
+        piece = replace(c, start=max(c.start, 0.0), end=min(c.end, duration))
+        if piece.end - piece.start >= min(c.end - c.start, MIN_PIECE):
+            pieces.append(piece)
+    return pieces
 
 
 def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> list[Contact]:
