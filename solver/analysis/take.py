@@ -8,7 +8,7 @@ from ..data.recording import BEYOND, Recording
 
 HELD = 1e-6  # m; a pose that moves by less from frame to frame is held, not recorded
 JUMP_SPEED = 15.0  # m/s; joints that are this fast at once have jumped, from a T-pose mostly
-JUMP_RATIO = 3.0  # unless they are a third as fast within the range: throws, sprints
+JUMP_RATIO = 2.0  # unless they are half as fast within the range: throws, sprints
 
 
 def take_of(recording: Recording, within: Recording) -> Recording:
