@@ -42,6 +42,15 @@ def wanted_range(settings: HangtimeSettings) -> tuple[float, float] | tuple[None
     return float(settings.first_frame), float(settings.last_frame)
 
 
+def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, float]:
+    """First and last scene frame that are adapted; a recording may have frames beyond."""
+    first, last = wanted_range(settings)
+    if first is None or last is None:
+        return float(recording.frames[0]), float(recording.frames[-1])
+    within = recording.window(first, max(first, last)).frames
+    return float(within[0]), float(within[-1])
+
+
 def problem_of(
     settings: HangtimeSettings, recording: Recording, *, with_contacts: bool = True
 ) -> MotionProblem:
@@ -52,7 +61,7 @@ def problem_of(
     """
     if with_contacts:
         _require_ordered(settings)
-    span = (float(recording.frames[0]), float(recording.frames[-1]))
+    span = span_of(settings, recording)
     return MotionProblem(
         frames=span,
         mass=settings.mass,
@@ -171,7 +180,7 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     edits = [_held(row) for row in settings.contacts if not row.added]
     added = [_held(row) for row in settings.contacts if row.added]
     metres = metres_per_unit(current_scene())
-    first, rate = float(recording.frames[0]), frames_per_second(current_scene())
+    first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
     settings.analysed = digest(recording)
     for stance, (name, axes) in zip(

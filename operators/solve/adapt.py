@@ -22,7 +22,7 @@ from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import digest, same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
-from ...solver.data.recording import Recording
+from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.report import ConstraintReport
 from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
@@ -145,11 +145,17 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """
     armature = required_armature(context)
     settings = settings_of(armature)
-    recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
+    recording = yield from read_wanted(armature)
     if digest(recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     problem = problem_of(settings, recording)
     return Asked(armature.name, armature.session_uid, recording, problem)
+
+
+def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
+    """The recording in the artist's range, and beyond where there are keys."""
+    first, last = wanted_range(settings_of(armature))
+    return (yield from read_recorded_incrementally(armature, first, last, BEYOND))
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
@@ -159,7 +165,8 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     session().advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
-        return _write_other(changed_recording(asked.recording, limbs), answer, armature)
+        within = asked.recording.window(*present(asked.problem.frames))
+        return _write_other(changed_recording(within, limbs), answer, armature)
     stood = armature.matrix_world.copy()
     action = yield from write_adapted_incrementally(armature, answer.track)
     keep(action, answer.traces, stood)
