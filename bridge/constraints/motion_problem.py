@@ -5,6 +5,7 @@ The solver's metres and seconds become Blender's units and scene frames here, an
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -82,11 +83,12 @@ def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests
     """
     armature: Any = settings.id_data
     listed = requests_of(settings, armature, span)
-    if settings.requests is None:
+    if settings.requests is not None:
+        text = settings.requests
+        listed = joined(listed, parse_recipe(text.as_string(), text.name).problem.requests)
+    if not settings.keep_times:
         return listed
-    text = settings.requests
-    written = parse_recipe(text.as_string(), text.name).problem.requests
-    return joined(listed, written)
+    return replace(listed, solution=replace(listed.solution, keep_times=True))
 
 
 def _require_ordered(settings: HangtimeSettings) -> None:

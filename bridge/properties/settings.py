@@ -228,6 +228,13 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         ],
         override=OVERRIDABLE,
     )
+    keep_times: chosen(
+        boolean(
+            "Keep Times",
+            "Every phase lasts as long as recorded, where no Timing says otherwise. Else a jump to "
+            "a landing that was moved takes the time, and is as big, as suits it",
+        )
+    )
     objective: bpy.props.EnumProperty(
         name="Lessen",
         description="What Refine lessens, beside staying close",
@@ -277,6 +284,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     performer: declared(target(), options=HIDDEN)
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
+    times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
 
 
 def settings_of(armature: bpy.types.Object) -> HangtimeSettings:

@@ -87,6 +87,7 @@ ends = true                     # what came after it is left out
 [solution]
 method = "implicit"             # or "implicit with torques", "explicit"
 dynamics = "automatic"          # or "reduced", "standard"
+keep_times = true               # phases that no timing names last as long as recorded
 longest_span = 0.1              # s between knots; torque_span: of the torques
 [solution.objectives]           # weights, of the explicit solution
 "torque smoothness" = 1         # power, torque output, mass displacement, angle displacement,

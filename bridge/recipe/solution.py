@@ -8,7 +8,7 @@ from ...solver.data.requests import (
     ReductionKind,
     SolverOptions,
 )
-from ..recipe_syntax.items import Kind, Values, choice, number, one, whole
+from ..recipe_syntax.items import Kind, Values, choice, flag, number, one, whole
 from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table, listed
 
 Rows = tuple[tuple[tuple[str, tuple[float, ...]], ...], ...]
@@ -82,6 +82,7 @@ SOLUTION = Kind(
     (
         choice("method", Method),
         choice("dynamics", Dynamics),
+        flag("keep_times"),
         number("longest_span", ABOVE_ZERO),
         number("torque_span", ABOVE_ZERO),
         one("objectives", _objectives, _weights),

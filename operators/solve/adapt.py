@@ -18,6 +18,7 @@ from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import problem_of, wanted_range
 from ...bridge.constraints.status import write_status
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ...bridge.properties.shown_times import store_times
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.digest import digest, same_motion
@@ -29,7 +30,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.report_text import as_text, certificate_lines
+from ..words.report_text import as_text, certificate_lines, retimed
 from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, session
@@ -197,6 +198,7 @@ def _note(
     settings.status = summary(answer)
     write_status(settings, answer.report)
     action_settings(action).report = as_text(answer.report)
+    store_times(action, answer.report.times)
     action_settings(action).performer = performer
 
 
@@ -226,6 +228,10 @@ def summary(answer: Adapted) -> str:
             f"{said} in {seconds:.1f} s",
             f"Loaded points slide {worst.loaded_slide_mm:.1f} mm at most ({worst.name})",
             *(f"{each.name}: {_held(each)}" for each in report.conditions),
+            *(
+                f"{p.phase.capitalize()}: {p.adapted_s:.2f} s, was {p.recorded_s:.2f} s"
+                for p in retimed(report)
+            ),
             f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
             *certificate_lines(report),
         ]

@@ -1,10 +1,13 @@
 """The bars of the chosen armature's contacts in a timeline or dope sheet."""
 
+from collections.abc import Callable
+
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.plots.screen import Axis
 from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ...bridge.properties.shown_times import shown_frames
 from ...bridge.rows.phases import carried, clip_ends, phases
 from ...solver.data.contacts import PhaseKind
 from ..solve.common import chosen_armature
@@ -19,7 +22,7 @@ def bars_in(context: bpy.types.Context) -> Bars | None:
     armature, region = chosen_armature(context), context.region
     if armature is None or region is None or not _wanted(context):
         return None
-    rows = rows_of(settings_of(armature))
+    rows = rows_of(settings_of(armature), shown_frames(armature))
     axis = frames_axis(region)
     if not rows or axis is None:
         return None
@@ -34,20 +37,24 @@ def frames_axis(region: bpy.types.Region) -> Axis | None:
     return Axis(first, last, 0.0, float(region.width)) if last > first else None
 
 
-def rows_of(settings: HangtimeSettings) -> tuple[Row, ...]:
-    """A row for each point that touches, left before right, and the phases; none if none do."""
+def rows_of(settings: HangtimeSettings, shown: Callable[[float], float]) -> tuple[Row, ...]:
+    """A row for each point that touches, left before right, and the phases; none if none do.
+
+    shown: where the recording's frames are in the action that is shown.
+    """
     ends = clip_ends(settings)
     if ends is None:
         return ()
     points: dict[str, list[Bar]] = {}
     for index, row in enumerate(settings.contacts):
         chosen = index == settings.active_contact
-        bar = Bar(row.name, row.start_frame, row.end_frame, row.used, chosen)
+        bar = Bar(row.name, shown(row.start_frame), shown(row.end_frame), row.used, chosen)
         points.setdefault(row.point, []).append(bar)
     rows = [Row(point, tuple(bars)) for point, bars in sorted(points.items(), key=_order)]
     spans = phases(carried(settings), *ends)
     bars = tuple(
-        Bar(s.name, s.start, s.end, is_phase=True, firm=s.kind is PhaseKind.FLIGHT) for s in spans
+        Bar(s.name, shown(s.start), shown(s.end), is_phase=True, firm=s.kind is PhaseKind.FLIGHT)
+        for s in spans
     )
     return (*rows, Row(PHASES, bars))
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from ...solver.data.contacts import PhaseKind
-from ...solver.data.report import CertificateItem, CertificateLine, Report
+from ...solver.data.report import CertificateItem, CertificateLine, PhaseReport, Report
 from ...solver.data.status import Status
 from .messages import outcome
 
@@ -11,6 +11,7 @@ LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,
     PhaseKind.GROUND: 0.02,
 }  # BW·m, rms; what the project promises
+LEAST_RETIMED = 0.0005  # s
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
@@ -143,11 +144,21 @@ def _changes(report: Report) -> Iterator[str]:
             deeper = jump.crouch_deeper_cm
             way = "deeper" if deeper >= 0.0 else "less deep"
             yield f"            the crouch before it is {abs(deeper):.1f} cm {way}"
+    for phase in retimed(report):
+        yield (
+            f"{phase.phase.capitalize():<11} takes {phase.adapted_s:.3f} s instead of "
+            f"{phase.recorded_s:.3f} s"
+        )
     for peak in report.forces.peaks:
         yield (
             f"{peak.phase.capitalize():<11} what carries the body pushes with at most "
             f"{peak.peak_bw:.1f} times the body's weight (frame {peak.frame:.0f})"
         )
+
+
+def retimed(report: Report) -> list[PhaseReport]:
+    """The phases that take another time than they took."""
+    return [p for p in report.phases if abs(p.adapted_s - p.recorded_s) > LEAST_RETIMED]
 
 
 def _quality(report: Report) -> Iterator[str]:

@@ -1,6 +1,6 @@
 """Problem statement of an adaptation: body, frames, corrected contacts, pins and requests."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from .requests import Requests
@@ -74,3 +74,8 @@ class MotionProblem:
     added: tuple[AddedContact, ...] = ()
     pins: tuple[Pin, ...] = ()
     requests: Requests = field(default_factory=Requests)
+
+    def keeping_times(self) -> "MotionProblem":
+        """The same, but for durations that are not asked for."""
+        solution = replace(self.requests.solution, keep_times=True)
+        return replace(self, requests=replace(self.requests, solution=solution))

@@ -309,6 +309,23 @@ class JumpReport:
 
 
 @dataclass(frozen=True)
+class PhaseReport:
+    """How long a phase of the recording took, and takes now."""
+
+    phase: str
+    recorded_s: float
+    adapted_s: float
+
+
+@dataclass(frozen=True)
+class TimeMap:
+    """Corners of the piecewise linear map of the recording's frames to the adapted motion's."""
+
+    recorded_frame: tuple[float, ...]
+    adapted_frame: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class StageReport:
     """Time that a stage of the pipeline took; iterations: of the optimiser, where it ran."""
 
@@ -346,6 +363,8 @@ class Report:
     fit_to_recording: FitQuality
     change: MotionChange
     jumps: tuple[JumpReport, ...]
+    phases: tuple[PhaseReport, ...]
+    times: TimeMap
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
 
     @property

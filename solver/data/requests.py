@@ -343,7 +343,9 @@ class SolverOptions:
     """Solver options. objectives: (kind, weight) of the explicit solution, weights as shares.
 
     longest_span: s, between knots; torque_span: s, between knots of the torques' own splines;
-    None chooses them automatically.
+    None chooses them automatically. keep_times: phases last as long as recorded where no
+    PhaseTiming says otherwise; else those that a moved landing or take-off adjoins take the time
+    that goes with it.
     """
 
     method: Method = Method.IMPLICIT
@@ -355,6 +357,7 @@ class SolverOptions:
     reduction: Reduction | None = None
     longest_span: float | None = None
     torque_span: float | None = None
+    keep_times: bool = False
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import FloatArray
-from .contacts import ContactSchedule, Phase
+from .contacts import ContactSchedule, Interval, Phase
 from .faults import BadTiming, TimedTwice, UnknownPhaseIn
 from .requests import Hold, Moment, PhaseTiming, When
 
@@ -28,6 +28,52 @@ class NamedInterval:
     name: str
     start: float
     end: float
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """An interval [start, end], s, that takes `factor` times as long."""
+
+    start: float
+    end: float
+    factor: float
+
+
+@dataclass(frozen=True)
+class TimeWarp:
+    """Piecewise linear map of instants by stretches. old, new: (T,) s, its corners."""
+
+    old: FloatArray
+    new: FloatArray
+
+    @staticmethod
+    def of(stretches: Sequence[Stretch], duration: float) -> "TimeWarp":
+        """The map of [0, duration] s by stretches that do not overlap."""
+        edges = {t for each in stretches for t in (each.start, each.end)}
+        old = np.array(sorted({0.0, duration, *edges}))
+        middles = 0.5 * (old[:-1] + old[1:])
+        rate = np.ones(len(middles))
+        for each in stretches:
+            rate[(each.start < middles) & (middles < each.end)] = each.factor
+        return TimeWarp(old, np.concatenate([[0.0], np.cumsum(rate * np.diff(old))]))
+
+    def __call__(self, times: FloatArray | float) -> FloatArray:
+        """New instants (...), s, of old ones."""
+        return np.round(np.interp(times, self.old, self.new), TIME_DECIMALS)
+
+    def inverse(self, times: FloatArray | float) -> FloatArray:
+        """Old instants (...), s, of new ones."""
+        return np.asarray(np.interp(times, self.new, self.old))
+
+    def schedule(self, schedule: ContactSchedule) -> ContactSchedule:
+        """A schedule at the new instants."""
+        contacts = tuple(
+            replace(c, start=float(self(c.start)), end=float(self(c.end)))
+            for c in schedule.contacts
+        )
+        unseen = tuple(Interval(float(self(u.start)), float(self(u.end))) for u in schedule.unseen)
+        duration = float(self(schedule.duration))
+        return replace(schedule, contacts=contacts, unseen=unseen, duration=duration)
 
 
 @dataclass(frozen=True)
@@ -63,6 +109,18 @@ class Timeline:
         """Old instants (...), s, of new ones."""
         return np.asarray(np.interp(new, self.new, self.old))
 
+    def warped(self, warp: TimeWarp) -> "Timeline":
+        """This map, and then another of its new time."""
+        corners = np.setdiff1d(warp.old, self.new)
+        new = np.concatenate([self.new, corners])
+        old = np.concatenate([self.old, self.to_old(corners)])
+        order = np.argsort(new, kind="stable")
+        holds = tuple(
+            replace(hold, start=float(warp(hold.start)), end=float(warp(hold.end)))
+            for hold in self.holds
+        )
+        return replace(self, old=old[order], new=warp(new[order]), holds=holds)
+
     def eased(self, new: FloatArray) -> FloatArray:
         """Old instants (N,), s, as `to_old`, but gliding into holds and out of them.
 
@@ -90,7 +148,9 @@ class Timeline:
                 end = self.duration
             if contact.start < self.old[-1] - 1e-9 and end > start:
                 moved.append(replace(contact, start=start, end=end))
-        return replace(schedule, contacts=tuple(moved), duration=self.duration)
+        spans = [(float(self.to_new(u.start)), float(self.to_new(u.end))) for u in schedule.unseen]
+        unseen = tuple(Interval(start, end) for start, end in spans if end > start)
+        return replace(schedule, contacts=tuple(moved), duration=self.duration, unseen=unseen)
 
 
 def timeline(

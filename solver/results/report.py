@@ -21,6 +21,7 @@ from ..data.report import (
     ForcesReport,
     MotionChange,
     Origin,
+    PhaseReport,
     PhaseResidual,
     PinReport,
     RecordingSummary,
@@ -28,6 +29,7 @@ from ..data.report import (
     Report,
     SolveReport,
     StageReport,
+    TimeMap,
     TorquePeak,
     TorquesReport,
     TorqueUse,
@@ -90,6 +92,8 @@ def report(
         fit_to_recording=quality,
         change=change(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
+        phases=_phases(adaptation),
+        times=_times(adaptation),
         stages=None if stages is None else tuple(stages),
     )
 
@@ -181,7 +185,7 @@ def _contact(adaptation: Adaptation, i: int, pin: str | None, loaded: LoadedDrif
         end_s=contact.end,
         start_frame=scene_frame(fit, contact.start),
         end_frame=scene_frame(fit, contact.end),
-        fitted_place_m=_vector(adaptation.setup.start.places[i]),
+        fitted_place_m=_vector(adaptation.setup.fitted_places[i]),
         place_m=_vector(motion.places[i]),
         worst_violation_mm=1000.0 * float(drift.max()),
         worst_violation_frame=scene_frame(fit, float(pinned[drift.argmax()])),
@@ -309,6 +313,26 @@ def _torque_uses(motion: Motion) -> Iterator[TorqueUse]:
 
 
 # ---------------------------------------------------------------- what changed
+
+
+def _phases(adaptation: Adaptation) -> tuple[PhaseReport, ...]:
+    """Durations of the recording's phases that the motion still has."""
+    line = adaptation.setup.context.timeline
+    reports = []
+    for phase in adaptation.fit.schedule.phases:
+        start, end = (float(line.to_new(t)) for t in (phase.start, phase.end))
+        if end > start:
+            reports.append(PhaseReport(phase.name, phase.end - phase.start, end - start))
+    return tuple(reports)
+
+
+def _times(adaptation: Adaptation) -> TimeMap:
+    line = adaptation.setup.context.timeline
+    recorded, adapted = (
+        tuple(scene_frame(adaptation.fit, t) for t in times.tolist())
+        for times in (line.old, line.new)
+    )
+    return TimeMap(recorded, adapted)
 
 
 def change(adaptation: Adaptation) -> MotionChange:

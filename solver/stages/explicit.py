@@ -6,6 +6,7 @@ It starts from an implicit one, where every row holds, and takes Gauss-Newton st
 from collections.abc import Mapping
 
 from ..arrays import FloatArray
+from ..constraints.constraint_builder import preferred_poses
 from ..data.requests import ObjectiveKind
 from ..numerics.block_banded import BlockBanded
 from ..optimisation.gauss_newton import minimise
@@ -25,7 +26,6 @@ from ..transcription.objectives import (
 from ..transcription.sampling import MotionFunction
 from ..transcription.tracking_cost import TrackingCost
 from ..transcription.transcription import Transcription
-from .constraint_builder import preferred_poses
 from .fit import ADAPT_COST_WEIGHTS, motion_target
 from .setup import Setup
 

@@ -54,13 +54,19 @@ def unadapted(fit: Fit) -> Adaptation:
 def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None) -> Adaptation:
     """Adapts a fitted performance to a problem (thesis 4.3, 4.4).
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults. A solve
+    Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults. What cannot
+    be reached with the durations that go with the pins is tried with the recorded ones. A solve
     that fails is returned with the best motion found and a status that says so; one that
     `progress` ends by raising Stopped, with the motion as it stood.
     """
     setup = set_up(fit, problem)
     try:
-        return _solve(fit, problem, setup, progress)
+        found = _solve(fit, problem, setup, progress)
+        if found.reached == 1.0 or not setup.anticipates:
+            return found
+        setup = set_up(fit, problem.keeping_times())
+        again = _solve(fit, problem, setup, progress)
+        return replace(again, outcomes=(*found.outcomes, *again.outcomes))
     except Stopped as stop:
         return _stopped(stop.motion, fit, setup)
 

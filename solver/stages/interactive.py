@@ -4,7 +4,8 @@ Moving a pin changes the rows' values, not their Jacobian, so most steps go on w
 (chord steps); a new one is made where they no longer come near. Each update steps from the last one
 by the smallest change: measured against steps towards the motion nearest to the fit, that is as
 near to what the solve will find and does not jitter. Far moves are made by continuation, one step
-an update. The solve proper, once the pin is let go, starts from the fit again.
+an update. The solve proper, once the pin is let go, starts from the fit again. While a pin moves
+phases last as long as they did; once it rests they take the durations that go with its place.
 """
 
 from dataclasses import replace
@@ -26,6 +27,8 @@ from .warm_start import continuation_steps, partial_places, stance_moves, warm_s
 CHORD_STEPS = 2  # an update, on the same factor
 MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
+RESTING_UPDATES = 2  # at one place, after which a pin is no longer on its way
+SAME_DURATION = 1e-3  # s, by which nobody sees that a phase lasts longer
 KEPT_FACTOR_VIOLATION = 100.0  # times the tolerances (1 mm): where the last factor still serves
 
 
@@ -37,12 +40,14 @@ class Follower:
 
     def __init__(self, fit: Fit, problem: MotionProblem, last: Adaptation | None = None) -> None:
         self._fit, self._problem = fit, problem
-        self.setup = set_up(fit, problem)
-        self.motion = self.setup.start
-        if last is not None:
-            self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
+        if last is None:
+            self.setup = set_up(fit, problem)
+            self.motion, self._metric = self.setup.start, self.setup.metric
+        else:
             self.setup = last.setup
-        self._metric = self.setup.metric if last is None else self.setup.metric_of(self.motion)
+            self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
+            self._metric = self.setup.metric_of(self.motion)
+        self._timed, self._rested = problem, 0  # whose durations these are; updates at one place
         self._linearised: LinearisedProblem | None = None
         self._held = self.motion
         self.violation = np.inf
@@ -52,8 +57,11 @@ class Follower:
 
         Raises as set_up does, leaving the motion as it was.
         """
+        self._rested = self._rested + 1 if problem == self._problem else 0
         if replace(problem, pins=()) != replace(self._problem, pins=()):
             self._set_up(problem)
+        elif self._rested >= RESTING_UPDATES and self._timed != problem:
+            self._retime(problem)
         self._problem = problem
         target = find_target_places(self._fit, problem, self.setup.schedule)
         was = self.motion.places
@@ -67,7 +75,7 @@ class Follower:
             return DragStatus.DIVERGED
         if self.violation < KEPT_FACTOR_VIOLATION:
             self._held = self.motion
-        there = steps == 1 and self.violation <= 1.0
+        there = steps == 1 and self.violation <= 1.0 and self._timed == problem
         return DragStatus.CONVERGED if there else DragStatus.CONVERGING
 
     def _set_up(self, problem: MotionProblem) -> None:
@@ -77,8 +85,18 @@ class Follower:
         start = setup.start
         if new.basis is old.basis and new.layout == old.layout:
             start = Motion(new, self.motion.x, self.motion.places)
+        self._begin(setup, start, problem)
+
+    def _retime(self, problem: MotionProblem) -> None:
+        """Begins anew where other durations go with the pins, or where they had changed."""
+        setup = set_up(self._fit, problem)
+        self._timed = problem
+        if not np.allclose(setup.start.duration, self.motion.duration, atol=SAME_DURATION):
+            self._begin(setup, setup.start, problem)
+
+    def _begin(self, setup: Setup, start: Motion, problem: MotionProblem) -> None:
         self.setup, self.motion, self._metric = setup, start, setup.metric
-        self._linearised, self._held = None, start
+        self._linearised, self._held, self._timed = None, start, problem
 
     def _step(self, x: FloatArray, places: FloatArray) -> bool:
         """A few chord steps from unknowns x; False, having changed nothing, where they diverge."""

@@ -5,7 +5,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..body.body_changes import changed_points
 from ..body.character import Character
-from ..body.kinematics import forward_kinematics
+from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..transcription.motion import Motion
 from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants
 
@@ -21,23 +21,29 @@ def reseat(motion: Motion, character: Character) -> FloatArray:
     """
     t, x = motion.transcription, motion.x.copy()
     times = dense_instants(t.basis)
-    shift = _com_shift(motion, character, times)
+    posed = forward_kinematics(character, motion.angles(times))
+    shift = com_shift(motion, posed, changed_points(t.points, t.character, character), times)
     x[:, t.layout.com] += t.basis.project(times, shift, THIRD_DERIVATIVE_WEIGHT)
     if character.gravity != t.character.gravity:
         x[:, t.layout.vertical_forces] *= character.gravity / t.character.gravity
     return x
 
 
-def _com_shift(motion: Motion, character: Character, times: FloatArray) -> FloatArray:
-    """(T, 3) displacement of the centre of mass that keeps contact points in place, m."""
+def com_shift(
+    motion: Motion, new: Pose, points: tuple[BodyPoint, ...], times: FloatArray
+) -> FloatArray:
+    """(T, 3) displacement of the centre of mass that keeps contact points in place, m.
+
+    new: the poses that the motion's own are replaced by at instants (T,) s; points: the touching
+    points of that figure.
+    """
     t = motion.transcription
-    old, new = motion.pose(times), forward_kinematics(character, motion.angles(times))
+    old = motion.pose(times)
     off = old.centres[:, 0] - new.centres[:, 0]  # with the root where it was
     spans = [(c.contact.start, c.contact.end) for c in t.contacts]
     pinned = np.array([(start <= times) & (times <= end) for start, end in spans])
     if not pinned.any():
         return off
-    points = changed_points(t.points, t.character, character)
     apart = old.points(t.points) - new.points(points) - off[:, None]
     apart = apart[:, [c.point for c in t.contacts]]
     held = pinned.any(axis=0)

@@ -7,7 +7,7 @@ of that kind is asked for, the fit's own transcription serves.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -16,13 +16,16 @@ from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
 from ..body.dynamics import MomentFunction
 from ..body.proportions import changed_recording
+from ..constraints.constraint_builder import build_constraints
+from ..constraints.contact_setup import added_contact, detailed_contact, with_added, without_lifted
+from ..constraints.evaluation_context import EvaluationContext
 from ..data.constants import STANDARD_GRAVITY
-from ..data.contacts import ContactSchedule, Phase
+from ..data.contacts import ContactSchedule, Interval, Phase
 from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Requests
-from ..data.timeline import timeline
+from ..data.timeline import TimeWarp, timeline
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
 from ..optimisation.reduction import ReducedSpace, reduce
@@ -32,9 +35,7 @@ from ..transcription.objectives import torque_metric
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.tracking_cost import CostWeights
 from ..transcription.transcription import Transcription
-from .constraint_builder import build_constraints
-from .contact_setup import added_contact, detailed_contact, with_added, without_lifted
-from .evaluation_context import EvaluationContext
+from .anticipation import anticipate
 from .fit import (
     ADAPT_COST_WEIGHTS,
     MIN_SPAN,
@@ -63,7 +64,8 @@ class Setup:
     """A problem ready to be solved.
 
     start: the initial guess, whose transcription has the problem's constraints; its places are
-    where the contacts are now. target_places: (n_contacts, 3) m, where they shall be. metric: W at
+    where its contacts are. fitted_places, target_places: (n_contacts, 3) m, where they were in the
+    fit, and where they shall be. metric: W at
     the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the changes of a
     block that a reduction allows, None all. requests: those set up here. recording: of the figure
     as it is asked for. space: the reduced coordinates, None where there are none.
@@ -72,6 +74,7 @@ class Setup:
     fit: Fit
     context: EvaluationContext
     start: Motion
+    fitted_places: FloatArray
     target_places: FloatArray
     metric: BlockBanded
     turns: dict[str, float]
@@ -93,6 +96,11 @@ class Setup:
         if _weighs_torques(self.requests):
             metric.lower += torque_metric(motion, self.torques).lower
         return metric
+
+    @property
+    def anticipates(self) -> bool:
+        """Whether durations other than those asked for go with the pins."""
+        return self.start.places is not self.fitted_places
 
     @property
     def schedule(self) -> ContactSchedule:
@@ -120,20 +128,23 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     retimed = retiming.schedule(fit.schedule)
     changed = changed_recording(recording, requests.body.limbs)
     reference = _with_body(fit, problem, changed)
-    schedule, phases = without_lifted(retimed, problem), retimed.phases
-
-    def travel(time: float) -> FloatArray:
-        index = next((i for i, p in enumerate(phases) if time <= p.end), len(phases) - 1)
-        old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
-        return travel_axes(fit.performance, fit.schedule, old)
-
-    context = EvaluationContext(changed, fit.motion, reference, phases, schedule, retiming, travel)
+    context = EvaluationContext(
+        changed,
+        fit.motion,
+        reference,
+        retimed.phases,
+        without_lifted(retimed, problem),
+        retiming,
+        partial(_travel, fit, retimed.phases),
+    )
     added = {r.name: r for r in requests.points if r.environment}
     contacts = [added_contact(request, context) for request in added.values()]
-    context = replace(context, schedule=with_added(schedule, contacts))
+    context = replace(context, schedule=with_added(context.schedule, contacts))
     start = _start(fit, problem, context, added)
-    start = _with_constraints(start, problem, context)
+    fitted_places = start.places
     target_places = find_target_places(fit, problem, context.schedule)
+    context, start = _anticipated(fit, problem, context, start, target_places)
+    start = _with_constraints(start, problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
     kept = same and weights is ADAPT_COST_WEIGHTS
@@ -141,12 +152,62 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
-    turns = _turns(problem, phases, context.schedule)
+    turns = _turns(problem, context.phases, context.schedule)
     reduction, space = requests.solution.reduction, None
     if reduction is not None:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)
     basis = _reduced_basis(space, start)
-    return Setup(fit, context, start, target_places, metric, turns, basis, changed, requests, space)
+    return Setup(
+        fit,
+        context,
+        start,
+        fitted_places,
+        target_places,
+        metric,
+        turns,
+        basis,
+        changed,
+        requests,
+        space,
+    )
+
+
+def _travel(fit: Fit, phases: Sequence[Phase], time: float) -> FloatArray:
+    """(3, 3) columns forward, left, up at an instant, s. phases: the recording's, on that time."""
+    index = next((i for i, p in enumerate(phases) if time <= p.end), len(phases) - 1)
+    old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
+    return travel_axes(fit.performance, fit.schedule, old)
+
+
+def _anticipated(
+    fit: Fit,
+    problem: MotionProblem,
+    context: EvaluationContext,
+    start: Motion,
+    target: FloatArray,
+) -> tuple[EvaluationContext, Motion]:
+    """Context and initial guess with the durations that go with where the contacts shall be."""
+    requests = problem.requests
+    timed = {timing.phase for timing in requests.timings}
+    kept = tuple(Interval(p.start, p.end) for p in context.phases if p.name in timed)
+    kept += tuple(Interval(hold.start, hold.end) for hold in context.timeline.holds)
+    found = None
+    if not requests.solution.keep_times:
+        found = anticipate(start, context.schedule, target, kept)
+    if found is None:
+        return context, start
+    warp = TimeWarp.of(found.stretches, start.duration)
+    phases = tuple(
+        replace(p, start=float(warp(p.start)), end=float(warp(p.end))) for p in context.phases
+    )
+    context = replace(
+        context,
+        phases=phases,
+        schedule=warp.schedule(context.schedule),
+        timeline=context.timeline.warped(warp),
+        travel=partial(_travel, fit, phases),
+    )
+    return context, found.motion
 
 
 def find_target_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:

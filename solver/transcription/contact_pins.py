@@ -6,8 +6,8 @@ end condition. These are as many rows as a cubic has freedom, so they stay indep
 move (a lift, a swing), and a point may slide along a surface: then only its height is held.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -79,6 +79,16 @@ class PointContact:
     friction: float | None = DEFAULT_FRICTION
     normal: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     pyramid: bool = False
+
+    def retimed(self, warp: Callable[[FloatArray], FloatArray]) -> "PointContact":
+        """The same contact at other instants. warp: new instants (T,) s of old ones."""
+        start, end = warp(np.array([self.contact.start, self.contact.end])).tolist()
+        contact = replace(self.contact, start=start, end=end)
+        track, sole = (
+            None if each is None else replace(each, times=warp(each.times))
+            for each in (self.track, self.sole)
+        )
+        return replace(self, contact=contact, track=track, sole=sole)
 
     def pin_error(self, at: FloatArray, place: FloatArray, times: FloatArray) -> FloatArray:
         """(T, k) errors of points at (T, 3) against where they are held at instants (T,) s, m.

@@ -44,7 +44,8 @@ class FrictionCones:
         point = np.array([contacts[i].point for i in self._owner], dtype=int)
         self._columns = layout.force_columns(point)
         self._mu = np.array([contacts[i].friction for i in self._owner], dtype=float)
-        self._frames = np.array([_frame(contacts[i].normal) for i in self._owner]).reshape(-1, 3, 3)
+        frames = np.array([_frame(contact.normal) for contact in contacts]).reshape(-1, 3, 3)
+        self._frames = frames[self._owner]
         self._pyramid = np.array([contacts[i].pyramid for i in self._owner], dtype=bool)
 
     def forces(self, x: FloatArray) -> FloatArray:

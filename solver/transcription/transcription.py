@@ -17,6 +17,7 @@ A point is pinned while it carries force; at a landing and a lift-off its place 
 where the body lands or leaves as a whole: so the forces' sum is continuous within a stance.
 """
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field, replace
 
@@ -84,6 +85,16 @@ class Transcription:
         twin = copy(self)
         twin.discretised = [each.relaxed(x, share) for each in self.discretised]
         return twin
+
+    def retimed(self, warp: Callable[[FloatArray], FloatArray]) -> "Transcription":
+        """The same unknowns at other instants, without the artist's constraints.
+
+        Control points and force values stay where they are in their phase. warp: new instants
+        (T,) s of old ones, ascending.
+        """
+        basis = replace(self.basis, breaks=warp(self.basis.breaks))
+        contacts = tuple(contact.retimed(warp) for contact in self.contacts)
+        return replace(self, basis=basis, contacts=contacts, constraints=())
 
     @property
     def n_unknowns(self) -> int:

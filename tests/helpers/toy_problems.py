@@ -9,6 +9,8 @@ from hangtime.solver.body.character import Body, Character, Joint
 from hangtime.solver.body.dynamics import MomentFunction
 from hangtime.solver.body.joint_axes import JointAxes
 from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics
+from hangtime.solver.constraints.constraint_builder import build_constraints
+from hangtime.solver.constraints.evaluation_context import EvaluationContext
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.recording import Bone, Recording
 from hangtime.solver.data.requests import Requests
@@ -18,8 +20,6 @@ from hangtime.solver.numerics.block_banded import BlockBanded
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.numerics.splines import ORDER, SplineBasis, phase_breaks
 from hangtime.solver.optimisation.sqp import FeasibleSet, Outcome, restore
-from hangtime.solver.stages.constraint_builder import build_constraints
-from hangtime.solver.stages.evaluation_context import EvaluationContext
 from hangtime.solver.stages.fit import motion_target
 from hangtime.solver.transcription.constraint import Constraint, ConstraintFunction, exchange
 from hangtime.solver.transcription.constraint_functions import TwistAngle

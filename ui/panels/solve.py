@@ -49,6 +49,7 @@ class AdvancedPanel(ArmaturePanel):
         layout = split(self)
         settings = settings_in(context)
         layout.prop(settings, "method")
+        layout.prop(settings, "keep_times")
         refine = layout.column(heading="Refine")
         refine.prop(settings, "objective")
         refine.prop(settings, "stay_close")

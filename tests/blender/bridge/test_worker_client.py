@@ -99,7 +99,9 @@ def test_the_second_adaptation_starts_from_the_stored_fit(worker: Worker, jump: 
         answer = worker.ask(RequestKind.ADAPT, jump, problem).wait(told.append)
         assert isinstance(answer, Adapted)
         assert answer.report.pins[0].name == problem.pins[0].name
-        np.testing.assert_array_equal(answer.track.frames, np.arange(SPAN[0], SPAN[1] + 1))
+        frames = answer.track.frames
+        np.testing.assert_array_equal(frames, SPAN[0] + np.arange(len(frames)))
+        assert len(frames) > SPAN[1] - SPAN[0]  # a jump that goes further or higher takes longer
         stages.append({progress.stage for progress in told})
     assert "fit" in stages[0]
     assert "fit" not in stages[1]

@@ -101,7 +101,9 @@ def test_the_blend_holds_both_side_by_side(done: Path) -> None:
     assert recorded.name == "forward_jump_116cm"
     assert recorded.use_fake_user
     assert tuple(recorded.frame_range) == (1.0, 336.0)  # whole, not cut to the recipe's frames
-    assert (bpy.context.scene.frame_start, bpy.context.scene.frame_end) == WINDOW
+    scene, last = bpy.context.scene, figure.animation_data.action.frame_range[1]
+    assert (scene.frame_start, scene.frame_end) == (WINDOW[0], pytest.approx(last, abs=1.0))
+    assert last > WINDOW[1]  # further, so longer
 
 
 def test_pinned_points_stay_where_they_were_sent(done: Path) -> None:

@@ -10,10 +10,12 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 import hangtime
+from hangtime.bridge.properties.shown_times import recorded_frame, store_times
 from hangtime.operators.names import OperatorId
 from hangtime.operators.timeline import contact_edge_operator
 from hangtime.operators.timeline.contact_edge_state import Edge
 from hangtime.operators.timeline.timeline_bars import bars_in
+from hangtime.solver.data.report import TimeMap
 from hangtime.tests.blender.helpers import motions, regions, rigs
 from hangtime.ui.timeline import handler
 
@@ -94,6 +96,26 @@ def test_before_an_analysis_it_is_grey_and_says_why() -> None:
 
 
 # ---------------------------------------------------------------- bars
+
+
+def test_bars_are_where_the_shown_action_has_them(settings: bpy.types.PropertyGroup) -> None:
+    armature = settings.id_data
+    action = bpy.data.actions.new("adapted")
+    armature.animation_data_create().action = action
+    later = 10.0
+    store_times(
+        action,
+        TimeMap(
+            (motions.FIRST, motions.TAKE_OFF, motions.LAST),
+            (motions.FIRST, motions.TAKE_OFF + later, motions.LAST + later),
+        ),
+    )
+    bars = bars_in(regions.timeline(0.0, 200.0))
+    assert bars is not None
+    flight = bars.rows[-1].bars[1]
+    assert (flight.start, flight.end) == (motions.TAKE_OFF + later, motions.LANDING + later)
+    assert recorded_frame(armature, motions.LANDING + later) == motions.LANDING
+    assert recorded_frame(armature, motions.LAST + later + 5.0) == motions.LAST + 5.0
 
 
 def test_a_row_for_each_point_and_one_for_the_phases(settings: bpy.types.PropertyGroup) -> None:

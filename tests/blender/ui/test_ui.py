@@ -210,6 +210,7 @@ def test_the_landing_moves_and_the_recording_stays(analysed: bpy.types.Object) -
     keys = snapshot(recorded, analysed)
     stance = settings.stances["ground 2"]
     stance.forward, stance.left, stance.up = OFFSET
+    settings.keep_times = True  # so that the contacts' frames are still those of the rows
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     adapted = analysed.animation_data.action
     assert adapted != recorded
@@ -321,6 +322,7 @@ def test_an_empty_carries_its_stance(analysed: bpy.types.Object) -> None:
     second.place = second.found_at
     np.testing.assert_allclose(first.empty.location, first.found_at, atol=1e-6)
     first.empty.location.x += 0.25  # which the operator has to look at itself
+    settings.keep_times = True
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     for row in landing(settings):
         np.testing.assert_allclose(np.subtract(row.place, row.found_at), (0.25, 0, 0), atol=1e-6)
@@ -535,6 +537,24 @@ def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
     problem = problem_of(analysed.hangtime, read_recorded(analysed, FIRST, LAST))
     assert [limit.name for limit in problem.requests.torques] == ["Weak ankle"]
     assert [load.share for load in problem.requests.body.added] == [0.1]
+
+
+def test_a_longer_jump_has_more_frames(analysed: bpy.types.Object) -> None:
+    analysed.hangtime.stances["ground 2"].forward = 0.2
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    adapted = analysed.animation_data.action
+    assert adapted.frame_range[1] > LAST + 3
+    assert "Flight 1: 0.5" in analysed.hangtime.status
+    assert "takes 0.5" in adapted.hangtime.report
+
+
+def test_times_are_kept_where_that_is_chosen(analysed: bpy.types.Object) -> None:
+    recording = read_recorded(analysed, FIRST, LAST)
+    assert not problem_of(analysed.hangtime, recording).requests.solution.keep_times
+    analysed.hangtime.keep_times = True
+    ask_by_text(analysed, "[solution]\nlongest_span = 0.1\n")
+    solution = problem_of(analysed.hangtime, recording).requests.solution
+    assert (solution.keep_times, solution.longest_span) == (True, 0.1)
 
 
 @pytest.mark.parametrize(

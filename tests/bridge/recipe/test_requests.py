@@ -162,6 +162,7 @@ method = "explicit"
 dynamics = "standard"
 longest_span = 0.1
 torque_span = 0.2
+keep_times = true
 
 [solution.objectives]
 "torque smoothness" = 2
@@ -243,6 +244,7 @@ REQUESTS = Requests(
         ),
         0.1,
         0.2,
+        keep_times=True,
     ),
 )
 
@@ -268,7 +270,16 @@ def test_the_recipe_in_the_documentation_is_understood() -> None:
     known = {key for kind in requests.NAMED for key in kind.keys}
     said = (line.split(" = ")[0] for line in requests.__doc__.splitlines() if " = " in line)
     keys = {key.strip().strip('"') for key in said}
-    solving = {"method", "dynamics", "longest_span", "gravity", "kind", "dimensions", "matrix"}
+    solving = {
+        "method",
+        "dynamics",
+        "longest_span",
+        "keep_times",
+        "gravity",
+        "kind",
+        "dimensions",
+        "matrix",
+    }
     assert keys - known - solving == {"torque smoothness", "closeness"}
     alternatives = {"frame", "fixed", "at_most", "forward", "left", "up", "bones", "seconds"}
     assert known - keys <= alternatives
@@ -397,6 +408,7 @@ SOLUTIONS = st.builds(
     reduction=st.none() | REDUCTIONS,
     longest_span=st.none() | POSITIVE,
     torque_span=st.none() | POSITIVE,
+    keep_times=st.booleans(),
 )
 CONES = st.builds(
     ConeLimit,

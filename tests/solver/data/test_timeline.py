@@ -1,12 +1,14 @@
 """Retimed phases and held frames: the map of time, its contacts, and what cannot be asked."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.data.contacts import Contact, ContactSchedule
+from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval
 from hangtime.solver.data.faults import BadTiming, UnknownPhaseIn
 from hangtime.solver.data.requests import ALWAYS, Hold, Moment, PhaseTiming, When
-from hangtime.solver.data.timeline import Timeline, active_interval, timeline
+from hangtime.solver.data.timeline import Stretch, Timeline, TimeWarp, active_interval, timeline
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -236,3 +238,39 @@ def test_two_holds_of_one_frame_are_both_held() -> None:
     line = made(holds=(Hold("a", frame(0.5), 0.2), Hold("b", frame(0.5), 0.3)))
     assert [span.name for span in line.holds] == ["a", "b"]
     assert line.duration == pytest.approx(DURATION + 0.5)
+
+
+def test_unseen_support_moves_along() -> None:
+    """What stays behind would be a flight where something carries."""
+    carried = replace(schedule(), unseen=(Interval(0.4, 0.7),))
+    line = timeline(carried, FIRST, RATE, retimed({"ground 1": 1.5}), ())
+    moved = line.schedule(carried)
+    assert moved.flights == ()
+    assert (moved.unseen[0].end - moved.unseen[0].start) == pytest.approx(0.45)
+
+
+STRETCHES = (Stretch(0.1, 0.4, 1.25), Stretch(0.4, 0.7, 0.8))
+
+
+@given(TIMES)
+def test_a_warp_comes_back(times: FloatArray) -> None:
+    warp = TimeWarp.of(STRETCHES, DURATION)
+    assert warp.inverse(warp(times)) == pytest.approx(times, abs=1e-8)
+
+
+def test_a_warp_stretches_its_intervals_and_nothing_else() -> None:
+    warp = TimeWarp.of(STRETCHES, DURATION)
+    lengths = np.diff(warp(np.array([0.0, 0.1, 0.4, 0.7, DURATION])))
+    assert lengths == pytest.approx([0.1, 0.375, 0.24, 0.5])
+
+
+@given(HOLDS)
+def test_a_timeline_is_warped_in_its_new_time(seconds: dict[int, float]) -> None:
+    line = made(timings=retimed({"flight 1": 2.0}), holds=held(seconds))
+    warp = TimeWarp.of((Stretch(0.5, 0.9, 1.5),), line.duration)
+    both = line.warped(warp)
+    times = np.linspace(0.0, DURATION, 50)
+    assert both.to_new(times) == pytest.approx(warp(line.to_new(times)), abs=1e-7)
+    assert both.duration == pytest.approx(line.duration + 0.2)
+    for was, now in zip(line.holds, both.holds, strict=True):
+        assert now.start == pytest.approx(float(warp(was.start)))

@@ -43,7 +43,7 @@ def trajectory() -> dict[str, np.ndarray]:
 
 
 def phases(kind: str) -> list:
-    return [p for p in fitted_hop().schedule.phases if p.kind.value == kind]
+    return [p for p in further().setup.schedule.phases if p.kind.value == kind]
 
 
 def test_the_hop_is_solved() -> None:
@@ -166,6 +166,19 @@ def test_shapes_and_names_agree() -> None:
     assert t["mass"].sum() == pytest.approx(70.0)
 
 
+def test_times_that_changed_are_told() -> None:
+    flight, ground = (
+        next(p for p in found().phases if p.phase == name) for name in ("flight 1", "ground 2")
+    )
+    (now,), (was,) = phases("flight"), fitted_hop().schedule.flights
+    assert flight.adapted_s == pytest.approx(now.end - now.start)
+    assert flight.recorded_s == pytest.approx(was.end - was.start)
+    told = f"takes {flight.adapted_s:.3f} s instead of {flight.recorded_s:.3f} s"
+    assert f"Flight 1    {told}" in as_text(found())
+    assert ground.adapted_s == pytest.approx(ground.recorded_s)
+    assert "Ground 2    takes" not in as_text(found())
+
+
 def test_newton_holds_for_the_samples_alone() -> None:
     """Force by central differences of momentum; away from instants at which it jumps."""
     t = trajectory()
@@ -200,7 +213,7 @@ def test_forces_are_zero_out_of_contact() -> None:
     t = trajectory()
     names = list(t["contact_names"])
     touching = np.zeros(t["contact_force"].shape[:2], dtype=bool)
-    for contact in fitted_hop().schedule.contacts:
+    for contact in further().setup.schedule.contacts:
         during = (t["time"] >= contact.start) & (t["time"] <= contact.end)
         touching[:, names.index(contact.point)] |= during
     assert np.all(t["contact_force"][~touching] == 0.0)

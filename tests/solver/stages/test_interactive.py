@@ -40,6 +40,19 @@ def test_the_ghost_is_near_the_solve() -> None:
     assert np.sqrt((left.moment**2).sum(axis=1).mean()) < 0.003
 
 
+def test_times_follow_once_the_pin_rests() -> None:
+    fit = fitted_hop()
+    follower = Follower(fit, moved(0.0))
+    for step in range(1, 6):
+        follower.follow(moved(0.03 * step))
+        assert follower.motion.duration == fit.motion.duration
+    settled(follower, moved(0.15))
+    assert follower.motion.duration == adapt(fit, moved(0.15)).motion.duration
+    assert follower.motion.duration > fit.motion.duration + 0.005
+    settled(follower, moved(0.0))
+    assert follower.motion.duration == fit.motion.duration
+
+
 def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
     follower = Follower(fitted_hop(), moved(0.0))
     assert follower.follow(moved(0.9)) is DragStatus.CONVERGING

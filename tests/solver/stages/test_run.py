@@ -8,11 +8,11 @@ import pytest
 from hangtime.bridge.recipe.problem import parse_recipe, read_recipe_text
 from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.body.anatomy import Part
+from hangtime.solver.constraints.joint_constraints import bend_function
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
-from hangtime.solver.stages.joint_constraints import bend_function
 from hangtime.solver.stages.setup import Setup
 from hangtime.solver.transcription.constraint import dense_violation
 from hangtime.solver.transcription.sampling import Instants, State

@@ -5,6 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.solver.body.kinematics import BodyPoint
+from hangtime.solver.constraints.constraint_builder import build_constraints
+from hangtime.solver.constraints.evaluation_context import touches
+from hangtime.solver.constraints.point_constraints import point_axes
 from hangtime.solver.data.faults import BadTiming, RootHasNoJoint, StillBone, UnknownPhaseIn
 from hangtime.solver.data.requests import (
     ALWAYS,
@@ -25,9 +28,6 @@ from hangtime.solver.data.requests import (
 )
 from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import unit
-from hangtime.solver.stages.constraint_builder import build_constraints
-from hangtime.solver.stages.evaluation_context import touches
-from hangtime.solver.stages.point_constraints import point_axes
 from hangtime.solver.transcription.constraint import dense_violation, exchange
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.toy_problems import (

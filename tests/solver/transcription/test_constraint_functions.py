@@ -8,8 +8,8 @@ import pytest
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import Character
 from hangtime.solver.body.kinematics import BodyPoint
+from hangtime.solver.constraints.joint_constraints import bend_function
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_matrix, rotation_vector, unit
-from hangtime.solver.stages.joint_constraints import bend_function
 from hangtime.solver.transcription.constraint import ConstraintFunction
 from hangtime.solver.transcription.constraint_functions import (
     BendAngle,

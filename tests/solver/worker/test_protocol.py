@@ -24,6 +24,7 @@ from hangtime.solver.data.report import (
     ForcesReport,
     JumpReport,
     MotionChange,
+    PhaseReport,
     PhaseResidual,
     PinReport,
     RecordedFlight,
@@ -32,6 +33,7 @@ from hangtime.solver.data.report import (
     Report,
     SolveReport,
     StageReport,
+    TimeMap,
     TorquePeak,
     TorquesReport,
     TorqueUse,
@@ -125,6 +127,8 @@ REPORT = Report(
     fit_to_recording=FitQuality(1.0, 0.1, 2.5, 3.0),
     change=MotionChange(2.0, 1.0),
     jumps=(JumpReport("flight 1", 0.0, 0.1, 0, 3, RecordedFlight(1.0), FLIGHT, FLIGHT, None, 0.0),),
+    phases=(PhaseReport("flight 1", 0.1, 0.125),),
+    times=TimeMap((0.0, 4.0), (0.0, 5.0)),
     stages=(StageReport("Adapting", 1.5),),
 )
 MESSAGES: tuple[Message, ...] = (

@@ -12,6 +12,7 @@ from ....bridge.armature.poses import metres_per_unit
 from ....bridge.armature.traces_store import StoredTraces, kept
 from ....bridge.properties.constraint import HangtimeConstraint
 from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ....bridge.properties.shown_times import recorded_frame
 from ....bridge.properties.view import HangtimeView
 from ....bridge.rows.bone_keys import current_name
 from ....bridge.rows.choices import Span
@@ -47,6 +48,11 @@ class ViewContext:
     options: HangtimeView
     frame: float
     metres: float  # of a Blender unit
+
+    @cached_property
+    def recorded_frame(self) -> float:
+        """The frame of the recording that `frame` shows, by which contacts are stated."""
+        return recorded_frame(self.armature, self.frame)
 
     @cached_property
     def size(self) -> float:

@@ -147,7 +147,7 @@ def _cones(
     side = sideways - axis * (axis @ sideways)[:, None]
     clear = (
         np.linalg.norm(side, axis=1, keepdims=True) > 0.3
-    )  # as in solver/stages/constraint_builder.py
+    )  # as in solver/constraints/constraint_builder.py
     side = np.where(clear, unit(side), across(axis))
     return limit_poses.cones(joints, axis, side, np.array([limit.stretch for limit in limits]))
 

@@ -45,7 +45,7 @@ def _limit(view: ViewContext, row: HangtimeConstraint, chosen: bool) -> Iterator
     if bone is None or parent is None or not (row.used or chosen):
         return
     span = view.span(row)
-    standing = Standing.NOW if holds(span, view.frame) else Standing.LATER
+    standing = Standing.NOW if holds(span, view.recorded_frame) else Standing.LATER
     cone = row.kind == CONE
     yield Limit(
         kind=row.kind,

@@ -34,7 +34,7 @@ def contacts(view: ViewContext) -> Layer:
 
 def _contact(view: ViewContext, row: HangtimeContact, chosen: bool) -> Pin:
     found = tuple(row.found_at) if moved(row) else None
-    return Pin(tuple(row.at), _standing_of(row, view.frame), False, chosen, found)
+    return Pin(tuple(row.at), _standing_of(row, view.recorded_frame), False, chosen, found)
 
 
 def _standing_of(row: HangtimeContact, frame: float) -> Standing:
@@ -70,7 +70,7 @@ def _point(view: ViewContext, row: HangtimeConstraint, chosen: bool) -> Iterator
     place = _place(row, recorded)
     if place is None:
         return
-    standing = Standing.NOW if holds(span, view.frame) else Standing.LATER
+    standing = Standing.NOW if holds(span, view.recorded_frame) else Standing.LATER
     box = _box(view, row, place) if row.use_bounds else None
     # bounds hold a point in no one place that it could have been moved to
     found = recorded if row.use_place and not row.use_bounds else None
@@ -146,7 +146,7 @@ def _floor(view: ViewContext) -> float:
 
 
 def _axes(view: ViewContext, row: HangtimeConstraint) -> Matrix:
-    """Columns: the directions of a point's bounds; as in solver/stages/constraint_builder.py."""
+    """Columns: the directions of a point's bounds; as in solver/constraints."""
     up = Vector((0.0, 0.0, 1.0))
     if row.axes == PointAxes.TRAVEL.name and len(view.settings.stances):
         forward = Vector(view.settings.stances[0].forward_axis)

@@ -1,0 +1,44 @@
+"""Frames of the recording where they are in the action that is shown."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+
+from ...solver.data.report import TimeMap
+from .settings import action_settings
+
+
+def store_times(action: bpy.types.Action, times: TimeMap) -> None:
+    """Keeps the time map of an adapted action with it."""
+    action_settings(action).times = json.dumps([times.recorded_frame, times.adapted_frame])
+
+
+def shown_frames(armature: bpy.types.Object) -> Callable[[float], float]:
+    """The frame of the shown action for each of the recording's."""
+    recorded, adapted = _corners(armature)
+    return lambda frame: _mapped(frame, recorded, adapted)
+
+
+def recorded_frame(armature: bpy.types.Object, frame: float) -> float:
+    """The frame of the recording for one of the shown action."""
+    recorded, adapted = _corners(armature)
+    return _mapped(frame, adapted, recorded)
+
+
+def _corners(armature: bpy.types.Object) -> tuple[list[float], list[float]]:
+    """Recorded and adapted frames; the same where the shown action is none that was adapted."""
+    animation = armature.animation_data
+    action = animation.action if animation is not None else None
+    times = action_settings(action).times if action is not None else ""
+    recorded, adapted = json.loads(times) if times else ([0.0], [0.0])
+    return recorded, adapted
+
+
+def _mapped(frame: float, before: list[float], after: list[float]) -> float:
+    """Linear in between; outside of the corners as far from the nearest one."""
+    outside = frame - min(max(frame, before[0]), before[-1])
+    return float(np.interp(frame - outside, before, after)) + outside

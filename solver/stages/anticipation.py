@@ -1,0 +1,182 @@
+"""Anticipation: what a performer does who knows that the landing has moved.
+
+The flight takes as long as durations.py finds. A bigger jump is performed bigger: at the same mean
+force the travel of the push grows with the energy that it gives, so the legs bend and the trunk
+leans by (v'/v)² of what they did, v the upward speed at take-off; the push then takes v'/v as long.
+Arms swing by the ratio of the whole speed, for they swing up and forward. Smaller jumps likewise.
+Where no landing or take-off moves nothing changes.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..body.anatomy import Part
+from ..data.contacts import ContactSchedule, Interval
+from ..data.timeline import Stretch, TimeWarp
+from ..transcription.motion import Motion
+from .durations import TimedMotion, find_durations
+from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants, greville_abscissae
+from .reseat import com_shift
+from .warm_start import stance_moves, warm_start
+
+MIN_MOVE = 1e-6  # m, of a landing relative to its take-off
+LEGS_AND_TRUNK = (Part.PELVIS, Part.SPINE, Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE)
+ARMS = (Part.CLAVICLE, Part.UPPER_ARM, Part.FOREARM, Part.HAND)  # head and neck look where they did
+SPEED_RATIO = (0.7, 1.3)  # at most: beyond it, it is another kind of jump
+MIN_RISING_SPEED = 0.3  # m/s; a slower take-off is no jump (a step, a drop)
+MAX_STANDING_SPEED = 0.5  # m/s, along the floor; half of a slow walk's
+MIN_DEPTH = 0.02  # m, of a crouch
+STANDING_SHARE = 0.1  # of a crouch's depth, above which the body still stands
+FALLEN_SHARE = 0.2  # of a crouch's depth; lower than this before it is another movement
+SAMPLING_RATE = 240.0  # Hz
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A flight from a push: the body stands until `push`, then sinks and rises; s."""
+
+    push: float
+    take_off: float
+    landing: float
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Ratios of the speeds of the centre of mass at take-off, new over old: upward and whole."""
+
+    upward: float
+    whole: float
+
+    @staticmethod
+    def between(was: FloatArray, now: FloatArray) -> "Growth":
+        """was, now: (3,) m/s; 1 where it was no jump."""
+        if was[2] <= MIN_RISING_SPEED:
+            return Growth(1.0, 1.0)
+        upward, whole = now[2] / was[2], np.linalg.norm(now) / np.linalg.norm(was)
+        return Growth(float(np.clip(upward, *SPEED_RATIO)), float(np.clip(whole, *SPEED_RATIO)))
+
+
+def anticipate(
+    start: Motion, schedule: ContactSchedule, target: FloatArray, kept: tuple[Interval, ...]
+) -> TimedMotion | None:
+    """The motion as a performer would begin to change it for contacts at target (n_contacts, 3) m.
+
+    kept: intervals whose durations are to stay. None where no jump changes, or no such motion is
+    found.
+    """
+    moves = tuple(replace(move, turn=0.0) for move in stance_moves(schedule, start.places, target))
+    jumps = tuple(
+        jump
+        for jump in _jumps(start, schedule)
+        if not _overlaps(jump.take_off, jump.landing, kept)
+        and any(
+            (before.end, after.start) == (jump.take_off, jump.landing)
+            and np.linalg.norm(after.shift - before.shift) > MIN_MOVE
+            for before, after in pairwise(moves)
+        )
+    )
+    if not jumps:
+        return None
+    places = start.places.copy()
+    for move in moves:
+        for i, contact in enumerate(schedule.contacts):
+            touches = contact.start < move.end and contact.end > move.start
+            if touches and not contact.asked_for:
+                places[i] = start.places[i] + move.shift
+    flights = [Interval(jump.take_off, jump.landing) for jump in jumps]
+    found = find_durations(start, warm_start(start, moves), places, flights)
+    return None if found is None else _resized(start, jumps, found, kept)
+
+
+def _overlaps(start: float, end: float, intervals: Iterable[Interval]) -> bool:
+    return any(each.start < end and each.end > start for each in intervals)
+
+
+def _jumps(motion: Motion, schedule: ContactSchedule) -> Iterator[Jump]:
+    """The flights that a push from standing begins.
+
+    A bounce, as in a run, is none: it takes its energy from the flight before it and keeps its
+    rhythm.
+    """
+    for flight in schedule.flights:
+        landed = max((f.end for f in schedule.flights if f.end < flight.start), default=0.0)
+        times = np.arange(flight.start, landed, -1.0 / SAMPLING_RATE)
+        height = motion.com(times)[:, 2]
+        rising = np.append(np.diff(height) <= 0.0, False)  # backwards in time
+        low = int(np.argmin(rising))
+        times, height = times[low:], height[low:]
+        top = np.maximum.accumulate(height)
+        depth = top - height[0]
+        sank = (depth > MIN_DEPTH) & (top - height > FALLEN_SHARE * depth)
+        if landed > 0.0 and not sank.any():
+            continue
+        last = int(np.argmax(sank)) if sank.any() else len(height) - 1
+        stood = times[np.argmax(height >= top[last] - STANDING_SHARE * depth[last])]
+        speed = np.linalg.norm(motion.com(np.array([stood]), 1)[0, :2])
+        if speed < MAX_STANDING_SPEED:
+            yield Jump(float(stood), flight.start, flight.end)
+
+
+# ---------------------------------------------------------------- amplitude
+
+
+def _resized(
+    start: Motion, jumps: tuple[Jump, ...], found: TimedMotion, kept: tuple[Interval, ...]
+) -> TimedMotion:
+    """The found motion with its pushes as much bigger, or smaller, as its flights are."""
+    warp = TimeWarp.of(found.stretches, start.duration)
+    growths = []
+    for jump in jumps:
+        was = start.com(np.array([jump.take_off]), 1)[0]
+        now = found.motion.com(warp(np.array([jump.take_off])), 1)[0]
+        growths.append(Growth.between(was, now))
+    longer = tuple(
+        Stretch(jump.push, jump.take_off, growth.upward)
+        for jump, growth in zip(jumps, growths, strict=True)
+        if not _overlaps(jump.push, jump.take_off, kept)
+    )
+    stretches = (*longer, *found.stretches)
+    retimed = start.transcription.retimed(TimeWarp.of(stretches, start.duration))
+    motion = Motion(retimed, found.motion.x, found.motion.places)
+    for jump, growth in zip(jumps, growths, strict=True):
+        motion = _amplified(start, motion, jump, growth)
+    return TimedMotion(motion, stretches)
+
+
+def _amplified(start: Motion, motion: Motion, jump: Jump, growth: Growth) -> Motion:
+    """A motion with that take-off; what the arms began dies away in the flight.
+
+    start: before any change, with the same unknowns.
+    """
+    t = motion.transcription
+    standing = start.angles(np.array([jump.push]))[0]
+    at = greville_abscissae(start.transcription.basis)
+    swing = np.interp(at, [jump.take_off, jump.landing], [1.0, 0.0]) * (at >= jump.push)
+    grown = dict.fromkeys(ARMS, (growth.whole - 1.0) * swing)
+    grown |= dict.fromkeys(LEGS_AND_TRUNK, (growth.upward**2 - 1.0) * _crouch(start, jump, at))
+    x = motion.x.copy()
+    angles = x[:, t.layout.angles]
+    for body, joint in zip(t.character.bodies, t.character.joints, strict=True):
+        if body.part in grown:
+            bend = angles[:, joint.dofs] - standing[joint.dofs]
+            angles[:, joint.dofs] += grown[body.part][:, None] * bend
+    x[:, t.layout.angles] = angles
+    bent = replace(motion, x=x)
+    times = dense_instants(t.basis)
+    shift = com_shift(motion, bent.pose(times), t.points, times)
+    x[:, t.layout.com] += t.basis.project(times, shift, THIRD_DERIVATIVE_WEIGHT)
+    return bent
+
+
+def _crouch(motion: Motion, jump: Jump, times: FloatArray) -> FloatArray:
+    """(T,) depth of the centre of mass below standing over its greatest, during a push.
+
+    Who jumps further bends further, but straightens as far as before.
+    """
+    height = motion.com(np.clip(times, jump.push, jump.take_off))[:, 2]
+    depth = np.maximum(height[0] - height, 0.0)
+    return np.asarray(depth / max(float(depth.max()), MIN_DEPTH))

@@ -1,0 +1,128 @@
+"""Durations as unknowns of a least-change problem (thesis 4.4, with flights' durations unknown).
+
+Who jumps further flies longer. Which duration goes with a moved landing is what the least change of
+*pose* tells: with s the logarithms of the flights' durations over the present ones, find
+
+    min  1/2 (x - x0)' W (x - x0)   subject to   C(x, s) = 0
+
+x0: the motion carried to its new places. W: the distance between poses at the same phase, since
+control points keep their place in their phase while a phase stretches. People jump further by a
+longer push, not by the same forces, so that forces hardly count in W. The few
+durations border the banded matrix of a step: with D = dx/ds on the linearised rows, from the factor
+that is there, their Schur complement is D' W D (Nocedal & Wright, 16.2). Where nothing is moved
+x = x0, s = 0 is the solution exactly.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.contacts import Interval
+from ..data.timeline import Stretch, TimeWarp
+from ..numerics.block_banded import BlockBanded
+from ..optimisation.kkt_step import LinearisedProblem
+from ..optimisation.sqp import FeasibleSet
+from ..transcription.motion import Motion
+from ..transcription.rows import Rows
+from ..transcription.tracking_cost import CostWeights
+from .fit import motion_metric
+
+# As in an adaptation, but forces and the centre of mass only settle what no pose shows. The weight
+# of accelerations was chosen on the two broad jumps, where a third of the same performer tells how
+# much longer he flies; the ten hops of docs/pairs.md had no say.
+POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, force=1e-5)
+DERIVATIVE_STEP = 1e-4  # of s, of the finite differences of the rows
+PROBE = 0.03  # of s, for which D is taken: a step with its bounds is only piecewise linear in it
+MAX_STEP = 0.3  # of s in one step
+MIN_STEP = 0.01  # of s: some milliseconds of a flight; the next step would change it by far less
+MAX_STEPS = 4
+MAX_RATIO = 0.5  # of the violation, left at the end; the solve proper does the rest
+
+
+@dataclass(frozen=True)
+class TimedMotion:
+    """A motion with the stretches of time that it was found with."""
+
+    motion: Motion
+    stretches: tuple[Stretch, ...]
+
+
+def find_durations(
+    start: Motion, reference: FloatArray, places: FloatArray, flights: Sequence[Interval]
+) -> TimedMotion | None:
+    """Durations of flights for contacts at other places, and the motion that goes with them.
+
+    start: what it violates is let be. reference: x0 (K, n_block), of the same transcription,
+    carried to places (n_contacts, 3) m. None where no such motion is found.
+    """
+    problem = _BorderedProblem(start, places, tuple(flights))
+    metric = motion_metric(start, POSE_COST_WEIGHTS)
+    linearised = FeasibleSet(start.transcription, start.places).linearise(problem.rows, metric)
+    x, s = reference, np.zeros(len(flights))
+    before = linearised.violation(problem.values(x, s))
+    for steps in range(1, MAX_STEPS + 1):
+        step, change = _step(linearised, metric, problem, (x, s), metric.times(x - reference))
+        x, s = x + step, s + change
+        if steps > 1 and np.abs(change).max() < MIN_STEP:
+            break
+    if not linearised.violation(problem.values(x, s)) < MAX_RATIO * before:
+        return None
+    return TimedMotion(problem.feasible(s).motion(x), problem.stretches(s))
+
+
+def _step(
+    linearised: LinearisedProblem,
+    metric: BlockBanded,
+    problem: "_BorderedProblem",
+    at: tuple[FloatArray, FloatArray],
+    gradient: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Step of x (K, n_block) and s (n,) from `at`. gradient: W (x - x0), (K, n_block)."""
+    x, s = at
+    value = problem.values(x, s)
+    still = linearised.step(value, gradient)[0]
+    moves = []
+    for unit in np.eye(len(s)):
+        slope = (problem.values(x, s + DERIVATIVE_STEP * unit) - value) / DERIVATIVE_STEP
+        moves.append((linearised.step(value + PROBE * slope, gradient)[0] - still) / PROBE)
+    pulls = [metric.times(move) for move in moves]
+    schur = np.array([[float((pull * move).sum()) for move in moves] for pull in pulls])
+    slopes = [
+        float((gradient * move).sum() + (pull * still).sum())
+        for move, pull in zip(moves, pulls, strict=True)
+    ]
+    change = np.clip(-np.linalg.solve(schur, np.array(slopes)), -MAX_STEP, MAX_STEP)
+    step = still + sum(each * move for each, move in zip(change, moves, strict=True))
+    return step, change
+
+
+@dataclass(frozen=True)
+class _BorderedProblem:
+    """Rows by unknowns and durations."""
+
+    start: Motion
+    places: FloatArray
+    flights: tuple[Interval, ...]
+
+    @cached_property
+    def rows(self) -> Rows:
+        """Of the start, with the contacts where they are."""
+        return self.start.transcription.rows(self.start.x, self.start.places)
+
+    def stretches(self, s: FloatArray) -> tuple[Stretch, ...]:
+        return tuple(
+            Stretch(f.start, f.end, float(k)) for f, k in zip(self.flights, np.exp(s), strict=True)
+        )
+
+    def feasible(self, s: FloatArray) -> FeasibleSet:
+        """The feasible set of these durations."""
+        warp = TimeWarp.of(self.stretches(s), self.start.duration)
+        return FeasibleSet(self.start.transcription.retimed(warp), self.places)
+
+    def values(self, x: FloatArray, s: FloatArray) -> FloatArray:
+        """(R,) values of the rows, less what the start violates of the equations."""
+        left = np.where(self.rows.equal, self.rows.value, 0.0)
+        return np.asarray(self.feasible(s).values(x) - left)

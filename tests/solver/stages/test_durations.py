@@ -1,0 +1,144 @@
+"""Durations and size of a jump go with where it lands: both ways, and not at all where it stays."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.body.anatomy import Part
+from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
+from hangtime.solver.data.requests import PhaseTiming, Requests, SolverOptions
+from hangtime.solver.stages.fit import Fit, fit
+from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.solver.stages.setup import set_up
+
+from ...helpers.clips import load_recording
+from ...helpers.fitted_hop import HOP_CLIP
+
+FLIGHT, LANDING = "flight 1", "ground 2"
+DISTANCE = 0.77  # m, of the feet from take-off to landing
+
+
+@cache
+def whole_hop() -> Fit:
+    """With the standing before it, which tells how deep its crouch is."""
+    analysis = analyse(load_recording(HOP_CLIP), MotionProblem())
+    return fit(analysis.performance, analysis.schedule)
+
+
+def to(forward: float, **offset: float) -> MotionProblem:
+    up, turn = offset.get("up", 0.0), offset.get("turn", 0.0)
+    return MotionProblem(pins=(Pin("Landing", LANDING, offset=(forward, 0.0, up), turn=turn),))
+
+
+@cache
+def adapted(forward: float) -> Adaptation:
+    return adapt(whole_hop(), to(forward))
+
+
+def durations(adaptation: Adaptation) -> dict[str, float]:
+    return {p.name: p.end - p.start for p in adaptation.setup.context.phases}
+
+
+def recorded() -> dict[str, float]:
+    return {p.name: p.end - p.start for p in whole_hop().schedule.phases}
+
+
+def push(adaptation: Adaptation) -> np.ndarray:
+    """Instants of the ground phase before the flight."""
+    return np.linspace(0.0, adaptation.setup.schedule.flights[0].start, 300)
+
+
+def crouch(adaptation: Adaptation) -> float:
+    """Least height of the centre of mass before the flight, m."""
+    return float(adaptation.motion.com(push(adaptation))[:, 2].min())
+
+
+def arm_swing(adaptation: Adaptation) -> float:
+    """Mean range of the arms' direction from shoulder to hand, rad."""
+    posed = adaptation.motion.pose(push(adaptation))
+    bodies = adaptation.motion.transcription.character.bodies
+    shoulders, hands = (
+        posed.centres[:, [i for i, body in enumerate(bodies) if body.part is part]]
+        for part in (Part.UPPER_ARM, Part.HAND)
+    )
+    along = (hands - shoulders) / np.linalg.norm(hands - shoulders, axis=2, keepdims=True)
+    between = np.arccos(np.clip(np.einsum("tai,sai->tsa", along, along), -1.0, 1.0))
+    return float(between.max(axis=(0, 1)).mean())
+
+
+def test_a_longer_jump_flies_longer_and_a_shorter_one_shorter() -> None:
+    """Near the square root of the distance, as where the take-off's angle stays."""
+    was = recorded()[FLIGHT]
+    for forward in (0.15, -0.15):
+        now = durations(adapted(forward))[FLIGHT]
+        share = np.log(now / was) / (0.5 * np.log((DISTANCE + forward) / DISTANCE))
+        assert 0.15 < share < 2.0, forward
+
+
+def test_a_bigger_jump_is_performed_bigger_and_a_smaller_one_smaller() -> None:
+    shorter, same, longer = (adapted(forward) for forward in (-0.15, 0.0, 0.15))
+    assert crouch(longer) < crouch(same) - 0.005 < crouch(shorter) - 0.01
+    assert arm_swing(longer) > arm_swing(same) + 0.01 > arm_swing(shorter) + 0.02
+    pushes = [durations(each)["ground 1"] for each in (shorter, same, longer)]
+    assert pushes == sorted(pushes)
+
+
+def test_the_push_is_longer_rather_than_harder() -> None:
+    def peak(adaptation: Adaptation) -> float:
+        return float(adaptation.motion.forces(push(adaptation)).sum(axis=1)[:, 2].max())
+
+    assert peak(adapted(0.15)) < 1.05 * peak(adapted(0.0))
+
+
+def test_where_nothing_is_moved_every_duration_stays() -> None:
+    assert durations(adapted(0.0)) == pytest.approx(recorded())
+    assert adapted(0.0).setup.context.timeline.unchanged
+
+
+def test_a_landing_that_hardly_moves_changes_hardly_anything() -> None:
+    near = adapted(0.002)
+    assert durations(near)[FLIGHT] == pytest.approx(recorded()[FLIGHT], abs=0.002)
+    assert crouch(near) == pytest.approx(crouch(adapted(0.0)), abs=0.002)
+
+
+def test_a_hop_that_is_carried_as_a_whole_keeps_its_times() -> None:
+    pins = tuple(
+        Pin(phase, phase, offset=(0.4, 0.2, 0.0), axes=OffsetAxes.WORLD)
+        for phase in ("ground 1", LANDING)
+    )
+    assert durations(adapt(whole_hop(), MotionProblem(pins=pins))) == pytest.approx(recorded())
+
+
+def test_a_turn_alone_keeps_its_times() -> None:
+    setup = set_up(whole_hop(), to(0.0, turn=np.pi / 2))
+    assert setup.context.timeline.unchanged
+
+
+def test_the_artist_may_keep_all_times() -> None:
+    requests = Requests(solution=SolverOptions(keep_times=True))
+    problem = MotionProblem(pins=to(0.15).pins, requests=requests)
+    assert set_up(whole_hop(), problem).context.timeline.unchanged
+
+
+def test_a_timing_of_the_flight_stands() -> None:
+    requests = Requests(timings=(PhaseTiming("As it was", FLIGHT, factor=1.0),))
+    setup = set_up(whole_hop(), MotionProblem(pins=to(0.15).pins, requests=requests))
+    assert setup.context.timeline.unchanged
+
+
+def test_a_timing_of_the_push_stands_while_the_flight_is_free() -> None:
+    requests = Requests(timings=(PhaseTiming("Slower", "ground 1", factor=1.1),))
+    setup = set_up(whole_hop(), MotionProblem(pins=to(0.15).pins, requests=requests))
+    now = {p.name: p.end - p.start for p in setup.context.phases}
+    assert now["ground 1"] == pytest.approx(1.1 * recorded()["ground 1"], abs=1e-6)
+    assert now[FLIGHT] > 1.02 * recorded()[FLIGHT]
+
+
+def test_contacts_phases_and_timeline_agree() -> None:
+    found = adapted(0.15)
+    context = found.setup.context
+    mapped = context.timeline.to_new(np.array([p.end for p in whole_hop().schedule.phases]))
+    assert [p.end for p in context.schedule.phases] == pytest.approx(mapped.tolist(), abs=1e-6)
+    assert found.motion.duration == pytest.approx(context.timeline.duration)
+    assert len(found.track.frames) > len(whole_hop().performance.recording.frames)
