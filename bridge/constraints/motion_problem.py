@@ -52,6 +52,13 @@ def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, fl
     return float(within[0]), float(within[-1])
 
 
+def analysis_key(settings: HangtimeSettings, recording: Recording) -> str:
+    """What an analysis is of: the recording, and the range where there are frames beyond it."""
+    span, key = span_of(settings, recording), digest(recording)
+    whole = span == (recording.frames[0], recording.frames[-1])
+    return key if whole else f"{key} {span[0]:g} {span[1]:g}"
+
+
 def problem_of(
     settings: HangtimeSettings, recording: Recording, *, with_contacts: bool = True
 ) -> MotionProblem:
@@ -184,7 +191,7 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     metres = metres_per_unit(current_scene())
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
-    settings.analysed = digest(recording)
+    settings.analysed = analysis_key(settings, recording)
     for stance, (name, axes) in zip(
         _resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
     ):

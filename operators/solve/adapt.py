@@ -15,13 +15,13 @@ from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
-from ...bridge.constraints.motion_problem import problem_of, wanted_range
+from ...bridge.constraints.motion_problem import analysis_key, problem_of, wanted_range
 from ...bridge.constraints.status import write_status
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.properties.shown_times import store_times
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
-from ...solver.data.digest import digest, same_motion
+from ...solver.data.digest import same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.report import ConstraintReport
@@ -147,7 +147,7 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     armature = required_armature(context)
     settings = settings_of(armature)
     recording = yield from read_wanted(armature)
-    if digest(recording) != settings.analysed:
+    if analysis_key(settings, recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     problem = problem_of(settings, recording)
     return Asked(armature.name, armature.session_uid, recording, problem)
