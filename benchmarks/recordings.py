@@ -1,25 +1,15 @@
 """Recordings for the benchmarks, read without Blender."""
 
-from functools import cache
-
-from ..bridge.formats.acclaim import find_asf, read_acclaim
-from ..bridge.formats.bvh import read_bvh
-from ..bridge.formats.guess import guess_unit, guess_up
-from ..bridge.formats.motion_clip import to_recording
-from ..devtools.recordings import find
+from ..devtools.recordings import find, read
 from ..solver.data.problem import MotionProblem, Pin
 from ..solver.data.recording import Recording
 
 RATE = 120.0  # Hz, of every clip here
 
 
-@cache
 def recording(file: str) -> Recording:
-    """A BVH or AMC file by its name, in metres, Z up. Raises SetUpError where there is none."""
-    path = find(file)
-    clip = read_bvh(path) if path.suffix == ".bvh" else read_acclaim(find_asf(path), path)
-    up = guess_up(clip)
-    return to_recording(clip, clip.unit or guess_unit(clip, up), up)
+    """A BVH or AMC file by its name. Raises SetUpError where there is none."""
+    return read(find(file))
 
 
 def jump() -> MotionProblem:

@@ -8,8 +8,14 @@ import subprocess
 import sys
 import tarfile
 import tempfile
+from functools import cache
 from pathlib import Path
 
+from ..bridge.formats.acclaim import find_asf, read_acclaim
+from ..bridge.formats.bvh import read_bvh
+from ..bridge.formats.guess import guess_unit, guess_up
+from ..bridge.formats.motion_clip import to_recording
+from ..solver.data.recording import Recording
 from .environment.problem import SetUpError
 from .environment.virtual_environment import CACHE, REQUIREMENTS, ROOT
 
@@ -35,6 +41,15 @@ def find(name: str) -> Path:
     if not path.is_file():
         raise SetUpError(f"There is no recording {name} in {HELD.relative_to(ROOT)}.")
     return path
+
+
+@cache
+def read(path: Path) -> Recording:
+    """A BVH or AMC file in metres, Z up, read without Blender. Raises UnreadableClip."""
+    acclaim = path.suffix.lower() == ".amc"
+    clip = read_acclaim(find_asf(path), path) if acclaim else read_bvh(path)
+    up = guess_up(clip)
+    return to_recording(clip, clip.unit or guess_unit(clip, up), up)
 
 
 def fetched(folder: Path) -> Path:

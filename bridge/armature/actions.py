@@ -28,14 +28,21 @@ def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
 
 
 def read_recorded(
-    armature: bpy.types.Object | None, first: float | None, last: float | None
+    armature: bpy.types.Object | None,
+    first: float | None,
+    last: float | None,
+    beyond: float = 0.0,
 ) -> Recording:
-    """Read the recording, whichever of its actions is shown. Raises as `read_recording`."""
-    return complete(read_recorded_incrementally(armature, first, last))
+    """Read the recording, whichever of its actions is shown. Arguments and faults are those of
+    `read_recording`."""
+    return complete(read_recorded_incrementally(armature, first, last, beyond))
 
 
 def read_recorded_incrementally(
-    armature: bpy.types.Object | None, first: float | None, last: float | None
+    armature: bpy.types.Object | None,
+    first: float | None,
+    last: float | None,
+    beyond: float = 0.0,
 ) -> Incremental[Recording]:
     """Read the recording, a few frames a slice."""
     if armature is None or current_action(armature) is None:
@@ -43,7 +50,7 @@ def read_recorded_incrementally(
     assert armature is not None
     showing = partial(_showing, armature, recorded_action(armature))
     with showing():
-        frames = whole_frames(armature, first, last)
+        frames = whole_frames(armature, first, last, beyond)
     poses = yield from sample_incrementally(armature, frames, showing)
     with showing():
         return recording_of(armature, frames, poses)

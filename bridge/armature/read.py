@@ -19,24 +19,29 @@ _EPSILON = 1e-4  # frames
 
 
 def read_recording(
-    armature: bpy.types.Object | None, *, first: float | None = None, last: float | None = None
+    armature: bpy.types.Object | None,
+    *,
+    first: float | None = None,
+    last: float | None = None,
+    beyond: float = 0.0,
 ) -> Recording:
     """Sample the evaluated pose of every bone at every whole scene frame in [first, last].
 
-    The range defaults to the action's. World space, m, s; the rotations carry no scale. The scene
-    is left as it was. The recording is called what the action is called.
+    The range defaults to the action's. beyond: s, on both sides of a stated range that are read too
+    as far as the action goes. World space, m, s; the rotations carry no scale. The scene is left as
+    it was. The recording is called what the action is called.
 
     Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
     this armature), NonFiniteKey, BadScale.
     """
-    frames = whole_frames(armature, first, last)
+    frames = whole_frames(armature, first, last, beyond)
     return record(present(armature), frames)
 
 
 def whole_frames(
-    armature: bpy.types.Object | None, first: float | None, last: float | None
+    armature: bpy.types.Object | None, first: float | None, last: float | None, beyond: float = 0.0
 ) -> FloatArray:
-    """Whole frames of a recording (T,), at least one.
+    """Whole frames of a recording (T,), at least one. beyond: as in `read_recording`.
 
     Raises as `read_recording`, but for what poses show.
     """
@@ -49,8 +54,11 @@ def whole_frames(
     else:
         spans = np.array([curve.range() for curve in curves])
     start = np.ceil((spans.min() if first is None else first) - _EPSILON)
-    end = np.floor((spans.max() if last is None else last) + _EPSILON)
-    return np.arange(start, max(start, end) + 1.0)
+    end = max(start, np.floor((spans.max() if last is None else last) + _EPSILON))
+    reach = np.floor(beyond * frames_per_second(current_scene()))
+    before = start if first is None else max(start - reach, np.ceil(spans.min() - _EPSILON))
+    after = end if last is None else min(end + reach, np.floor(spans.max() + _EPSILON))
+    return np.arange(min(before, start), max(after, end) + 1.0)
 
 
 def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:

@@ -43,6 +43,22 @@ def wanted_range(settings: HangtimeSettings) -> tuple[float, float] | tuple[None
     return float(settings.first_frame), float(settings.last_frame)
 
 
+def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, float]:
+    """First and last scene frame that are adapted; a recording may have frames beyond."""
+    first, last = wanted_range(settings)
+    if first is None or last is None:
+        return float(recording.frames[0]), float(recording.frames[-1])
+    within = recording.window(first, max(first, last)).frames
+    return float(within[0]), float(within[-1])
+
+
+def analysis_key(settings: HangtimeSettings, recording: Recording) -> str:
+    """What an analysis is of: the recording, and the range where there are frames beyond it."""
+    span, key = span_of(settings, recording), digest(recording)
+    whole = span == (recording.frames[0], recording.frames[-1])
+    return key if whole else f"{key} {span[0]:g} {span[1]:g}"
+
+
 def problem_of(
     settings: HangtimeSettings, recording: Recording, *, with_contacts: bool = True
 ) -> MotionProblem:
@@ -53,7 +69,7 @@ def problem_of(
     """
     if with_contacts:
         _require_ordered(settings)
-    span = (float(recording.frames[0]), float(recording.frames[-1]))
+    span = span_of(settings, recording)
     return MotionProblem(
         frames=span,
         mass=settings.mass,
@@ -176,9 +192,9 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     edits = [_held(row) for row in settings.contacts if not row.added]
     added = [_held(row) for row in settings.contacts if row.added]
     metres = metres_per_unit(current_scene())
-    first, rate = float(recording.frames[0]), frames_per_second(current_scene())
+    first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
-    settings.analysed = digest(recording)
+    settings.analysed = analysis_key(settings, recording)
     for stance, (name, axes) in zip(
         _resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
     ):

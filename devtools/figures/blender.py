@@ -12,7 +12,7 @@ from ...bridge.armature.read import read_recording
 from ...bridge.armature.write import write_action
 from ...bridge.files.export import export_fbx, reimport_fbx
 from ...bridge.files.import_clip import import_clip
-from ...solver.data.recording import Recording
+from ...solver.data.recording import BEYOND, Recording
 from ...solver.transcription.motion import Motion
 from .clips import Clip
 
@@ -31,7 +31,7 @@ def open_clip(clip: Clip) -> tuple[bpy.types.Object, Recording]:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     armature = import_clip(clip.path).armature
     first, last = clip.frames
-    return armature, read_recording(armature, first=first, last=last)
+    return armature, read_recording(armature, first=first, last=last, beyond=BEYOND)
 
 
 def drifts(

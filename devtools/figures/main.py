@@ -76,7 +76,11 @@ def measure_clip(clip: Clip, *, peer: bool) -> Iterator[Figure]:
     _say(clip.name, f"fitted in {seconds:.2f} s")
     yield figure("fit", seconds, clip.name, "fit")
     yield figure("fit, processor's time", busy, clip.name, "fit")
-    parts = closeness(fitted), physics(fitted.motion), still(armature, recording, fitted.motion)
+    parts = (
+        closeness(fitted),
+        physics(fitted.motion),
+        still(armature, subject.recording, fitted.motion),
+    )
     for name, value in chain(*parts):
         yield figure(name, value, clip.name, "fit")
     for edit in EDITS:

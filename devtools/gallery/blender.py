@@ -16,9 +16,10 @@ from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import View
 from ...operators.headless.quiet import quiet
 from ...solver.arrays import FloatArray
-from ...solver.data.recording import Recording
+from ...solver.data.recording import BEYOND, Recording
+from ..processes import dump, undump
 from .checks import Check, PointCheck
-from .jobs import Json, Result, dump, load, undump, write_json
+from .jobs import Json, Result, load, write_json
 
 FIGURES = 9
 WIDTH = 1600
@@ -42,7 +43,7 @@ def main(argv: list[str]) -> int:
 
 def _recording(armature: bpy.types.Object, result: Result) -> Recording:
     first, last = result.problem.frames or (None, None)
-    return read_recording(armature, first=first, last=last)
+    return read_recording(armature, first=first, last=last, beyond=BEYOND)
 
 
 def _write(armature: bpy.types.Object, result: Result, folder: Path, *, picture: bool) -> None:

@@ -5,10 +5,7 @@ solver's memory and any crash are each one's own.
 """
 
 import json
-import pickle
 import re
-import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,8 +13,10 @@ from typing import Any
 from ...bridge.recipe.problem import parse_recipe, read_recipe_text
 from ...solver.data.problem import MotionProblem
 from ..environment.virtual_environment import ROOT
+from ..processes import run_module
 
 GALLERY = ROOT / "examples" / "gallery"
+BLENDER, SOLVE = "devtools.gallery.blender", "devtools.gallery.solve"
 LONGEST = 400.0  # s, that solving one result may take by all methods together
 LEFT = ("sheet.png", "adapted.fbx", "report.json", "trajectory.npz")  # what a result leaves
 SCRATCH = ("recording.pickle", "drawn.pickle", "measured.json", "written.json")
@@ -67,13 +66,15 @@ def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
     folder.mkdir(parents=True, exist_ok=True)
     for name in (*LEFT, *SCRATCH):
         (folder / name).unlink(missing_ok=True)
-    said = _run("blender", ["read", result.name, str(folder)])
+    said = run_module(BLENDER, ["read", result.name, str(folder)], LONGEST)
     if said is None:
-        said = _run("solve", [result.name, str(folder), *(["--quick"] if quick else [])])
+        said = run_module(
+            SOLVE, [result.name, str(folder), *(["--quick"] if quick else [])], LONGEST
+        )
     found = _read(folder / "measured.json")
     if said is None and (folder / "drawn.pickle").is_file():
         words = ["write", result.name, str(folder), *([] if pictures else ["--no-picture"])]
-        said = _run("blender", words)
+        said = run_module(BLENDER, words, LONGEST)
     if said is not None:
         found["failed"] = said
     found |= {"name": result.name, "title": result.title} | _read(folder / "written.json")
@@ -82,43 +83,12 @@ def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
     return found
 
 
-def _run(module: str, arguments: list[str]) -> str | None:
-    """Runs a module of devtools in a process of its own; why it failed, or None."""
-    launcher = str(ROOT / "devtools" / "package.py")
-    command = [sys.executable, launcher, f"devtools.gallery.{module}", *arguments]
-    try:
-        done = subprocess.run(
-            command,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-            timeout=LONGEST,
-        )
-    except subprocess.TimeoutExpired:
-        return f"{module} took longer than {LONGEST:g} s"
-    if done.returncode == 0:
-        return None
-    lines = done.stdout.strip().splitlines() or [f"ended with code {done.returncode}"]
-    return lines[-1]
-
-
 def _read(path: Path) -> Json:
     try:
         content: Json = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         return {}
     return content
-
-
-def dump(content: object, path: Path) -> None:
-    """A scratch file for the next process."""
-    path.write_bytes(pickle.dumps(content))
-
-
-def undump(path: Path) -> Any:
-    """Reads what `dump` wrote; only ever of our own making."""
-    return pickle.loads(path.read_bytes())
 
 
 def write_json(content: Json, path: Path) -> None:

@@ -19,7 +19,8 @@ from ...solver.worker.pipeline import (
     fit_subject,
     measure,
 )
-from .jobs import Json, Result, dump, load, undump, write_json
+from ..processes import dump, undump
+from .jobs import Json, Result, load, write_json
 
 RUNS = 3  # of the quick solution; the median counts
 

@@ -2,18 +2,13 @@
 
 import re
 from dataclasses import dataclass
-from functools import cache
 from itertools import permutations
 from pathlib import Path
 
-from ...bridge.formats.acclaim import find_asf, read_acclaim
-from ...bridge.formats.bvh import read_bvh
-from ...bridge.formats.guess import guess_unit, guess_up
-from ...bridge.formats.motion_clip import to_recording
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ..environment.problem import SetUpError
-from ..recordings import HOPS, find
+from ..recordings import HOPS, find, read
 
 RATE = 120.0  # Hz, of the recordings held here; frame 1 is their first
 AROUND = 0.9  # s of the ground that a hop keeps on either side: no window reaches a neighbour
@@ -53,15 +48,6 @@ class Jump:
         """The whole recording, in metres, Z up. Raises SetUpError, UnreadableClip."""
         path = Path(self.clip)
         return read(path if path.is_file() else find(self.clip))
-
-
-@cache
-def read(path: Path) -> Recording:
-    """A BVH or AMC file, without Blender. Raises UnreadableClip."""
-    acclaim = path.suffix.lower() == ".amc"
-    clip = read_acclaim(find_asf(path), path) if acclaim else read_bvh(path)
-    up = guess_up(clip)
-    return to_recording(clip, clip.unit or guess_unit(clip, up), up)
 
 
 def parse(text: str) -> Jump:

@@ -4,19 +4,13 @@ A process of its own fits one source and adapts it to all of its targets: memory
 each one's own, and the fit is made once.
 """
 
-import os
-import pickle
-import subprocess
-import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ...solver.arrays import FloatArray
-from ...solver.one_thread import ONE_THREAD
-from ..environment.virtual_environment import ROOT
+from ..processes import dump, run_module, undump
 from .clips import Jump
 from .jump_measures import JumpMeasures
 from .phased_jump import PhasedJump
@@ -59,31 +53,11 @@ def solve_all(tasks: Sequence[SourceTask], folder: Path, jobs: int) -> list[Solv
 def _solve(task: SourceTask, folder: Path) -> SolvedSource:
     given, found = (folder / f"{task.source.name}.{kind}.pickle" for kind in ("given", "found"))
     dump(task, given)
-    launcher = str(ROOT / "devtools" / "package.py")
-    command = [sys.executable, launcher, "devtools.pairs.solve", str(given), str(found)]
-    done = subprocess.run(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        env=os.environ | ONE_THREAD,
-    )
-    if done.returncode == 0:
+    said = run_module("devtools.pairs.solve", [str(given), str(found)])
+    if said is None:
         solved = undump(found)
         assert isinstance(solved, SolvedSource)
         print(f"{task.source.name}: {len(solved.adapted)} adaptations", flush=True)
         return solved
-    lines = done.stdout.strip().splitlines() or [f"ended with code {done.returncode}"]
-    print(f"{task.source.name}: {lines[-1]}", flush=True)
-    return SolvedSource(lines[-1], {})
-
-
-def dump(content: object, path: Path) -> None:
-    """A scratch file for the next process."""
-    path.write_bytes(pickle.dumps(content))
-
-
-def undump(path: Path) -> Any:
-    """Reads what `dump` wrote; only ever of our own making."""
-    return pickle.loads(path.read_bytes())
+    print(f"{task.source.name}: {said}", flush=True)
+    return SolvedSource(said, {})

@@ -3,18 +3,18 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
 from ...solver.data.constants import STANDARD_GRAVITY, UP
 from ...solver.data.contacts import Phase
 from ...solver.transcription.motion import Motion
+from ..filters import low_pass
 from .jump_frame import JumpFrame
 
 RATE = 480.0  # Hz
 PUSH = 0.5  # s before take-off in which crouch and push lie
-CUTOFF = 15.0  # Hz, order 2, both ways: as forces are compared with plates
+CUT_OFF = 15.0  # Hz
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,7 @@ def peak_push(motion: Motion, take_off: float) -> float:
     times = _instants(0.0, motion.duration)
     weight = motion.transcription.character.mass * STANDARD_GRAVITY
     vertical = motion.forces(times).sum(axis=1)[:, 2] / weight
-    low_pass = butter(2, CUTOFF, fs=RATE, output="sos")
-    smooth = sosfiltfilt(low_pass, vertical)
+    smooth = low_pass(vertical, RATE, CUT_OFF)
     return float(smooth[(times >= take_off - PUSH) & (times <= take_off)].max())
 
 

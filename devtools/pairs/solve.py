@@ -9,7 +9,8 @@ from ...solver.data.problem import OffsetAxes, Pin
 from ...solver.data.requests import Method, ObjectiveKind, Requests, SolverOptions
 from ...solver.stages.fit import Fit
 from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
-from .jobs import SolvedJump, SolvedSource, SourceTask, dump, undump
+from ..processes import dump, undump
+from .jobs import SolvedJump, SolvedSource, SourceTask
 from .jump_frame import JumpFrame, jump_frame, landing_phase, longest_flight
 from .jump_measures import jump_measures
 from .phased_jump import motion_phases

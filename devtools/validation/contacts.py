@@ -8,7 +8,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY
-from .filters import resampled
+from ..filters import resampled
 from .forces import UP, loaded_intervals
 from .trials import FEET, GroundForces, Trial
 

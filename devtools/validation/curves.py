@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from .filters import differentiated, low_pass
+from ..filters import differentiated, low_pass
 from .trials import FEET, GroundForces, Trial
 
 WIDTH, HEIGHT, LEFT, TOP = 900, 150, 60, 30  # px, of a panel

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.requests import Vector
-from .filters import CUT_OFFS, differentiated, low_pass, resampled
+from ..filters import CUT_OFFS, differentiated, low_pass, resampled
 from .trials import FEET, GroundForces, Trial
 
 PEAK_CUT_OFF = 15.0  # Hz, for peaks and loading rates, which are told of both sides alike

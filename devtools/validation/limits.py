@@ -1,52 +1,97 @@
 """Limits of the validation: each figure's name, unit, what it must reach and what it aims at."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from statistics import mean, median
 
 from .contacts import EventKind
 from .forces import FORWARD, LEFT, UP
+from .motions import MotionMeasures
 from .result import Measured, TrialResult
 
 
 @dataclass(frozen=True)
 class ValidationLimit:
-    """Upper bound that a figure must keep, and the one that is aimed at; None: only told."""
+    """Upper bound that a figure must keep, and the one that is aimed at; None: only told.
+
+    trials: with plates; of fewer than these the figure is only told.
+    """
 
     unit: str
     must: float | None = None
     aim: float | None = None
+    trials: int = 0
 
 
+MANY = 5  # trials; a mean or median of fewer is theirs, not the method's
 RATIO_MEAN = "vertical rms at 15 Hz over plain differentiation's, mean"
 RATIO_WORST = "vertical rms at 15 Hz over plain differentiation's, worst trial"
+REFUSED = "clips refused"
+OF_RECORDINGS = "recordings: "
+JERK = "jerk of hands at touch-down, fit over recording, worst"
+KNEE = "knee after a landing, worst"
+Of = Callable[[MotionMeasures], float | None]
+OF_MOTION: Mapping[str, tuple[ValidationLimit, Of]] = {  # of every clip; None has no figure
+    "loaded point: slide": (ValidationLimit("mm", 5.0, 1.0), lambda m: m.hold.slide_mm),
+    "loaded point: under its surface": (ValidationLimit("mm", 5.0, 1.0), lambda m: m.hold.under_mm),
+    "loaded point: above its surface": (
+        ValidationLimit("mm", 10.0, 3.0),
+        lambda m: m.hold.above_mm,
+    ),
+    JERK: (ValidationLimit("1", 1.1, 1.0), lambda m: m.hand_jerk.ratio if m.hand_jerk else None),
+    KNEE: (ValidationLimit("N·m/kg", 4.2, 3.5), lambda m: m.landing_knee),
+    "joint centres, rms, worst": (ValidationLimit("cm", 1.6, 1.2), lambda m: m.closeness.whole_cm),
+    "joint centres, first and last ten frames, worst": (
+        ValidationLimit("cm", 2.5, 1.5),
+        lambda m: max(m.closeness.first_cm, m.closeness.last_cm),
+    ),
+}
 LIMITS = {
-    RATIO_MEAN: ValidationLimit("1", 0.85, 0.65),
+    RATIO_MEAN: ValidationLimit("1", 0.85, 0.65, MANY),
     RATIO_WORST: ValidationLimit("1", 1.0, 0.85),
-    "vertical rms at 15 Hz, mean": ValidationLimit("BW", 0.128, 0.10),
-    "forward rms at 15 Hz, mean": ValidationLimit("BW", 0.065, 0.05),
-    "sideways rms at 15 Hz, mean": ValidationLimit("BW", 0.038, 0.03),
+    "vertical rms at 15 Hz, mean": ValidationLimit("BW", 0.128, 0.10, MANY),
+    "forward rms at 15 Hz, mean": ValidationLimit("BW", 0.065, 0.05, MANY),
+    "sideways rms at 15 Hz, mean": ValidationLimit("BW", 0.038, 0.03, MANY),
     "walk: vertical rms at 15 Hz": ValidationLimit("BW", 0.06),
-    "total variation of the vertical over the plates', mean": ValidationLimit("1", 1.15, 1.05),
-    "largest step within 2 ms": ValidationLimit("BW", 0.15, 0.05),
-    "touch-down and lift-off: median": ValidationLimit("ms", 5.0, 3.0),
+    "total variation of the vertical over the plates', mean": ValidationLimit(
+        "1", 1.15, 1.05, MANY
+    ),
+    "touch-down and lift-off: median": ValidationLimit("ms", 5.0, 3.0, MANY),
     "touch-down and lift-off: worst mean of a trial": ValidationLimit("ms", 15.0, 10.0),
     "touch-downs and lift-offs not found": ValidationLimit("1"),
     "centre of pressure, mean": ValidationLimit("cm"),
-    "loaded point: slide": ValidationLimit("mm", 5.0, 1.0),
-    "loaded point: under its surface": ValidationLimit("mm", 5.0, 1.0),
-    "loaded point: above its surface": ValidationLimit("mm", 10.0, 3.0),
-    "jerk of hands at touch-down, fit over recording, worst": ValidationLimit("1"),
-    "knee, peak torque": ValidationLimit("N·m/kg"),
-    "joint centres, rms, worst trial": ValidationLimit("cm", 1.6, 1.2),
-    "joint centres, first and last ten frames, worst": ValidationLimit("cm", 2.5, 1.5),
-    "trials refused": ValidationLimit("1", 0.0, 0.0),
+    "largest step within 2 ms": ValidationLimit("BW", 0.15, 0.05),
+    **{name: limit for name, (limit, _) in OF_MOTION.items()},
+    JERK: ValidationLimit("1"),  # these two are promised of the recordings
+    KNEE: ValidationLimit("N·m/kg"),
+    **{OF_RECORDINGS + name: limit for name, (limit, _) in OF_MOTION.items()},
+    REFUSED: ValidationLimit("1", 0.0, 0.0),
 }
+# Musts that are not reached yet, each with the value that it must not pass meanwhile.
+KNOWN_MISSES = {
+    "forward rms at 15 Hz, mean": 0.078,
+    "sideways rms at 15 Hz, mean": 0.043,
+    "joint centres, rms, worst": 3.6,
+    "joint centres, first and last ten frames, worst": 4.5,
+    OF_RECORDINGS + JERK: 1.6,
+    OF_RECORDINGS + KNEE: 4.8,
+    OF_RECORDINGS + "joint centres, rms, worst": 1.7,
+}
+# Recordings whose fit is not in order, and why. Tables show them; no figure has them.
+KNOWN_DEFECTS = {
+    "131_03_hop": "where one leg lands, the places of heel and toe are 11 cm apart, "
+    "of a foot of 19",
+}
+KNOWN_REFUSALS = ("HamnerSubject04_run300",)  # on a treadmill: no place on the ground holds a foot
 
 
 @dataclass(frozen=True)
 class ValidationFigure:
-    """One figure over all trials. trial: the worst one, empty where it is of all of them."""
+    """One figure over all clips. trial: the worst one, empty where it is of all of them.
+
+    known: missed, but no worse than is known.
+    """
 
     name: str
     value: float
@@ -54,22 +99,31 @@ class ValidationFigure:
     must: float | None
     aim: float | None
     ok: bool
+    known: bool
     trial: str
 
 
 def figures(results: Sequence[TrialResult]) -> list[ValidationFigure]:
-    """Every figure that these trials give."""
-    return [_figure(name, value, trial) for name, value, trial in _found(results)]
+    """Every figure that these clips give."""
+    count = sum(r.measured is not None for r in results)
+    found = [figure(name, value, trial, count) for name, value, trial in _found(results)]
+    refused = [r for r in results if r.refused]
+    known = all(r.trial in KNOWN_REFUSALS and not r.crashed for r in refused)
+    last = figure(REFUSED, len(refused), ", ".join(r.trial for r in refused), count)
+    return [*found, replace(last, known=known and not last.ok)]
 
 
-def _figure(name: str, value: float, trial: str) -> ValidationFigure:
+def figure(name: str, value: float, trial: str, trials: int) -> ValidationFigure:
+    """A value and its verdict. trials: that have plates."""
     limit = LIMITS[name]
-    ok = limit.must is None or bool(value <= limit.must)
-    return ValidationFigure(name, float(value), limit.unit, limit.must, limit.aim, ok, trial)
+    must, aim = (limit.must, limit.aim) if trials >= limit.trials else (None, None)
+    ok = must is None or bool(value <= must)
+    known = not ok and bool(value <= KNOWN_MISSES.get(name, -math.inf))
+    return ValidationFigure(name, float(value), limit.unit, must, aim, ok, known, trial)
 
 
 def _found(results: Sequence[TrialResult]) -> Iterator[tuple[str, float, str]]:
-    """Name, value and trial. A walk counts by its own error, and for its contacts and motion."""
+    """Name, value and clip. A walk counts by its own error, and for its contacts and motion."""
     every = [(r.trial, r.measured) for r in results if r.measured]
     walks = [(r.trial, r.measured) for r in results if r.measured and r.kind == "walk"]
     fast = [each for each in every if each not in walks]
@@ -80,8 +134,15 @@ def _found(results: Sequence[TrialResult]) -> Iterator[tuple[str, float, str]]:
         yield "walk: vertical rms at 15 Hz", vertical, where
     if every:
         yield from _contacts(every)
-        yield from _motions(every)
-    yield "trials refused", len(results) - len(every), ""
+        yield "largest step within 2 ms", *max((m.steps[0].jump, trial) for trial, m in every)
+    yield from _motions([(r.trial, r.motion) for r in results if r.motion and r.measured])
+    recorded = [
+        (r.trial, r.motion)
+        for r in results
+        if r.motion and not r.measured and r.trial not in KNOWN_DEFECTS
+    ]
+    for name, value, where in _motions(recorded):
+        yield OF_RECORDINGS + name, value, where
 
 
 Trials = Sequence[tuple[str, Measured]]
@@ -116,16 +177,8 @@ def _contacts(every: Trials) -> Iterator[tuple[str, float, str]]:
         yield "centre of pressure, mean", mean(apart), ""
 
 
-def _motions(every: Trials) -> Iterator[tuple[str, float, str]]:
-    yield "largest step within 2 ms", *max((m.steps[0].jump, trial) for trial, m in every)
-    yield "loaded point: slide", *max((m.hold.slide_mm, trial) for trial, m in every)
-    yield "loaded point: under its surface", *max((m.hold.under_mm, trial) for trial, m in every)
-    yield "loaded point: above its surface", *max((m.hold.above_mm, trial) for trial, m in every)
-    jerks = [(m.hand_jerk.ratio, trial) for trial, m in every if m.hand_jerk]
-    if jerks:
-        yield "jerk of hands at touch-down, fit over recording, worst", *max(jerks)
-    yield "knee, peak torque", *max((m.torques_per_kg.knee, trial) for trial, m in every)
-    near = [(m.closeness, trial) for trial, m in every]
-    yield "joint centres, rms, worst trial", *max((c.whole_cm, trial) for c, trial in near)
-    ends = [(max(c.first_cm, c.last_cm), trial) for c, trial in near]
-    yield "joint centres, first and last ten frames, worst", *max(ends)
+def _motions(clips: Sequence[tuple[str, MotionMeasures]]) -> Iterator[tuple[str, float, str]]:
+    for name, (_, of) in OF_MOTION.items():
+        found = [(value, clip) for clip, m in clips if (value := of(m)) is not None]
+        if found:
+            yield name, *max(found)

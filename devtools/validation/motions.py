@@ -6,7 +6,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.body.anatomy import Part
-from ...solver.data.constants import STANDARD_GRAVITY
+from ...solver.results.certificate import loaded_drifts
 from ...solver.stages.fit import Fit
 from ...solver.transcription.motion import Motion, motion_inverse_dynamics
 from ...solver.worker.pipeline import dynamics_of
@@ -15,8 +15,7 @@ RATE = 1000.0  # Hz
 END_FRAMES = 10
 AROUND_LANDING = 0.1  # s, on both sides of a touch-down
 LEG_PARTS = (Part.THIGH, Part.SHANK, Part.FOOT)  # below hip, knee and ankle
-LOADED = 0.05  # body weights on a point
-ONE_SIDED = 1e-9  # s inside a contact's first and last instant, where its force may jump
+LANDING = 0.3  # s after a touch-down, in which the legs give and hold
 
 
 @dataclass(frozen=True)
@@ -52,11 +51,10 @@ class HandJerk:
 def hand_jerk(fit: Fit) -> HandJerk | None:
     """By third differences of the frames, of both alike; None where nothing lands."""
     performance, character = fit.performance, fit.performance.character
-    landings = [f.end for f in fit.schedule.flights if f.end < fit.schedule.duration]
     hands = [i for i, body in enumerate(character.bodies) if body.part is Part.HAND]
     middles = performance.times[1:-2] + 0.5 / performance.recording.rate
     near = np.zeros(len(middles), dtype=np.bool_)
-    for landing in landings:
+    for landing in landings(fit):
         near |= np.abs(middles - landing) <= AROUND_LANDING
     if not hands or not near.any():
         return None
@@ -76,35 +74,19 @@ def jerk(tracks: FloatArray, rate: float, counted: BoolArray) -> float:
 
 @dataclass(frozen=True)
 class Hold:
-    """Worst of one loaded contact: slide from its place, depth under and height above it, mm."""
+    """Worst of any loaded point: slide from its place, depth under and height above it, mm."""
 
-    contact: str
     slide_mm: float
     under_mm: float
     above_mm: float
 
 
-def holds(motion: Motion) -> list[Hold]:
-    """Every contact while its force is above 5 % of the body's weight, first and last instant
-    included."""
-    found = []
-    for i, contact in enumerate(motion.transcription.contacts):
-        span = contact.contact
-        count = max(2, int((span.end - span.start) * RATE) + 1)
-        times = np.linspace(span.start + ONE_SIDED, span.end - ONE_SIDED, count)
-        weight = motion.transcription.character.mass * STANDARD_GRAVITY
-        force = np.linalg.norm(motion.forces(times)[:, contact.point], axis=1) / weight
-        off = (motion.contact_points(times)[:, contact.point] - motion.places[i])[force > LOADED]
-        if len(off):
-            found.append(held(span.name, off))
-    return found
-
-
-def held(name: str, off: FloatArray) -> Hold:
-    """Of a point's displacements (T, 3) m from its place, Z up."""
-    slide = np.linalg.norm(off[:, :2], axis=1).max()
-    lowest, highest = off[:, 2].min(), off[:, 2].max()
-    return Hold(name, 1e3 * float(slide), 1e3 * max(-float(lowest), 0.0), 1e3 * max(highest, 0.0))
+def hold(motion: Motion) -> Hold:
+    """Of all contacts, each over the whole of it, as the certificate has it."""
+    drifts = loaded_drifts(motion)
+    slides, heights = [d.slide for d in drifts], [d.height for d in drifts]
+    sizes = slides, [-height for height in heights], heights
+    return Hold(*(1e3 * max((float(x.max(initial=0.0)) for x in s), default=0.0) for s in sizes))
 
 
 @dataclass(frozen=True)
@@ -116,9 +98,8 @@ class LegTorques:
     ankle: float
 
 
-def peak_torques(motion: Motion) -> LegTorques:
-    """Over the whole motion, by inverse dynamics."""
-    times = (np.arange(int(motion.duration * RATE)) + 0.5) / RATE
+def leg_torques(motion: Motion, times: FloatArray) -> LegTorques:
+    """At instants (T,) s, by inverse dynamics."""
     torques = np.abs(motion_inverse_dynamics(dynamics_of(motion), motion, times).torques)
     character = motion.transcription.character
     peaks = dict.fromkeys(LEG_PARTS, 0.0)
@@ -127,6 +108,37 @@ def peak_torques(motion: Motion) -> LegTorques:
             of_joint = torques[:, joint.first - 3 : joint.dofs.stop - 3].max() / character.mass
             peaks[body.part] = max(peaks[body.part], float(of_joint))
     return LegTorques(*(peaks[part] for part in LEG_PARTS))
+
+
+@dataclass(frozen=True)
+class MotionMeasures:
+    """What is told of a fit's motion. landing_knee: N·m/kg, within 0.3 s after the body lands."""
+
+    closeness: Closeness
+    hand_jerk: HandJerk | None
+    hold: Hold
+    torques_per_kg: LegTorques
+    landing_knee: float | None
+
+
+def motion_measures(fit: Fit) -> MotionMeasures:
+    """All of them."""
+    times = (np.arange(int(fit.motion.duration * RATE)) + 0.5) / RATE
+    landing = np.zeros(len(times), dtype=np.bool_)
+    for instant in landings(fit):
+        landing |= (times > instant) & (times < instant + LANDING)
+    return MotionMeasures(
+        closeness(fit),
+        hand_jerk(fit),
+        hold(fit.motion),
+        leg_torques(fit.motion, times),
+        leg_torques(fit.motion, times[landing]).knee if landing.any() else None,
+    )
+
+
+def landings(fit: Fit) -> list[float]:
+    """Instants, s, at which the whole body lands."""
+    return [f.end for f in fit.schedule.flights if f.end < fit.schedule.duration]
 
 
 def _rms(vectors: FloatArray) -> float:

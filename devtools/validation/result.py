@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from ...solver.data.requests import Vector
 from .contacts import Event, EventKind, Friction, Pressure
 from .forces import RmsError, Stance, Step
-from .motions import Closeness, HandJerk, Hold, LegTorques
+from .motions import MotionMeasures
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What was measured of a trial's fit. Pairs are ours, then the plates'.
+    """What was measured of a trial's forces. Pairs are ours, then the plates'.
 
     seconds: the fit's. compared: s, in which the forces are. foot_errors: at 15 Hz, of the left
     and the right foot.
@@ -26,10 +26,6 @@ class Measured:
     events: tuple[Event, ...]
     pressure: Pressure | None
     friction: tuple[Friction, Friction]
-    closeness: Closeness
-    hand_jerk: HandJerk | None
-    holds: tuple[Hold, ...]
-    torques_per_kg: LegTorques
 
     def error(self, cut_off: float = 15.0) -> RmsError:
         """The rms error at a cut-off, Hz."""
@@ -51,19 +47,18 @@ class Measured:
         """Number of the plates' events that ours has not."""
         return sum(e.late_ms is None for e in self.events)
 
-    @property
-    def hold(self) -> Hold:
-        """The worst over all contacts."""
-        slide = max((h.slide_mm for h in self.holds), default=0.0)
-        under = max((h.under_mm for h in self.holds), default=0.0)
-        return Hold("worst", slide, under, max((h.above_mm for h in self.holds), default=0.0))
-
 
 @dataclass(frozen=True)
 class TrialResult:
-    """One trial. refused: the sentence that says why there is nothing to measure."""
+    """One trial, or a recording without force plates, of which nothing but the motion is known.
+
+    kind: of a trial, as "walk". refused: the sentence that says why nothing was measured. crashed:
+    it is not one of ours, but a crash's or that of the time limit.
+    """
 
     trial: str
-    kind: str
-    refused: str | None = None
+    motion: MotionMeasures | None = None
     measured: Measured | None = None
+    kind: str = ""
+    refused: str | None = None
+    crashed: bool = False

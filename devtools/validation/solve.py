@@ -1,10 +1,10 @@
-"""The process of one trial: reads, fits, compares; leaves DIR/NAME.pickle and its curves."""
+"""The process of one clip: reads, fits, compares; leaves DIR/NAME.pickle and a trial's curves."""
 
-import pickle
 from pathlib import Path
 
 from ...operators.words.messages import sentence
 from ...solver.data.faults import Fault
+from ..processes import dump
 from .contacts import events, friction, pressure
 from .curves import picture
 from .fitted import FittedTrial, fit_trial, ground_forces
@@ -16,31 +16,39 @@ from .forces import (
     stances,
     total_variation,
 )
-from .motions import closeness, hand_jerk, holds, peak_torques
+from .motions import motion_measures
+from .recorded import RECORDINGS, fit_recording
 from .result import Measured, TrialResult
-from .trials import GroundForces, read
+from .trials import GroundForces, Trial, read
 
 
 def main(argv: list[str]) -> int:
     folder, name, out = Path(argv[0]), argv[1], Path(argv[2])
-    trial = read(folder, name)
-    result = TrialResult(name, trial.kind)
     try:
-        fitted = fit_trial(trial)
+        if name in RECORDINGS:
+            motion = motion_measures(fit_recording(RECORDINGS[name]))
+            result = TrialResult(name, motion=motion)
+        else:
+            result = solve_trial(read(folder, name), out, curves="--no-curves" not in argv)
     except Fault as fault:
-        result = TrialResult(name, result.kind, refused=sentence(fault))
-    else:
-        ours = ground_forces(fitted)
-        result = TrialResult(name, result.kind, measured=measured(fitted, ours))
-        if "--no-curves" not in argv:
-            (out / f"{name}.svg").write_text(picture(trial, ours), encoding="utf-8")
-    (out / f"{name}.pickle").write_bytes(pickle.dumps(result))
+        result = TrialResult(name, refused=sentence(fault))
+    dump(result, out / f"{name}.pickle")
     return 0
 
 
+def solve_trial(trial: Trial, out: Path, *, curves: bool) -> TrialResult:
+    """A trial's result, and its curves. Raises what `fit_trial` does."""
+    fitted = fit_trial(trial)
+    ours = ground_forces(fitted)
+    if curves:
+        (out / f"{trial.name}.svg").write_text(picture(trial, ours), encoding="utf-8")
+    motion = motion_measures(fitted.fit)
+    return TrialResult(trial.name, motion, measured(fitted, ours), trial.kind)
+
+
 def measured(fitted: FittedTrial, ours: GroundForces) -> Measured:
-    """Everything that is told of a trial."""
-    trial, motion = fitted.trial, fitted.fit.motion
+    """Everything that is told of a trial's forces."""
+    trial = fitted.trial
     sides = ((ours, fitted.flights), (trial.plates, measured_flights(trial)))
     steps = [
         largest_step(forces, trial.compared, [t for flight in flights for t in flight])
@@ -58,8 +66,4 @@ def measured(fitted: FittedTrial, ours: GroundForces) -> Measured:
         events=tuple(events(trial, ours, fitted.contacts)),
         pressure=pressure(trial, ours),
         friction=(friction(trial, ours), friction(trial, trial.plates)),
-        closeness=closeness(fitted.fit),
-        hand_jerk=hand_jerk(fitted.fit),
-        holds=tuple(holds(motion)),
-        torques_per_kg=peak_torques(motion),
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...solver.data.faults import NoArmature, UnreadableClip
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import Recording
+from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.report import Origin
 from ...solver.worker.pipeline import Subject, measure
 from .quiet import quiet
@@ -107,7 +107,7 @@ def _read(armature: bpy.types.Object, problem: MotionProblem) -> Recording:
     from ...bridge.armature.read import read_recording
 
     first, last = _recorded_frames(armature, problem)
-    return read_recording(armature, first=first, last=last)
+    return read_recording(armature, first=first, last=last, beyond=BEYOND)
 
 
 def _recorded_frames(

@@ -15,15 +15,15 @@ from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
-from ...bridge.constraints.motion_problem import problem_of, wanted_range
+from ...bridge.constraints.motion_problem import analysis_key, problem_of, wanted_range
 from ...bridge.constraints.status import write_status
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.properties.shown_times import store_times
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
-from ...solver.data.digest import digest, same_motion
+from ...solver.data.digest import same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
-from ...solver.data.recording import Recording
+from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.report import ConstraintReport
 from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
@@ -146,11 +146,17 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """
     armature = required_armature(context)
     settings = settings_of(armature)
-    recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
-    if digest(recording) != settings.analysed:
+    recording = yield from read_wanted(armature)
+    if analysis_key(settings, recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     problem = problem_of(settings, recording)
     return Asked(armature.name, armature.session_uid, recording, problem)
+
+
+def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
+    """The recording in the artist's range, and beyond where there are keys."""
+    first, last = wanted_range(settings_of(armature))
+    return (yield from read_recorded_incrementally(armature, first, last, BEYOND))
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
@@ -160,7 +166,8 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     session().advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
-        return _write_other(changed_recording(asked.recording, limbs), answer, armature)
+        within = asked.recording.window(*present(asked.problem.frames))
+        return _write_other(changed_recording(within, limbs), answer, armature)
     stood = armature.matrix_world.copy()
     action = yield from write_adapted_incrementally(armature, answer.track)
     keep(action, answer.traces, stood)

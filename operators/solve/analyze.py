@@ -3,10 +3,10 @@
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.armature.actions import read_recorded_incrementally, recorded_action
+from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import find_parts, missing_parts
-from ...bridge.constraints.motion_problem import problem_of, wanted_range, write_analysis
+from ...bridge.constraints.motion_problem import problem_of, span_of, write_analysis
 from ...bridge.properties.settings import scene_settings, settings_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import (
@@ -23,7 +23,7 @@ from ...solver.data.report import FitQuality
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from .adapt import ask_for
+from .adapt import ask_for, read_wanted
 from .common import FaultyOperator, chosen_armature, required_armature, said
 from .session import session
 from .solving import SolveState
@@ -67,9 +67,10 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
         settings = settings_of(armature)
-        recording = yield from read_recorded_incrementally(armature, *wanted_range(settings))
+        recording = yield from read_wanted(armature)
         first, last = present(recorded_action(armature)).frame_range.to_tuple()
-        if recording.frames[0] >= last or recording.frames[-1] <= first:
+        span = span_of(settings, recording)
+        if span[0] >= last or span[1] <= first:
             raise OutsideKeys(armature.name, first, last)
         find_parts(armature)
         for missing in missing_parts(settings):

@@ -1,8 +1,8 @@
-"""Accelerations of a recording: of its joint angles and of its centre of mass."""
+"""Velocities and accelerations of a recording: of its joint angles and of its centre of mass."""
 
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule
-from ..numerics.local_regression import second_derivative
+from ..numerics.local_regression import derivative
 from .performance import Performance
 
 SMOOTHING_TIME = 0.012  # s; feet strike and knees give way within twice as long
@@ -16,8 +16,15 @@ def smoothing_width(performance: Performance) -> float:
 
 def angle_accelerations(performance: Performance, at: FloatArray) -> FloatArray:
     """(N, n_angles) accelerations of the joint angles, rad/s², at instants (N,) s."""
-    width = smoothing_width(performance)
-    return second_derivative(performance.times, performance.angles, at, width)
+    take, width = performance.take, smoothing_width(performance)
+    return derivative(take.times, take.angles, at, width, 2)
+
+
+def velocities(performance: Performance, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(N, 3) m/s of the centre of mass, and (N, n_angles) rad/s, at instants (N,) s."""
+    take, width = performance.take, smoothing_width(performance)
+    com, angles = (derivative(take.times, of, at, width, 1) for of in (take.com, take.angles))
+    return com, angles
 
 
 def com_acceleration(
@@ -27,8 +34,8 @@ def com_acceleration(
 
     In flight it is gravity, whatever the recording's noise says.
     """
-    width = smoothing_width(performance)
-    found = second_derivative(performance.times, performance.com, at, width)
+    take, width = performance.take, smoothing_width(performance)
+    found = derivative(take.times, take.com, at, width, 2)
     for flight in schedule.flights:
         found[(at > flight.start) & (at < flight.end)] = [0.0, 0.0, -performance.character.gravity]
     return found

@@ -16,8 +16,9 @@ from ..data.faults import BadTiming, ClipTooShort, Treadmill, UnknownContactName
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from .belt import belt_speed
-from .grounding import grounded
+from .grounding import grounded, parted
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
+from .take import take_of
 
 MIN_CLIP_DURATION = 0.3  # s
 
@@ -33,17 +34,22 @@ class Analysis:
 def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     """Character and contacts in the problem's frames of a recording.
 
+    Frames beyond these tell of contacts that they cut off, and of accelerations near their ends.
+
     Raises ClipTooShort, UnseenSupport, Treadmill, MissingPart, ZeroLengthBone, UnknownContactName,
     BadTiming.
     """
-    recording, character = build_figure(recording, problem)
-    performance = perform(recording, character)
-    schedule = _corrected(find_contacts(performance), problem, performance)
-    schedule = grounded(schedule, performance)
+    within, character = build_figure(recording, problem)
+    performance = perform(within, character)
+    take = take_of(recording, within)
+    if len(take.frames) > len(within.frames):
+        performance = replace(performance, longer=perform(take, character))
+    found = parted(find_contacts(performance))  # before corrections, for those are the last word
+    schedule = grounded(_corrected(found, problem, performance), performance)
     for gap in schedule.unseen:
         if speed := belt_speed(performance.times, contact_points(performance)[0]):
             raise Treadmill(speed)
-        raise UnseenSupport(_frame(recording, gap.start), _frame(recording, gap.end))
+        raise UnseenSupport(_frame(within, gap.start), _frame(within, gap.end))
     return Analysis(performance, schedule)
 
 

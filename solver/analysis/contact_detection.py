@@ -25,6 +25,7 @@ MAX_SLIDE = 0.06  # m; a point that slides further makes a new contact
 CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
+MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
 
@@ -35,18 +36,20 @@ def detect_contacts(
     *,
     floor_m: float = 0.0,
     com: FloatArray | None = None,
+    duration_s: float | None = None,
     shortest_flight_s: float = 0.03,
 ) -> ContactSchedule:
     """Contact schedule of a recording.
 
-    times: (T,) s, from 0. points: by name ("Left heel"). com: (T, 3) m, the centre of mass: an
-    interval without contact in which it does not fall freely is `unseen` support, not a flight.
-    Gaps below shortest_flight_s are closed. A point that is low and slow touches; the contact
-    lasts while it stays at its height of that contact, and a foot's as long as its force acts, to
-    a fraction of a frame.
+    times: (T,) s. duration_s: the schedule is of [0, duration_s], None for all times; what is
+    recorded before and after tells of the contacts that are cut off. points: by name ("Left heel").
+    com: (T, 3) m, the centre of mass: an interval without contact in which it does not fall freely
+    is `unseen` support, not a flight. Gaps below shortest_flight_s are closed. A point that is low
+    and slow touches; the contact lasts while it stays at its height of that contact, and a foot's
+    as long as its force acts, to a fraction of a frame.
     """
-    duration = float(times[-1])
-    clock = even_clock(duration)
+    duration = float(times[-1]) if duration_s is None else duration_s
+    clock = even_clock(float(times[0]), float(times[-1]))
     movements = {name: point_movement(times, p, clock) for name, p in points.items()}
     touches = [
         touch
@@ -60,7 +63,7 @@ def detect_contacts(
         if p.hip is not None
     }
     touches = timed_by_forces(clock, touches, heights, legs)
-    contacts = _closed(touches, duration, shortest_flight_s)
+    contacts = _closed(_within(touches, duration), duration, shortest_flight_s)
     carried = ((c.start, c.end) for c in contacts)
     unseen = tuple(gap for gap in gaps(carried, duration) if not _falls(times, com, gap))
     return ContactSchedule(numbered(contacts), duration, floor_m, unseen)
@@ -175,6 +178,16 @@ def _joined(candidates: Iterable[_Candidate], track: FloatArray) -> list[_Candid
             joined[-1] = replace(before, end=min(before.end, turn))
             joined.append(replace(candidate, start=max(candidate.start, turn)))
     return joined
+
+
+def _within(contacts: Iterable[Contact], duration: float) -> list[Contact]:
+    """The contacts as far as they are in [0, duration], but for the shortest pieces of cut ones."""
+    pieces = []
+    for c in contacts:
+        piece = replace(c, start=max(c.start, 0.0), end=min(c.end, duration))
+        if piece.end - piece.start >= min(c.end - c.start, MIN_PIECE):
+            pieces.append(piece)
+    return pieces
 
 
 def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> list[Contact]:

@@ -40,7 +40,7 @@ def timed_by_forces(
         foot = [t for t in touches if t.point in ends and t is not touch]
         others = [t for t in touches if t.point not in ends]
         start, end = touch.start, touch.end
-        stood = max((t.end for t in foot if t.start < start), default=0.0)
+        stood = max((t.end for t in foot if t.start < start), default=float(clock[0]))
         stands = min((t.start for t in foot if t.end > end), default=float(clock[-1]))
         if ends[1] in heights and stood < start:
             start = max(_impact(clock, heights[ends[0]] - heights[ends[1]], start), stood)

@@ -23,7 +23,8 @@ class Performance:
     """A recording in the character's coordinates, at the recording's frames (T,).
 
     rotations: (T, B, 3, 3) body to world. centres: (T, B, 3) m, joint centres as recorded.
-    angles: (T, n_angles) rad. com: (T, 3) m. World frame.
+    angles: (T, n_angles) rad. com: (T, 3) m. World frame. longer: the same with frames beyond the
+    recording's, in its times, where there are any.
     """
 
     recording: Recording
@@ -32,6 +33,12 @@ class Performance:
     centres: FloatArray
     angles: FloatArray
     com: FloatArray
+    longer: "Performance | None" = None
+
+    @property
+    def take(self) -> "Performance":
+        """All that is known: with the frames beyond."""
+        return self.longer or self
 
     @property
     def times(self) -> FloatArray:
@@ -67,9 +74,16 @@ def perform(recording: Recording, character: Character) -> Performance:
 
 
 def find_contacts(performance: Performance) -> ContactSchedule:
-    """Contact schedule of feet and hands, event times snapped so that no span is too short."""
-    points, floor_m = contact_points(performance)
-    schedule = detect_contacts(performance.times, points, floor_m=floor_m, com=performance.com)
+    """Contact schedule of feet and hands, event times snapped so that no span is too short.
+
+    Found in the whole take, and told as far as they are within the recording.
+    """
+    take = performance.take
+    points, floor_m = contact_points(take)
+    duration = float(performance.times[-1])
+    schedule = detect_contacts(
+        take.times, points, floor_m=floor_m, com=take.com, duration_s=duration
+    )
     return snap(schedule, snap_tolerance(performance))
 
 
@@ -81,6 +95,11 @@ def snap_tolerance(performance: Performance) -> float:
 
 def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], float]:
     """Candidate contact points by name (heel and toe of each foot, hands), and floor height, m."""
+    if performance.longer is not None:
+        points, floor_m = contact_points(performance.longer)
+        first = int(np.searchsorted(performance.longer.times, performance.times[0]))
+        within = slice(first, first + len(performance.times))
+        return {name: point.part(within) for name, point in points.items()}, floor_m
     feet = [_foot(performance, side) for side in (Side.LEFT, Side.RIGHT)]
     floor_m = floor_height(performance.times, feet)
     points = foot_points(performance.times, feet, floor_m)

@@ -25,9 +25,9 @@ class PointMovement:
     point: FloatArray
 
 
-def even_clock(duration: float) -> FloatArray:
-    """(N,) instants, s, from 0 to `duration`, STEP apart or very nearly so."""
-    return np.linspace(0.0, duration, max(2 * HALF, round(duration / STEP)) + 1)
+def even_clock(start: float, end: float) -> FloatArray:
+    """(N,) instants from `start` to `end`, s, STEP apart or very nearly so."""
+    return np.linspace(start, end, max(2 * HALF, round((end - start) / STEP)) + 1)
 
 
 def point_movement(times: FloatArray, point: ContactPoint, clock: FloatArray) -> PointMovement:

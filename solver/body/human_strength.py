@@ -3,9 +3,10 @@
 Isometric maxima of men of 18 to 25 years, by Anderson, Madigan and Nussbaum (Maximum voluntary
 joint torque as a function of joint angle and angular velocity, Journal of Biomechanics 40, 2007,
 table 3, C1), as shares of body weight times height; the stronger direction of each joint. Muscles
-that are stretched while they work, as in a landing, hold more, up to half as much again (Katz, The
-relation between force and speed in muscular contraction, Journal of Physiology 96, 1939; models of
-muscles take 1.4 to 1.8); those that shorten quickly, less.
+that are stretched while they work, as in a landing, hold more (after Katz, The relation
+between force and speed in muscular contraction, Journal of Physiology 96, 1939); those that shorten
+quickly, less. Half as much again is what models of muscles usually allow; whole limbs of people
+often show less (review: Alcazar et al., Frontiers in Physiology 10, 2019).
 """
 
 from collections.abc import Mapping

@@ -8,10 +8,11 @@ Hip, knee, ankle: k is the slope of the elastic moments of Riener and Edrich (Id
 passive elastic joint moments in the lower extremities, Journal of Biomechanics 32, 1999) for a
 relaxed leg: hip bent by 20°, knee by 30°, the foot hanging by 20°. Elbow: the middle of 0.4 to
 1.8 N·m/rad that Wiegner and Watts measured (Elastic properties of muscles measured at the elbow in
-man, Journal of Neurology, Neurosurgery and Psychiatry 49, 1986). Damping of hip and ankle is that
-of Audu and Davy (The influence of muscle model complexity in musculoskeletal motion modeling,
-Journal of Biomechanical Engineering 107, 1985). Every swing of a relaxed shank comes two thirds as
-far as the one before (Wartenberg's pendulum test), a damping ratio of 0.07, which here gives knee,
+man, Journal of Neurology, Neurosurgery and Psychiatry 49, 1986). Damping of hip and ankle is of the
+order of 1 N·m·s/rad, after Audu and Davy (The influence of muscle model complexity in
+musculoskeletal motion modeling, Journal of Biomechanical Engineering 107, 1985), whose figures we
+have at second hand. In a typical pendulum test (Wartenberg's) every swing of a relaxed shank comes
+about two thirds as far as the one before, a damping ratio of 0.07, which here gives knee,
 shoulder, elbow and wrist their damping. For shoulder and wrist we know no such figure of stiffness:
 theirs is a quarter of what gravity gives the hanging limb, as it is at the hip. Spine, neck,
 collarbone and toes have none here.

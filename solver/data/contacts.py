@@ -78,6 +78,13 @@ class ContactPoint:
     hip: FloatArray | None = None
     pressing: FloatArray | None = None
 
+    def part(self, frames: slice) -> "ContactPoint":
+        """The same point during some of the frames."""
+        hip, pressing = (
+            None if track is None else track[frames] for track in (self.hip, self.pressing)
+        )
+        return replace(self, track=self.track[frames], hip=hip, pressing=pressing)
+
 
 @dataclass(frozen=True)
 class Contact:

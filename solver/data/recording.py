@@ -1,8 +1,10 @@
 """Motion-capture recording and resulting pose track as plain arrays (world frame, Z up, SI)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
+
+BEYOND = 0.5  # s, on both sides of the range that is adapted, which a recording may have and tell
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,8 @@ class Bone:
 class Recording:
     """Pose of every bone at every frame, world frame, Z up.
 
-    frames: (T,) scene frame numbers. times: (T,) s, times[0] = 0.
+    frames: (T,) scene frame numbers. times: (T,) s, 0 at the first frame, or at the first one of
+    the range that is looked at where there are frames beyond it.
     heads: (T, B, 3) m. rotations: (T, B, 3, 3), bone to world, proper rotations.
     """
 
@@ -38,7 +41,7 @@ class Recording:
     @property
     def rate(self) -> float:
         """Frames per second."""
-        return (len(self.times) - 1) / float(self.times[-1])
+        return (len(self.times) - 1) / float(self.times[-1] - self.times[0])
 
     def index(self, bone: str) -> int:
         """Index of the bone called `bone`. Raises KeyError where there is none."""
@@ -49,15 +52,17 @@ class Recording:
 
     def window(self, first: float, last: float) -> "Recording":
         """The same recording cut to the frames in [first, last]; times start at 0 again."""
-        keep = (self.frames >= first - 1e-6) & (self.frames <= last + 1e-6)
-        times = self.times[keep]
-        return Recording(
-            self.name,
-            self.bones,
-            self.frames[keep],
-            times - times[:1],
-            self.heads[keep],
-            self.rotations[keep],
+        cut = self.part((self.frames >= first - 1e-6) & (self.frames <= last + 1e-6))
+        return replace(cut, times=cut.times - cut.times[:1])
+
+    def part(self, keep: BoolArray | slice) -> "Recording":
+        """Some frames of the recording, (T,) or a slice; their times stay."""
+        return replace(
+            self,
+            frames=self.frames[keep],
+            times=self.times[keep],
+            heads=self.heads[keep],
+            rotations=self.rotations[keep],
         )
 
 

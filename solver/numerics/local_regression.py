@@ -1,5 +1,7 @@
 """Derivatives of noisy samples by local regression (Savitzky & Golay 1964; Cleveland 1979)."""
 
+from math import factorial
+
 import numpy as np
 
 from ..arrays import FloatArray
@@ -8,10 +10,10 @@ DEGREE = 3
 REACH = 4.0  # standard deviations of the Gaussian weight, to either side
 
 
-def second_derivative(
-    times: FloatArray, samples: FloatArray, at: FloatArray, width: float
+def derivative(
+    times: FloatArray, samples: FloatArray, at: FloatArray, width: float, order: int
 ) -> FloatArray:
-    """(N, n) second derivative of samples (T, n), in their unit by s², at instants (N,) s.
+    """(N, n) first or second derivative of samples (T, n), by s or s², at instants (N,) s.
 
     A cubic is fitted to the samples around each instant, with Gaussian weights of standard
     deviation `width`, s. times: (T,) s, evenly spaced, T at least 4; near the ends one side serves.
@@ -23,5 +25,5 @@ def second_derivative(
     u = (times[index] - at[:, None]) / width
     root = np.exp(-0.25 * u**2)  # of the weight
     powers = u[..., None] ** np.arange(DEGREE + 1)
-    quadratic = np.linalg.pinv(root[..., None] * powers)[:, 2] * root
-    return np.asarray(np.einsum("nk,nkj->nj", 2.0 / width**2 * quadratic, samples[index]))
+    fitted = factorial(order) / width**order * np.linalg.pinv(root[..., None] * powers)[:, order]
+    return np.asarray(np.einsum("nk,nkj->nj", root * fitted, samples[index]))

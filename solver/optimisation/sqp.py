@@ -29,9 +29,8 @@ MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
-NEAR_FEASIBLE = 1e3  # times the tolerances: the end of a solve
+NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
 MIN_PROJECTION_DECREASE = 0.05  # of the objective: what a further step must gain
-NEARLY_FEASIBLE = 1e3  # times the tolerances: what a projection leaves to restoration
 
 
 @dataclass(frozen=True)
@@ -268,7 +267,7 @@ def _shorten(
         rows = feasible.rows(trial) if whole and length == 1.0 else None
         left = feasible.values(trial) if rows is None else rows.value
         enough = 1.0 - 0.1 * length
-        near = worst < NEAR_FEASIBLE and linearised.violation(left) < enough * worst
+        near = worst < NEARLY_FEASIBLE and linearised.violation(left) < enough * worst
         if near or linearised.merit(left) < enough * before:
             return _Trial(trial, left, length, rows)
         length *= 0.5

@@ -29,23 +29,24 @@ RISE_TIME = 0.002  # s, over which a loading rate is taken
 
 Item = CertificateItem
 LIMITS: Mapping[CertificateItem, tuple[float, str]] = {
-    # Hicks et al., Is my model good enough?, Journal of Biomechanical Engineering 137 (2015): of
-    # the largest external force, and of that times the height of the centre of mass.
+    # After Hicks et al., Is my model good enough?, Journal of Biomechanical Engineering 137 (2015):
+    # of the largest external force, and of that times the height of the centre of mass.
     Item.RESIDUAL_FORCE_RMS_SHARE: (5.0, "%"),
     Item.RESIDUAL_FORCE_PEAK_SHARE: (5.0, "%"),
     Item.RESIDUAL_MOMENT_RMS_SHARE: (1.0, "%"),
     Item.RESIDUAL_MOMENT_PEAK_SHARE: (1.0, "%"),
-    # The checklist of OpenSim's residual reduction, the upper ends of "okay".
+    # OpenSim's checklist for simulations, residual reduction: "less than 5-15 N" rms, "10-25 N" at
+    # the peak, 50 and 75 N·m; the upper ends.
     Item.RESIDUAL_FORCE_RMS: (15.0, "N"),
     Item.RESIDUAL_FORCE_PEAK: (25.0, "N"),
     Item.RESIDUAL_MOMENT_RMS: (50.0, "N·m"),
     Item.RESIDUAL_MOMENT_PEAK: (75.0, "N·m"),
-    # Force plates under jumps and runs of public trials show 0.25 to 0.6, and 60 to 210 BW/s;
-    # gymnasts' hardest landings 12 BW.
+    # Force plates under jumps and runs of public trials show 0.25 to 0.6, and 60 to 210 BW/s; the
+    # hardest landings of gymnasts are of the order of 12 BW.
     Item.FRICTION: (0.6, ""),
     Item.PEAK_FORCE: (12.0, "BW"),
     Item.LOADING_RATE: (210.0, "BW/s"),
-    # What shoes and feet give.
+    # Of the order that feet and shoes give (`SOLE_COMPLIANCE` in `analysis/grounding.py`).
     Item.SLIDE: (5.0, "mm"),
     Item.UNDER: (5.0, "mm"),
     Item.ABOVE: (10.0, "mm"),

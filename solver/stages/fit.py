@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..analysis.accelerations import angle_accelerations, com_acceleration
+from ..analysis.accelerations import angle_accelerations, com_acceleration, velocities
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
@@ -27,6 +27,7 @@ from ..optimisation.gauss_newton import minimise
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
 from ..transcription.compliant_sole import sole_trajectory
 from ..transcription.contact_pins import PointContact, touching_spans
+from ..transcription.cost_to_go import EndTarget
 from ..transcription.motion import (
     DenseTolerance,
     Motion,
@@ -52,6 +53,7 @@ FIT_COST_WEIGHTS = CostWeights(
     force=1e-5,
     force_rate_time=0.15,
     friction=1e-3,
+    goes_on=True,
 )
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces
 # weigh too: what a person does to jump further is push longer, not only harder.
@@ -258,7 +260,18 @@ def motion_target(motion: Motion) -> TrackingTarget:
     markers = forward_kinematics(t.character, q).points(marker_points(t.character)) + com[:, None]
     com_acceleration = t.basis.combine(motion.x[:, t.layout.com], t.node_times, 2)
     level = np.zeros((t.basis.n_coefficients, 2))
-    return TrackingTarget(markers, com, a, com_acceleration, motion.x[:, t.layout.forces], level)
+    forces = motion.x[:, t.layout.forces]
+    return TrackingTarget(markers, com, a, com_acceleration, forces, level, _ends(motion))
+
+
+def _ends(motion: Motion) -> EndTarget:
+    """A motion's first and last instant as a target."""
+    t = motion.transcription
+    times, points = t.basis.breaks[[0, -1]], marker_points(t.character)
+    value, rate = (t.basis.combine(motion.x[:, t.layout.motion], times, k) for k in (0, 1))
+    relative = forward_kinematics(t.character, value[:, t.layout.angles]).points(points)
+    com = t.layout.com
+    return EndTarget(relative + value[:, None, com], rate[:, com], rate[:, t.layout.angles])
 
 
 def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcription:
@@ -373,13 +386,16 @@ def recorded_target(
     instants[blocks] = np.stack([basis.breaks[:-1], basis.breaks[1:]], axis=1)
     load = com_acceleration(performance, schedule, instants) / STANDARD_GRAVITY
     load[:, 2] += performance.character.gravity / STANDARD_GRAVITY
+    ends = basis.breaks[[0, -1]]
+    markers = marker_points(performance.character)
     return TrackingTarget(
-        markers=performance.points(marker_points(performance.character), times),
+        markers=performance.points(markers, times),
         com=interpolate(performance.times, performance.com, times),
         accelerations=angle_accelerations(performance, times),
         com_acceleration=com_acceleration(performance, schedule, times),
         forces=np.zeros((basis.n_coefficients, 3 * transcription.layout.n_points)),
         slope=np.clip(load[:, :2] / np.maximum(load[:, 2:], MIN_LOAD), -MAX_SLOPE, MAX_SLOPE),
+        ends=EndTarget(performance.points(markers, ends), *velocities(performance, ends)),
     )
 
 

@@ -1,8 +1,8 @@
 """Compliant sole: a touching point sinks to its place at a landing, and rises at its lift-off.
 
 A foot cannot stop in no time, and need not: heel pads, shoes and floors give by millimetres while
-they are loaded (De Clercq et al. 1994). The point's height above its place is a parabola that ends
-at rest.
+they are loaded (`SOLE_COMPLIANCE`, analysis/grounding.py). The point's height above its place is a
+parabola that ends at rest.
 """
 
 import numpy as np

@@ -16,6 +16,7 @@ from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import ORDER
+from .cost_to_go import CostToGo, EndTarget
 from .rows import FORCE_BLOCKS
 from .transcription import GAUSS_NODES, Transcription
 
@@ -30,7 +31,8 @@ class CostWeights:
     the centre of mass itself. acceleration_time: s, its fourth power weighs marker accelerations.
     com_acceleration: (m/g)², of the centre of mass's acceleration: one of g weighs as much as so
     many metres. force: (m/BW)², of force errors. force_rate_time: s, its square weighs their rate
-    of change. friction: (m/BW)², of each point's force across the target's direction.
+    of change. friction: (m/BW)², of each point's force across the target's direction. goes_on:
+    whether the target goes on beyond both ends, so that markers must come back to it there.
     """
 
     position: float = 0.0
@@ -41,6 +43,7 @@ class CostWeights:
     force: float = 1e-6
     force_rate_time: float = 0.05
     friction: float = 0.0
+    goes_on: bool = False
 
 
 def marker_points(character: Character) -> tuple[BodyPoint, ...]:
@@ -60,7 +63,7 @@ class TrackingTarget:
     markers: (N, M, 3) m world. com: (N, 3) m world. accelerations: (N, n_angles) rad/s².
     com_acceleration: (N, 3) m/s², world. forces: (K, 3 P) force values, body weights, laid out as
     in the unknowns. slope: (K, 2) horizontal over vertical component of the force that explains
-    the target's movement, at the force values.
+    the target's movement, at the force values. ends: at the motion's ends.
     """
 
     markers: FloatArray
@@ -69,6 +72,7 @@ class TrackingTarget:
     com_acceleration: FloatArray
     forces: FloatArray
     slope: FloatArray
+    ends: EndTarget
 
 
 @dataclass(frozen=True)
@@ -106,6 +110,9 @@ class TrackingCost:
         self._smooth = weights.acceleration_time**4
         self._load = weights.com_acceleration / STANDARD_GRAVITY**2
         self._force_windows = self._force_metric()
+        time = weights.acceleration_time
+        to_go = CostToGo(transcription, target.ends, self.points, time, weights.position)
+        self._to_go = to_go if weights.goes_on else None
 
     def _batches(self) -> Iterator[slice]:
         """Spans a few at a time: what they need then stays in the processor's cache."""
@@ -146,6 +153,8 @@ class TrackingCost:
             each += self._smooth * self._marker_weight * (moved**2).sum(axis=(1, 2))
             each += self._load * (at.com_acceleration**2).sum(axis=1)
             total += 0.5 * float(at.weight @ each)
+        if self._to_go is not None:
+            total += self._to_go.value(x)
         forces = self._force_error(x)
         return total + 0.5 * float((forces * self._force_windows.times(forces)).sum())
 
@@ -160,6 +169,8 @@ class TrackingCost:
         matrix = self._force_windows.copy()
         for spans in self._batches():
             self._expand_batch(x, spans, gradient, matrix)
+        if self._to_go is not None:
+            self._to_go.expand(x, gradient, matrix)
         matrix.add_diagonal((~t.active).astype(float))  # unknowns that do not exist stay put
         return gradient, matrix
 

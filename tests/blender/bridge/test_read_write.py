@@ -193,6 +193,23 @@ def test_the_manual_frame_range_of_an_action_counts() -> None:
     np.testing.assert_array_equal(read_recording(armature).frames, [5, 6, 7, 8])
 
 
+def test_a_stated_range_may_be_read_with_what_is_around_it() -> None:
+    """At 24 frames a second; never beyond the action, nor around all of it."""
+    armature = animated_rig()
+    keyed = read_recording(armature).frames
+    around = read_recording(armature, first=15.0, last=16.0, beyond=0.25).frames
+    np.testing.assert_array_equal(around, np.arange(9.0, 23.0))
+    around = read_recording(armature, first=4.0, last=keyed[-1] - 3.0, beyond=0.5).frames
+    np.testing.assert_array_equal(around, keyed)
+    action = armature.animation_data.action
+    action.use_frame_range = True
+    action.frame_start, action.frame_end = 5.0, 18.0
+    around = read_recording(armature, first=12.0, last=16.0, beyond=0.5).frames
+    np.testing.assert_array_equal(around, np.arange(5.0, 19.0))
+    around = read_recording(armature, beyond=0.5).frames
+    np.testing.assert_array_equal(around, np.arange(5.0, 19.0))
+
+
 def test_nothing_or_another_kind_of_object_is_no_armature() -> None:
     with pytest.raises(NoArmature) as nothing:
         read_recording(None)

@@ -20,6 +20,7 @@ from hangtime.operators.headless import picture
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.outbox import Outbox
 from hangtime.solver.data.faults import OutputNotWritable
+from hangtime.solver.data.recording import BEYOND
 from hangtime.solver.worker.protocol import Adapted, Request, RequestKind
 from hangtime.solver.worker.service import Service
 from hangtime.tests.helpers.clips import mocap_path
@@ -159,7 +160,9 @@ def _assert_written_as_the_worker_answers(clip: Path, written: Path) -> None:
     asked = parse_recipe(EDIT).problem
     problem = replace(asked, frames=(WINDOW[0], 280.0), mass=35.0, height=1.2)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    recording = read_recording(import_clip(clip).armature, first=WINDOW[0], last=280.0)
+    recording = read_recording(
+        import_clip(clip).armature, first=WINDOW[0], last=280.0, beyond=BEYOND
+    )
     request = Request(1, RequestKind.ADAPT, recording, problem)
     answer = Service().answer(request, lambda _: None)
     assert isinstance(answer, Adapted)

@@ -1,12 +1,22 @@
 """Grounding: places on the floor, rises of soles, and time to step from place to place."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from hangtime.solver.analysis.grounding import MIN_STEP_TIME, SOLE_COMPLIANCE, grounded
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.analysis.grounding import (
+    MIN_STEP_TIME,
+    SAME_PLACE,
+    SOLE_COMPLIANCE,
+    grounded,
+    parted,
+)
 from hangtime.solver.analysis.performance import find_contacts
-from hangtime.solver.data.contacts import ContactSchedule
+from hangtime.solver.data.contacts import Contact, ContactSchedule
+from hangtime.solver.data.problem import ContactEdit, MotionProblem
+from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import hop
 
 
@@ -44,19 +54,75 @@ def test_soles_give_where_the_body_lands_and_leaves_but_not_at_the_clip_s_ends()
     assert max(max(c.rise) for c in schedule.contacts) > 0.5 * SOLE_COMPLIANCE
 
 
-def test_a_foot_that_slides_gets_time_to_step() -> None:
-    """One toe's contact is cut in two whose places are 8 cm apart; the other foot carries on."""
-    schedule = found()
+def cut(schedule: ContactSchedule, apart: float) -> tuple[ContactSchedule, Contact]:
+    """One toe's contact cut in two whose places are `apart` m; the other foot carries on."""
     index = next(i for i, c in enumerate(schedule.contacts) if c.end - c.start > 0.3)
     whole = schedule.contacts[index]
     middle = 0.5 * (whole.start + whole.end)
-    aside = whole.place + np.array([0.08, 0.0, 0.0])
+    aside = whole.place + np.array([apart, 0.0, 0.0])
     halves = (replace(whole, end=middle), replace(whole, start=middle, place=aside))
     contacts = (*schedule.contacts[:index], *halves, *schedule.contacts[index + 1 :])
+    return replace(schedule, contacts=contacts), whole
+
+
+def halves_of(whole: Contact, schedule: ContactSchedule) -> tuple[Contact, Contact]:
     first, second = [
         c
-        for c in grounded(replace(schedule, contacts=contacts), hop().performance).contacts
+        for c in schedule.contacts
         if c.point == whole.point and c.start < whole.end and c.end > whole.start
     ]
+    return first, second
+
+
+def test_a_foot_that_slides_gets_time_to_step() -> None:
+    schedule, whole = cut(found(), 0.08)
+    first, second = halves_of(whole, parted(schedule))
     assert second.start - first.end >= MIN_STEP_TIME
-    assert 0.5 * (first.end + second.start) == pytest.approx(middle)
+    assert 0.5 * (first.end + second.start) == pytest.approx(0.5 * (whole.start + whole.end))
+
+
+def test_a_foot_that_stays_keeps_its_times_and_stands_on_one_place() -> None:
+    schedule, whole = cut(found(), 0.9 * SAME_PLACE)
+    first, second = halves_of(whole, parted(schedule))
+    assert first.end == second.start == 0.5 * (whole.start + whole.end)
+    assert second.place == pytest.approx(first.place)
+
+
+def test_a_step_never_takes_the_ground_from_the_body() -> None:
+    alone, _ = cut(replace(found(), contacts=found().contacts[:1]), 0.08)
+    assert parted(alone) is alone
+
+
+def test_a_foot_that_cannot_step_keeps_no_other_from_it() -> None:
+    schedule, whole = cut(found(), 0.08)
+    late = schedule.duration + 1.0
+    halves = [
+        replace(c, start=c.start + late, end=c.end + late) for c in halves_of(whole, schedule)
+    ]
+    longer = replace(
+        schedule, contacts=(*schedule.contacts, *halves), duration=schedule.duration + late
+    )
+    first, second = halves_of(whole, parted(longer))
+    assert second.start - first.end >= MIN_STEP_TIME
+    assert parted(longer).contacts[-2:] == longer.contacts[-2:]
+
+
+def test_the_artist_s_times_are_not_shifted() -> None:
+    """The recording's left toe slides by 8 cm as it stands, so its contacts are parted."""
+    recording = load_recording("fair1_jumping.bvh")
+    before, after = left_toes(analyse(recording, MotionProblem()).schedule)
+    assert after.start - before.end >= MIN_STEP_TIME
+    middle = 0.5 * (before.end + after.start) * recording.rate + recording.frames[0]
+    edits = (ContactEdit(after.name, start_frame=round(middle)),)
+    edited, put = left_toes(analyse(recording, MotionProblem(contacts=edits)).schedule)
+    asked = (round(middle) - recording.frames[0]) / recording.rate
+    assert put.start == pytest.approx(asked)
+    assert edited.end == pytest.approx(before.end)
+
+
+def left_toes(schedule: ContactSchedule) -> tuple[Contact, Contact]:
+    """The two that follow each other at once."""
+    toes = [c for c in schedule.contacts if c.point == "Left toe"]
+    pairs = [(a, b) for a, b in pairwise(toes) if b.start - a.end < 0.2]
+    (only,) = pairs
+    return only

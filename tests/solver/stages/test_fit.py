@@ -135,7 +135,7 @@ def test_a_finer_basis_holds_the_same_motion() -> None:
 @pytest.mark.parametrize("degrees", [37.0, pytest.param(161.0, marks=pytest.mark.slow)])
 def test_where_the_recording_lies_changes_nothing_else(degrees: float) -> None:
     turn, shift = axis_rotation(2, np.radians(degrees)), np.array([30.0, -7.0, 0.0])
-    seen = fit_of(moved(hop_recording(), turn, shift))
+    seen = fit_of(moved(load_recording(HOP_CLIP), turn, shift), frames_of(HOP_CLIP, HOP))
     assert seen.outcome.status is Status.SOLVED
     off = np.linalg.norm(centres(seen) - (centres(fitted_hop()) @ turn.T + shift), axis=-1)
     assert np.sqrt((off**2).mean()) < 0.001

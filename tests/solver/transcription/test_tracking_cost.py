@@ -16,7 +16,12 @@ from hangtime.tests.helpers.toy_problems import figure, places, random_state, st
 
 COST_WEIGHTS = {
     "fit": CostWeights(
-        position=1.0, acceleration_time=0.05, com_acceleration=0.01, force=1e-4, friction=1e-3
+        position=1.0,
+        acceleration_time=0.05,
+        com_acceleration=0.01,
+        force=1e-4,
+        friction=1e-3,
+        goes_on=True,
     ),
     "adaptation": CostWeights(shape=1.0, com=0.02, acceleration_time=0.05, force=3e-3),
     "all": CostWeights(
@@ -43,11 +48,12 @@ def direction(seed: int) -> np.ndarray:
 
 @pytest.mark.parametrize("name", COST_WEIGHTS)
 def test_the_gradient_is_the_value_s_slope(name: str) -> None:
-    """The acceleration term's own metric is taken as fixed, so that target has no such error."""
+    """The metric of accelerations and rates is taken as fixed: the target has no such errors."""
     x, target = random_state(0), at_itself(random_state(1))
     t = standing()
     own = at_itself(x)
-    target = replace(target, accelerations=own.accelerations)
+    ends = replace(target.ends, rates=own.ends.rates)
+    target = replace(target, accelerations=own.accelerations, ends=ends)
     tracking_cost = TrackingCost(t, target, COST_WEIGHTS[name])
     gradient, _ = tracking_cost.expand(x)
     for seed in range(3):

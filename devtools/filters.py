@@ -1,10 +1,10 @@
-"""Low-pass filter of both sides of a comparison, and plain differentiation, its baseline."""
+"""Filter of forces that are compared, and plain differentiation, which they are compared with."""
 
 import numpy as np
 from scipy.signal import butter, filtfilt
 
-from ...solver.arrays import FloatArray
-from ...solver.data.constants import STANDARD_GRAVITY
+from ..solver.arrays import FloatArray
+from ..solver.data.constants import STANDARD_GRAVITY
 
 ORDER = 2  # of the Butterworth filter, which is run both ways (Winter 2009, 2.2.4.4)
 CUT_OFFS = (10.0, 15.0, 20.0)  # Hz

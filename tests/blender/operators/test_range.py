@@ -1,0 +1,57 @@
+"""A range that the artist cuts out of a longer action: the keys beyond tell of its ends."""
+
+from __future__ import annotations
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.traces_store import kept
+from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.operators.solve.adapt import read_wanted
+
+FIRST, LAST = 150, 245  # in the push and shortly after the landing
+SAME = 2.0  # frames
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def cut(jump: bpy.types.Object) -> bpy.types.Object:
+    jump.hangtime.first_frame, jump.hangtime.last_frame = FIRST, LAST
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    return jump
+
+
+def spans(armature: bpy.types.Object) -> list[tuple[str, float, float]]:
+    """Each point and when it touches, as far as that is within the range."""
+    rows = (
+        (row.point, max(row.found_start, FIRST), min(row.found_end, LAST))
+        for row in armature.hangtime.contacts
+    )
+    return sorted(row for row in rows if row[1] + SAME < row[2])
+
+
+def test_its_contacts_are_the_whole_action_s(cut: bpy.types.Object) -> None:
+    ours = spans(cut)
+    assert len(ours) == len(cut.hangtime.contacts)
+    assert all(FIRST <= row.found_start < row.found_end <= LAST for row in cut.hangtime.contacts)
+    cut.hangtime.use_range = False
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    theirs = spans(cut)
+    assert [point for point, *_ in ours] == [point for point, *_ in theirs]
+    for (_, *mine), (_, *other) in zip(ours, theirs, strict=True):
+        assert mine == pytest.approx(other, abs=SAME)
+
+
+def test_no_more_is_adapted_than_the_range(cut: bpy.types.Object) -> None:
+    recording = complete(read_wanted(cut))
+    assert recording.frames[[0, -1]].tolist() == [FIRST - 60.0, LAST + 60.0]
+    assert problem_of(cut.hangtime, recording).frames == (FIRST, LAST)
+    cut.hangtime.stances["ground 2"].up = 0.03
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    adapted = kept(cut.hangtime.adapted).traces
+    assert adapted.frames[[0, -1]].tolist() == [FIRST, LAST]
+    assert current_action(cut).frame_range.to_tuple() == (FIRST, LAST)
