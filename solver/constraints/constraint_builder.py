@@ -7,9 +7,9 @@ import numpy as np
 from ..data.constants import STANDARD_GRAVITY
 from ..data.faults import NothingTouches, WrongAngle
 from ..data.requests import ForceRequest, Requests, TorqueLimit
+from ..objectives.least_squares import LeastSquares
 from ..transcription.constraint import Bounds, Constraint
 from ..transcription.constraint_functions import PeakForce
-from ..transcription.objectives import LeastSquares
 from ..transcription.sampling import Instants, State
 from ..transcription.torque_constraint import TorqueFunction
 from ..transcription.transcription import Transcription

@@ -23,11 +23,11 @@ from ..arrays import FloatArray
 from ..data.contacts import Interval
 from ..data.timeline import Stretch, TimeWarp
 from ..numerics.block_banded import BlockBanded
+from ..objectives.tracking_cost import CostWeights
 from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet
 from ..transcription.motion import Motion
 from ..transcription.rows import Rows
-from ..transcription.tracking_cost import CostWeights
 from .fit import motion_metric
 
 # As in an adaptation, but forces and the centre of mass only settle what no pose shows. The weight

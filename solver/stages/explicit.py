@@ -9,10 +9,7 @@ from ..arrays import FloatArray
 from ..constraints.constraint_builder import preferred_poses
 from ..data.requests import ObjectiveKind
 from ..numerics.block_banded import BlockBanded
-from ..optimisation.gauss_newton import minimise
-from ..optimisation.sqp import Outcome, Progress, restore
-from ..transcription.motion import Motion
-from ..transcription.objectives import (
+from ..objectives.least_squares import (
     AngleDerivatives,
     ContactForces,
     LeastSquares,
@@ -23,8 +20,11 @@ from ..transcription.objectives import (
     WeightedObjective,
     values_at_nodes,
 )
+from ..objectives.tracking_cost import TrackingCost
+from ..optimisation.gauss_newton import minimise
+from ..optimisation.sqp import Outcome, Progress, restore
+from ..transcription.motion import Motion
 from ..transcription.sampling import MotionFunction
-from ..transcription.tracking_cost import TrackingCost
 from ..transcription.transcription import Transcription
 from .fit import ADAPT_COST_WEIGHTS, motion_target
 from .setup import Setup

@@ -23,11 +23,13 @@ from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..numerics.interpolation import interpolate
 from ..numerics.splines import SplineBasis, gauss_instants, phase_breaks
+from ..objectives.cost_to_go import EndTarget
+from ..objectives.least_squares import torque_metric
+from ..objectives.tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_points
 from ..optimisation.gauss_newton import minimise
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
 from ..transcription.compliant_sole import sole_trajectory
 from ..transcription.contact_pins import PointContact, touching_spans
-from ..transcription.cost_to_go import EndTarget
 from ..transcription.motion import (
     DenseTolerance,
     Motion,
@@ -35,9 +37,7 @@ from ..transcription.motion import (
     spans_to_refine,
     split_spans,
 )
-from ..transcription.objectives import torque_metric
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
-from ..transcription.tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_points
 from ..transcription.transcription import Transcription
 
 CANDIDATE_SPANS = (0.04, 0.03, 0.025)  # s, longest knot spans to choose from

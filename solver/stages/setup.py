@@ -28,13 +28,13 @@ from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Reque
 from ..data.timeline import TimeWarp, timeline
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
+from ..objectives.least_squares import torque_metric
+from ..objectives.tracking_cost import CostWeights
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
 from ..solid.solid_world import SolidWorld, floor_heights, solid_world
 from ..transcription.motion import Motion
-from ..transcription.objectives import torque_metric
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
-from ..transcription.tracking_cost import CostWeights
 from ..transcription.transcription import Transcription
 from .anticipation import anticipate
 from .fit import (

@@ -19,6 +19,7 @@ from hangtime.solver.data.timeline import Timeline
 from hangtime.solver.numerics.block_banded import BlockBanded
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.numerics.splines import ORDER, SplineBasis, phase_breaks
+from hangtime.solver.objectives.tracking_cost import CostWeights, TrackingCost
 from hangtime.solver.optimisation.sqp import FeasibleSet, Outcome, restore
 from hangtime.solver.stages.fit import motion_target
 from hangtime.solver.transcription.constraint import Constraint, ConstraintFunction, exchange
@@ -27,7 +28,6 @@ from hangtime.solver.transcription.contact_pins import PointContact
 from hangtime.solver.transcription.motion import Motion
 from hangtime.solver.transcription.rows import Layout
 from hangtime.solver.transcription.sampling import Instants, State
-from hangtime.solver.transcription.tracking_cost import CostWeights, TrackingCost
 from hangtime.solver.transcription.transcription import Transcription
 
 DURATION = 0.3  # s

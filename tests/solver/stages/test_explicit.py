@@ -17,13 +17,7 @@ from hangtime.solver.data.requests import (
     SolverOptions,
     When,
 )
-from hangtime.solver.optimisation.kkt_step import LinearisedProblem
-from hangtime.solver.results.report import change
-from hangtime.solver.results.violations import missed_conditions
-from hangtime.solver.stages.explicit import weighted_objective
-from hangtime.solver.stages.implicit import Adaptation, adapt
-from hangtime.solver.stages.setup import set_up
-from hangtime.solver.transcription.objectives import (
+from hangtime.solver.objectives.least_squares import (
     AngleDerivatives,
     ContactForces,
     LeastSquares,
@@ -34,6 +28,12 @@ from hangtime.solver.transcription.objectives import (
     WeightedObjective,
     torque_metric,
 )
+from hangtime.solver.optimisation.kkt_step import LinearisedProblem
+from hangtime.solver.results.report import change
+from hangtime.solver.results.violations import missed_conditions
+from hangtime.solver.stages.explicit import weighted_objective
+from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.solver.stages.setup import set_up
 from hangtime.solver.transcription.torque_constraint import joint_torques
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.toy_problems import random_state, standing, stood

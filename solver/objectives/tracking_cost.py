@@ -16,9 +16,9 @@ from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import ORDER
+from ..transcription.rows import FORCE_BLOCKS
+from ..transcription.transcription import GAUSS_NODES, Transcription
 from .cost_to_go import CostToGo, EndTarget
-from .rows import FORCE_BLOCKS
-from .transcription import GAUSS_NODES, Transcription
 
 POSE_BATCH = 16  # spans
 

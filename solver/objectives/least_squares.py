@@ -17,10 +17,10 @@ from ..arrays import FloatArray, IntArray
 from ..body.kinematics import BodyPoint
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import ORDER
-from .motion import Motion
-from .sampling import Channel, ChannelJacobian, Instants, MotionFunction, State
-from .torque_constraint import TorqueFunction
-from .transcription import Transcription
+from ..transcription.motion import Motion
+from ..transcription.sampling import Channel, ChannelJacobian, Instants, MotionFunction, State
+from ..transcription.torque_constraint import TorqueFunction
+from ..transcription.transcription import Transcription
 
 # A change of 100 N·m at one joint of a person weighs like one of 2 cm of the whole shape.
 TORQUE_CHANGE_WEIGHT = 0.02  # m² per (body weight x m)²

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.solver.stages.fit import motion_target
-from hangtime.solver.transcription.motion import Motion
-from hangtime.solver.transcription.tracking_cost import (
+from hangtime.solver.objectives.tracking_cost import (
     CostWeights,
     TrackingCost,
     TrackingTarget,
     marker_points,
 )
+from hangtime.solver.stages.fit import motion_target
+from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.toy_problems import figure, places, random_state, standing
 
 COST_WEIGHTS = {

@@ -15,7 +15,7 @@ from ..arrays import FloatArray
 from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import ORDER
-from .transcription import Transcription
+from ..transcription.transcription import Transcription
 
 
 @dataclass(frozen=True)
