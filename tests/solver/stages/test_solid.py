@@ -33,9 +33,9 @@ def new_depths(adaptation: Adaptation, problem: MotionProblem) -> dict[str, floa
 
 
 def at_bone(bone: str, seconds: float, place: np.ndarray, **more: object) -> MotionProblem:
-    """A bone's head is asked to a place for a few frames."""
+    """A bone's head is asked to a place for a moment."""
     frame = float(fitted_hop().performance.recording.frames[0]) + 120.0 * seconds
-    when = When(frames=(frame - 3.0, frame + 3.0))
+    when = When(frames=(frame - 1.0, frame + 1.0))
     x, y, z = place.tolist()
     asked = PointRequest("Reach", bone, when, offset=(0.0, 0.0, 0.0), place=(x, y, z), **more)
     return MotionProblem(requests=Requests(points=(asked,)))
