@@ -1,8 +1,7 @@
 """The body's solid shapes: capsules about its bones, and which of them may meet.
 
 A capsule has the girth of its segment: the segment's mass (mass_tables.py), its length and the
-body's density give its cross-section, which agrees with measured girths (mid thigh, forearm, upper
-arm, calf) to a tenth. Flesh gives, so only a share of the radius is solid.
+body's density give its cross-section. Flesh gives, so only a share of the radius is solid.
 """
 
 from collections.abc import Sequence

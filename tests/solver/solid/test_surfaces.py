@@ -139,7 +139,7 @@ def test_closest_points_are_closer_than_any_others() -> None:
 
 
 def test_shapes_are_a_persons() -> None:
-    """Girths lie between a limb's thinnest and its thickest, to a tenth (men, ANSUR II, 2012).
+    """Girths lie between a limb's thinnest and its thickest, to a tenth (of grown men, rounded).
 
     Girths go with the root of mass over height; of a body 0.8 are solid.
     """
