@@ -42,10 +42,6 @@ LOOKS = {  # what a picture must not show, at any instant
     "jerk": GalleryLimit("times the fit's sharpest acceleration", 2.5, 1.0),
 }
 LEAST_KNEE = 0.0  # degrees; below zero a knee is bent backwards
-# Results that are not in order since forces became a person's, for nothing keeps knees from bending
-# backwards but what the recipe asks for. The table shows them as they are; a run does not fail for
-# them.
-KNOWN_DEFECTS = ("half_twist_right_pca",)
 
 
 @dataclass(frozen=True)
@@ -95,12 +91,6 @@ def faults(row: Json) -> list[str]:
     return found
 
 
-def unexpected(row: Json) -> bool:
-    """Whether a result has a fault that is not one of the visible defects known of it."""
-    found = faults(row)
-    return bool(found) and (row["name"] not in KNOWN_DEFECTS or found != [*_ugly(row["looks"])])
-
-
 def _ugly(looks: Json) -> Iterator[str]:
     """Visible defects in words."""
     for name, limit in LOOKS.items():
@@ -116,8 +106,7 @@ def figures(rows: Sequence[Json]) -> list[GalleryFigure]:
     found = [figure for row in rows for figure in _of(row)]
     adapted = adaptations(rows)
     good, count = sum(not faults(row) for row in adapted), len(adapted)
-    must = count - sum(row["name"] in KNOWN_DEFECTS for row in adapted)
-    found.append(GalleryFigure("results in order", good, "1", must, count, good >= must, "all"))
+    found.append(GalleryFigure("results in order", good, "1", count, count, good == count, "all"))
     for method, limit in SECONDS.items():
         if taken := times(adapted, method):
             found.append(_figure(f"{method}, median", median(taken), limit, "all"))

@@ -48,7 +48,7 @@ from .certificate import LoadedDrift, certificate, friction_used, loaded_drifts
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
-from .violations import missed_conditions, pins_of_contacts, worst_constraints
+from .violations import condition_violations, pins_of_contacts, worst_constraints
 
 SAMPLE_RATE = 1000.0  # Hz, of what is measured between the nodes
 
@@ -78,7 +78,8 @@ def report(
         rows=len(transcription.values(motion.x, motion.places)),
         equations=tuple(worst_constraints(adaptation, problem, least=0.0)),
         conditions=tuple(
-            _condition(each, fit, transcription.character) for each in missed_conditions(adaptation)
+            _condition(each, fit, transcription.character)
+            for each in condition_violations(adaptation)
         ),
         contacts=tuple(
             _contact(adaptation, i, pins.get(each.contact.name), drifts[i])

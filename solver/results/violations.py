@@ -29,7 +29,7 @@ def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
     return names
 
 
-def missed_conditions(adaptation: Adaptation) -> list[DenseViolation]:
+def condition_violations(adaptation: Adaptation) -> list[DenseViolation]:
     """Worst violation of each of the artist's constraints, between the nodes too, and of the
     solids that are, or had to be kept, out of each other."""
     x, t = adaptation.motion.x, adaptation.motion.transcription
@@ -80,7 +80,7 @@ def worst_constraints(
     ):
         name = owners[owner] if owner >= 0 else _phase_at(phases, time).name
         found[name, kind] = max(found.get((name, kind), 0.0), float(left))
-    for each in missed_conditions(adaptation):
+    for each in condition_violations(adaptation):
         found[each.name, each.kind] = max(found.get((each.name, each.kind), 0.0), each.amount)
     ranked = sorted(
         ((v / kind.tolerance, name, kind) for (name, kind), v in found.items()),

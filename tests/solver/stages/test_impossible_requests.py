@@ -15,7 +15,7 @@ from hangtime.solver.data.requests import (
     TorqueLimit,
     When,
 )
-from hangtime.solver.results.violations import missed_conditions, most_telling, worst_constraints
+from hangtime.solver.results.violations import condition_violations, most_telling, worst_constraints
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.fitted_hop import fitted_hop
@@ -79,7 +79,7 @@ def test_limp_legs_at_take_off() -> None:
     names = ("Limp legs", "ground 1", "toe 1", "heel 1")
     found = adapt(fitted_hop(), limp_legs())
     if found.solved:
-        (missed,) = missed_conditions(found)
+        (missed,) = condition_violations(found)
         assert missed.amount <= 3.0 * missed.kind.tolerance
         assert sum(len(o.steps) for o in found.outcomes) < MOST_STEPS
     else:
