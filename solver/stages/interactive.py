@@ -27,9 +27,7 @@ from .warm_start import continuation_steps, partial_places, stance_moves, warm_s
 CHORD_STEPS = 2  # an update, on the same factor
 MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
-RESTING_UPDATES = (
-    6  # at one place, after which a pin is no longer on its way; new times take as long
-)
+RESTING_UPDATES = 6  # at one place, after which a pin is no longer on its way
 SAME_DURATION = 1e-3  # s, by which nobody sees that a phase lasts longer
 KEPT_FACTOR_VIOLATION = 100.0  # times the tolerances (1 mm): where the last factor still serves
 
