@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from .requests import Requests
+from .scene import SceneObject
 
 
 class MassTable(Enum):
@@ -27,7 +28,8 @@ class Pin:
     name: the artist's. phase: such as "ground 2". touching: bone names or point names ("Left
     heel"); empty means every contact of the phase. offset: (3,) m in `axes`. place: (3,) m, world;
     where the contacts' centre goes instead (offset then adds to it). turn: rad about the vertical
-    through the contacts' centre, counter-clockwise from above.
+    through the contacts' centre, counter-clockwise from above. on: name of a ground object of the
+    scene; the contacts then stand on its faces, vertically below or above where they would be.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Pin:
     axes: OffsetAxes = OffsetAxes.TRAVEL
     place: tuple[float, float, float] | None = None
     turn: float = 0.0
+    on: str | None = None
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,7 @@ class MotionProblem:
     contacts: tuple[ContactEdit, ...] = ()
     added: tuple[AddedContact, ...] = ()
     pins: tuple[Pin, ...] = ()
+    scene: tuple[SceneObject, ...] = ()
     requests: Requests = field(default_factory=Requests)
 
     def keeping_times(self) -> "MotionProblem":
