@@ -2,7 +2,8 @@
 
 Of one performer, one jump (the source) is adapted to where another (the target) lands, and to
 nothing else, and set beside it. Default: two broad jumps, and ten hops among each other; a run of
-them all writes docs/pairs.md anew. Given jumps are set in pairs every two both ways. Ends with 1
+them all writes docs/pairs.md anew. The landings of the broad jumps, or of the given ones, are moved
+by round distances too. Given jumps are set in pairs every two both ways. Ends with 1
 where the first solution misses what it must reach.
 """
 
@@ -10,7 +11,7 @@ import argparse
 import os
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import permutations
 from pathlib import Path
 
@@ -18,10 +19,11 @@ from ...solver.data.faults import Fault
 from ...solver.worker.pipeline import measure
 from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
-from .clips import Jump, default_pairs, parse
+from .clips import Jump, broad_jumps, default_pairs, parse
 from .compare import ComparedPair, RecordedJump, compare
 from .jobs import SolvedJump, SolvedSource, SourceTask, solve_all
 from .jump_frame import jump_frame, longest_flight
+from .moved import FORWARD, moved_landings, moved_offsets
 from .phased_jump import AROUND, recorded_phases
 from .picture import draw
 from .results import Results
@@ -45,13 +47,15 @@ def main(argv: list[str]) -> int:
         return 2
     asked = [(source.name, target.name) for source, target in chosen]
     asked += [(name, name) for name in recorded]  # its own landing: nothing should change
-    solved = solve(recorded, asked, solutions, options.jobs)
+    moved = [jump.name for jump in given or broad_jumps() if jump.name in recorded]
+    solved = solve(recorded, asked, solutions, moved, options.jobs)
     pairs = [
         compare(recorded[a], recorded[b], solution, solved[a], solved[b].fit)
         for a, b in asked
         for solution in solutions
     ]
-    results = Results.of(solutions, pairs, {n: r.frame.landing[0] for n, r in recorded.items()})
+    distances = {name: float(jump.frame.landing[0]) for name, jump in recorded.items()}
+    results = Results.of(solutions, pairs, distances, moved_landings(solved, solutions))
     options.out.mkdir(parents=True, exist_ok=True)
     results.write(options.out / "figures.json")
     pictures = draw_some(results.moved(solutions[0]), recorded, solved, options.out)
@@ -92,13 +96,19 @@ def solve(
     recorded: Mapping[str, RecordedJump],
     asked: Sequence[tuple[str, str]],
     solutions: tuple[str, ...],
+    moved: Collection[str],
     jobs: int,
 ) -> dict[str, SolvedSource]:
-    """Every source's fit, and its adaptations to its targets by every solution."""
+    """Every source's fit, and its adaptations to its targets by every solution.
+
+    moved: the sources whose landings are moved by round distances too.
+    """
     tasks = []
     for name, source in recorded.items():
         own = [target for other, target in asked if other == name]
         offsets = {target: source.frame.offset_to(recorded[target].frame) for target in own}
+        if name in moved:
+            offsets |= moved_offsets(source.frame, FORWARD)
         tasks.append(SourceTask(source.jump, offsets, solutions))
     with tempfile.TemporaryDirectory() as folder:
         return dict(zip(recorded, solve_all(tasks, Path(folder), jobs), strict=True))

@@ -9,6 +9,7 @@ from pathlib import Path
 from .compare import ComparedPair, FailedPair
 from .jump_measures import JumpMeasures
 from .limits import FAR, MEASURES, NULL, PairsFigure, figures
+from .moved import MovedLanding
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class Results:
     failed: tuple[FailedPair, ...]
     figures: tuple[PairsFigure, ...]
     jumps: tuple[OwnJump, ...]
+    landings: tuple[MovedLanding, ...]
 
     @classmethod
     def of(
@@ -36,6 +38,7 @@ class Results:
         solutions: tuple[str, ...],
         pairs: Sequence[ComparedPair | FailedPair],
         distances: Mapping[str, float],
+        landings: Sequence[MovedLanding],
     ) -> "Results":
         """Results of pairs. distances: of the jumps, m."""
         compared = tuple(pair for pair in pairs if isinstance(pair, ComparedPair))
@@ -45,7 +48,8 @@ class Results:
             compared,
             tuple(pair for pair in pairs if isinstance(pair, FailedPair)),
             tuple(f for solution in solutions for f in figures(compared, solution)),
-            tuple(OwnJump(n, float(distances[n]), fits[n]) for n in distances if n in fits),
+            tuple(OwnJump(n, distances[n], fits[n]) for n in distances if n in fits),
+            tuple(landings),
         )
 
     def moved(self, solution: str) -> list[ComparedPair]:
@@ -77,6 +81,7 @@ class Results:
             "measures": {name: words[:2] for name, words in MEASURES.items()},
             "figures": [_as_json(figure) for figure in self.figures],
             "jumps": [asdict(jump) for jump in self.jumps],
+            "moved landings": [asdict(each) for each in self.landings],
             "pairs": [pair.record() for pair in self.pairs],
             "failed": [asdict(pair) for pair in self.failed],
         }

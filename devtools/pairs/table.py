@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from statistics import fmean
 
+from ...solver.data.status import Status
 from .compare import ComparedPair, Distances
 from .limits import MEASURES, PairsFigure, with_distance
 from .results import Results
@@ -45,6 +46,11 @@ Mean distance of the joint centres to the target, cm, in crouch / flight / landi
 jump are as far from each other as the last row tells: nothing that knows only the landing can be
 expected to come much nearer.
 """
+LANDINGS = """
+## Landings moved by round distances
+
+What ours change against the fit, where nothing but the landing is moved.
+"""
 TOLD = """What changes in proportion to the distance, by least squares over the pairs: the
 person's, and ours. The share is that of the squares of the person's changes which this explains; it
 is also the slope that so good a prediction would have. The rest differs from take to take: no
@@ -60,6 +66,7 @@ def text(results: Results) -> str:
         [""],
     )
     parts += [aligned(jump_rows(results)), [""], aligned(told_rows(results)), [""]]
+    parts += [aligned(landing_rows(results)), [""]]
     parts += [aligned(distance_rows(results)), [""], aligned(figure_rows(results))]
     return "\n".join(line for part in parts for line in part)
 
@@ -69,7 +76,8 @@ def page(results: Results) -> str:
     lines = [HEAD, "## Figures\n", *markdown(figure_rows(results)), APART]
     lines += [*markdown(distance_rows(results)), HOW]
     lines += ["## The performers' own jumps\n", *markdown(jump_rows(results))]
-    lines += ["", TOLD, *markdown(told_rows(results)), "\n## The pairs"]
+    lines += ["", TOLD, *markdown(told_rows(results))]
+    lines += [LANDINGS, *markdown(landing_rows(results)), "\n## The pairs"]
     for solution in results.solutions:
         lines += [f"\n{solution.capitalize()}:\n", *markdown(pair_rows(results, solution))]
     failed = [f"- {f.source} → {f.target}, {f.solution}: {f.why}" for f in results.failed]
@@ -122,6 +130,16 @@ def distance_rows(results: Results) -> Iterator[Row]:
         distances = [[getattr(pair, kind) for pair in some(first)] for kind in fixed]
         distances += [[pair.ours for pair in some(solution)] for solution in results.solutions]
         yield (words, str(len(some(first))), *(_mean(each) for each in distances))
+
+
+def landing_rows(results: Results) -> Iterator[Row]:
+    """A moved landing a row: what ours change."""
+    heads = (f"{words} ({unit})" for words, unit, _ in MEASURES.values())
+    yield ("jump", "landing (m)", "solution", *heads)
+    for each in results.landings:
+        changes = (f"{each.change(measure):+.2g}" for measure in MEASURES)
+        status = "" if each.status == Status.SOLVED.value else f" ({each.status})"
+        yield (each.source, f"{each.forward:+.1f}", each.solution + status, *changes)
 
 
 def pair_rows(results: Results, solution: str) -> Iterator[Row]:

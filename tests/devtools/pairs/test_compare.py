@@ -5,6 +5,7 @@ import json
 import pytest
 from hangtime.devtools.pairs.compare import FailedPair
 from hangtime.devtools.pairs.limits import MEASURES, WithDistance, figures, slope, with_distance
+from hangtime.devtools.pairs.moved import MovedLanding
 from hangtime.devtools.pairs.results import Results
 from hangtime.devtools.pairs.table import page, text
 from hangtime.tests.devtools.pairs.made_up import pair
@@ -60,10 +61,12 @@ def test_figures_tell_far_pairs_and_null_pairs_apart() -> None:
 def test_results_are_told_in_json_in_lines_and_on_a_page(tmp_path) -> None:
     failed = FailedPair("source", "far away", "implicit", "no way")
     moved = pair(0.2, person=2.0, ours=0.0)
-    results = Results.of(("implicit",), [moved, failed], {"source": 0.9})
+    landing = MovedLanding("source", "implicit", 0.1, "stalled", moved.before, moved.after)
+    results = Results.of(("implicit",), [moved, failed], {"source": 0.9}, [landing])
     results.write(tmp_path / "figures.json")
     found = json.loads((tmp_path / "figures.json").read_text(encoding="utf-8"))
     assert found["pairs"][0]["shares"]["crouch_cm"] == 0.0
+    assert found["moved landings"][0]["forward"] == 0.1
     assert found["failed"][0]["why"] == "no way"
     assert "Infinity" not in (tmp_path / "figures.json").read_text(encoding="utf-8")
     assert any(figure.name == "crouch: slope" for figure in results.missed())
@@ -71,4 +74,5 @@ def test_results_are_told_in_json_in_lines_and_on_a_page(tmp_path) -> None:
         assert "source → target" in told
         assert "MISSED" in told
         assert "no way" in told
+        assert "implicit (stalled)" in told
         assert "4.0 / 4.0 / 4.0" in told
