@@ -1,10 +1,10 @@
 """The solid world of one adaptation: what goes into what, and the rows that keep it out.
 
 Never tighter than the recording: what the fit has through each other at the same (warped) instant
-is allowed, and no more.
+is allowed, and no more. Of the scene nothing is allowed: the recording knew nothing of it.
 """
 
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,10 +13,14 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.contacts import ContactSchedule
 from ..data.row_kinds import RowKind
+from ..data.scene import SceneObject
+from ..scene.object_motion import ObjectMotion
+from ..scene.triangle_mesh import mesh_of
 from ..transcription.constraint import DenseViolation
 from ..transcription.keep_out import KeepOut
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
+from .mesh_surface import MeshSurface, scene_shapes
 from .shapes import Capsules, capsules, floor_balls, meeting_pairs
 from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
 
@@ -116,7 +120,8 @@ class SolidDistance:
 
 @dataclass(frozen=True)
 class SolidWorld:
-    """Surfaces of a motion, and those of the fit, item by item the same.
+    """Surfaces of a motion, and those of the fit, item by item the same; then those of the scene,
+    which the fit has not.
 
     to_old: the fit's instants (N,) s of the motion's.
     """
@@ -149,14 +154,23 @@ class SolidWorld:
         deep = self.surfaces.closest(placed, instants, items).distance < -MOST_NEW
         instants, items = instants[deep], items[deep]
         now = self.surfaces.closest(placed, instants, items)
-        looked_at, place = np.unique(instants, return_inverse=True)
-        before = placed_at(self.fitted, self.to_old(placed.times[looked_at]))
-        was = self.fitted_surfaces.closest(before, place, items)
-        side = was.side(before.pose, place) * (was.distance < SIDE_REACH)[:, None]
-        lower = np.minimum(was.distance, 0.0)
+        lower, side = self._before(placed.times[instants], items)
         over = lower - now.from_side(side, placed.pose, instants).distance
         found = Penetrations(self.names, items, placed.times[instants], over, lower, side)
         return found.some(over > MOST_NEW)
+
+    def _before(self, times: FloatArray, items: IntArray) -> tuple[FloatArray, FloatArray]:
+        """What items have in the fit at the motion's instants: distances (N,) m, at most 0, and
+        sides (N, 3)."""
+        lower, side = np.zeros(len(items)), np.zeros((len(items), 3))
+        there = np.flatnonzero(items < len(self.fitted_surfaces.names))
+        looked_at, place = np.unique(times[there], return_inverse=True)
+        before = placed_at(self.fitted, self.to_old(looked_at))
+        was = self.fitted_surfaces.closest(before, place, items[there])
+        lower[there] = np.minimum(was.distance, 0.0)
+        near = was.distance < SIDE_REACH
+        side[there] = was.side(before.pose, place) * near[:, None]
+        return lower, side
 
     def kept_out(self, motion: Motion, given_up: Set[int]) -> KeepOut | None:
         """A motion's keep-out rows, with more where it penetrates; the same where it does not.
@@ -203,19 +217,21 @@ def solid_world(
     reference: Motion,
     floors: tuple[TimeFunction, TimeFunction],
     to_old: TimeFunction,
+    scene: Sequence[tuple[SceneObject, ObjectMotion]] = (),
 ) -> SolidWorld:
     """The world of a motion of `reference`'s body. floors: heights, m, of the motion's and the
-    fit's."""
+    fit's. scene: objects and how they move in the motion's time."""
     character = fitted.transcription.character
     pairs = meeting_pairs(character, capsules(character))
     ours, theirs = (
         _surfaces(motion, pairs, floor)
         for motion, floor in zip((reference, fitted), floors, strict=True)
     )
-    return SolidWorld(ours, theirs, fitted, to_old)
+    around = tuple(surface for thing, moves in scene for surface in _of_object(reference, thing, moves))
+    return SolidWorld(Surfaces((*ours, *around)), Surfaces(theirs), fitted, to_old)
 
 
-def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> Surfaces:
+def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> tuple[Surface, ...]:
     character = motion.transcription.character
     shapes = capsules(character)
     balls = floor_balls(character, motion.transcription.points)
@@ -225,7 +241,19 @@ def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> Surfaces:
     )
     under = tuple(f"{names[ball.body].capitalize()} in the floor" for ball in balls)
     limbs = OwnLimbs(Capsules.of(shapes), pairs, both)
-    return Surfaces((limbs, Floor(Capsules.of(balls), floor, under)))
+    return limbs, Floor(Capsules.of(balls), floor, under)
+
+
+def _of_object(motion: Motion, thing: SceneObject, moves: ObjectMotion) -> Iterator[Surface]:
+    """The surface of an object; none of one without faces."""
+    mesh = mesh_of(thing)
+    if mesh is not None:
+        character = motion.transcription.character
+        shapes = scene_shapes(character, motion.transcription.points)
+        names = tuple(
+            f"{character.bodies[each.body].name.capitalize()} in {thing.name}" for each in shapes
+        )
+        yield MeshSurface(mesh, moves, Capsules.of(shapes), names)
 
 
 def floor_heights(schedule: ContactSchedule, places: FloatArray) -> TimeFunction:

@@ -11,7 +11,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ..analysis.pinned_places import pinned_places, travel_axes
+from ..analysis.pinned_places import travel_axes
 from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
 from ..body.dynamics import MomentFunction
@@ -25,6 +25,7 @@ from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Requests
+from ..data.scene import SceneObject
 from ..data.timeline import TimeWarp, timeline
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
@@ -32,6 +33,7 @@ from ..objectives.least_squares import torque_metric
 from ..objectives.tracking_cost import CostWeights
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
+from ..scene.object_motion import ObjectMotion
 from ..solid.solid_world import SolidWorld, floor_heights, solid_world
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
@@ -47,6 +49,7 @@ from .fit import (
     motion_metric,
     point_contacts,
 )
+from .footing import find_footing, on_faces
 from .reseat import reseat
 
 MAX_SPAN = 0.08  # s, between knots that are not the fit's
@@ -70,6 +73,7 @@ class Setup:
     the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the changes of a
     block that a reduction allows, None all. requests: those set up here. recording: of the figure
     as it is asked for. space: the reduced coordinates, None where there are none.
+    scene: what is around.
     """
 
     fit: Fit
@@ -83,6 +87,7 @@ class Setup:
     recording: Recording
     requests: Requests
     space: ReducedSpace | None
+    scene: tuple[SceneObject, ...] = ()
 
     def feasible_set(
         self, transcription: Transcription, places: FloatArray | None = None
@@ -121,6 +126,10 @@ class Setup:
                 floor_heights(fitted.schedule, fitted.places),
             ),
             context.timeline.to_old,
+            [
+                (thing, ObjectMotion.of(thing, context.timeline.first_frame, context.timeline.rate))
+                for thing in self.scene
+            ],
         )
 
     @cached_property
@@ -159,7 +168,9 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     context = replace(context, schedule=with_added(context.schedule, contacts))
     start = _start(fit, problem, context, added)
     fitted_places = start.places
-    target_places = find_target_places(fit, problem, context.schedule)
+    footing = find_footing(fit, problem, context.schedule)
+    target_places = footing.places
+    start = on_faces(start, footing)
     context, start = _anticipated(fit, problem, context, start, target_places)
     start = _with_constraints(start, problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
@@ -186,6 +197,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         changed,
         requests,
         space,
+        problem.scene,
     )
 
 
@@ -225,16 +237,6 @@ def _anticipated(
         travel=partial(_travel, fit, phases),
     )
     return context, found.motion
-
-
-def find_target_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
-    """Places (n_contacts, 3) m, world, where the problem's pins put the contacts of its schedule.
-
-    Raises UnknownPhase, UnknownContact, ContradictoryPins.
-    """
-    places = pinned_places(problem, fit.performance, fit.schedule)
-    wanted = {c.name: place for c, place in zip(fit.schedule.contacts, places, strict=True)}
-    return np.array([wanted.get(c.name, c.place) for c in schedule.contacts]).reshape(-1, 3)
 
 
 def _weighs_torques(requests: Requests) -> bool:

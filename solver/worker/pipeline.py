@@ -30,6 +30,7 @@ from ..optimisation.sqp import Step
 from ..results.report import report
 from ..results.trace_sampling import motion_traces, recorded_traces
 from ..results.violations import most_telling
+from ..scene.checks import check_scene
 from ..stages.fit import Fit, fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..transcription.motion import Motion
@@ -172,8 +173,9 @@ def solve(
 ) -> AdaptationResult:
     """The whole way from an analysis. fitted_by: may remember fits.
 
-    Raises what `adapt` does; wrong names in pins before the fit takes its seconds.
+    Raises what `adapt` and `check_scene` do; wrong names in pins before the fit takes its seconds.
     """
+    check_scene(subject.problem)
     schedule = subject.analysis.schedule
     for pin in subject.problem.pins:
         chosen_contacts(pin, phase_of(pin, schedule), schedule)
