@@ -5,7 +5,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.constants import UP
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
-from ..data.faults import ContradictoryPins, NoFaces, UnknownContact, UnknownPhase
+from ..data.faults import ContradictoryPins, UnknownContact, UnknownPhase
 from ..data.problem import MotionProblem, OffsetAxes, Pin
 from ..scene.checks import named
 from ..scene.triangle_mesh import placed_mesh
@@ -63,11 +63,8 @@ def _landed(
 ) -> Footing:
     """The chosen contacts, at places (k, 3) m, on the object that their pin names."""
     thing = named(pin.name, pin.on or "", problem.scene)
-    mesh = placed_mesh(thing)
-    if mesh is None:
-        raise NoFaces(thing.name)
     contacts = [schedule.contacts[i] for i in chosen]
-    return land(Ground(pin.name, thing, mesh), contacts, places, performance.character)
+    return land(Ground(pin.name, thing, placed_mesh(thing)), contacts, places, performance.character)
 
 
 def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:

@@ -6,7 +6,6 @@ import numpy as np
 
 from ..data.faults import (
     InsideOut,
-    NoFaces,
     NotFinite,
     NotGround,
     SameObjectName,
@@ -50,8 +49,6 @@ def _check(thing: SceneObject) -> None:
     values = thing.vertices, thing.positions, thing.rotations
     if not all(np.isfinite(each).all() for each in values):
         raise NotFinite(thing.name)
-    mesh = mesh_of(thing) if len(thing.triangles) else None
-    if mesh is None:
-        raise NoFaces(thing.name)
+    mesh = mesh_of(thing)
     if mesh.closed and mesh.volume < 0.0:
         raise InsideOut(thing.name)

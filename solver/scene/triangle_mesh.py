@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..data.faults import NoFaces
 from ..data.scene import SceneObject
 from .point_triangle import CORNERS, EDGES, FACE, closest_on_triangles
 from .triangle_tree import TriangleTree
@@ -162,13 +163,19 @@ def _summed(owner: IntArray, vectors: FloatArray, count: int) -> FloatArray:
 
 
 @lru_cache(maxsize=REMEMBERED)
-def mesh_of(thing: SceneObject) -> TriangleMesh | None:
-    """An object's mesh in its own axes, remembered; None where it has no faces."""
-    return triangle_mesh(thing.vertices, thing.triangles)
+def mesh_of(thing: SceneObject) -> TriangleMesh:
+    """An object's mesh in its own axes, remembered. Raises NoFaces."""
+    return _faced(thing, thing.vertices)
 
 
 @lru_cache(maxsize=REMEMBERED)
-def placed_mesh(thing: SceneObject) -> TriangleMesh | None:
-    """An object's mesh in the world, as it stands at first."""
-    world = thing.vertices @ thing.rotations[0].T + thing.positions[0]
-    return triangle_mesh(world, thing.triangles)
+def placed_mesh(thing: SceneObject) -> TriangleMesh:
+    """An object's mesh in the world, as it stands at first, remembered. Raises NoFaces."""
+    return _faced(thing, thing.vertices @ thing.rotations[0].T + thing.positions[0])
+
+
+def _faced(thing: SceneObject, vertices: FloatArray) -> TriangleMesh:
+    mesh = triangle_mesh(vertices, thing.triangles) if len(thing.triangles) else None
+    if mesh is None:
+        raise NoFaces(thing.name)
+    return mesh

@@ -1,7 +1,7 @@
 """Objects of the scene as surfaces: the body's capsules and soles are kept out of their meshes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..body.character import Character
 from ..body.kinematics import BodyPoint
 from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import TriangleMesh
-from .shapes import FEET, Capsule, Capsules, capsules, floor_balls
+from .shapes import FEET, SOLID_SHARE, Capsule, Capsules, capsules, floor_balls
 from .surfaces import WORLD, Closest, Placed
 
 SAMPLING = 0.06  # m along an axis, between the points from which its deepest is sought
@@ -21,10 +21,15 @@ NARROWINGS = 10  # by the golden section: to 1 mm of an axis
 def scene_shapes(character: Character, points: Sequence[BodyPoint]) -> list[Capsule]:
     """What is kept out of objects: the capsules, and of the feet the lines along their soles.
 
-    points: the body points that touch. What stands on an object touches it with the soles' ends.
+    points: the body points that touch. What stands on an object touches it with the soles' ends;
+    a foot's ball gives as other flesh does, as a foot on a slope does not lie in its plane.
     """
     shapes = [c for c in capsules(character) if character.bodies[c.body].part not in FEET]
-    shapes += [c for c in floor_balls(character, points) if character.bodies[c.body].part in FEET]
+    shapes += [
+        replace(c, radius=SOLID_SHARE * c.radius)
+        for c in floor_balls(character, points)
+        if character.bodies[c.body].part in FEET
+    ]
     for point in points:
         body = character.bodies[point.body]
         if body.part in FEET:

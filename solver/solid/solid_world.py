@@ -1,7 +1,8 @@
 """The solid world of one adaptation: what goes into what, and the rows that keep it out.
 
 Never tighter than the recording: what the fit has through each other at the same (warped) instant
-is allowed, and no more. Of the scene nothing is allowed: the recording knew nothing of it.
+is allowed, and no more. Of the scene the recording knew nothing: of what it has in its floor so
+much is allowed in ground, as soles give there likewise, and in obstacles nothing.
 """
 
 from collections.abc import Callable, Iterator, Sequence, Set
@@ -11,9 +12,10 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..body.character import Character
 from ..data.contacts import ContactSchedule
 from ..data.row_kinds import RowKind
-from ..data.scene import SceneObject
+from ..data.scene import SceneObject, SceneRole
 from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import mesh_of
 from ..transcription.constraint import DenseViolation
@@ -21,7 +23,7 @@ from ..transcription.keep_out import KeepOut
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
 from .mesh_surface import MeshSurface, scene_shapes
-from .shapes import Capsules, capsules, floor_balls, meeting_pairs
+from .shapes import Capsule, Capsules, capsules, floor_balls, meeting_pairs
 from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
 
 SPACING = 0.004  # s, of the dense grid
@@ -29,7 +31,10 @@ MOST_NEW = 0.002  # m, by which solids may be deeper in each other than in the f
 ROW_SPACING = 0.016  # s, between rows of solids that stay in each other for longer
 SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
 
+OWN = 2  # surfaces of a body without a scene: its limbs, and the floor
+
 TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (N,) s
+Placement = tuple[SceneObject, ObjectMotion]
 
 
 @dataclass(frozen=True)
@@ -120,8 +125,8 @@ class SolidDistance:
 
 @dataclass(frozen=True)
 class SolidWorld:
-    """Surfaces of a motion, and those of the fit, item by item the same; then those of the scene,
-    which the fit has not.
+    """Surfaces of a motion, and those of the fit, item by item the same, but that the fit has its
+    floor in place of ground, and no obstacles: these come last.
 
     to_old: the fit's instants (N,) s of the motion's.
     """
@@ -140,8 +145,9 @@ class SolidWorld:
     def recorded(self) -> Penetrations:
         """What the fit itself has in each other; it is allowed."""
         placed = placed_at(self.fitted, _grid(self.fitted.duration))
-        instants, items = self.fitted_surfaces.near(placed)
-        distance = self.fitted_surfaces.closest(placed, instants, items).distance
+        own = Surfaces(self.fitted_surfaces.parts[:OWN])
+        instants, items = own.near(placed)
+        distance = own.closest(placed, instants, items).distance
         depth, none = np.maximum(-distance, 0.0), np.zeros(len(items))
         side = np.zeros((len(items), 3))
         found = Penetrations(self.names, items, placed.times[instants], depth, none, side)
@@ -217,7 +223,7 @@ def solid_world(
     reference: Motion,
     floors: tuple[TimeFunction, TimeFunction],
     to_old: TimeFunction,
-    scene: Sequence[tuple[SceneObject, ObjectMotion]] = (),
+    scene: Sequence[Placement] = (),
 ) -> SolidWorld:
     """The world of a motion of `reference`'s body. floors: heights, m, of the motion's and the
     fit's. scene: objects and how they move in the motion's time."""
@@ -227,8 +233,18 @@ def solid_world(
         _surfaces(motion, pairs, floor)
         for motion, floor in zip((reference, fitted), floors, strict=True)
     )
-    around = tuple(surface for thing, moves in scene for surface in _of_object(reference, thing, moves))
-    return SolidWorld(Surfaces((*ours, *around)), Surfaces(theirs), fitted, to_old)
+    shapes = scene_shapes(character, reference.transcription.points)
+    around = [_of_object(thing, moves, character, shapes) for thing, moves in _ground_first(scene)]
+    soles = [
+        Floor(each.shapes, floors[1], each.names)
+        for each, (thing, _) in zip(around, _ground_first(scene), strict=True)
+        if thing.role is SceneRole.GROUND
+    ]
+    return SolidWorld(Surfaces((*ours, *around)), Surfaces((*theirs, *soles)), fitted, to_old)
+
+
+def _ground_first(scene: Sequence[Placement]) -> list[Placement]:
+    return sorted(scene, key=lambda placement: placement[0].role is not SceneRole.GROUND)
 
 
 def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> tuple[Surface, ...]:
@@ -244,16 +260,14 @@ def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> tuple[Sur
     return limbs, Floor(Capsules.of(balls), floor, under)
 
 
-def _of_object(motion: Motion, thing: SceneObject, moves: ObjectMotion) -> Iterator[Surface]:
-    """The surface of an object; none of one without faces."""
-    mesh = mesh_of(thing)
-    if mesh is not None:
-        character = motion.transcription.character
-        shapes = scene_shapes(character, motion.transcription.points)
-        names = tuple(
-            f"{character.bodies[each.body].name.capitalize()} in {thing.name}" for each in shapes
-        )
-        yield MeshSurface(mesh, moves, Capsules.of(shapes), names)
+def _of_object(
+    thing: SceneObject, moves: ObjectMotion, character: Character, shapes: Sequence[Capsule]
+) -> MeshSurface:
+    """The surface of an object. Raises NoFaces."""
+    names = tuple(
+        f"{character.bodies[each.body].name.capitalize()} in {thing.name}" for each in shapes
+    )
+    return MeshSurface(mesh_of(thing), moves, Capsules.of(shapes), names)
 
 
 def floor_heights(schedule: ContactSchedule, places: FloatArray) -> TimeFunction:

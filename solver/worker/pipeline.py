@@ -25,6 +25,7 @@ from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
 from ..data.report import Origin, Report, StageReport
 from ..data.scaling import scaled_problem, scaled_recording, scaled_schedule, scaled_track
+from ..data.scene import SceneObject
 from ..data.traces import Traces, scaled_traces
 from ..optimisation.sqp import Step
 from ..results.report import report
@@ -82,6 +83,11 @@ class Subject:
         """The same recording with another problem, in the recording's own lengths."""
         if problem.height is not None:
             problem = scaled_problem(problem, self.factor)
+        return replace(self, problem=problem)
+
+    def with_objects(self, things: tuple[SceneObject, ...]) -> Subject:
+        """The same with more objects in the scene, at the stated stature."""
+        problem = replace(self.problem, scene=(*self.problem.scene, *things))
         return replace(self, problem=problem)
 
     @property
