@@ -4,6 +4,7 @@ Places are taken as they are written: metres, Z up (in Blender's exporter: forwa
 Polygons become fans; materials, normals and all else are left aside.
 """
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ def read_obj(path: Path) -> tuple[FloatArray, IntArray]:
                 vertices.append([x, y, z])
             elif kind == "f":
                 corners = [_index(word, len(vertices)) for word in words]
-                triangles += [(corners[0], b, c) for b, c in zip(corners[1:], corners[2:], strict=False)]
+                triangles += [(corners[0], b, c) for b, c in pairwise(corners[1:])]
         except ValueError as error:
             raise UnreadableMesh(number, line.strip()) from error
     return np.array(vertices).reshape(-1, 3), np.array(triangles, dtype=int).reshape(-1, 3)

@@ -36,7 +36,7 @@ from ...solver.numerics.rotations import axis_rotation
 from ...solver.scene.triangle_mesh import placed_mesh
 from ..formats.obj import UnreadableMesh, read_obj
 from ..recipe_syntax.items import TRAVEL_KEYS
-from ..recipe_syntax.table import ABOVE_ZERO, Table, shown
+from ..recipe_syntax.table import Table, shown
 
 HEADER = "object"
 SHAPES = ("box", "ramp", "file", "points")
@@ -46,7 +46,14 @@ PATH_KEYS = ("frame", "place", "turn", "axes")
 BOX_QUADS = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
 # Corners: base 0 to 3, the upper edge 4 and 5.
 RAMP_TRIANGLES = (
-    (0, 1, 2), (0, 2, 3), (3, 2, 5), (3, 5, 4), (0, 4, 5), (0, 5, 1), (0, 3, 4), (1, 5, 2)
+    (0, 1, 2),
+    (0, 2, 3),
+    (3, 2, 5),
+    (3, 5, 4),
+    (0, 4, 5),
+    (0, 5, 1),
+    (0, 3, 4),
+    (1, 5, 2),
 )
 
 

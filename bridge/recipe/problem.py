@@ -51,7 +51,14 @@ from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact", "object")
 TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
 REDUCTION = ("solution", "reduction")
-CULPRITS = ("pin", "request", "name", "second", "first", "thing")  # fields of faults that name a record
+CULPRITS = (
+    "pin",
+    "request",
+    "name",
+    "second",
+    "first",
+    "thing",
+)  # fields of faults that name a record
 PARTS = (
     "pelvis",
     "head",
@@ -219,7 +226,9 @@ def _refuse_same_names(top: Table) -> None:
     taken: set[str] = set()
     for place, name in sorted(_names(top.values), key=lambda named: lines.get(named[0], 0)):
         if name in taken:
-            problem = f'another pin, request or object is called "{name}", too; give each its own name'
+            problem = (
+                f'another pin, request or object is called "{name}", too; give each its own name'
+            )
             top.source.refuse((*place, "name"), problem)
         taken.add(name)
 

@@ -19,8 +19,8 @@ from ...bridge.picture.annotations import (
 from ...solver.arrays import FloatArray
 from ...solver.body.kinematics import Pose, forward_kinematics
 from ...solver.data.problem import MotionProblem
-from ...solver.data.scene import SceneObject
 from ...solver.data.requests import AddedMass, TorqueLimit
+from ...solver.data.scene import SceneObject
 from ...solver.scene.object_motion import ObjectMotion
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription import constraint_functions

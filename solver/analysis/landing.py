@@ -116,9 +116,12 @@ def _check_edges(
     ground: Ground, names: Sequence[str], placed: FloatArray, found: Heights, centre: FloatArray
 ) -> None:
     """Every point has a face near its foot's plane. Raises OverTheEdge."""
-    for i in np.flatnonzero(~(np.abs(found.z - placed[:, 2]) < STEP)):
-        share = np.linspace(0.0, 1.0, EDGE_PARTS + 1)
+    share = np.linspace(0.0, 1.0, EDGE_PARTS + 1)
+    over: dict[int, float] = {}
+    for i in np.flatnonzero(~(np.abs(found.z - placed[:, 2]) < STEP)).tolist():
         way = placed[i] + share[:, None] * (centre - placed[i])
         on = np.abs(ground.mesh.heights(way[:, :2]).z - way[:, 2]) < STEP
-        over = share[int(on.argmax())] * float(np.linalg.norm(centre - placed[i]))
-        raise OverTheEdge(ground.pin, names[i], ground.thing.name, over)
+        over[i] = float(share[int(on.argmax())] * np.linalg.norm(centre - placed[i]))
+    if over:
+        worst = max(over, key=lambda i: over[i])
+        raise OverTheEdge(ground.pin, names[worst], ground.thing.name, over[worst])

@@ -64,7 +64,9 @@ def _landed(
     """The chosen contacts, at places (k, 3) m, on the object that their pin names."""
     thing = named(pin.name, pin.on or "", problem.scene)
     contacts = [schedule.contacts[i] for i in chosen]
-    return land(Ground(pin.name, thing, placed_mesh(thing)), contacts, places, performance.character)
+    return land(
+        Ground(pin.name, thing, placed_mesh(thing)), contacts, places, performance.character
+    )
 
 
 def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:

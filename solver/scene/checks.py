@@ -30,9 +30,10 @@ def check_scene(problem: MotionProblem) -> None:
             raise SameObjectName(thing.name)
         _check(thing)
     for pin in problem.pins:
-        if pin.on is not None:
-            if named(pin.name, pin.on, problem.scene).role is not SceneRole.GROUND:
-                raise NotGround(pin.name, pin.on)
+        if pin.on is None:
+            continue
+        if named(pin.name, pin.on, problem.scene).role is not SceneRole.GROUND:
+            raise NotGround(pin.name, pin.on)
 
 
 def named(request: str, name: str, scene: Sequence[SceneObject]) -> SceneObject:

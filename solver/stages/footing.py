@@ -27,7 +27,9 @@ def find_footing(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) ->
     normals = np.tile(UP, (len(places), 1))
     for i, contact in enumerate(schedule.contacts):
         if contact.name in row:
-            places[i], normals[i] = (each[row[contact.name]] for each in (found.places, found.normals))
+            places[i], normals[i] = (
+                each[row[contact.name]] for each in (found.places, found.normals)
+            )
     return Footing(places, normals, found.pins)
 
 

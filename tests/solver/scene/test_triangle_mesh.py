@@ -64,7 +64,9 @@ TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 
 
 def test_a_sheet_is_solid_on_its_back_and_nothing_is_beside_it() -> None:
-    sheet = made((np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])))
+    sheet = made(
+        (np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
+    )
     at = np.array([[0.5, 0.4, 0.1], [0.5, 0.4, -0.1], [0.5, 0.4, -0.5], [1.2, 0.5, -0.1]])
     found = sheet.distances(at).distance
     np.testing.assert_allclose(found[:3], [0.1, -0.1, 0.5], atol=1e-12)
