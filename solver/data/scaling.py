@@ -29,6 +29,7 @@ def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
     requests = replace(
         requests,
         points=tuple(_scaled_point(point, factor) for point in requests.points),
+        clears=tuple(replace(clear, by=factor * clear.by) for clear in requests.clears),
         body=replace(requests.body, added=tuple(added)),
     )
     scene = tuple(

@@ -34,6 +34,8 @@ def check_scene(problem: MotionProblem) -> None:
             continue
         if named(pin.name, pin.on, problem.scene).role is not SceneRole.GROUND:
             raise NotGround(pin.name, pin.on)
+    for clear in problem.requests.clears:
+        named(clear.name, clear.thing, problem.scene)
 
 
 def named(request: str, name: str, scene: Sequence[SceneObject]) -> SceneObject:

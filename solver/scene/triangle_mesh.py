@@ -60,12 +60,12 @@ class TriangleMesh:
     @property
     def low(self) -> FloatArray:
         """(3,) m, of its box."""
-        return self.tree.low[0]
+        return np.asarray(self.tree.low[0])
 
     @property
     def high(self) -> FloatArray:
         """(3,) m, of its box."""
-        return self.tree.high[0]
+        return np.asarray(self.tree.high[0])
 
     @property
     def volume(self) -> float:

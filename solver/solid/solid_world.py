@@ -5,9 +5,10 @@ is allowed, and no more. Of the scene the recording knew nothing: of what it has
 much is allowed in ground, as soles give there likewise, and in obstacles nothing.
 """
 
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from ..transcription.constraint import DenseViolation
 from ..transcription.keep_out import KeepOut
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
+from .clearance import Clearance
 from .mesh_surface import MeshSurface, scene_shapes
 from .shapes import Capsule, Capsules, capsules, floor_balls, meeting_pairs
 from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
@@ -224,9 +226,11 @@ def solid_world(
     floors: tuple[TimeFunction, TimeFunction],
     to_old: TimeFunction,
     scene: Sequence[Placement] = (),
+    clears: Mapping[str, Mapping[int, float]] = MappingProxyType({}),
 ) -> SolidWorld:
     """The world of a motion of `reference`'s body. floors: heights, m, of the motion's and the
-    fit's. scene: objects and how they move in the motion's time."""
+    fit's. scene: objects and how they move in the motion's time. clears: by object and body, how
+    far above it what is over it stays, m."""
     character = fitted.transcription.character
     pairs = meeting_pairs(character, capsules(character))
     ours, theirs = (
@@ -234,17 +238,23 @@ def solid_world(
         for motion, floor in zip((reference, fitted), floors, strict=True)
     )
     shapes = scene_shapes(character, reference.transcription.points)
-    around = [_of_object(thing, moves, character, shapes) for thing, moves in _ground_first(scene)]
-    soles = [
-        Floor(each.shapes, floors[1], each.names)
-        for each, (thing, _) in zip(around, _ground_first(scene), strict=True)
-        if thing.role is SceneRole.GROUND
-    ]
-    return SolidWorld(Surfaces((*ours, *around)), Surfaces((*theirs, *soles)), fitted, to_old)
-
-
-def _ground_first(scene: Sequence[Placement]) -> list[Placement]:
-    return sorted(scene, key=lambda placement: placement[0].role is not SceneRole.GROUND)
+    grounds, soles, obstacles = list[Surface](), list[Surface](), list[Surface]()
+    for thing, moves in scene:
+        cleared = clears.get(thing.name, {})
+        met = [shape for shape in shapes if shape.body not in cleared]
+        surface = _of_object(thing, moves, character, met)
+        if thing.role is SceneRole.GROUND:
+            grounds.append(surface)
+            soles.append(Floor(surface.shapes, floors[1], surface.names))
+        else:
+            obstacles.append(surface)
+        over = [shape for shape in shapes if shape.body in cleared]
+        if over:
+            by = np.array([cleared[shape.body] for shape in over])
+            called = _names(character, over, f"the clearance of {thing.name}")
+            obstacles.append(Clearance.over(thing, moves, Capsules.of(over), by, called))
+    ours = (*ours, *grounds, *obstacles)
+    return SolidWorld(Surfaces(ours), Surfaces((*theirs, *soles)), fitted, to_old)
 
 
 def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> tuple[Surface, ...]:
@@ -264,10 +274,12 @@ def _of_object(
     thing: SceneObject, moves: ObjectMotion, character: Character, shapes: Sequence[Capsule]
 ) -> MeshSurface:
     """The surface of an object. Raises NoFaces."""
-    names = tuple(
-        f"{character.bodies[each.body].name.capitalize()} in {thing.name}" for each in shapes
-    )
+    names = _names(character, shapes, thing.name)
     return MeshSurface(mesh_of(thing), moves, Capsules.of(shapes), names)
+
+
+def _names(character: Character, shapes: Sequence[Capsule], where: str) -> tuple[str, ...]:
+    return tuple(f"{character.bodies[s.body].name.capitalize()} in {where}" for s in shapes)
 
 
 def floor_heights(schedule: ContactSchedule, places: FloatArray) -> TimeFunction:

@@ -33,8 +33,7 @@ from ..objectives.least_squares import torque_metric
 from ..objectives.tracking_cost import CostWeights
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
-from ..scene.object_motion import ObjectMotion
-from ..solid.solid_world import SolidWorld, floor_heights, solid_world
+from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
@@ -51,6 +50,7 @@ from .fit import (
 )
 from .footing import find_footing, on_faces
 from .reseat import reseat
+from .surroundings import surroundings
 
 MAX_SPAN = 0.08  # s, between knots that are not the fit's
 MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
@@ -117,20 +117,8 @@ class Setup:
         """What is solid; None where limbs and floor may go through each other."""
         if not self.requests.solution.solid:
             return None
-        fitted, context = self.fit, self.context
-        return solid_world(
-            fitted.motion,
-            context.reference,
-            (
-                floor_heights(context.schedule, self.target_places),
-                floor_heights(fitted.schedule, fitted.places),
-            ),
-            context.timeline.to_old,
-            [
-                (thing, ObjectMotion.of(thing, context.timeline.first_frame, context.timeline.rate))
-                for thing in self.scene
-            ],
-        )
+        clears = self.requests.clears
+        return surroundings(self.fit, self.context, self.target_places, self.scene, clears)
 
     @cached_property
     def torques(self) -> TorqueFunction:
