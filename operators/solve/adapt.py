@@ -30,7 +30,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.report_text import as_text, certificate_lines, overlap_lines, retimed
+from ..words.report_text import as_text, certificate_lines, durations_lines, overlap_lines, retimed
 from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, session
@@ -232,6 +232,7 @@ def summary(answer: Adapted) -> str:
                 f"{p.phase.capitalize()}: {p.adapted_s:.2f} s, was {p.recorded_s:.2f} s"
                 for p in retimed(report)
             ),
+            *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
             f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
             *overlap_lines(report),
             *certificate_lines(report),

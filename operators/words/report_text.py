@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from ...solver.data.contacts import PhaseKind
 from ...solver.data.report import CertificateItem, CertificateLine, PhaseReport, Report
-from ...solver.data.status import Status
+from ...solver.data.status import Durations, Status
 from .messages import outcome
 
 LEFT_AT_MOST = {
@@ -13,6 +13,15 @@ LEFT_AT_MOST = {
 }  # BW·m, rms; what the project promises
 LEAST_RETIMED = 0.0005  # s
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
+DURATIONS = {  # where they are not as one would expect
+    Durations.NONE_FOUND: (
+        "As recorded: for the moved landing none were found that go with it. Set a Timing, or move "
+        "it less"
+    ),
+    Durations.NOT_MET: (
+        "As recorded: what is asked for was not reached with those that go with the moved landing"
+    ),
+}
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
 Item = CertificateItem
@@ -161,6 +170,7 @@ def _changes(report: Report) -> Iterator[str]:
             f"{phase.phase.capitalize():<11} takes {phase.adapted_s:.3f} s instead of "
             f"{phase.recorded_s:.3f} s"
         )
+    yield from (f"{'Durations':<12}{line}" for line in durations_lines(report))
     for peak in report.forces.peaks:
         yield (
             f"{peak.phase.capitalize():<11} what carries the body pushes with at most "
@@ -171,6 +181,11 @@ def _changes(report: Report) -> Iterator[str]:
 def retimed(report: Report) -> list[PhaseReport]:
     """The phases that take another time than they took."""
     return [p for p in report.phases if abs(p.adapted_s - p.recorded_s) > LEAST_RETIMED]
+
+
+def durations_lines(report: Report) -> list[str]:
+    """Why phases last as long as recorded, where one would expect other durations: lines."""
+    return [DURATIONS[report.durations]] if report.durations in DURATIONS else []
 
 
 def _quality(report: Report) -> Iterator[str]:

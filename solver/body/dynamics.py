@@ -7,19 +7,15 @@ and L' depends on the joint angles alone. Forces are in body weights, so L' is i
 (thesis 4.1: scaling).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
-from ..numerics.parallel import in_threads
+from ..numerics.batch_function import BatchFunction
 from .character import Character
-
-MIN_INSTANTS_PER_THREAD = 32  # instants worth a thread of their own
 
 
 @dataclass(frozen=True)
@@ -90,15 +86,14 @@ class MomentFunction:
         q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
         rate = momentum_rate(character, q, v, a) / (character.mass * STANDARD_GRAVITY)
         x = ca.vertcat(q, v, a)
-        jacobian = ca.densify(ca.jacobian(rate, x))
         # No ca.cse: it takes 0.4 s here and saves 3 % of the instructions.
-        self._value = ca.Function("moment", [x], [ca.densify(rate)])
-        self._both = ca.Function("moment_jacobian", [x], [ca.densify(rate), jacobian])
+        self._value = BatchFunction("moment", x, [rate])
+        self._both = BatchFunction("moment_jacobian", x, [rate, ca.jacobian(rate, x)])
 
     def value(self, q: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         """(N, 3) L', world axes, at (N, n_angles) angles, velocities, accelerations (rad, s)."""
         x = np.concatenate([q, v, a], axis=1)
-        (rate,) = evaluate(self._value, x, [(3,)])
+        (rate,) = self._value(x)
         return rate
 
     def jacobian(
@@ -106,7 +101,7 @@ class MomentFunction:
     ) -> tuple[FloatArray, FloatArray]:
         """L' (N, 3) and its derivatives (N, 3, 3, n_angles): component, by q, v or a, angle."""
         x = np.concatenate([q, v, a], axis=1)
-        rate, jacobian = evaluate(self._both, x, [(3,), (3 * self.n, 3)])
+        rate, jacobian = self._both(x)
         by_order = np.swapaxes(jacobian, 1, 2).reshape(len(x), 3, 3, self.n)
         return rate, by_order
 
@@ -130,31 +125,3 @@ def momentum_rate(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
         spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
         rate += ca.cross(x - centre, body.mass * acceleration) + spin
     return rate
-
-
-def evaluate(
-    function: ca.Function, x: FloatArray, shapes: Sequence[tuple[int, ...]]
-) -> list[FloatArray]:
-    """Batch evaluation: dense outputs (N, *shape) of a one-input function at rows of x (N, n).
-
-    CasADi stores columns first, so a matrix output of r rows and c columns has shape (c, r) here.
-    """
-    inputs = np.ascontiguousarray(x, dtype=float)
-    outputs = [np.empty((len(x), *shape)) for shape in shapes]
-    # Plain threads: CasADi's own threaded map was slower than the serial one.
-    in_threads(
-        lambda part: _fill(function, inputs[part], [out[part] for out in outputs]),
-        len(x),
-        MIN_INSTANTS_PER_THREAD,
-    )
-    return outputs
-
-
-def _fill(function: ca.Function, inputs: FloatArray, outputs: Sequence[FloatArray]) -> None:
-    """Evaluates into the given memory, without the conversions that would cost more than it."""
-    buffer: Any  # CasADi's stubs give its methods C's arguments
-    buffer, run = function.map(len(inputs)).buffer()
-    buffer.set_arg(0, inputs.data)
-    for i, out in enumerate(outputs):
-        buffer.set_res(i, out.data)
-    run()

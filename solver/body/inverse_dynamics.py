@@ -7,8 +7,9 @@ import casadi as ca
 import numpy as np
 
 from ..arrays import FloatArray
+from ..numerics.batch_function import BatchFunction
 from .character import Character
-from .dynamics import body_frames, evaluate, point_motion, times_axis_rotation
+from .dynamics import body_frames, point_motion, times_axis_rotation
 from .kinematics import BodyPoint
 
 
@@ -50,7 +51,7 @@ class InverseDynamics:
         forces = ca.SX.sym("forces", 3, len(points))
         every = inverse_dynamics(character, points, q, v, a, com_acceleration, forces)
         x = ca.vertcat(q, v, a, com_acceleration, ca.vec(forces))
-        self._function = ca.Function("inverse_dynamics", [x], [ca.densify(ca.cse(every))])
+        self._function = BatchFunction("inverse_dynamics", x, [ca.cse(every)])
 
     def __call__(
         self,
@@ -66,7 +67,7 @@ class InverseDynamics:
         (N, 3) m/s², forces on the body: (N, P, 3) N; both in world axes.
         """
         x = np.concatenate([q, v, a, com_acceleration, forces.reshape(len(q), -1)], axis=1)
-        (out,) = evaluate(self._function, x, [(self.n_angles + 3,)])
+        (out,) = self._function(x)
         return GeneralisedForces(out[:, :3], out[:, 3:6], out[:, 6:])
 
 

@@ -26,10 +26,11 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import UP
+from ..numerics.batch_function import BatchFunction
 from ..numerics.rotations import perpendicular, rotation_matrix, unit
 from .anatomy import Part
 from .character import Body, Character
-from .dynamics import evaluate, times_axis_rotation
+from .dynamics import times_axis_rotation
 from .inverse_dynamics import moment_components
 
 MEASURED_MASS = 70.0  # kg, of the body that the figures below are for
@@ -86,8 +87,7 @@ def evaluate_passive_torques(
     n = character.n_angles
     x = ca.SX.sym("x", 2 * n)
     torques = passive_torques(character, x[:n], x[n:], orthogonal=orthogonal)
-    function = ca.Function("passive", [x], [ca.densify(torques)])
-    (found,) = evaluate(function, np.concatenate([q, v], axis=1), [(n,)])
+    (found,) = BatchFunction("passive", x, [torques])(np.concatenate([q, v], axis=1))
     return found
 
 

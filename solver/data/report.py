@@ -13,7 +13,7 @@ from typing import Any
 from .problem import MassTable
 from .requests import ReductionKind, Vector
 from .row_kinds import RowKind, Violation
-from .status import Status
+from .status import Durations, Status
 
 Json = dict[str, Any]
 OMIT_NONE = {"omit none": True}  # of a field whose key report.json lacks where there is no value
@@ -374,6 +374,7 @@ class Report:
     recorded_overlaps: tuple[RecordedOverlap, ...]
     change: MotionChange
     jumps: tuple[JumpReport, ...]
+    durations: Durations
     phases: tuple[PhaseReport, ...]
     times: TimeMap
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)

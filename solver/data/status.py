@@ -13,6 +13,15 @@ class Status(Enum):
     STOPPED = "stopped"  # by the artist, who takes the motion as it stands
 
 
+class Durations(Enum):
+    """Origin of a result's durations, as far as nobody asked for one."""
+
+    RECORDED = "as recorded"  # no jump from standing has another length, or times are kept
+    FOUND = "found"  # those that go with the moved landings and take-offs
+    NONE_FOUND = "none found"  # no motion was found with others, so they are as recorded
+    NOT_MET = "not met"  # what is asked for was not reached with those found: as recorded
+
+
 class DragStatus(Enum):
     """Convergence of a motion that follows a dragged pin."""
 

@@ -157,7 +157,7 @@ def restore(
     iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
-    while len(steps) < max_steps:
+    while True:
         if wider is not None and iterate.violation <= near:
             before, feasible, near = feasible, wider(feasible, iterate.x), 1.0
             if feasible is not before:
@@ -165,13 +165,15 @@ def restore(
         if iterate.violation <= 1.0:
             status = Status.SOLVED
             break
+        if len(steps) >= max_steps:
+            break
         step = iterate.advance(stage)
         if step is None:
             continue
         steps.append(step)
         if progress is not None:
             progress(step, feasible.motion(iterate.x))
-        if step.length == 0.0 or _stagnant(steps):
+        if iterate.violation > 1.0 and (step.length == 0.0 or _stagnant(steps)):
             status = Status.STALLED
             break
     return feasible.outcome(iterate.x, status, steps, iterate.violation)

@@ -95,6 +95,7 @@ def report(
         recorded_overlaps=tuple(_recorded_overlaps(adaptation)),
         change=change(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
+        durations=adaptation.setup.durations,
         phases=_phases(adaptation),
         times=_times(adaptation),
         stages=None if stages is None else tuple(stages),

@@ -21,7 +21,7 @@ from ..transcription.motion import Motion
 from .durations import TimedMotion, find_durations
 from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants, greville_abscissae
 from .reseat import com_shift
-from .warm_start import stance_moves, warm_start
+from .warm_start import continuation_steps, stance_moves, warm_start
 
 MIN_MOVE = 1e-6  # m, of a landing relative to its take-off
 LEGS_AND_TRUNK = (Part.PELVIS, Part.SPINE, Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE)
@@ -32,6 +32,7 @@ MAX_STANDING_SPEED = 0.5  # m/s, along the floor; half of a slow walk's
 MIN_DEPTH = 0.02  # m, of a crouch
 STANDING_SHARE = 0.1  # of a crouch's depth, above which the body still stands
 FALLEN_SHARE = 0.2  # of a crouch's depth; lower than this before it is another movement
+MAX_STEPS = 4  # of continuation, 2 m: nobody jumps so much further or higher
 SAMPLING_RATE = 240.0  # Hz
 
 
@@ -60,16 +61,15 @@ class Growth:
         return Growth(float(np.clip(upward, *SPEED_RATIO)), float(np.clip(whole, *SPEED_RATIO)))
 
 
-def anticipate(
+def changed_jumps(
     start: Motion, schedule: ContactSchedule, target: FloatArray, kept: tuple[Interval, ...]
-) -> TimedMotion | None:
-    """The motion as a performer would begin to change it for contacts at target (n_contacts, 3) m.
+) -> tuple[Jump, ...]:
+    """The jumps that are longer or shorter with contacts at target (n_contacts, 3) m.
 
-    kept: intervals whose durations are to stay. None where no jump changes, or no such motion is
-    found.
+    kept: intervals whose durations are to stay.
     """
-    moves = tuple(replace(move, turn=0.0) for move in stance_moves(schedule, start.places, target))
-    jumps = tuple(
+    moves = stance_moves(schedule, start.places, target)
+    return tuple(
         jump
         for jump in _jumps(start, schedule)
         if not _overlaps(jump.take_off, jump.landing, kept)
@@ -79,17 +79,61 @@ def anticipate(
             for before, after in pairwise(moves)
         )
     )
-    if not jumps:
-        return None
+
+
+def anticipate(
+    start: Motion,
+    schedule: ContactSchedule,
+    target: FloatArray,
+    kept: tuple[Interval, ...],
+    jumps: tuple[Jump, ...],
+) -> TimedMotion | None:
+    """The motion as a performer would begin to change it for contacts at target (n_contacts, 3) m.
+
+    jumps: those that change; at least one. None where no such motion is found.
+    """
+    moves = tuple(replace(move, turn=0.0) for move in stance_moves(schedule, start.places, target))
     places = start.places.copy()
     for move in moves:
         for i, contact in enumerate(schedule.contacts):
             touches = contact.start < move.end and contact.end > move.start
             if touches and not contact.asked_for:
                 places[i] = start.places[i] + move.shift
-    flights = [Interval(jump.take_off, jump.landing) for jump in jumps]
-    found = find_durations(start, warm_start(start, moves), places, flights)
-    return None if found is None else _resized(start, jumps, found, kept)
+    steps = continuation_steps(moves)
+    for parts in (1, 2 * steps) if steps <= MAX_STEPS else (1,):  # most need no more than one
+        found = _timed(start, schedule, places, jumps, parts)
+        if found is not None:
+            return _resized(start, jumps, found, kept)
+    return None
+
+
+def _timed(
+    start: Motion,
+    schedule: ContactSchedule,
+    places: FloatArray,
+    jumps: tuple[Jump, ...],
+    parts: int,
+) -> TimedMotion | None:
+    """The motion with contacts at places (n_contacts, 3) m and the flights' own durations.
+
+    parts: of the way there, each from the motion and the durations that the one before found.
+    """
+    motion, stretches = start, tuple(Stretch(j.take_off, j.landing, 1.0) for j in jumps)
+    for part in range(1, parts + 1):
+        warp = TimeWarp.of(stretches, start.duration)
+        to = start.places + part / parts * (places - start.places)
+        moves = stance_moves(warp.schedule(schedule), motion.places, to)
+        carried = warm_start(motion, tuple(replace(move, turn=0.0) for move in moves))
+        flights = [Interval(float(warp(j.take_off)), float(warp(j.landing))) for j in jumps]
+        found = find_durations(motion, carried, to, flights)
+        if found is None:
+            return None
+        motion = found.motion
+        stretches = tuple(
+            replace(whole, factor=whole.factor * one.factor)
+            for whole, one in zip(stretches, found.stretches, strict=True)
+        )
+    return TimedMotion(motion, stretches)
 
 
 def _overlaps(start: float, end: float, intervals: Iterable[Interval]) -> bool:

@@ -12,7 +12,7 @@ from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.requests import Method, ObjectiveKind
 from ..data.row_kinds import RowKind
-from ..data.status import Status
+from ..data.status import Durations, Status
 from ..numerics.block_banded import BlockBanded
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
@@ -71,9 +71,9 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     setup = set_up(fit, problem)
     try:
         found = _solve(fit, problem, setup, progress)
-        if found.reached == 1.0 or not setup.anticipates:
+        if found.reached == 1.0 or setup.durations is not Durations.FOUND:
             return found
-        setup = set_up(fit, problem.keeping_times())
+        setup = replace(set_up(fit, problem.keeping_times()), durations=Durations.NOT_MET)
         again = _solve(fit, problem, setup, progress)
         return replace(again, outcomes=(*found.outcomes, *again.outcomes))
     except Stopped as stop:

@@ -30,7 +30,7 @@ MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it 
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
 RESTING_UPDATES = 6  # at one place, after which a pin is no longer on its way
 SAME_DURATION = 1e-3  # s, by which nobody sees that a phase lasts longer
-KEPT_FACTOR_VIOLATION = 100.0  # times the tolerances (1 mm): where the last factor still serves
+HELD_VIOLATION = 100.0  # times the tolerances (1 mm): a motion that serves to go back to
 
 
 class Follower:
@@ -74,7 +74,7 @@ class Follower:
         if not self._step(x, target):
             self.motion, self._linearised = self._held, None
             return DragStatus.DIVERGED
-        if self.violation < KEPT_FACTOR_VIOLATION:
+        if self.violation < HELD_VIOLATION:
             self._held = self.motion
         there = steps == 1 and self.violation <= 1.0 and self._timed == problem
         return DragStatus.CONVERGED if there else DragStatus.CONVERGING
@@ -112,12 +112,13 @@ class Follower:
             x = x + linearised.step(value)[0]
             value = feasible.values(x)
             after = linearised.violation(value)
-            if after <= 1.0 or after > MAX_DRAG_CHORD_RATIO * before:
+            stale = after > MAX_DRAG_CHORD_RATIO * before
+            if after <= 1.0 or stale:
                 break
         if not after < DIVERGED_VIOLATION:
             return False
         self.violation = after
-        self._linearised = linearised if after < KEPT_FACTOR_VIOLATION else None
+        self._linearised = None if stale and after > 1.0 else linearised
         self.motion = feasible.motion(x)
         return True
 

@@ -26,6 +26,7 @@ from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Requests
 from ..data.scene import SceneObject
+from ..data.status import Durations
 from ..data.timeline import TimeWarp, timeline
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
@@ -37,7 +38,7 @@ from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
-from .anticipation import anticipate
+from .anticipation import anticipate, changed_jumps
 from .fit import (
     ADAPT_COST_WEIGHTS,
     MIN_SPAN,
@@ -73,6 +74,7 @@ class Setup:
     the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the changes of a
     block that a reduction allows, None all. requests: those set up here. recording: of the figure
     as it is asked for. space: the reduced coordinates, None where there are none.
+    durations: where they come from.
     scene: what is around.
     """
 
@@ -87,6 +89,7 @@ class Setup:
     recording: Recording
     requests: Requests
     space: ReducedSpace | None
+    durations: Durations
     scene: tuple[SceneObject, ...] = ()
 
     def feasible_set(
@@ -102,11 +105,6 @@ class Setup:
         if _weighs_torques(self.requests):
             metric.lower += torque_metric(motion, self.torques).lower
         return metric
-
-    @property
-    def anticipates(self) -> bool:
-        """Whether durations other than those asked for go with the pins."""
-        return self.start.places is not self.fitted_places
 
     @property
     def schedule(self) -> ContactSchedule:
@@ -159,7 +157,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     footing = find_footing(fit, problem, context.schedule)
     target_places = footing.places
     start = on_faces(start, footing)
-    context, start = _anticipated(fit, problem, context, start, target_places)
+    context, start, durations = _anticipated(fit, problem, context, start, target_places)
     start = _with_constraints(start, problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
@@ -185,6 +183,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         changed,
         requests,
         space,
+        durations,
         problem.scene,
     )
 
@@ -202,17 +201,20 @@ def _anticipated(
     context: EvaluationContext,
     start: Motion,
     target: FloatArray,
-) -> tuple[EvaluationContext, Motion]:
+) -> tuple[EvaluationContext, Motion, Durations]:
     """Context and initial guess with the durations that go with where the contacts shall be."""
     requests = problem.requests
     timed = {timing.phase for timing in requests.timings}
     kept = tuple(Interval(p.start, p.end) for p in context.phases if p.name in timed)
     kept += tuple(Interval(hold.start, hold.end) for hold in context.timeline.holds)
-    found = None
-    if not requests.solution.keep_times:
-        found = anticipate(start, context.schedule, target, kept)
+    if requests.solution.keep_times:
+        return context, start, Durations.RECORDED
+    jumps = changed_jumps(start, context.schedule, target, kept)
+    if not jumps:
+        return context, start, Durations.RECORDED
+    found = anticipate(start, context.schedule, target, kept, jumps)
     if found is None:
-        return context, start
+        return context, start, Durations.NONE_FOUND
     warp = TimeWarp.of(found.stretches, start.duration)
     phases = tuple(
         replace(p, start=float(warp(p.start)), end=float(warp(p.end))) for p in context.phases
@@ -224,7 +226,7 @@ def _anticipated(
         timeline=context.timeline.warped(warp),
         travel=partial(_travel, fit, phases),
     )
-    return context, found.motion
+    return context, found.motion, Durations.FOUND
 
 
 def _weighs_torques(requests: Requests) -> bool:

@@ -180,9 +180,10 @@ class Pins:
         self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint], places: FloatArray
     ) -> FloatArray:
         """Values of `rows`, in their order, without the Jacobian."""
-        velocities = point_velocity(posed, points, self._angle_velocities(window))[0]
         error = self._error(window, posed, points, places).ravel()[self._position.kept]
-        drift = self._drift(window, velocities[self._velocity.at, self._velocity.point])
+        some, back = np.unique(self._velocity.at, return_inverse=True)
+        velocities = posed.at(some).point_rates(points, self._angle_velocities(window)[some])
+        drift = self._drift(window, velocities[back, self._velocity.point])
         return np.concatenate([error, drift.ravel()[self._velocity.kept]])
 
     def rows(

@@ -13,12 +13,12 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
-from ..body.dynamics import evaluate
 from ..body.inverse_dynamics import inverse_dynamics
 from ..body.kinematics import BodyPoint
 from ..body.passive_joints import passive_torques
 from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
+from ..numerics.batch_function import BatchFunction
 from .rows import ROOT_ANGLES
 from .sampling import Channel, ChannelJacobian, State
 from .transcription import Transcription
@@ -58,21 +58,18 @@ class TorqueFunction:
             passive = passive_torques(character, q, v, orthogonal=True)
             torques -= passive[self.angles.tolist()] / weight
         x = ca.vertcat(q, v, a, fall, ca.vec(forces))
-        jacobian = ca.densify(ca.jacobian(torques, x))
-        self._value = ca.Function("torques", [x], [ca.densify(torques)])
-        self._both = ca.Function("torques_by", [x], [ca.densify(torques), jacobian])
-        self._width = int(x.shape[0])
+        self._value = BatchFunction("torques", x, [torques])
+        self._both = BatchFunction("torques_by", x, [torques, ca.jacobian(torques, x)])
 
     def value(self, state: State) -> FloatArray:
         """(U, m) body weights x m."""
-        (torques,) = evaluate(self._value, self._inputs(state), [(len(self.angles),)])
+        (torques,) = self._value(self._inputs(state))
         return torques
 
     def jacobians(self, state: State) -> list[ChannelJacobian]:
         """By angles, angular velocities, accelerations, the centre of mass's, and forces."""
-        m, n = len(self.angles), self._n
-        shapes = [(m,), (self._width, m)]
-        matrix = np.swapaxes(evaluate(self._both, self._inputs(state), shapes)[1], 1, 2)
+        n = self._n
+        matrix = np.swapaxes(self._both(self._inputs(state))[1], 1, 2)
         jacobians = [
             ChannelJacobian(Channel.ANGLES, k, matrix[:, :, k * n : (k + 1) * n]) for k in range(3)
         ]

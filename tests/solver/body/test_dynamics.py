@@ -13,13 +13,14 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
-from hangtime.solver.body.dynamics import MomentFunction, evaluate, momentum_rate
+from hangtime.solver.body.dynamics import MomentFunction, momentum_rate
 from hangtime.solver.body.inverse_dynamics import InverseDynamics, moment_components
 from hangtime.solver.body.joint_axes import JointAxes
 from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics, point_velocity
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.numerics.batch_function import BatchFunction
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.stages.fit import Fit, fit
@@ -122,8 +123,8 @@ def test_root_rows_of_random_trees_are_mujocos(seed: int) -> None:
     forces = 300.0 * random.normal(size=(INSTANTS, len(points), 3))
 
     x = [ca.SX.sym(name, character.n_angles) for name in "qva"]
-    function = ca.Function("rate", [ca.vertcat(*x)], [momentum_rate(character, *x)])
-    (rate,) = evaluate(function, np.concatenate([q, v, a], axis=1), [(3,)])
+    function = BatchFunction("rate", ca.vertcat(*x), [momentum_rate(character, *x)])
+    (rate,) = function(np.concatenate([q, v, a], axis=1))
     arms = forward_kinematics(character, q).points(points)
     ours_moment = rate - np.cross(arms, forces).sum(axis=1)
     gravity = np.array([0.0, 0.0, -STANDARD_GRAVITY])

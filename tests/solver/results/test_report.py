@@ -11,7 +11,7 @@ from hangtime.operators.words.report_text import as_text
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.report import Origin, Report, StageReport, as_json
 from hangtime.solver.data.row_kinds import RowKind
-from hangtime.solver.data.status import Status
+from hangtime.solver.data.status import Durations, Status
 from hangtime.solver.results.npz_export import instants, sample, save
 from hangtime.solver.results.report import report
 from hangtime.solver.results.violations import worst_constraints
@@ -177,6 +177,13 @@ def test_times_that_changed_are_told() -> None:
     assert f"Flight 1    {told}" in as_text(found())
     assert ground.adapted_s == pytest.approx(ground.recorded_s)
     assert "Ground 2    takes" not in as_text(found())
+
+
+def test_durations_that_were_not_found_are_told() -> None:
+    assert found().durations is Durations.FOUND
+    assert "As recorded" not in as_text(found())
+    for instead in (Durations.NONE_FOUND, Durations.NOT_MET):
+        assert "Durations   As recorded: " in as_text(replace(found(), durations=instead))
 
 
 def test_newton_holds_for_the_samples_alone() -> None:

@@ -8,6 +8,7 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import PhaseTiming, Requests, SolverOptions
+from hangtime.solver.data.status import Durations
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
@@ -142,3 +143,11 @@ def test_contacts_phases_and_timeline_agree() -> None:
     assert [p.end for p in context.schedule.phases] == pytest.approx(mapped.tolist(), abs=1e-6)
     assert found.motion.duration == pytest.approx(context.timeline.duration)
     assert len(found.track.frames) > len(whole_hop().performance.recording.frames)
+
+
+@pytest.mark.parametrize(("forward", "up"), [(1.8, 0.0), (0.0, 1.2)])
+def test_far_landings_have_durations_too(forward: float, up: float) -> None:
+    setup = set_up(whole_hop(), to(forward, up=up))
+    assert setup.durations is Durations.FOUND
+    (flight,) = setup.schedule.flights
+    assert flight.end - flight.start > 1.1 * recorded()[FLIGHT]

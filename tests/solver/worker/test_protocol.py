@@ -47,7 +47,7 @@ from hangtime.solver.data.scaling import (
     scaled_schedule,
     scaled_track,
 )
-from hangtime.solver.data.status import DragStatus, Status
+from hangtime.solver.data.status import DragStatus, Durations, Status
 from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.solver.worker.protocol import (
     LARGEST,
@@ -129,6 +129,7 @@ REPORT = Report(
     recorded_overlaps=(RecordedOverlap("Left hand in left thigh", 12.0, 2.0),),
     change=MotionChange(2.0, 1.0),
     jumps=(JumpReport("flight 1", 0.0, 0.1, 0, 3, RecordedFlight(1.0), FLIGHT, FLIGHT, None, 0.0),),
+    durations=Durations.FOUND,
     phases=(PhaseReport("flight 1", 0.1, 0.125),),
     times=TimeMap((0.0, 4.0), (0.0, 5.0)),
     stages=(StageReport("Adapting", 1.5),),
