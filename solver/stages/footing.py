@@ -1,5 +1,6 @@
 """Where a problem's contacts stand: places by its pins, and faces with their normals."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ from ..analysis.landing import Footing
 from ..analysis.pinned_places import pinned_footing
 from ..arrays import FloatArray
 from ..data.constants import UP
-from ..data.contacts import ContactSchedule
+from ..data.contacts import ContactSchedule, Phase
 from ..data.faults import TooSteep
 from ..data.problem import MotionProblem, Pin
 from ..transcription.contact_pins import PointContact
@@ -63,3 +64,16 @@ def _on_face(contact: PointContact, normal: FloatArray, pin: Pin) -> PointContac
     if sole is not None:  # it gives along the normal
         sole = replace(sole, moves=sole.moves[:, 2:] * normal)
     return replace(contact, normal=normal, sole=sole)
+
+
+def pin_turns(
+    problem: MotionProblem, named: Sequence[Phase], schedule: ContactSchedule
+) -> dict[str, float]:
+    """Turns of the result's ground phases by the pins, which name the recording's phases; rad."""
+    turns: dict[str, float] = {}
+    for pin in problem.pins:
+        was = next((phase for phase in named if phase.name == pin.phase), None)
+        for phase in schedule.phases:
+            if was is not None and phase.start < was.end and phase.end > was.start:
+                turns[phase.name] = turns.get(phase.name, 0.0) + pin.turn
+    return turns

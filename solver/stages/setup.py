@@ -49,7 +49,7 @@ from .fit import (
     motion_metric,
     point_contacts,
 )
-from .footing import find_footing, on_faces
+from .footing import find_footing, on_faces, pin_turns
 from .reseat import reseat
 from .surroundings import surroundings
 
@@ -74,8 +74,7 @@ class Setup:
     the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the changes of a
     block that a reduction allows, None all. requests: those set up here. recording: of the figure
     as it is asked for. space: the reduced coordinates, None where there are none.
-    durations: where they come from.
-    scene: what is around.
+    durations: where they come from. scene: what is around.
     """
 
     fit: Fit
@@ -166,7 +165,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
-    turns = _turns(problem, context.phases, context.schedule)
+    turns = pin_turns(problem, context.phases, context.schedule)
     reduction, space = requests.solution.reduction, None
     if reduction is not None:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)
@@ -246,19 +245,6 @@ def _refuse_torques(requests: Requests) -> None:
         for name in weighed:
             if name in TORQUE_OBJECTIVES:
                 raise NeedsTorques(name)
-
-
-def _turns(
-    problem: MotionProblem, named: Sequence[Phase], schedule: ContactSchedule
-) -> dict[str, float]:
-    """Turns of the result's ground phases by the pins, which name the recording's phases; rad."""
-    turns: dict[str, float] = {}
-    for pin in problem.pins:
-        was = next((phase for phase in named if phase.name == pin.phase), None)
-        for phase in schedule.phases:
-            if was is not None and phase.start < was.end and phase.end > was.start:
-                turns[phase.name] = turns.get(phase.name, 0.0) + pin.turn
-    return turns
 
 
 def _cost_weights(requests: Requests) -> CostWeights:
