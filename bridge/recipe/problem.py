@@ -35,6 +35,7 @@ from ...solver.data.faults import (
     DependentRows,
     Fault,
     MissingPart,
+    SceneFault,
     UnknownContactName,
     UnknownReductionBone,
     WrongWeights,
@@ -135,6 +136,8 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
             return [(*REDUCTION, "matrix", fault.row - 1)]
         case DependentRows():
             return [(*REDUCTION, "matrix")]
+        case SceneFault():
+            return [place for place, called in _names(values) if called == fault.thing]
         case BadDimensions():
             return [(*REDUCTION, "dimensions"), REDUCTION]
     named = [getattr(fault, field) for field in CULPRITS if hasattr(fault, field)]
