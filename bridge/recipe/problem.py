@@ -52,14 +52,7 @@ from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact", "object")
 TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
 REDUCTION = ("solution", "reduction")
-CULPRITS = (
-    "pin",
-    "request",
-    "name",
-    "second",
-    "first",
-    "thing",
-)  # fields of faults that name a record
+CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
 PARTS = (
     "pelvis",
     "head",
