@@ -191,10 +191,21 @@ class SolidWorld:
             return old
         found = found.some(np.array(list(_chosen(found))))
         if old is not None:
-            assert isinstance(old.function, SolidDistance)
-            found = old.function.found.but(given_up).with_more(found)
+            found = _penetrations(old).but(given_up).with_more(found)
+        return self._keep_out(found)
+
+    def only(self, rows: KeepOut, which: BoolArray) -> KeepOut | None:
+        """Some of the rows (U,); None where there are none left."""
+        return self._keep_out(_penetrations(rows).some(which)) if which.any() else None
+
+    def _keep_out(self, found: Penetrations) -> KeepOut:
         function = SolidDistance(self.surfaces, found)
         return KeepOut(self.names, found.items, found.times, found.lower, function)
+
+
+def _penetrations(rows: KeepOut) -> Penetrations:
+    assert isinstance(rows.function, SolidDistance)
+    return rows.function.found
 
 
 def _chosen(found: Penetrations) -> Iterator[int]:

@@ -185,7 +185,7 @@ def _restored(
     def with_solids(now: FeasibleSet, x: FloatArray) -> FeasibleSet:
         assert world is not None
         t, rows = now.transcription, world.kept_out(now.motion(x), set())
-        return now if rows is t.solid else replace(now, transcription=replace(t, solid=rows))
+        return now if rows is t.solid else replace(now, transcription=t.keeping_out(rows))
 
     if world is not None:
         outcome = restore(

@@ -5,7 +5,8 @@ Moving a pin changes the rows' values, not their Jacobian, so most steps go on w
 by the smallest change: measured against steps towards the motion nearest to the fit, that is as
 near to what the solve will find and does not jitter. Far moves are made by continuation, one step
 an update. The solve proper, once the pin is let go, starts from the fit again. While a pin moves
-phases last as long as they did; once it rests they take the durations that go with its place.
+phases last as long as they did; once it rests they take the durations that go with its place. What
+is solid is looked for in the motion before each update, and kept out by the update.
 """
 
 from dataclasses import replace
@@ -18,6 +19,7 @@ from ..data.report import DragSummary
 from ..data.status import DragStatus
 from ..data.traces import Traces
 from ..optimisation.kkt_step import LinearisedProblem
+from ..optimisation.sqp import restore
 from ..transcription.motion import Motion
 from .fit import Fit
 from .footing import find_target_places
@@ -29,6 +31,9 @@ CHORD_STEPS = 2  # an update, on the same factor
 MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
 RESTING_UPDATES = 6  # at one place, after which a pin is no longer on its way
+RETIMING_STEPS = 8  # at most, to a motion with other durations
+FAR_SOLID = 0.02  # m beyond its bound, where a solid needs no row any more
+MAX_BLOCKED_UPDATES = 4  # in which a solid does not come out, after which it is let be
 SAME_DURATION = 1e-3  # s, by which nobody sees that a phase lasts longer
 HELD_VIOLATION = 100.0  # times the tolerances (1 mm): a motion that serves to go back to
 
@@ -51,6 +56,8 @@ class Follower:
         self._timed, self._rested = problem, 0  # whose durations these are; updates at one place
         self._linearised: LinearisedProblem | None = None
         self._held = self.motion
+        self._given_up: set[int] = set()  # solids that are let be
+        self._blocked = 0  # updates in which a solid is furthest from where it should be
         self.violation = np.inf
 
     def follow(self, problem: MotionProblem) -> DragStatus:
@@ -71,9 +78,13 @@ class Follower:
         if steps > 1:
             target = partial_places(self.setup.schedule, was, target, whole, 1.0 / steps)
         x = warm_start(self.motion, stance_moves(self.setup.schedule, was, target))
+        self._keep_out()
         if not self._step(x, target):
             self.motion, self._linearised = self._held, None
+            solid = self.motion.transcription.solid
+            self._given_up |= set() if solid is None else set(solid.items.tolist())
             return DragStatus.DIVERGED
+        self._watch_solids()
         if self.violation < HELD_VIOLATION:
             self._held = self.motion
         there = steps == 1 and self.violation <= 1.0 and self._timed == problem
@@ -89,15 +100,51 @@ class Follower:
         self._begin(setup, start, problem)
 
     def _retime(self, problem: MotionProblem) -> None:
-        """Begins anew where other durations go with the pins, or where they had changed."""
+        """Begins anew where other durations go with the pins, or where they had changed.
+
+        Where that does not come near a motion the present one stays.
+        """
         setup = set_up(self._fit, problem)
         self._timed = problem
-        if not np.allclose(setup.start.duration, self.motion.duration, atol=SAME_DURATION):
-            self._begin(setup, setup.start, problem)
+        if np.allclose(setup.start.duration, self.motion.duration, atol=SAME_DURATION):
+            return
+        start, target = setup.start, setup.target_places
+        feasible = setup.feasible_set(start.transcription, target)
+        x = warm_start(start, stance_moves(setup.schedule, start.places, target))
+        found = restore(feasible, setup.metric, x, stage="drag", max_steps=RETIMING_STEPS)
+        if found.violation < HELD_VIOLATION:
+            self._begin(setup, feasible.motion(found.x), problem)
 
     def _begin(self, setup: Setup, start: Motion, problem: MotionProblem) -> None:
         self.setup, self.motion, self._metric = setup, start, setup.metric
         self._linearised, self._held, self._timed = None, start, problem
+
+    def _keep_out(self) -> None:
+        """Rows for what is in each other now, without those that are far from it by now."""
+        world, t, x = self.setup.solid, self.motion.transcription, self.motion.x
+        if world is None or self.violation > HELD_VIOLATION:
+            return
+        solid = world.kept_out(self.motion, self._given_up)
+        if solid is None:
+            return
+        rows = t.keeping_out(solid).solid_rows(x)
+        near = rows.value - rows.lower < FAR_SOLID
+        t = t.keeping_out(world.only(solid, near))
+        if self._linearised is not None:
+            self._linearised = self._linearised.widened(t, rows.some(near))
+        self.motion = replace(self.motion, transcription=t)
+
+    def _watch_solids(self) -> None:
+        """Lets those be that what is asked for has kept from their place for some updates."""
+        t = self.motion.transcription
+        if t.solid is None:
+            return
+        rows = t.solid_rows(self.motion.x)
+        off = np.abs(rows.violation()) / rows.tolerance
+        self._blocked = self._blocked + 1 if self.violation > 1.0 and off.max() > 1.0 else 0
+        if self._blocked > MAX_BLOCKED_UPDATES:
+            self._given_up |= set(t.solid.items[off > 1.0].tolist())
+            self._blocked = 0
 
     def _step(self, x: FloatArray, places: FloatArray) -> bool:
         """A few chord steps from unknowns x; False, having changed nothing, where they diverge."""

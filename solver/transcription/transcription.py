@@ -77,10 +77,20 @@ class Transcription:
             for i, constraint in enumerate(self.constraints)
         ]
         if self.solid is not None:
-            owners = first + len(self.constraints) + self.solid.items
-            self.discretised.append(
-                DiscretisedConstraint(self.solid, self.character, self.basis, self.layout, owners)
-            )
+            self.discretised.append(self._discretised_solid(self.solid))
+
+    def _discretised_solid(self, solid: KeepOut) -> DiscretisedConstraint:
+        owners = len(self.contacts) + len(self.constraints) + solid.items
+        return DiscretisedConstraint(solid, self.character, self.basis, self.layout, owners)
+
+    def keeping_out(self, solid: KeepOut | None) -> "Transcription":
+        """The same with other keep-out rows."""
+        twin = copy(self)
+        twin.solid = solid
+        twin.discretised = self.discretised[: len(self.constraints)]
+        if solid is not None:
+            twin.discretised.append(self._discretised_solid(solid))
+        return twin
 
     @property
     def owners(self) -> tuple[str, ...]:

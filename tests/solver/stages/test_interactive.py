@@ -9,6 +9,7 @@ from hangtime.solver.data.requests import ForceRequest, Requests
 from hangtime.solver.data.status import DragStatus
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.stages.interactive import Follower
+from hangtime.solver.stages.setup import set_up
 from hangtime.solver.transcription.motion import dynamics_residual
 
 from ...helpers.fitted_hop import fitted_hop
@@ -16,6 +17,12 @@ from ...helpers.fitted_hop import fitted_hop
 
 def moved(forward: float, up: float = 0.0) -> MotionProblem:
     return MotionProblem(pins=(Pin("Landing", "ground 2", offset=(forward, 0.0, up)),))
+
+
+def soft(problem: MotionProblem) -> MotionProblem:
+    """The same where limbs go through each other."""
+    solution = replace(problem.requests.solution, solid=False)
+    return replace(problem, requests=replace(problem.requests, solution=solution))
 
 
 def settled(follower: Follower, problem: MotionProblem, most: int = 30) -> int:
@@ -38,6 +45,25 @@ def test_the_ghost_is_near_the_solve() -> None:
     assert np.linalg.norm(apart, axis=2).max() < 0.04
     left = dynamics_residual(follower.motion, np.linspace(0.01, fit.motion.duration - 0.01, 200))
     assert np.sqrt((left.moment**2).sum(axis=1).mean()) < 0.003
+
+
+def deepest(follower: Follower) -> float:
+    """How deep floor and limbs are in each other, m, beyond the fit."""
+    setup = set_up(fitted_hop(), moved(0.0))
+    assert setup.solid is not None
+    world = replace(setup.solid, to_old=lambda times: times)
+    return max((each.amount for each in world.penetrations(follower.motion).worst()), default=0.0)
+
+
+def test_floor_and_limbs_are_solid_while_the_pin_is_dragged() -> None:
+    kept, through = Follower(fitted_hop(), moved(0.0)), Follower(fitted_hop(), soft(moved(0.0)))
+    depths = []
+    for step in range(1, 31):
+        kept.follow(moved(0.02 * step))
+        through.follow(soft(moved(0.02 * step)))
+        depths.append((deepest(kept), deepest(through)))
+    most = np.max(depths, axis=0)
+    assert most[0] < 0.005 < 0.01 < most[1]
 
 
 def test_times_follow_once_the_pin_rests() -> None:
