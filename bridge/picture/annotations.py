@@ -13,7 +13,7 @@ from typing import Annotated, Any, TypeVar, get_type_hints
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import FloatArray, IntArray
 
 TimeSpan = tuple[float, float]
 ALWAYS: TimeSpan = (-float("inf"), float("inf"))
@@ -120,6 +120,15 @@ class Bar:
     span: TimeSpan = ALWAYS
 
 
+@dataclass(frozen=True)
+class Thing:
+    """An object of the scene. points: (V, 3) m. triangles: (F, 3) their indices."""
+
+    points: Points
+    triangles: IntArray
+    span: TimeSpan = ALWAYS
+
+
 class Tone(Enum):
     """Reason for which a limb is coloured."""
 
@@ -136,8 +145,8 @@ class Tint:
     span: TimeSpan = ALWAYS
 
 
-Mark = Sphere | Cone | LimitArc | Ghost | Box | Bar | Tint
-M = TypeVar("M", Sphere, Cone, LimitArc, Ghost, Box, Bar, Tint, Mark)
+Mark = Sphere | Cone | LimitArc | Ghost | Box | Bar | Thing | Tint
+M = TypeVar("M", Sphere, Cone, LimitArc, Ghost, Box, Bar, Thing, Tint, Mark)
 
 
 def at(mark: M, instant: int) -> M:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
-from .annotations import Mark, Sphere, Tint, Tone, at, moved
+from .annotations import Mark, Sphere, Thing, Tint, Tone, at, moved
 from .instants import during, instants, nearest, spread, with_keys
 from .mark_meshes import Solid, merged, solids
 from .sheet import Limb, SheetRow, View
@@ -174,7 +174,7 @@ def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) ->
         aside > 0.03,
         path,
         pins,
-        steps(pins, floor),
+        () if any(isinstance(mark, Thing) for mark in row.marks) else steps(pins, floor),
         merged(solid for mark in drawn for solid in solids(mark)),
     )
 

@@ -40,4 +40,5 @@ FINISHES: Mapping[Look, Finish] = {
     Look.EDGE: Finish(srgb("8d97a5"), materials.plain),
     Look.WEIGHT: Finish(srgb("6b4a2f"), shadow=True),
     Look.ENVIRONMENT: Finish(srgb("8b929d"), shadow=True),
+    Look.THING: Finish(srgb("d9c3a0"), shadow=True),
 }

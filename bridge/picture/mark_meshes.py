@@ -8,9 +8,9 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ..shapes.limits import cone_rim, directions
-from ..shapes.mesh import Mesh, band, joined
+from ..shapes.mesh import Mesh, band, joined, quartered
 from ..shapes.solids import box, tube
-from .annotations import Bar, Box, Cone, Ghost, LimitArc, Mark, Sphere, Tint
+from .annotations import Bar, Box, Cone, Ghost, LimitArc, Mark, Sphere, Thing, Tint
 from .limb_meshes import ball
 
 BALL, HOLLOW_BALL = 0.034, 0.03  # m, radii
@@ -31,6 +31,7 @@ class Look(Enum):
     EDGE = auto()  # grey
     WEIGHT = auto()  # brown
     ENVIRONMENT = auto()  # as the floor, darker
+    THING = auto()  # light wood, of the scene
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Solid:
 
     @property
     def smooth(self) -> bool:
-        return self.look not in (Look.VEIL, Look.WEIGHT)
+        return self.look not in (Look.VEIL, Look.WEIGHT, Look.THING)
 
 
 def merged(parts: Iterable[Solid]) -> tuple[Solid, ...]:
@@ -70,6 +71,8 @@ def solids(mark: Mark) -> Iterator[Solid]:
             yield Solid(Look.WEIGHT, _box(centre, rotation, size))
         case Bar(start, end, radius):
             yield Solid(Look.ENVIRONMENT, tube(np.array([start, end]), radius))
+        case Thing(points, triangles):
+            yield Solid(Look.THING, quartered(points, triangles))
         case Tint():  # colours a limb, adds nothing
             return
 

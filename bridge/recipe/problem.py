@@ -14,11 +14,12 @@ points = ["Left heel"]          # or bones = [...]; default: everything that tou
 forward = 0.3                   # m along the travel; left, up; or offset = [x, y, z], world
 place = [0.0, 1.0, 0.2]         # m, world: where the middle of the points goes, optional
 turn = 90                       # degrees, counter-clockwise from above
+on = "Crate"                    # the points then stand on that object's faces, below or above
 [[contact]]                     # corrects a contact that the analysis found
 name = "Left toe 2"
 start_frame = 183.5             # and / or end_frame; or remove = true
 
-What may be asked for beside is in requests.py.
+Objects of the scene are in objects.py, and what may be asked for beside in requests.py.
 """
 
 import json
@@ -34,6 +35,7 @@ from ...solver.data.faults import (
     DependentRows,
     Fault,
     MissingPart,
+    SceneFault,
     UnknownContactName,
     UnknownReductionBone,
     WrongWeights,
@@ -43,9 +45,11 @@ from ..recipe_syntax.items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, ang
 from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
 from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
 from ..recipe_syntax.toml_text import entries
+from .objects import HEADER as OBJECT
+from .objects import Under, default_name, object_values, read_objects
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 
-OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact")
+OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact", "object")
 TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
@@ -60,10 +64,14 @@ _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 bracke
 
 @dataclass(frozen=True)
 class Recipe:
-    """Parsed recipe. clip: a path as written, relative to the recipe; None where not given."""
+    """Parsed recipe. clip: a path as written, relative to the recipe; None where not given.
+
+    under: objects of which the analysis is to tell the places.
+    """
 
     problem: MotionProblem
     clip: str | None = None
+    under: tuple[Under, ...] = ()
 
 
 def read_recipe_text(path: str | Path) -> str:
@@ -84,6 +92,7 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
     """
     values, lines = _parse(text, path)
     table = Table(Source(path, lines), (), values, TOP_KEYS)
+    scene, under = read_objects(table)
     problem = MotionProblem(
         frames=_frames(table),
         mass=_mass(table),
@@ -92,10 +101,11 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
         bones=_bones(table.table("bones", PARTS, "part of the body")),
         contacts=CONTACT.read_all(table),
         pins=PIN.read_all(table),
+        scene=scene,
         requests=read_requests(table),
     )
     _refuse_same_names(table)
-    return Recipe(problem, table.word("clip"))
+    return Recipe(problem, table.word("clip"), under)
 
 
 def locate(text: str, fault: Fault) -> int | None:
@@ -119,6 +129,8 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
             return [(*REDUCTION, "matrix", fault.row - 1)]
         case DependentRows():
             return [(*REDUCTION, "matrix")]
+        case SceneFault():
+            return [place for place, called in _names(values) if called == fault.thing]
         case BadDimensions():
             return [(*REDUCTION, "dimensions"), REDUCTION]
     named = [getattr(fault, field) for field in CULPRITS if hasattr(fault, field)]
@@ -127,11 +139,12 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
 
 
 def _names(values: dict[str, Any]) -> list[tuple[tuple[str, int], str]]:
-    """Key path and name of each pin and each request."""
+    """Key path and name of each pin, each request and each object."""
+    kinds = [(kind.header, kind.default_name) for kind in (PIN, *NAMED)]
     return [
-        ((kind.header, i), entry.get("name", kind.default_name(i)))
-        for kind in (PIN, *NAMED)
-        for i, entry in enumerate(values.get(kind.header, ()))
+        ((header, i), entry.get("name", default(i)))
+        for header, default in (*kinds, (OBJECT, default_name))
+        for i, entry in enumerate(values.get(header, ()))
     ]
 
 
@@ -209,7 +222,9 @@ def _refuse_same_names(top: Table) -> None:
     taken: set[str] = set()
     for place, name in sorted(_names(top.values), key=lambda named: lines.get(named[0], 0)):
         if name in taken:
-            problem = f'another pin or request is called "{name}", too; give each its own name'
+            problem = (
+                f'another pin, request or object is called "{name}", too; give each its own name'
+            )
             top.source.refuse((*place, "name"), problem)
         taken.add(name)
 
@@ -251,6 +266,7 @@ PIN = Kind(
         Item((*TRAVEL_KEYS, "offset"), _read_offset, _write_offset),
         vector("place"),
         angle("turn"),
+        word("on"),
     ),
     needs=(("phase",),),
 )
@@ -281,4 +297,5 @@ def write_recipe(problem: MotionProblem, *, clip: str | None = None) -> str:
     if problem.bones:
         parts.append("[bones]\n" + entries(problem.bones))
     parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)
+    parts += [f"[[{OBJECT}]]\n{entries(object_values(thing))}" for thing in problem.scene]
     return "\n".join(parts + request_texts(problem.requests))

@@ -63,6 +63,11 @@ shape = "exact"                 # or "pyramid", of the friction cone
 peak = 3                        # body weights
 match = 10                      # how much more than usual they are kept as they were
 
+[[clear]]                       # the way goes over an object of the scene
+object = "Hurdle"
+by = 0.05                       # m above it; default: 0
+bones = ["LeftFoot"]            # default: the whole body
+
 [body]
 mass = 80                       # kg; default: the recording's
 gravity = 1.62                  # m/s²
@@ -101,10 +106,10 @@ matrix = [[{ bone = "Thigh.L", weights = [1, 0, 0] }, { bone = "Thigh.R", weight
 
 from typing import Any
 
-from ...solver.data.requests import AddedMass, BodyChange, LimbChange, Requests
+from ...solver.data.requests import AddedMass, BodyChange, Clear, LimbChange, Requests
 from ..constraint_kinds import KINDS
-from ..recipe_syntax.items import BONE, BONES, Kind, number, vector
-from ..recipe_syntax.table import ABOVE_ZERO, Table
+from ..recipe_syntax.items import BONE, BONES, Kind, number, one, vector
+from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, Table
 from ..recipe_syntax.toml_text import sections
 from .solution import SOLUTION
 
@@ -128,7 +133,15 @@ LIMB = Kind(
     needs=(("bones",),),
 )
 
+CLEAR = Kind(
+    "clear",
+    Clear,
+    (one("object", Table.word, attribute="thing"), number("by", NOT_NEGATIVE), BONES),
+    needs=(("object",),),
+)
+
 RECORDS: dict[str, Kind[Any]] = {kind.requests: kind.recipe for kind in KINDS.values()}
+RECORDS["clears"] = CLEAR
 BODY_RECORDS: dict[str, Kind[Any]] = {"added": LOAD, "limbs": LIMB}  # by field of BodyChange
 NAMED = (*RECORDS.values(), *BODY_RECORDS.values())
 REQUEST_KEYS = (*(kind.header for kind in NAMED), BODY.header, SOLUTION.header)

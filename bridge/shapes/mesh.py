@@ -48,3 +48,13 @@ def grid_faces(rows: int, columns: int, *, wraps: bool = False) -> IntArray:
 def band(one: FloatArray, other: FloatArray) -> Mesh:
     """The surface between two lines of (N, 3) points each."""
     return Mesh(np.concatenate([one, other]), grid_faces(2, len(one)))
+
+
+def quartered(points: FloatArray, triangles: IntArray) -> Mesh:
+    """The mesh of points (V, 3) and triangles (F, 3), each as three faces of four corners."""
+    corners = points[triangles]
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    centres = corners.mean(axis=1, keepdims=True)
+    places = np.concatenate([corners, middles, centres], axis=1).reshape(-1, 3)
+    one = np.array([[0, 3, 6, 5], [1, 4, 6, 3], [2, 5, 6, 4]])
+    return Mesh(places, (7 * np.arange(len(triangles))[:, None, None] + one).reshape(-1, 4))

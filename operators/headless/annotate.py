@@ -11,6 +11,7 @@ from ...bridge.picture.annotations import (
     LimitArc,
     Mark,
     Sphere,
+    Thing,
     TimeSpan,
     Tint,
     Tone,
@@ -19,6 +20,8 @@ from ...solver.arrays import FloatArray
 from ...solver.body.kinematics import Pose, forward_kinematics
 from ...solver.data.problem import MotionProblem
 from ...solver.data.requests import AddedMass, TorqueLimit
+from ...solver.data.scene import SceneObject
+from ...solver.scene.object_motion import ObjectMotion
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription import constraint_functions
 from ...solver.transcription.constraint import Constraint
@@ -28,6 +31,7 @@ from .picture import instants
 DENSITY = 1000.0  # kg/m³, of what is carried
 SHAPE = np.array([0.9, 1.6, 0.7])  # of a cube's sides; thin where a hanging arm faces sideways
 ARC = 0.7  # radius of a limit's line, as a share of the limb
+BESIDE = 0.1  # m from an object's box, within which a figure is by it
 SAME = np.radians(0.5)  # limits nearer than this fix the joint
 
 
@@ -40,6 +44,7 @@ def marks_of(adaptation: Adaptation, problem: MotionProblem) -> tuple[Mark, ...]
         marks += _of_condition(condition, figure)
     marks += _limp(requests.torques, adaptation, figure)
     marks += (mark for added in requests.body.added for mark in _carried(added, figure))
+    marks += (_thing(each, adaptation, figure) for each in problem.scene)
     return tuple(marks)
 
 
@@ -152,3 +157,19 @@ def _carried(added: AddedMass, figure: _Posed) -> Iterator[Box]:
         at = recording.bones[recording.index(added.bone)].rotation @ np.array(added.offset)
     turns = figure.pose.rotations[:, body]
     yield Box(figure.centres[:, body] + turns @ at, turns, side * SHAPE)
+
+
+# ---------------------------------------------------------------- the scene
+
+
+def _thing(thing: SceneObject, adaptation: Adaptation, figure: _Posed) -> Thing:
+    """An object, with the figures that are by it: over it, or nearly."""
+    line = adaptation.setup.context.timeline
+    places, turns = ObjectMotion.of(thing, line.first_frame, line.rate).at(figure.times)
+    if not thing.moves:
+        places, turns = places[0], turns[0]
+    points = thing.vertices @ np.swapaxes(turns, -1, -2) + places[..., None, :]
+    low, high = points.min(axis=-2) - BESIDE, points.max(axis=-2) + BESIDE
+    by = ((figure.com > low) & (figure.com < high))[:, :2].all(axis=1)
+    when = figure.times[by] if by.any() else figure.times[[0, -1]]
+    return Thing(points, thing.triangles, (float(when[0]), float(when[-1])))

@@ -8,6 +8,7 @@ from dataclasses import replace
 from io import TextIOWrapper
 from pathlib import Path
 
+from ...bridge.recipe.objects import placed_objects
 from ...bridge.recipe.problem import Recipe, locate, parse_recipe, read_recipe_text
 from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
@@ -138,7 +139,8 @@ def adapt(options: argparse.Namespace) -> None:
     stages = Stages(sys.stdout)
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages)
-        result = solve(loaded.subject, stages)
+        placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
+        result = solve(loaded.subject.with_objects(placed), stages)
         outputs = Outputs(loaded, problem, result, outbox, stages)
         if result.fault is not None:
             outputs.write_failure()

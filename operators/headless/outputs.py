@@ -12,6 +12,7 @@ import numpy as np
 from ...solver.data.faults import OutputNotWritable
 from ...solver.data.problem import MotionProblem
 from ...solver.data.report import Report, as_json
+from ...solver.data.scaling import scaled_problem
 from ...solver.results.npz_export import save
 from ...solver.worker.pipeline import AdaptationResult
 from ..words.report_text import as_text
@@ -43,6 +44,7 @@ class Outputs:
         """All files of a result that is what was asked for; the picture where wanted."""
         with self.stages.stage("Writing keyframes"):
             performer, adapted = self._write_actions("adapted")
+            self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
         with self.stages.stage("Exporting FBX"), quiet():
             from ...bridge.files.export import export_fbx
@@ -72,6 +74,7 @@ class Outputs:
         """The report, and the best motion that was found."""
         if self.result.adaptation.reached > 0.0:
             self._write_actions("best found, short of the goal")
+            self._build_scene()
             _save_blend(self.outbox.path("best_found.blend"))
         self._write_report(self._report())
 
@@ -104,6 +107,12 @@ class Outputs:
             self.clip.armature.location += Vector(self._beside())
         _show_frames(round(track.frames[0]), round(track.frames[-1]))
         return armature, adapted
+
+    def _build_scene(self) -> None:
+        from ...bridge.files.scene_objects import build_scene
+
+        subject = self.result.subject
+        build_scene(scaled_problem(subject.problem, 1.0 / subject.factor).scene)
 
     def _beside(self) -> tuple[float, float, float]:
         """To the left of where the recording travels, m, world."""

@@ -148,6 +148,31 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "ground; there are {known:names}.",
     faults.UnknownContact: "The pin “{pin}” names “{what}”, which does not touch in its phase; "
     "what touches is {known:names}.",
+    faults.NoFaces: "The object “{thing}” has no faces, so nothing can stand on it or run into it; "
+    "choose a mesh with faces.",
+    faults.NotFinite: "The object “{thing}” has a vertex or a place that is no number; mend its "
+    "mesh, its modifiers or its animation.",
+    faults.InsideOut: "The faces of “{thing}” look inwards, so its inside would be the world; "
+    "recalculate its normals (edit mode, Mesh > Normals > Recalculate Outside), or swap the order "
+    "of its faces' corners.",
+    faults.TooManyFaces: "The object “{thing}” has {count} triangles, and {most} are the most; "
+    "choose a simpler mesh in its place, or put a Decimate modifier on it.",
+    faults.SameObjectName: "Two objects of the scene are called “{thing}”; rename one, so that the "
+    "report can tell them apart.",
+    faults.UnknownObject: (
+        "“{request}” names the object “{thing}”, but the scene has none; add it as an object.",
+        "“{request}” names the object “{thing}”, which the scene does not have; it has "
+        "{known:names}.",
+    ),
+    faults.NotGround: "“{request}” stands on “{thing}”, which is an obstacle; make it ground, or "
+    "stand on something else.",
+    faults.NoFaceThere: "“{request}” stands on “{thing}”, but “{contact}” would be beside it: none "
+    "of its faces is above or below; move the pin over it, or the object under the pin.",
+    faults.OverTheEdge: "“{request}” stands on “{thing}”, but “{contact}” hangs over the edge of "
+    "its face by {metres:length}; move the pin so far, or turn it.",
+    faults.TooSteep: "“{request}” stands on “{thing}” where it is {slope:.0f}° steep, and "
+    "“{contact}” holds with a friction of {friction:g} at most; ask for more friction, or stand "
+    "where it is flatter.",
 }
 PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
 
@@ -207,6 +232,8 @@ def _variant(fault: Fault) -> int:
             return (2 if fault.reached else 1) if fault.worst else 0
         case faults.NothingTouches():
             return bool(fault.touching)
+        case faults.UnknownObject():
+            return bool(fault.known)
         case faults.ChangedMeanwhile():
             return fault.while_solving
     raise TypeError(f"which words are for {type(fault).__name__}?")

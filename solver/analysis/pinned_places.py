@@ -7,6 +7,9 @@ from ..data.constants import UP
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.faults import ContradictoryPins, UnknownContact, UnknownPhase
 from ..data.problem import MotionProblem, OffsetAxes, Pin
+from ..scene.checks import named
+from ..scene.triangle_mesh import placed_mesh
+from .landing import Footing, Ground, land
 from .performance import Performance
 
 SAME_BODY_TOLERANCE = 0.003  # m
@@ -16,16 +19,29 @@ SAME_FOOT_TOLERANCE = 0.02  # m; toes bend
 def pinned_places(
     problem: MotionProblem, performance: Performance, schedule: ContactSchedule
 ) -> FloatArray:
-    """(n_contacts, 3) m: target position of every contact, world.
+    """(n_contacts, 3) m: target position of every contact, world. Raises as `pinned_footing`."""
+    return pinned_footing(problem, performance, schedule).places
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins.
+
+def pinned_footing(
+    problem: MotionProblem, performance: Performance, schedule: ContactSchedule
+) -> Footing:
+    """Target position of every contact, and the normal of what it stands on.
+
+    Raises UnknownPhase, UnknownContact, ContradictoryPins, UnknownObject, and as `land` does.
     """
     places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
+    normals = np.tile(UP, (len(places), 1))
     moved_by: dict[int, Pin] = {}
+    landed: dict[str, Pin] = {}
     for pin in problem.pins:
         phase = phase_of(pin, schedule)
         chosen = chosen_contacts(pin, phase, schedule)
         target = _moved(pin, phase, chosen, performance, schedule)
+        if pin.on is not None:
+            footing = _landed(pin, problem, chosen, target, performance, schedule)
+            target, normals[chosen] = footing.places, footing.normals
+            landed |= {schedule.contacts[i].name: pin for i in chosen}
         for i, place in zip(chosen, target, strict=True):
             if i in moved_by:
                 apart = float(np.linalg.norm(places[i] - place))
@@ -34,7 +50,23 @@ def pinned_places(
             places[i] = place
             moved_by[i] = pin
     _check_rigid(schedule, performance, places, moved_by)
-    return places
+    return Footing(places, normals, landed)
+
+
+def _landed(
+    pin: Pin,
+    problem: MotionProblem,
+    chosen: list[int],
+    places: FloatArray,
+    performance: Performance,
+    schedule: ContactSchedule,
+) -> Footing:
+    """The chosen contacts, at places (k, 3) m, on the object that their pin names."""
+    thing = named(pin.name, pin.on or "", problem.scene)
+    contacts = [schedule.contacts[i] for i in chosen]
+    return land(
+        Ground(pin.name, thing, placed_mesh(thing)), contacts, places, performance.character
+    )
 
 
 def phase_of(pin: Pin, schedule: ContactSchedule) -> Phase:

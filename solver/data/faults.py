@@ -376,3 +376,77 @@ class UnknownContact(Fault):
     pin: str
     what: str
     known: tuple[str, ...]
+
+
+@dataclass
+class SceneFault(Fault):
+    """Base of faults of one object of the scene, by the artist's name for it."""
+
+    thing: str
+
+
+class NoFaces(SceneFault):
+    """The object's mesh has no faces, or none with an area."""
+
+
+class NotFinite(SceneFault):
+    """A vertex or a place of the object is NaN or infinite."""
+
+
+class InsideOut(SceneFault):
+    """The faces of a closed mesh look inwards."""
+
+
+@dataclass
+class TooManyFaces(SceneFault):
+    """The object has more triangles than can be worked with."""
+
+    count: int
+    most: int
+
+
+class SameObjectName(SceneFault):
+    """Two objects of the scene by one name."""
+
+
+@dataclass
+class UnknownObject(RequestFault):
+    """A pin or a request names an object that the scene does not have."""
+
+    thing: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class NotGround(RequestFault):
+    """A pin stands on an object that is an obstacle."""
+
+    thing: str
+
+
+@dataclass
+class NoFaceThere(RequestFault):
+    """No face of the object is above or below where a pin's contact would be."""
+
+    contact: str
+    thing: str
+
+
+@dataclass
+class OverTheEdge(RequestFault):
+    """A contact of a foot hangs over the edge of the face on which the foot stands, by metres."""
+
+    contact: str
+    thing: str
+    metres: float
+
+
+@dataclass
+class TooSteep(RequestFault):
+    """A contact stands on a face steeper than its friction holds; slope: degrees, friction: its
+    coefficient."""
+
+    contact: str
+    thing: str
+    slope: float
+    friction: float

@@ -281,6 +281,17 @@ class Hold:
     ends: bool = False
 
 
+@dataclass(frozen=True)
+class Clear:
+    """Clearance over an object of the scene: bones (empty is all) that are over it stay `by` m
+    above it."""
+
+    name: str
+    thing: str
+    by: float = 0.0
+    bones: tuple[str, ...] = ()
+
+
 class Dynamics(Enum):
     """Dynamics formulation: whose equations of motion are in the problem (thesis 3.2).
 
@@ -375,6 +386,7 @@ class Requests:
     poses: tuple[PoseRequest, ...] = ()
     orientations: tuple[OrientationRequest, ...] = ()
     forces: tuple[ForceRequest, ...] = ()
+    clears: tuple[Clear, ...] = ()
     body: BodyChange = field(default_factory=BodyChange)
     timings: tuple[PhaseTiming, ...] = ()
     holds: tuple[Hold, ...] = ()
@@ -385,7 +397,7 @@ class Requests:
         """The artist's names of all requests."""
         kinds = (self.points, self.lifts, self.angles, self.cones, self.twists, self.torques)
         more = (self.poses, self.orientations, self.forces, self.body.added, self.body.limbs)
-        every = (*kinds, *more, self.timings, self.holds)
+        every = (*kinds, *more, self.clears, self.timings, self.holds)
         return tuple(request.name for kind in every for request in kind)
 
     @property

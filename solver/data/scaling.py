@@ -19,7 +19,7 @@ def scaled_recording(recording: Recording, factor: float) -> Recording:
 
 
 def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
-    """The problem with every length times `factor`: offsets, places, bounds, paths."""
+    """The problem with every length times `factor`: offsets, places, bounds, paths, objects."""
     pins = (
         replace(p, offset=_times(factor, p.offset), place=p.place and _times(factor, p.place))
         for p in problem.pins
@@ -29,9 +29,14 @@ def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
     requests = replace(
         requests,
         points=tuple(_scaled_point(point, factor) for point in requests.points),
+        clears=tuple(replace(clear, by=factor * clear.by) for clear in requests.clears),
         body=replace(requests.body, added=tuple(added)),
     )
-    return replace(problem, pins=tuple(pins), requests=requests)
+    scene = tuple(
+        replace(thing, vertices=factor * thing.vertices, positions=factor * thing.positions)
+        for thing in problem.scene
+    )
+    return replace(problem, pins=tuple(pins), requests=requests, scene=scene)
 
 
 def _scaled_point(point: PointRequest, factor: float) -> PointRequest:

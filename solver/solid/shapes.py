@@ -67,6 +67,18 @@ class Capsules:
         )
         return start, end
 
+    def some_ends(
+        self, pose: Pose, instants: IntArray, items: IntArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Both ends (M, 3) m of some capsules (M,) at instants (M,), from the centre of mass."""
+        at = instants, self.bodies[items]
+        turns, centres = pose.rotations[at], pose.centres[at]
+        start, end = (
+            centres + np.einsum("mij,mj->mi", turns, local[items])
+            for local in (self.start, self.end)
+        )
+        return start, end
+
 
 def capsules(character: Character) -> list[Capsule]:
     """Each body's capsule from its joint to its tip; two side by side where it is wide."""

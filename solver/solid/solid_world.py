@@ -1,23 +1,31 @@
 """The solid world of one adaptation: what goes into what, and the rows that keep it out.
 
 Never tighter than the recording: what the fit has through each other at the same (warped) instant
-is allowed, and no more.
+is allowed, and no more. Of the scene the recording knew nothing: of what it has in its floor so
+much is allowed in ground, as soles give there likewise, and in obstacles nothing.
 """
 
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..body.character import Character
 from ..data.contacts import ContactSchedule
 from ..data.row_kinds import RowKind
+from ..data.scene import SceneObject, SceneRole
+from ..scene.object_motion import ObjectMotion
+from ..scene.triangle_mesh import mesh_of
 from ..transcription.constraint import DenseViolation
 from ..transcription.keep_out import KeepOut
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
-from .shapes import Capsules, capsules, floor_balls, meeting_pairs
+from .clearance import Clearance
+from .mesh_surface import MeshSurface, scene_shapes
+from .shapes import Capsule, Capsules, capsules, floor_balls, meeting_pairs
 from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
 
 SPACING = 0.004  # s, of the dense grid
@@ -25,7 +33,10 @@ MOST_NEW = 0.002  # m, by which solids may be deeper in each other than in the f
 ROW_SPACING = 0.016  # s, between rows of solids that stay in each other for longer
 SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
 
+OWN = 2  # surfaces of a body without a scene: its limbs, and the floor
+
 TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (N,) s
+Placement = tuple[SceneObject, ObjectMotion]
 
 
 @dataclass(frozen=True)
@@ -116,7 +127,8 @@ class SolidDistance:
 
 @dataclass(frozen=True)
 class SolidWorld:
-    """Surfaces of a motion, and those of the fit, item by item the same.
+    """Surfaces of a motion, and those of the fit, item by item the same, but that the fit has its
+    floor in place of ground, and no obstacles: these come last.
 
     to_old: the fit's instants (N,) s of the motion's.
     """
@@ -135,8 +147,9 @@ class SolidWorld:
     def recorded(self) -> Penetrations:
         """What the fit itself has in each other; it is allowed."""
         placed = placed_at(self.fitted, _grid(self.fitted.duration))
-        instants, items = self.fitted_surfaces.near(placed)
-        distance = self.fitted_surfaces.closest(placed, instants, items).distance
+        own = Surfaces(self.fitted_surfaces.parts[:OWN])
+        instants, items = own.near(placed)
+        distance = own.closest(placed, instants, items).distance
         depth, none = np.maximum(-distance, 0.0), np.zeros(len(items))
         side = np.zeros((len(items), 3))
         found = Penetrations(self.names, items, placed.times[instants], depth, none, side)
@@ -149,14 +162,23 @@ class SolidWorld:
         deep = self.surfaces.closest(placed, instants, items).distance < -MOST_NEW
         instants, items = instants[deep], items[deep]
         now = self.surfaces.closest(placed, instants, items)
-        looked_at, place = np.unique(instants, return_inverse=True)
-        before = placed_at(self.fitted, self.to_old(placed.times[looked_at]))
-        was = self.fitted_surfaces.closest(before, place, items)
-        side = was.side(before.pose, place) * (was.distance < SIDE_REACH)[:, None]
-        lower = np.minimum(was.distance, 0.0)
+        lower, side = self._before(placed.times[instants], items)
         over = lower - now.from_side(side, placed.pose, instants).distance
         found = Penetrations(self.names, items, placed.times[instants], over, lower, side)
         return found.some(over > MOST_NEW)
+
+    def _before(self, times: FloatArray, items: IntArray) -> tuple[FloatArray, FloatArray]:
+        """What items have in the fit at the motion's instants: distances (N,) m, at most 0, and
+        sides (N, 3)."""
+        lower, side = np.zeros(len(items)), np.zeros((len(items), 3))
+        there = np.flatnonzero(items < len(self.fitted_surfaces.names))
+        looked_at, place = np.unique(times[there], return_inverse=True)
+        before = placed_at(self.fitted, self.to_old(looked_at))
+        was = self.fitted_surfaces.closest(before, place, items[there])
+        lower[there] = np.minimum(was.distance, 0.0)
+        near = was.distance < SIDE_REACH
+        side[there] = was.side(before.pose, place) * near[:, None]
+        return lower, side
 
     def kept_out(self, motion: Motion, given_up: Set[int]) -> KeepOut | None:
         """A motion's keep-out rows, with more where it penetrates; the same where it does not.
@@ -214,19 +236,39 @@ def solid_world(
     reference: Motion,
     floors: tuple[TimeFunction, TimeFunction],
     to_old: TimeFunction,
+    scene: Sequence[Placement] = (),
+    clears: Mapping[str, Mapping[int, float]] = MappingProxyType({}),
 ) -> SolidWorld:
     """The world of a motion of `reference`'s body. floors: heights, m, of the motion's and the
-    fit's."""
+    fit's. scene: objects and how they move in the motion's time. clears: by object and body, how
+    far above it what is over it stays, m."""
     character = fitted.transcription.character
     pairs = meeting_pairs(character, capsules(character))
     ours, theirs = (
         _surfaces(motion, pairs, floor)
         for motion, floor in zip((reference, fitted), floors, strict=True)
     )
-    return SolidWorld(ours, theirs, fitted, to_old)
+    shapes = scene_shapes(character, reference.transcription.points)
+    grounds, soles, obstacles = list[Surface](), list[Surface](), list[Surface]()
+    for thing, moves in scene:
+        cleared = clears.get(thing.name, {})
+        met = [shape for shape in shapes if shape.body not in cleared]
+        surface = _of_object(thing, moves, character, met)
+        if thing.role is SceneRole.GROUND:
+            grounds.append(surface)
+            soles.append(Floor(surface.shapes, floors[1], surface.names))
+        else:
+            obstacles.append(surface)
+        over = [shape for shape in shapes if shape.body in cleared]
+        if over:
+            by = np.array([cleared[shape.body] for shape in over])
+            called = _names(character, over, f"the clearance of {thing.name}")
+            obstacles.append(Clearance.over(thing, moves, Capsules.of(over), by, called))
+    ours = (*ours, *grounds, *obstacles)
+    return SolidWorld(Surfaces(ours), Surfaces((*theirs, *soles)), fitted, to_old)
 
 
-def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> Surfaces:
+def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> tuple[Surface, ...]:
     character = motion.transcription.character
     shapes = capsules(character)
     balls = floor_balls(character, motion.transcription.points)
@@ -236,7 +278,19 @@ def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> Surfaces:
     )
     under = tuple(f"{names[ball.body].capitalize()} in the floor" for ball in balls)
     limbs = OwnLimbs(Capsules.of(shapes), pairs, both)
-    return Surfaces((limbs, Floor(Capsules.of(balls), floor, under)))
+    return limbs, Floor(Capsules.of(balls), floor, under)
+
+
+def _of_object(
+    thing: SceneObject, moves: ObjectMotion, character: Character, shapes: Sequence[Capsule]
+) -> MeshSurface:
+    """The surface of an object. Raises NoFaces."""
+    names = _names(character, shapes, thing.name)
+    return MeshSurface(mesh_of(thing), moves, Capsules.of(shapes), names)
+
+
+def _names(character: Character, shapes: Sequence[Capsule], where: str) -> tuple[str, ...]:
+    return tuple(f"{character.bodies[s.body].name.capitalize()} in {where}" for s in shapes)
 
 
 def floor_heights(schedule: ContactSchedule, places: FloatArray) -> TimeFunction:

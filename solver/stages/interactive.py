@@ -22,8 +22,9 @@ from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import restore
 from ..transcription.motion import Motion
 from .fit import Fit
+from .footing import find_target_places
 from .implicit import Adaptation
-from .setup import Setup, find_target_places, set_up
+from .setup import Setup, set_up
 from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
 
 CHORD_STEPS = 2  # an update, on the same factor

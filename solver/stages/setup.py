@@ -11,7 +11,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ..analysis.pinned_places import pinned_places, travel_axes
+from ..analysis.pinned_places import travel_axes
 from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
 from ..body.dynamics import MomentFunction
@@ -25,6 +25,7 @@ from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Requests
+from ..data.scene import SceneObject
 from ..data.status import Durations
 from ..data.timeline import TimeWarp, timeline
 from ..numerics.block_banded import BlockBanded
@@ -33,7 +34,7 @@ from ..objectives.least_squares import torque_metric
 from ..objectives.tracking_cost import CostWeights
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
-from ..solid.solid_world import SolidWorld, floor_heights, solid_world
+from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
@@ -48,7 +49,9 @@ from .fit import (
     motion_metric,
     point_contacts,
 )
+from .footing import find_footing, on_faces, pin_turns
 from .reseat import reseat
+from .surroundings import surroundings
 
 MAX_SPAN = 0.08  # s, between knots that are not the fit's
 MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
@@ -71,7 +74,7 @@ class Setup:
     the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the changes of a
     block that a reduction allows, None all. requests: those set up here. recording: of the figure
     as it is asked for. space: the reduced coordinates, None where there are none.
-    durations: where they come from.
+    durations: where they come from. scene: what is around.
     """
 
     fit: Fit
@@ -86,6 +89,7 @@ class Setup:
     requests: Requests
     space: ReducedSpace | None
     durations: Durations
+    scene: tuple[SceneObject, ...] = ()
 
     def feasible_set(
         self, transcription: Transcription, places: FloatArray | None = None
@@ -110,16 +114,8 @@ class Setup:
         """What is solid; None where limbs and floor may go through each other."""
         if not self.requests.solution.solid:
             return None
-        fitted, context = self.fit, self.context
-        return solid_world(
-            fitted.motion,
-            context.reference,
-            (
-                floor_heights(context.schedule, self.target_places),
-                floor_heights(fitted.schedule, fitted.places),
-            ),
-            context.timeline.to_old,
-        )
+        clears = self.requests.clears
+        return surroundings(self.fit, self.context, self.target_places, self.scene, clears)
 
     @cached_property
     def torques(self) -> TorqueFunction:
@@ -157,7 +153,9 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     context = replace(context, schedule=with_added(context.schedule, contacts))
     start = _start(fit, problem, context, added)
     fitted_places = start.places
-    target_places = find_target_places(fit, problem, context.schedule)
+    footing = find_footing(fit, problem, context.schedule)
+    target_places = footing.places
+    start = on_faces(start, footing)
     context, start, durations = _anticipated(fit, problem, context, start, target_places)
     start = _with_constraints(start, problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
@@ -167,7 +165,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
-    turns = _turns(problem, context.phases, context.schedule)
+    turns = pin_turns(problem, context.phases, context.schedule)
     reduction, space = requests.solution.reduction, None
     if reduction is not None:
         space = reduce(reduction, start.transcription.character, fit.performance.angles)
@@ -185,6 +183,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         requests,
         space,
         durations,
+        problem.scene,
     )
 
 
@@ -229,16 +228,6 @@ def _anticipated(
     return context, found.motion, Durations.FOUND
 
 
-def find_target_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
-    """Places (n_contacts, 3) m, world, where the problem's pins put the contacts of its schedule.
-
-    Raises UnknownPhase, UnknownContact, ContradictoryPins.
-    """
-    places = pinned_places(problem, fit.performance, fit.schedule)
-    wanted = {c.name: place for c, place in zip(fit.schedule.contacts, places, strict=True)}
-    return np.array([wanted.get(c.name, c.place) for c in schedule.contacts]).reshape(-1, 3)
-
-
 def _weighs_torques(requests: Requests) -> bool:
     """Whether changes of torques count in the metric of the steps: (q, tau, lambda), thesis 4.4."""
     solution = requests.solution
@@ -256,19 +245,6 @@ def _refuse_torques(requests: Requests) -> None:
         for name in weighed:
             if name in TORQUE_OBJECTIVES:
                 raise NeedsTorques(name)
-
-
-def _turns(
-    problem: MotionProblem, named: Sequence[Phase], schedule: ContactSchedule
-) -> dict[str, float]:
-    """Turns of the result's ground phases by the pins, which name the recording's phases; rad."""
-    turns: dict[str, float] = {}
-    for pin in problem.pins:
-        was = next((phase for phase in named if phase.name == pin.phase), None)
-        for phase in schedule.phases:
-            if was is not None and phase.start < was.end and phase.end > was.start:
-                turns[phase.name] = turns.get(phase.name, 0.0) + pin.turn
-    return turns
 
 
 def _cost_weights(requests: Requests) -> CostWeights:

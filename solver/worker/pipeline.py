@@ -25,11 +25,13 @@ from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
 from ..data.report import Origin, Report, StageReport
 from ..data.scaling import scaled_problem, scaled_recording, scaled_schedule, scaled_track
+from ..data.scene import SceneObject
 from ..data.traces import Traces, scaled_traces
 from ..optimisation.sqp import Step
 from ..results.report import report
 from ..results.trace_sampling import motion_traces, recorded_traces
 from ..results.violations import most_telling
+from ..scene.checks import check_scene
 from ..stages.fit import Fit, fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..transcription.motion import Motion
@@ -81,6 +83,11 @@ class Subject:
         """The same recording with another problem, in the recording's own lengths."""
         if problem.height is not None:
             problem = scaled_problem(problem, self.factor)
+        return replace(self, problem=problem)
+
+    def with_objects(self, things: tuple[SceneObject, ...]) -> Subject:
+        """The same with more objects in the scene, at the stated stature."""
+        problem = replace(self.problem, scene=(*self.problem.scene, *things))
         return replace(self, problem=problem)
 
     @property
@@ -172,8 +179,9 @@ def solve(
 ) -> AdaptationResult:
     """The whole way from an analysis. fitted_by: may remember fits.
 
-    Raises what `adapt` does; wrong names in pins before the fit takes its seconds.
+    Raises what `adapt` and `check_scene` do; wrong names in pins before the fit takes its seconds.
     """
+    check_scene(subject.problem)
     schedule = subject.analysis.schedule
     for pin in subject.problem.pins:
         chosen_contacts(pin, phase_of(pin, schedule), schedule)

@@ -21,6 +21,7 @@ from hangtime.solver.data.requests import (
     AddedMass,
     AngleLimit,
     BodyChange,
+    Clear,
     ConeLimit,
     ConeShape,
     Dynamics,
@@ -438,6 +439,7 @@ KINDS = {
     "forces": FORCES,
     "timings": TIMINGS,
     "holds": st.builds(Hold, NAMES, NUMBERS, POSITIVE, st.booleans()),
+    "clears": st.builds(Clear, NAMES, NAMES, POSITIVE, WORDS),
 }
 LIMBS = st.builds(LimbChange, NAMES, BONES, POSITIVE, POSITIVE)
 

@@ -12,7 +12,14 @@ import hangtime.solver
 import pytest
 from hangtime.operators.words import messages
 from hangtime.operators.words.messages import OUTCOMES, TEMPLATES, sentence
-from hangtime.solver.data.faults import BadRecipe, Fault, MissingPart, NoSolution, RequestFault
+from hangtime.solver.data.faults import (
+    BadRecipe,
+    Fault,
+    MissingPart,
+    NoSolution,
+    RequestFault,
+    SceneFault,
+)
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.status import Status
 
@@ -20,7 +27,7 @@ from hangtime.solver.data.status import Status
 def all_faults() -> list[type[Fault]]:
     for module in pkgutil.walk_packages(hangtime.solver.__path__, "hangtime.solver."):
         importlib.import_module(module.name)
-    return sorted(descendants(Fault) - {RequestFault}, key=lambda fault: fault.__name__)
+    return sorted(descendants(Fault) - {RequestFault, SceneFault}, key=lambda fault: fault.__name__)
 
 
 def descendants(base: type[Fault]) -> set[type[Fault]]:

@@ -1,0 +1,79 @@
+"""Where a problem's contacts stand: places by its pins, and faces with their normals."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..analysis.landing import Footing
+from ..analysis.pinned_places import pinned_footing
+from ..arrays import FloatArray
+from ..data.constants import UP
+from ..data.contacts import ContactSchedule, Phase
+from ..data.faults import TooSteep
+from ..data.problem import MotionProblem, Pin
+from ..transcription.contact_pins import PointContact
+from ..transcription.motion import Motion
+from .fit import Fit
+
+
+def find_footing(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> Footing:
+    """Where the problem's pins put the contacts of its schedule.
+
+    Raises UnknownPhase, UnknownContact, ContradictoryPins, and as `land` does.
+    """
+    found = pinned_footing(problem, fit.performance, fit.schedule)
+    row = {contact.name: i for i, contact in enumerate(fit.schedule.contacts)}
+    places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
+    normals = np.tile(UP, (len(places), 1))
+    for i, contact in enumerate(schedule.contacts):
+        if contact.name in row:
+            places[i], normals[i] = (
+                each[row[contact.name]] for each in (found.places, found.normals)
+            )
+    return Footing(places, normals, found.pins)
+
+
+def find_target_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
+    """The places (n_contacts, 3) m, world, of `find_footing`, which says what it raises."""
+    return find_footing(fit, problem, schedule).places
+
+
+def on_faces(motion: Motion, footing: Footing) -> Motion:
+    """The motion with contacts whose friction, and sole, go with the faces that they stand on.
+
+    Raises TooSteep.
+    """
+    sloping = footing.normals[:, 2] < 1.0
+    if not sloping.any():
+        return motion
+    t = motion.transcription
+    contacts = tuple(
+        _on_face(contact, normal, footing.pins[contact.contact.name]) if slopes else contact
+        for contact, normal, slopes in zip(t.contacts, footing.normals, sloping, strict=True)
+    )
+    return replace(motion, transcription=replace(t, contacts=contacts))
+
+
+def _on_face(contact: PointContact, normal: FloatArray, pin: Pin) -> PointContact:
+    steep = float(np.hypot(*normal[:2]) / normal[2])
+    if contact.friction is not None and steep >= contact.friction:
+        angle = float(np.degrees(np.arctan(steep)))
+        raise TooSteep(pin.name, contact.contact.name, pin.on or "", angle, contact.friction)
+    sole = contact.sole
+    if sole is not None:  # it gives along the normal
+        sole = replace(sole, moves=sole.moves[:, 2:] * normal)
+    return replace(contact, normal=normal, sole=sole)
+
+
+def pin_turns(
+    problem: MotionProblem, named: Sequence[Phase], schedule: ContactSchedule
+) -> dict[str, float]:
+    """Turns of the result's ground phases by the pins, which name the recording's phases; rad."""
+    turns: dict[str, float] = {}
+    for pin in problem.pins:
+        was = next((phase for phase in named if phase.name == pin.phase), None)
+        for phase in schedule.phases:
+            if was is not None and phase.start < was.end and phase.end > was.start:
+                turns[phase.name] = turns.get(phase.name, 0.0) + pin.turn
+    return turns

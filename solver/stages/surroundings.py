@@ -1,0 +1,40 @@
+"""What is solid in a problem: the body, the floor, and the objects of the scene as they move."""
+
+from collections.abc import Sequence
+
+from ..arrays import FloatArray
+from ..constraints.evaluation_context import EvaluationContext
+from ..data.requests import Clear
+from ..data.scene import SceneObject
+from ..scene.object_motion import ObjectMotion
+from ..solid.solid_world import SolidWorld, floor_heights, solid_world
+from .fit import Fit
+
+
+def surroundings(
+    fit: Fit,
+    context: EvaluationContext,
+    target_places: FloatArray,
+    scene: Sequence[SceneObject],
+    clears: Sequence[Clear],
+) -> SolidWorld:
+    """The solid world of a problem. target_places: (n_contacts, 3) m. Raises StillBone."""
+    line = context.timeline
+    floors = (
+        floor_heights(context.schedule, target_places),
+        floor_heights(fit.schedule, fit.places),
+    )
+    placed = [(thing, ObjectMotion.of(thing, line.first_frame, line.rate)) for thing in scene]
+    by = _by_object(clears, context)
+    return solid_world(fit.motion, context.reference, floors, line.to_old, placed, by)
+
+
+def _by_object(clears: Sequence[Clear], context: EvaluationContext) -> dict[str, dict[int, float]]:
+    """Clearances, m, by object and body; of several the largest."""
+    found: dict[str, dict[int, float]] = {}
+    for clear in clears:
+        bodies = [context.body(clear.name, bone) for bone in clear.bones]
+        mine = found.setdefault(clear.thing, {})
+        for body in bodies or range(len(context.character.bodies)):
+            mine[body] = max(clear.by, mine.get(body, 0.0))
+    return found

@@ -1,0 +1,98 @@
+"""Hops in a scene: onto a crate and a slope, and onto what friction does not hold."""
+
+import numpy as np
+import pytest
+from hangtime.solver.arrays import FloatArray
+from hangtime.solver.data.faults import (
+    Fault,
+    InsideOut,
+    NoFaces,
+    NotFinite,
+    NotGround,
+    SameObjectName,
+    TooSteep,
+    UnknownObject,
+)
+from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.data.scaling import scaled_problem
+from hangtime.solver.data.scene import SceneObject, SceneRole
+from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.solver.results.violations import condition_violations
+from hangtime.solver.scene.checks import check_scene
+from hangtime.solver.stages.footing import find_footing
+from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.tests.helpers.fitted_hop import fitted_hop
+from hangtime.tests.helpers.meshes import box, thing
+
+DEEPEST = 2.0  # mm, beyond what the soles have in the recording's floor
+PIN = Pin("Landing", "ground 2", offset=(0.1, 0.0, 0.2), on="Crate")
+
+
+def crate(degrees: float, axis: int = 0) -> SceneObject:
+    """A slab whose upper face is below the landing, tilted about a horizontal axis."""
+    bare = Pin("Landing", "ground 2", offset=PIN.offset)
+    fit = fitted_hop()
+    found = find_footing(fit, MotionProblem(pins=(bare,)), fit.schedule).places
+    landing = found[[c.start > 0.6 for c in fit.schedule.contacts]].mean(axis=0)
+    tilt = axis_rotation(axis, np.radians(degrees))
+    place = landing - tilt @ np.array([0.0, 0.0, 0.05])
+    return thing("Crate", box((0.8, 0.5, 0.1)), tuple(place.tolist()), rotation=tilt)
+
+
+def solved(degrees: float) -> tuple[Adaptation, FloatArray]:
+    """The hop onto the slab, and its normal."""
+    slab = crate(degrees)
+    return adapt(fitted_hop(), MotionProblem(pins=(PIN,), scene=(slab,))), slab.rotations[0][:, 2]
+
+
+@pytest.mark.parametrize("degrees", [0.0, pytest.param(-30.0, marks=pytest.mark.slow)])
+def test_a_hop_lands_on_faces(degrees: float) -> None:
+    found, normal = solved(degrees)
+    assert found.solved
+    inside = [row for row in condition_violations(found) if "Crate" in row.name]
+    assert all(row.kind is RowKind.SOLID for row in inside)
+    assert max((row.amount for row in inside), default=0.0) < DEEPEST
+    contacts = found.motion.transcription.contacts
+    landed = {c.contact.point for c in contacts if np.allclose(c.normal, normal)}
+    assert landed >= {"Left heel", "Left toe", "Right heel", "Right toe"}
+
+
+def test_a_slope_that_friction_does_not_hold_is_refused() -> None:
+    with pytest.raises(TooSteep) as caught:
+        adapt(fitted_hop(), MotionProblem(pins=(PIN,), scene=(crate(-50.0),)))
+    assert caught.value.slope == pytest.approx(50.0, abs=0.1)
+
+
+def obstacle(*, flip: bool = False) -> SceneObject:
+    vertices, triangles = box((0.1, 0.1, 2.0))
+    mesh = vertices, triangles[:, ::-1] if flip else triangles
+    return thing("Post", mesh, role=SceneRole.OBSTACLE)
+
+
+BROKEN = np.full((3, 3), np.nan), np.array([[0, 1, 2]])
+
+
+@pytest.mark.parametrize(
+    ("fault", "scene", "on"),
+    [
+        (NoFaces, (thing("A", (np.zeros((3, 3)), np.zeros((0, 3), int))),), None),
+        (NoFaces, (thing("A", (np.zeros((3, 3)), np.array([[0, 1, 2]]))),), None),
+        (NotFinite, (thing("A", BROKEN),), None),
+        (InsideOut, (obstacle(flip=True),), None),
+        (SameObjectName, (obstacle(), obstacle()), None),
+        (UnknownObject, (obstacle(),), "Crate"),
+        (NotGround, (obstacle(),), "Post"),
+    ],
+)
+def test_faulty_scenes_are_refused(
+    fault: type[Fault], scene: tuple[SceneObject, ...], on: str | None
+) -> None:
+    pins = () if on is None else (Pin("Landing", "ground 2", on=on),)
+    with pytest.raises(fault):
+        check_scene(MotionProblem(pins=pins, scene=scene))
+
+
+def test_a_stated_stature_scales_the_scene() -> None:
+    scaled = scaled_problem(MotionProblem(scene=(obstacle(),)), 2.0).scene[0]
+    np.testing.assert_allclose(scaled.vertices, 2.0 * obstacle().vertices)
