@@ -23,6 +23,9 @@ from .bounded_qp import BoundedStep
 
 # Velocities are weighed against positions by the time in which they would move as far.
 ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
+# A joint far beyond its range is brought back by some 20 degrees a step, as targets are clamped in
+# inverse kinematics (Buss and Kim 2005): what is linear here is not over half a turn.
+LONGEST_WAYS = {RowKind.RANGE: 0.35}
 PENALTY = 1e4
 NORMAL_BATCH = 32  # spans
 MIN_SPANS_PER_THREAD = 8
@@ -133,12 +136,12 @@ class LinearisedProblem:
         self._factor = _factor(system)
         self._bound(transcription, rows, working)
 
-    def widened(self, transcription: Transcription, solids: Rows) -> "LinearisedProblem":
-        """The same with other keep-out rows, which are the last: they need no new factor."""
+    def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":
+        """The same with other guard rows, which are the last: they need no new factor."""
         twin = copy(self)
-        kept = self.rows.kind != RowKind.SOLID
-        working = np.concatenate([self.working[kept], np.zeros(len(solids.value), dtype=bool)])
-        twin._bound(transcription, Rows.join([self.rows.some(kept), solids]), working)
+        kept = ~self.rows.guards
+        working = np.concatenate([self.working[kept], np.zeros(len(guards.value), dtype=bool)])
+        twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), working)
         return twin
 
     def _bound(self, transcription: Transcription, rows: Rows, working: BoolArray | None) -> None:
@@ -218,7 +221,7 @@ class LinearisedProblem:
         d = np.zeros((self._blocks, windows.size))
         residual = r
         enough = max(1e-9, SWEEP_REDUCTION * float(np.abs(residual).max()))
-        z = self._scaled(value, self._free)
+        z = self._scaled(self._clamped(value), self._free)
         for sweep in range(MAX_SWEEPS):
             lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
             if sweep:
@@ -236,6 +239,11 @@ class LinearisedProblem:
         found[self._equal] = y[windows.where]
         found[self._free] = self._bounded.multipliers
         return d if self._basis is None else d @ self._basis.T, found
+
+    def _clamped(self, value: FloatArray) -> FloatArray:
+        """Values (R,) as far beyond their bounds as one step may bring them back."""
+        most = by_kind(self.rows.kind, LONGEST_WAYS, otherwise=np.inf)
+        return np.asarray(np.clip(value, self.rows.lower - most, self.rows.upper + most))
 
     def _bound_values(self, d: FloatArray) -> FloatArray:
         """(R_bounds,) product B_x d."""

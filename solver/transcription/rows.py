@@ -138,6 +138,11 @@ class Rows:
         return np.asarray(self.lower == self.upper)
 
     @property
+    def guards(self) -> BoolArray:
+        """(R,) flags of the guard rows."""
+        return np.asarray(by_kind(self.kind, {kind: 0.0 for kind in RowKind if kind.guards}) == 0.0)
+
+    @property
     def tolerance(self) -> FloatArray:
         """(R,) feasibility tolerance of each, in its kind's unit."""
         return by_kind(self.kind, {kind: kind.tolerance for kind in RowKind})
@@ -152,9 +157,11 @@ def violation(value: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatA
     return np.asarray(np.maximum(value - upper, 0.0) + np.minimum(value - lower, 0.0))
 
 
-def by_kind(kinds: NDArray[np.object_], sizes: dict[RowKind, float]) -> FloatArray:
-    """(R,) each row's entry of a table by kind; 1 where it has none."""
-    values = np.ones(len(kinds))
+def by_kind(
+    kinds: NDArray[np.object_], sizes: dict[RowKind, float], *, otherwise: float = 1.0
+) -> FloatArray:
+    """(R,) each row's entry of a table by kind; `otherwise` where it has none."""
+    values = np.full(len(kinds), otherwise)
     for kind, size in sizes.items():
         values[kinds == kind] = size
     return values
