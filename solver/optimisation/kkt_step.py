@@ -23,9 +23,6 @@ from .bounded_qp import BoundedStep
 
 # Velocities are weighed against positions by the time in which they would move as far.
 ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
-# A joint far beyond its range is brought back by some 20 degrees a step, as targets are clamped in
-# inverse kinematics (Buss and Kim 2005): what is linear here is not over half a turn.
-LONGEST_WAYS = {RowKind.RANGE: 0.35}
 PENALTY = 1e4
 NORMAL_BATCH = 32  # spans
 MIN_SPANS_PER_THREAD = 8
@@ -221,7 +218,7 @@ class LinearisedProblem:
         d = np.zeros((self._blocks, windows.size))
         residual = r
         enough = max(1e-9, SWEEP_REDUCTION * float(np.abs(residual).max()))
-        z = self._scaled(self._clamped(value), self._free)
+        z = self._scaled(value, self._free)
         for sweep in range(MAX_SWEEPS):
             lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
             if sweep:
@@ -239,11 +236,6 @@ class LinearisedProblem:
         found[self._equal] = y[windows.where]
         found[self._free] = self._bounded.multipliers
         return d if self._basis is None else d @ self._basis.T, found
-
-    def _clamped(self, value: FloatArray) -> FloatArray:
-        """Values (R,) as far beyond their bounds as one step may bring them back."""
-        most = by_kind(self.rows.kind, LONGEST_WAYS, otherwise=np.inf)
-        return np.asarray(np.clip(value, self.rows.lower - most, self.rows.upper + most))
 
     def _bound_values(self, d: FloatArray) -> FloatArray:
         """(R_bounds,) product B_x d."""

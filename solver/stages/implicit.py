@@ -26,6 +26,7 @@ MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
 MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
 MAX_GUARD_STEPS = 10  # after which what is in the way is given up
+MOST_FURTHER = 0.1  # rad, by which rows may take another joint further beyond its range
 MAX_DENSE_VIOLATION = 3.0  # times a constraint's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
 
@@ -219,7 +220,7 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
         tried = restore(
             feasible, metric, outcome.x, stage="bounds", max_steps=steps, progress=progress
         )
-        if tried.solved:
+        if tried.solved and not _takes_further(tried, outcome, setup):
             outcomes.append(outcome := tried)
         elif new.guards is old.guards:
             break  # what was solved for stands; what it misses in between is reported
@@ -230,6 +231,17 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
             outcome, setup.metric_of, ADAPT_TOLERANCE, basis=setup.basis, progress=progress
         )
     return outcomes
+
+
+def _takes_further(tried: Outcome, outcome: Outcome, setup: Setup) -> bool:
+    """Whether rows led to a motion with a joint further beyond its range than before: no cure."""
+    if setup.human is None:
+        return False
+    was, now = (
+        max((each.amount for each in setup.human.violations(motion)), default=0.0)
+        for motion in (setup.feasible_set(o.transcription).motion(o.x) for o in (outcome, tried))
+    )
+    return now > was + MOST_FURTHER
 
 
 def _exchanged(outcome: Outcome, setup: Setup, given_up: set[str]) -> Transcription:

@@ -157,11 +157,9 @@ def violation(value: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatA
     return np.asarray(np.maximum(value - upper, 0.0) + np.minimum(value - lower, 0.0))
 
 
-def by_kind(
-    kinds: NDArray[np.object_], sizes: dict[RowKind, float], *, otherwise: float = 1.0
-) -> FloatArray:
-    """(R,) each row's entry of a table by kind; `otherwise` where it has none."""
-    values = np.full(len(kinds), otherwise)
+def by_kind(kinds: NDArray[np.object_], sizes: dict[RowKind, float]) -> FloatArray:
+    """(R,) each row's entry of a table by kind; 1 where it has none."""
+    values = np.ones(len(kinds))
     for kind, size in sizes.items():
         values[kinds == kind] = size
     return values
