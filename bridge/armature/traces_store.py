@@ -84,7 +84,8 @@ def _flight(packed: Mapping[str, NDArray[Any]], i: int, name: str) -> FlightPara
 @lru_cache(maxsize=_REMEMBERED)
 def _unpacked(stored: _Stored) -> StoredTraces:
     with np.load(BytesIO(stored.owner[_CONTENT]), allow_pickle=False) as packed:
-        arrays = {n: packed[n].astype(float) for n in _ARRAYS}
+        # files that an earlier version saved lack what it did not know
+        arrays = {n: packed[n].astype(float) for n in _ARRAYS if n in packed}
         names = [tuple(packed[n].tolist()) for n in _NAMES]
         flights = tuple(_flight(packed, i, n) for i, n in enumerate(packed[_FLIGHTS].tolist()))
         weight, stood = float(packed[_WEIGHT]), Matrix(packed[_STOOD].tolist())

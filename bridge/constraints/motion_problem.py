@@ -97,6 +97,7 @@ def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests
         listed.solution,
         keep_times=listed.solution.keep_times or settings.keep_times,
         solid=listed.solution.solid and settings.keep_out,
+        human=listed.solution.human and settings.human_ranges,
     )
     return replace(listed, solution=solution)
 

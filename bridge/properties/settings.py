@@ -242,6 +242,14 @@ class HangtimeSettings(bpy.types.PropertyGroup):
             default=True,
         )
     )
+    human_ranges: chosen(
+        boolean(
+            "Human Ranges",
+            "Joints keep to what a person's can do, or to what they do in the recording where that "
+            "is more. Off for a character that is no human",
+            default=True,
+        )
+    )
     objective: bpy.props.EnumProperty(
         name="Lessen",
         description="What Refine lessens, beside staying close",

@@ -94,6 +94,7 @@ method = "implicit"             # or "implicit with torques", "explicit"
 dynamics = "automatic"          # or "reduced", "standard"
 keep_times = true               # phases that no timing names last as long as recorded
 solid = false                   # limbs and floor may go through each other
+human = false                   # joints may go beyond what a person's can
 longest_span = 0.1              # s between knots; torque_span: of the torques
 [solution.objectives]           # weights, of the explicit solution
 "torque smoothness" = 1         # power, torque output, mass displacement, angle displacement,

@@ -84,6 +84,7 @@ SOLUTION = Kind(
         choice("dynamics", Dynamics),
         flag("keep_times"),
         flag("solid"),
+        flag("human"),
         number("longest_span", ABOVE_ZERO),
         number("torque_span", ABOVE_ZERO),
         one("objectives", _objectives, _weights),

@@ -12,7 +12,7 @@ from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.recording import Recording
 from ...solver.numerics.rotations import unit
 from ...solver.stages.implicit import Adaptation
-from ...solver.transcription import constraint_functions
+from ...solver.transcription import constraint_functions, joint_measures
 from ...solver.transcription.constraint import Constraint
 
 SLACK = 1e-6  # s
@@ -161,11 +161,11 @@ def _condition(condition: Constraint, adaptation: Adaptation) -> Iterator[Check]
             offset = turn.T @ place.point.place
             where = place.place(times)
             yield PointCheck(*span, body.bone, offset, times, where, place.axes, lower, upper)
-        case constraint_functions.BendAngle() as bend:
+        case joint_measures.BendAngle() as bend:
             normal = np.cross(bend.straight, bend.flexion)
             bones = _bones(bend.joint.first, adaptation)
             yield BendCheck(*span, *bones, normal, float(lower[0]), float(upper[0]))
-        case constraint_functions.ConeAngle() as cone:
+        case joint_measures.ConeAngle() as cone:
             bones = _bones(cone.joint.first, adaptation)
             yield ConeCheck(*span, *bones, cone.frame, cone.stretch, float(upper[0]))
 

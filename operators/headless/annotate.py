@@ -23,7 +23,7 @@ from ...solver.data.requests import AddedMass, TorqueLimit
 from ...solver.data.scene import SceneObject
 from ...solver.scene.object_motion import ObjectMotion
 from ...solver.stages.implicit import Adaptation
-from ...solver.transcription import constraint_functions
+from ...solver.transcription import constraint_functions, joint_measures
 from ...solver.transcription.constraint import Constraint
 from ...solver.transcription.torque_constraint import TorqueFunction
 from .picture import instants
@@ -77,9 +77,9 @@ def _of_condition(condition: Constraint, figure: _Posed) -> Iterator[Mark]:
             exact = np.all(condition.bounds.lower == condition.bounds.upper)
             if exact:  # bounds have no place of their own; the thesis leaves them out, too
                 yield Sphere(place.place(figure.times), span, hollow=True)
-        case constraint_functions.BendAngle() as bend:
+        case joint_measures.BendAngle() as bend:
             yield from _limit(bend, condition, figure, span)
-        case constraint_functions.ConeAngle() as cone:
+        case joint_measures.ConeAngle() as cone:
             body = figure.body_of(cone.joint.first)
             yield Cone(
                 apex=figure.centres[:, body],
@@ -95,7 +95,7 @@ def _of_condition(condition: Constraint, figure: _Posed) -> Iterator[Mark]:
 
 
 def _limit(
-    bend: constraint_functions.BendAngle, condition: Constraint, figure: _Posed, span: TimeSpan
+    bend: joint_measures.BendAngle, condition: Constraint, figure: _Posed, span: TimeSpan
 ) -> Iterator[Mark]:
     body = figure.body_of(bend.joint.first)
     lower, upper = float(condition.bounds.lower[0]), float(condition.bounds.upper[0])

@@ -30,7 +30,14 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.report_text import as_text, certificate_lines, durations_lines, overlap_lines, retimed
+from ..words.report_text import (
+    as_text,
+    certificate_lines,
+    durations_lines,
+    given_up_lines,
+    joint_lines,
+    retimed,
+)
 from .common import hindrance, required_armature
 from .live import live
 from .session import Asked, session
@@ -227,14 +234,15 @@ def summary(answer: Adapted) -> str:
         [
             f"{said} in {seconds:.1f} s",
             f"Loaded points slide {worst.loaded_slide_mm:.1f} mm at most ({worst.name})",
-            *(f"{each.name}: {_held(each)}" for each in report.conditions),
+            *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
             *(
                 f"{p.phase.capitalize()}: {p.adapted_s:.2f} s, was {p.recorded_s:.2f} s"
                 for p in retimed(report)
             ),
             *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
             f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
-            *overlap_lines(report),
+            *given_up_lines(report),
+            *joint_lines(report),
             *certificate_lines(report),
         ]
     )

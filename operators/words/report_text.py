@@ -3,7 +3,14 @@
 from collections.abc import Iterator
 
 from ...solver.data.contacts import PhaseKind
-from ...solver.data.report import CertificateItem, CertificateLine, PhaseReport, Report
+from ...solver.data.report import (
+    CertificateItem,
+    CertificateLine,
+    ConstraintReport,
+    PhaseReport,
+    Report,
+)
+from ...solver.data.row_kinds import RowKind
 from ...solver.data.status import Durations, Status
 from .messages import outcome
 
@@ -12,6 +19,7 @@ LEFT_AT_MOST = {
     PhaseKind.GROUND: 0.02,
 }  # BW·m, rms; what the project promises
 LEAST_RETIMED = 0.0005  # s
+LEAST_TURN = 1.0  # degrees of a joint, to be told
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
 DURATIONS = {  # where they are not as one would expect
     Durations.NONE_FOUND: (
@@ -68,23 +76,38 @@ def headline(report: Report) -> list[str]:
     if report.status is not Status.SOLVED:
         return [outcome(report.status)]
     if not failed:
-        return [outcome(report.status), *(f"  {line}" for line in overlap_lines(report))]
+        return [outcome(report.status), *(f"  {line}" for line in given_up_lines(report))]
     do = "does" if len(failed) == 1 else "do"
     first = (
         f"Solved: everything asked for holds, but {len(failed)} of the certificate's {count} "
         f"lines {do} not."
     )
-    told = [*overlap_lines(report), *(_told(line) for line in most_telling(failed))]
+    told = [*given_up_lines(report), *(_told(line) for line in most_telling(failed))]
     return [first, *(f"  {line}" for line in told)]
 
 
-def overlap_lines(report: Report) -> list[str]:
-    """The solids that could not be kept out of each other: lines."""
+def given_up_lines(report: Report) -> list[str]:
+    """What is in each other, and the joints that go beyond their range: lines."""
     return [
-        f"{each.name}: {each.worst_violation:.0f} mm (frame {each.worst_violation_frame:.0f}), "
-        "which what is asked for needs"
-        for each in report.overlaps
+        f"{_given_up(each)} (frame {each.worst_violation_frame:.0f}), which what is asked for needs"
+        for each in report.given_up
     ]
+
+
+def _given_up(each: ConstraintReport) -> str:
+    if each.kind is RowKind.RANGE:
+        return f"{each.name} {each.worst_violation:.0f}° beyond its range"
+    return f"{each.name}: {each.worst_violation:.0f} mm"
+
+
+def joint_lines(report: Report) -> list[str]:
+    """The joints that changed most against the recording: a line, none where nothing did."""
+    told = [
+        f"{each.bone} {each.change_deg:.0f}° (frame {each.frame:.0f})"
+        for each in report.joint_changes
+        if each.change_deg >= LEAST_TURN
+    ]
+    return [f"Joints changed most: {', '.join(told)}"] if told else []
 
 
 def certificate_lines(report: Report) -> list[str]:
@@ -165,6 +188,8 @@ def _changes(report: Report) -> Iterator[str]:
             deeper = jump.crouch_deeper_cm
             way = "deeper" if deeper >= 0.0 else "less deep"
             yield f"            the crouch before it is {abs(deeper):.1f} cm {way}"
+    for line in joint_lines(report):
+        yield f"{'Joints':<11} {line.removeprefix('Joints ')}"
     for phase in retimed(report):
         yield (
             f"{phase.phase.capitalize():<11} takes {phase.adapted_s:.3f} s instead of "
@@ -199,6 +224,12 @@ def _quality(report: Report) -> Iterator[str]:
         yield (
             f"{name:<11} has {each.name[0].lower()}{each.name[1:]} by {each.deepest_mm:.0f} mm "
             f"(frame {each.frame:.0f}), and may keep it"
+        )
+    for i, beyond in enumerate(report.recorded_ranges[:MOST_NAMED]):
+        name = "" if i or report.recorded_overlaps else "Recording"
+        yield (
+            f"{name:<11} {beyond.name[0].lower()}{beyond.name[1:]} {beyond.beyond_deg:.0f}° beyond "
+            f"a person's range (frame {beyond.frame:.0f}), and may do so"
         )
     residuals = report.between_nodes
     for kind, left in ((PhaseKind.FLIGHT, residuals.flight), (PhaseKind.GROUND, residuals.ground)):

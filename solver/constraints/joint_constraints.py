@@ -3,9 +3,6 @@
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..body.anatomy import Part
-from ..body.character import Body
-from ..body.human_limits import MIN_BEND_SINE
 from ..data.faults import BadTiming
 from ..data.requests import (
     AngleLimit,
@@ -17,12 +14,13 @@ from ..data.requests import (
 )
 from ..numerics.rotations import axis_rotation, perpendicular, unit
 from ..transcription.constraint import Bounds, Constraint
-from ..transcription.constraint_functions import (
+from ..transcription.constraint_functions import BodyOrientation, JointAngles
+from ..transcription.joint_measures import (
     BendAngle,
-    BodyOrientation,
     ConeAngle,
-    JointAngles,
     TwistAngle,
+    bend_angle,
+    cone_angle,
 )
 from .evaluation_context import EvaluationContext
 
@@ -37,25 +35,8 @@ def bend_limit(request: AngleLimit, context: EvaluationContext) -> Constraint:
 
 def bend_function(context: EvaluationContext, body: int) -> BendAngle:
     """Flexion angle of a body's joint, positive the way it bends in the fit."""
-    character = context.character
-    joint, parent = character.joints[body], character.bodies[character.joints[body].parent]
-    along = unit(character.bodies[body].tip)
-    straight = unit(parent.tip)
     times = np.linspace(0.0, context.reference.duration, 200)
-    turned = joint.axes.rotation(context.reference.angles(times)[:, joint.dofs]) @ along
-    mean = turned.mean(axis=0)
-    across = mean - straight * (mean @ straight)
-    if np.linalg.norm(across) < MIN_BEND_SINE:
-        across = _expected_flexion(character.bodies[body], straight)
-    return BendAngle(joint, along, straight, unit(across))
-
-
-def _expected_flexion(body: Body, straight: FloatArray) -> FloatArray:
-    """Anatomical flexion direction (3,): knees backwards, all else forwards, across the limb."""
-    forward = body.box_rotation[:, 1]
-    forward = -forward if body.part is Part.SHANK else forward
-    across = forward - straight * (forward @ straight)
-    return across if np.linalg.norm(across) > MIN_BEND_SINE else perpendicular(straight)
+    return bend_angle(context.character, body, context.reference.angles(times))
 
 
 def cone_limit(request: ConeLimit, context: EvaluationContext) -> Constraint:
@@ -70,19 +51,14 @@ def cone_function(
     request: ConeLimit, context: EvaluationContext, body: int, span: tuple[float, float]
 ) -> ConeAngle:
     """Cone about the request's axis, or about the bone's mean direction in the fit; span s."""
-    character = context.character
-    joint, along = character.joints[body], unit(character.bodies[body].tip)
     if request.axis is None:
+        joint, along = context.character.joints[body], unit(context.character.bodies[body].tip)
         times = context.reference_times(np.linspace(*span, 100))
         turned = joint.axes.rotation(context.reference.angles(times)[:, joint.dofs]) @ along
         axis = unit(turned.mean(axis=0))
     else:
         axis = unit(np.array(request.axis, dtype=float))
-    sideways = character.bodies[0].box_rotation[:, 0]
-    first = sideways - axis * (sideways @ axis)
-    first = unit(first) if np.linalg.norm(first) > 0.3 else perpendicular(axis)
-    frame = np.stack([axis, first, np.cross(axis, first)])
-    return ConeAngle(joint, along, frame, np.array(request.stretch, dtype=float))
+    return cone_angle(context.character, body, axis, request.stretch)
 
 
 def twist_limit(request: TwistLimit, context: EvaluationContext) -> Constraint:

@@ -11,6 +11,7 @@ from enum import Enum
 from typing import Any
 
 from .problem import MassTable
+from .reports.joints import JointChange, RecordedRange
 from .requests import ReductionKind, Vector
 from .row_kinds import RowKind, Violation
 from .status import Durations, Status
@@ -349,8 +350,9 @@ class Report:
 
     certificate: what a laboratory asks of a motion, line by line, with its limits.
     equations: every constraint, worst first. rows: constraint rows. torques: None where the problem
-    does not involve them. recorded_overlaps: deepest first; none where nothing is solid. stages:
-    None where nobody timed them.
+    does not involve them. recorded_overlaps: deepest first; none where nothing is solid.
+    recorded_ranges: worst first; none where the figure is no human. joint_changes: the joints that
+    changed most. stages: None where nobody timed them.
     """
 
     status: Status
@@ -372,7 +374,9 @@ class Report:
     torque_limits: tuple[TorqueUse, ...]
     fit_to_recording: FitQuality
     recorded_overlaps: tuple[RecordedOverlap, ...]
+    recorded_ranges: tuple[RecordedRange, ...]
     change: MotionChange
+    joint_changes: tuple[JointChange, ...]
     jumps: tuple[JumpReport, ...]
     durations: Durations
     phases: tuple[PhaseReport, ...]
@@ -380,9 +384,9 @@ class Report:
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
 
     @property
-    def overlaps(self) -> tuple[ConstraintReport, ...]:
-        """The solids that could not be kept out of each other."""
-        return tuple(c for c in self.conditions if c.kind is RowKind.SOLID and not c.met)
+    def given_up(self) -> tuple[ConstraintReport, ...]:
+        """What the motion could not be guarded from: solids in each other, joints beyond ranges."""
+        return tuple(c for c in self.conditions if c.kind.guards and not c.met)
 
     @property
     def failed(self) -> tuple[CertificateLine, ...]:

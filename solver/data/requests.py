@@ -357,7 +357,7 @@ class SolverOptions:
     None chooses them automatically. keep_times: phases last as long as recorded where no
     PhaseTiming says otherwise; else those that a moved landing or take-off adjoins take the time
     that goes with it. solid: floor and limbs keep out of each other, as far as they do in the
-    recording.
+    recording. human: joints keep to human ranges, or to the recording's where those are wider.
     """
 
     method: Method = Method.IMPLICIT
@@ -371,6 +371,7 @@ class SolverOptions:
     torque_span: float | None = None
     keep_times: bool = False
     solid: bool = True
+    human: bool = True
 
 
 @dataclass(frozen=True)

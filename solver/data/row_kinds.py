@@ -26,6 +26,7 @@ class RowKind(Enum):
     PEAK = ("peak", "BW beyond the cap", 0.01)
     TORQUE = ("torque", "BW·m beyond the limit", 2e-5)
     SOLID = ("solid", "m", 1e-3)
+    RANGE = ("joint range", "rad", 2e-3)
 
     @property
     def label(self) -> str:
@@ -38,6 +39,11 @@ class RowKind(Enum):
     @property
     def tolerance(self) -> float:
         return self.value[2]
+
+    @property
+    def guards(self) -> bool:
+        """Whether nobody asks for it: it is kept where it can be, and else told."""
+        return self in (RowKind.SOLID, RowKind.RANGE)
 
     @property
     def reported_unit(self) -> str:

@@ -5,7 +5,9 @@ Data alone, without CasADi: Blender keeps and draws it. results/trace_sampling.p
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from ..arrays import FloatArray
 
@@ -31,8 +33,9 @@ class Traces:
     velocity: (T, 3) m/s of it; momentum: (T, 3) N·m·s about it. contacts: names of the points that
     touch; points: (T, C, 3) m; forces: (T, C, 3) N on the body, zero while they do not touch;
     weight: N, the body's. joints: bones whose torques are known; torques: (T, J) N·m, the largest
-    component of each joint. Of a recording the contacts are all points that might touch; forces,
-    torques and flights it has none (T, 0, 3).
+    component of each joint. changes: (T, B) rad that each bone's joint is turned from the
+    recording's; (0, 0) where nothing is told. Of a recording the contacts are all points that might
+    touch; forces, torques and flights it has none (T, 0, 3).
     """
 
     frames: FloatArray
@@ -49,6 +52,7 @@ class Traces:
     joints: tuple[str, ...]
     torques: FloatArray
     flights: tuple[FlightParabola, ...]
+    changes: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def scaled_traces(traces: Traces, factor: float) -> Traces:

@@ -133,12 +133,12 @@ class LinearisedProblem:
         self._factor = _factor(system)
         self._bound(transcription, rows, working)
 
-    def widened(self, transcription: Transcription, solids: Rows) -> "LinearisedProblem":
-        """The same with other keep-out rows, which are the last: they need no new factor."""
+    def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":
+        """The same with other guard rows, which are the last: they need no new factor."""
         twin = copy(self)
-        kept = self.rows.kind != RowKind.SOLID
-        working = np.concatenate([self.working[kept], np.zeros(len(solids.value), dtype=bool)])
-        twin._bound(transcription, Rows.join([self.rows.some(kept), solids]), working)
+        kept = ~self.rows.guards
+        working = np.concatenate([self.working[kept], np.zeros(len(guards.value), dtype=bool)])
+        twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), working)
         return twin
 
     def _bound(self, transcription: Transcription, rows: Rows, working: BoolArray | None) -> None:

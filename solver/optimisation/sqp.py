@@ -16,7 +16,6 @@ from typing import Protocol
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
-from ..data.row_kinds import RowKind
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..transcription.motion import Motion
@@ -151,7 +150,7 @@ def restore(
     metric: W, fixed. x: (K, n_block). A line search on the summed squared violation guards the
     steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
     Jacobian and factor, which costs a third of a new one (chord steps). wider: asked where
-    the rows nearly hold, and where they hold, for a set with more keep-out rows to go on in, or the
+    the rows nearly hold, and where they hold, for a set with more guard rows to go on in, or the
     same.
     """
     iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
@@ -191,7 +190,7 @@ class _ChordIterate:
         self._linearised: LinearisedProblem | None = None
         self._before = np.inf  # violation before the last step
         self._stale = False
-        self._solids = int((rows.kind == RowKind.SOLID).sum())  # which are the last
+        self._guards = int(rows.guards.sum())  # which are the last
 
     def advance(self, stage: str) -> Step | None:
         """Takes a step; None where a chord step was shortened, so that a new Jacobian is due."""
@@ -210,18 +209,17 @@ class _ChordIterate:
         return Step(stage, before, trial.length, worst)
 
     def widen(self, feasible: FeasibleSet) -> None:
-        """Goes on in a set with other keep-out rows, by the Jacobian and factor that are there."""
+        """Goes on in a set with other guard rows, by the Jacobian and factor that are there."""
         t, self._feasible = feasible.transcription, feasible
-        solids = t.solid_rows(self.x)
+        guards = t.guard_rows(self.x)
         if self._linearised is not None:
-            self._linearised = self._linearised.widened(t, solids)
+            self._linearised = self._linearised.widened(t, guards)
         if self._rows is not None:
-            kept = self._rows.kind != RowKind.SOLID
-            self._rows = Rows.join([self._rows.some(kept), solids])
-        kept = np.arange(len(self._value)) < len(self._value) - self._solids
-        self._value = np.concatenate([self._value[kept], solids.value])
-        self._solids = len(solids.value)
-        self.violation, self._before = max(self.violation, worst_violation(solids)), np.inf
+            self._rows = Rows.join([self._rows.some(~self._rows.guards), guards])
+        kept = np.arange(len(self._value)) < len(self._value) - self._guards
+        self._value = np.concatenate([self._value[kept], guards.value])
+        self._guards = len(guards.value)
+        self.violation, self._before = max(self.violation, worst_violation(guards)), np.inf
 
     def _linearise(self) -> LinearisedProblem:
         rows = self._feasible.rows(self.x) if self._rows is None else self._rows

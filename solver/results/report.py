@@ -46,6 +46,7 @@ from ..transcription.sampling import Instants, State
 from ..transcription.torque_constraint import TorqueFunction
 from .certificate import LoadedDrift, certificate, friction_used, loaded_drifts
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
+from .joint_report import joint_changes, recorded_ranges
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
 from .violations import condition_violations, pins_of_contacts, worst_constraints
@@ -93,7 +94,9 @@ def report(
         torque_limits=tuple(_torque_uses(motion)),
         fit_to_recording=quality,
         recorded_overlaps=tuple(_recorded_overlaps(adaptation)),
+        recorded_ranges=recorded_ranges(adaptation),
         change=change(adaptation),
+        joint_changes=joint_changes(adaptation),
         jumps=tuple(jumps(fit, motion, schedule)),
         durations=adaptation.setup.durations,
         phases=_phases(adaptation),

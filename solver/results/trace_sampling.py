@@ -70,9 +70,8 @@ def motion_traces(
     torques and momentum, which takes a third of the time.
     """
     character = motion.transcription.character
-    frames = motion.track(recording).frames
-    per_second = float((recording.frames[-1] - recording.frames[0]) / recording.times[-1])
-    times = np.clip((frames - frames[0]) / per_second, 0.0, motion.duration)
+    frames, times = motion.track(recording).frames, track_times(motion, recording)
+    per_second = _frame_rate(recording)
     figure = _figure(motion, times)
     momentum = np.zeros((len(times), 3))
     if dynamics is not None:
@@ -100,6 +99,17 @@ def motion_traces(
             if phase.kind is PhaseKind.FLIGHT
         ),
     )
+
+
+def track_times(motion: Motion, recording: Recording) -> FloatArray:
+    """(T,) s of the frames of a motion's track."""
+    frames = motion.track(recording).frames
+    return np.clip((frames - frames[0]) / _frame_rate(recording), 0.0, motion.duration)
+
+
+def _frame_rate(recording: Recording) -> float:
+    """Scene frames a second."""
+    return float((recording.frames[-1] - recording.frames[0]) / recording.times[-1])
 
 
 def _figure(motion: Motion, times: FloatArray) -> _Figure:

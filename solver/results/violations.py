@@ -11,6 +11,7 @@ from ..data.contacts import Phase
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
 from ..stages.fit import Fit
+from ..stages.guards import Guard
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation, dense_violation
 
@@ -30,27 +31,29 @@ def pins_of_contacts(fit: Fit, problem: MotionProblem) -> dict[str, str]:
 
 
 def condition_violations(adaptation: Adaptation) -> list[DenseViolation]:
-    """Worst violation of each of the artist's constraints, between the nodes too, and of the
-    solids that are, or had to be kept, out of each other."""
+    """Worst violation of each of the artist's constraints, between the nodes too, and of what the
+    motion was, or had to be, guarded from."""
     x, t = adaptation.motion.x, adaptation.motion.transcription
     asked = [dense_violation(c, t.character, t.basis, t.layout, x) for c in t.constraints]
-    return asked + _solids(adaptation)
+    return asked + [each for guard in adaptation.setup.guards for each in _of(guard, adaptation)]
 
 
-def _solids(adaptation: Adaptation) -> list[DenseViolation]:
-    world, rows = adaptation.setup.solid, adaptation.motion.transcription.solid
-    if world is None or not adaptation.solved:  # of a failure what it failed for is told
+def _of(guard: Guard, adaptation: Adaptation) -> list[DenseViolation]:
+    if not adaptation.solved:  # of a failure what it failed for is told
         return []
-    found = world.penetrations(adaptation.motion).worst()
-    in_the_way = {each.name for each in found}
+    found, rows = (
+        guard.violations(adaptation.motion),
+        adaptation.motion.transcription.guard(guard.kind),
+    )
+    violated = {each.name for each in found}
     kept: dict[str, float] = {}
     if rows is not None:
         for item, time in zip(rows.items, rows.times, strict=True):
             kept.setdefault(rows.names[item], float(time))
     return found + [
-        DenseViolation(name, RowKind.SOLID, 0.0, time)
+        DenseViolation(name, guard.kind, 0.0, time)
         for name, time in kept.items()
-        if name not in in_the_way
+        if name not in violated
     ]
 
 

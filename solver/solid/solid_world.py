@@ -5,7 +5,7 @@ is allowed, and no more. Of the scene the recording knew nothing: of what it has
 much is allowed in ground, as soles give there likewise, and in obstacles nothing.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -20,7 +20,7 @@ from ..data.scene import SceneObject, SceneRole
 from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import mesh_of
 from ..transcription.constraint import DenseViolation
-from ..transcription.keep_out import KeepOut
+from ..transcription.guard_rows import GuardRows, chosen, named
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
 from .clearance import Clearance
@@ -64,9 +64,9 @@ class Penetrations:
             self.side[which],
         )
 
-    def but(self, items: Set[int]) -> "Penetrations":
-        """All but those of some items."""
-        return self.some(~np.isin(self.items, list(items)))
+    def but(self, given_up: Set[str]) -> "Penetrations":
+        """All but those of these names."""
+        return self.some(~named(self.names, self.items, given_up))
 
     def with_more(self, more: "Penetrations") -> "Penetrations":
         """These and more."""
@@ -137,6 +137,7 @@ class SolidWorld:
     fitted_surfaces: Surfaces
     fitted: Motion
     to_old: TimeFunction
+    kind: RowKind = RowKind.SOLID
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -180,43 +181,36 @@ class SolidWorld:
         side[there] = was.side(before.pose, place) * near[:, None]
         return lower, side
 
-    def kept_out(self, motion: Motion, given_up: Set[int]) -> KeepOut | None:
+    def violations(self, motion: Motion) -> list[DenseViolation]:
+        """The deepest of each name, deepest first."""
+        return self.penetrations(motion).worst()
+
+    def rows(self, motion: Motion, given_up: Set[str]) -> GuardRows | None:
         """A motion's keep-out rows, with more where it penetrates; the same where it does not.
 
-        given_up: items that have no rows.
+        given_up: names of items that have no rows.
         """
-        old = motion.transcription.solid
+        old = motion.transcription.guard(self.kind)
         found = self.penetrations(motion).but(given_up)
         if not len(found.items):
             return old
-        found = found.some(np.array(list(_chosen(found))))
+        found = found.some(chosen(found, SPACING, ROW_SPACING))
         if old is not None:
             found = _penetrations(old).but(given_up).with_more(found)
         return self._keep_out(found)
 
-    def only(self, rows: KeepOut, which: BoolArray) -> KeepOut | None:
+    def only(self, rows: GuardRows, which: BoolArray) -> GuardRows | None:
         """Some of the rows (U,); None where there are none left."""
         return self._keep_out(_penetrations(rows).some(which)) if which.any() else None
 
-    def _keep_out(self, found: Penetrations) -> KeepOut:
+    def _keep_out(self, found: Penetrations) -> GuardRows:
         function = SolidDistance(self.surfaces, found)
-        return KeepOut(self.names, found.items, found.times, found.lower, function)
+        return GuardRows(self.names, found.items, found.times, found.lower, function)
 
 
-def _penetrations(rows: KeepOut) -> Penetrations:
+def _penetrations(rows: GuardRows) -> Penetrations:
     assert isinstance(rows.function, SolidDistance)
     return rows.function.found
-
-
-def _chosen(found: Penetrations) -> Iterator[int]:
-    """Of every run of instants the deepest, and further ones ROW_SPACING apart."""
-    order = np.lexsort((found.times, found.items))
-    times, items = found.times[order], found.items[order]
-    ends = np.flatnonzero((np.diff(items) != 0) | (np.diff(times) > 1.5 * SPACING)) + 1
-    step = round(ROW_SPACING / SPACING)
-    for run in np.split(order, ends):
-        deepest = int(np.argmax(found.over[run]))
-        yield from run[deepest % step :: step].tolist()
 
 
 def placed_at(motion: Motion, times: FloatArray) -> Placed:

@@ -5,15 +5,11 @@ Far edits are made by continuation (Allgower & Georg 1990): pins and bounds move
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ..arrays import FloatArray
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.requests import Method, ObjectiveKind
-from ..data.row_kinds import RowKind
 from ..data.status import Durations, Status
-from ..numerics.block_banded import BlockBanded
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
 from ..transcription.motion import Motion
@@ -21,15 +17,16 @@ from ..transcription.transcription import Transcription
 from .arm_ik import reach_grips
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
+from .guards import guarded, in_the_way
 from .setup import Setup, set_up
 from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
-MAX_SOLID_ROUNDS = 8  # the same where limbs keep out of each other: one makes way for the next
-MAX_SOLID_STEPS = 10  # after which what is in the way is given up
-HARD_PULL = 0.1  # of the hardest, for a solid to be in the way as well
+MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
+MAX_GUARD_STEPS = 10  # after which what is in the way is given up
+MOST_FURTHER = 0.1  # rad, by which rows may take another joint further beyond its range
 MAX_DENSE_VIOLATION = 3.0  # times a constraint's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
 
@@ -179,19 +176,22 @@ def _continuation(setup: Setup, times: int, progress: Progress | None) -> Contin
 def _restored(
     feasible: FeasibleSet, start: FloatArray, setup: Setup, progress: Progress | None, *, last: bool
 ) -> Outcome:
-    """A continuation step; what is solid joins in at the end of the last, where that helps."""
-    world = setup.solid if last else None
+    """A continuation step; the guards join in at its end, where that helps.
 
-    def with_solids(now: FeasibleSet, x: FloatArray) -> FeasibleSet:
-        assert world is not None
-        t, rows = now.transcription, world.kept_out(now.motion(x), set())
-        return now if rows is t.solid else replace(now, transcription=t.keeping_out(rows))
+    On the way to the last step these are the ranges of joints alone: there floors and limbs are
+    not where they shall be, but a joint that once is far beyond its range finds a long way back.
+    """
+    guards = [guard for guard in setup.guards if last or guard is setup.human]
 
-    if world is not None:
+    def with_guards(now: FeasibleSet, x: FloatArray) -> FeasibleSet:
+        t = guarded(now.motion(x), guards, set())
+        return now if t is now.transcription else replace(now, transcription=t)
+
+    if guards:
         outcome = restore(
-            feasible, setup.metric, start, stage="adapt", progress=progress, wider=with_solids
+            feasible, setup.metric, start, stage="adapt", progress=progress, wider=with_guards
         )
-        if outcome.solved or outcome.transcription.solid is None:
+        if outcome.solved or not outcome.transcription.guards:
             return outcome
     return restore(feasible, setup.metric, start, stage="adapt", progress=progress)
 
@@ -199,13 +199,12 @@ def _restored(
 def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | None) -> list[Outcome]:
     """Refines knots and exchanges instants until rows and bounds hold between them too.
 
-    What is solid keeps out likewise, by rows that begin with no instants. Where that cannot be
-    met, the solids that are in the way are given up, and reported.
+    The guards' rows join likewise. Those that cannot be met are given up, and reported.
     """
     outcomes: list[Outcome] = []
-    given_up: set[int] = set()
+    given_up: set[str] = set()
     refined: Outcome | None = None
-    for _ in range(MAX_EXCHANGES if setup.solid is None else MAX_SOLID_ROUNDS):
+    for _ in range(MAX_GUARD_ROUNDS if setup.guards else MAX_EXCHANGES):
         if outcome is not refined:
             outcomes += refine(
                 outcome, setup.metric_of, ADAPT_TOLERANCE, basis=setup.basis, progress=progress
@@ -217,36 +216,39 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
         feasible = setup.feasible_set(new)
         same = old.basis is setup.start.transcription.basis
         metric = setup.metric if same else setup.metric_of(feasible.motion(outcome.x))
-        steps = MAX_STEPS if new.solid is old.solid else MAX_SOLID_STEPS
+        steps = MAX_STEPS if new.guards is old.guards else MAX_GUARD_STEPS
         tried = restore(
             feasible, metric, outcome.x, stage="bounds", max_steps=steps, progress=progress
         )
-        if tried.solved:
+        if tried.solved and not _takes_further(tried, outcome, setup):
             outcomes.append(outcome := tried)
-        elif new.solid is old.solid:
+        elif new.guards is old.guards:
             break  # what was solved for stands; what it misses in between is reported
         else:
-            given_up |= blocking_solids(feasible, metric, tried.x)
+            given_up |= in_the_way(feasible, metric, tried.x)
+    else:
+        outcomes += refine(
+            outcome, setup.metric_of, ADAPT_TOLERANCE, basis=setup.basis, progress=progress
+        )
     return outcomes
 
 
-def _exchanged(outcome: Outcome, setup: Setup, given_up: set[int]) -> Transcription:
+def _takes_further(tried: Outcome, outcome: Outcome, setup: Setup) -> bool:
+    """Whether rows led to a motion with a joint further beyond its range than before: no cure."""
+    if setup.human is None:
+        return False
+    was, now = (
+        max((each.amount for each in setup.human.violations(motion)), default=0.0)
+        for motion in (setup.feasible_set(o.transcription).motion(o.x) for o in (outcome, tried))
+    )
+    return now > was + MOST_FURTHER
+
+
+def _exchanged(outcome: Outcome, setup: Setup, given_up: set[str]) -> Transcription:
     """The outcome's transcription with instants where bounds are violated between the nodes, or
-    solids are in each other but for those given up; itself where neither is so."""
+    guards are but for those given up; itself where neither is so."""
     t = outcome.transcription
     added = tuple(exchange(c, t.character, t.basis, t.layout, outcome.x) for c in t.constraints)
-    solid = t.solid
-    if setup.solid is not None:
-        solid = setup.solid.kept_out(setup.feasible_set(t).motion(outcome.x), given_up)
+    safe = guarded(setup.feasible_set(t).motion(outcome.x), setup.guards, given_up)
     same = all(new is old for new, old in zip(added, t.constraints, strict=True))
-    return t if same and solid is t.solid else replace(t, constraints=added, solid=solid)
-
-
-def blocking_solids(feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> set[int]:
-    """Items of the keep-out rows that pull the hardest where a solve got stuck, at x (K, n_block):
-    what cannot be met has multipliers far beyond the others'."""
-    rows, solid = feasible.rows(x), feasible.transcription.solid
-    assert solid is not None
-    _, multipliers = feasible.linearise(rows, metric).step(rows.value)
-    pull = np.abs(multipliers[rows.kind == RowKind.SOLID])
-    return set(solid.items[pull >= HARD_PULL * pull.max()].tolist())
+    return safe if same else replace(safe, constraints=added)

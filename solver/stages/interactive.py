@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..data.problem import MotionProblem
 from ..data.report import DragSummary
 from ..data.status import DragStatus
@@ -56,7 +56,7 @@ class Follower:
         self._timed, self._rested = problem, 0  # whose durations these are; updates at one place
         self._linearised: LinearisedProblem | None = None
         self._held = self.motion
-        self._given_up: set[int] = set()  # solids that are let be
+        self._given_up: set[str] = set()  # solids that are let be
         self._blocked = 0  # updates in which a solid is furthest from where it should be
         self.violation = np.inf
 
@@ -81,8 +81,7 @@ class Follower:
         self._keep_out()
         if not self._step(x, target):
             self.motion, self._linearised = self._held, None
-            solid = self.motion.transcription.solid
-            self._given_up |= set() if solid is None else set(solid.items.tolist())
+            self._let_be(np.array(True))
             return DragStatus.DIVERGED
         self._watch_solids()
         if self.violation < HELD_VIOLATION:
@@ -124,12 +123,13 @@ class Follower:
         world, t, x = self.setup.solid, self.motion.transcription, self.motion.x
         if world is None or self.violation > HELD_VIOLATION:
             return
-        solid = world.kept_out(self.motion, self._given_up)
+        solid = world.rows(self.motion, self._given_up)
         if solid is None:
             return
-        rows = t.keeping_out(solid).solid_rows(x)
+        rows = t.guarded((solid,)).guard_rows(x)
         near = rows.value - rows.lower < FAR_SOLID
-        t = t.keeping_out(world.only(solid, near))
+        left = world.only(solid, near)
+        t = t.guarded(() if left is None else (left,))
         if self._linearised is not None:
             self._linearised = self._linearised.widened(t, rows.some(near))
         self.motion = replace(self.motion, transcription=t)
@@ -137,14 +137,20 @@ class Follower:
     def _watch_solids(self) -> None:
         """Lets those be that what is asked for has kept from their place for some updates."""
         t = self.motion.transcription
-        if t.solid is None:
+        if not t.guards:
             return
-        rows = t.solid_rows(self.motion.x)
+        rows = t.guard_rows(self.motion.x)
         off = np.abs(rows.violation()) / rows.tolerance
         self._blocked = self._blocked + 1 if self.violation > 1.0 and off.max() > 1.0 else 0
         if self._blocked > MAX_BLOCKED_UPDATES:
-            self._given_up |= set(t.solid.items[off > 1.0].tolist())
+            self._let_be(off > 1.0)
             self._blocked = 0
+
+    def _let_be(self, which: BoolArray) -> None:
+        """Gives up solids, by flags of their rows (U,)."""
+        for guard in self.motion.transcription.guards:
+            items = np.unique(guard.items[np.broadcast_to(which, guard.items.shape)])
+            self._given_up |= {guard.names[item] for item in items.tolist()}
 
     def _step(self, x: FloatArray, places: FloatArray) -> bool:
         """A few chord steps from unknowns x; False, having changed nothing, where they diverge."""

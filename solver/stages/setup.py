@@ -28,6 +28,7 @@ from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Reque
 from ..data.scene import SceneObject
 from ..data.status import Durations
 from ..data.timeline import TimeWarp, timeline
+from ..human.human_guard import HumanGuard, recorded_ranges
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
 from ..objectives.least_squares import torque_metric
@@ -50,6 +51,7 @@ from .fit import (
     point_contacts,
 )
 from .footing import find_footing, on_faces, pin_turns
+from .guards import Guard
 from .reseat import reseat
 from .surroundings import surroundings
 
@@ -116,6 +118,23 @@ class Setup:
             return None
         clears = self.requests.clears
         return surroundings(self.fit, self.context, self.target_places, self.scene, clears)
+
+    @cached_property
+    def human(self) -> HumanGuard | None:
+        """How far joints may go; None for a figure that is no human.
+
+        Joints that the artist limits are the artist's alone.
+        """
+        if not self.requests.solution.human:
+            return None
+        limits = (*self.requests.angles, *self.requests.cones, *self.requests.twists)
+        reference, own = self.context.reference, frozenset(limit.bone for limit in limits)
+        return HumanGuard(recorded_ranges(reference), reference, own)
+
+    @cached_property
+    def guards(self) -> tuple[Guard, ...]:
+        """What the motion must not do though nobody asks."""
+        return tuple(guard for guard in (self.solid, self.human) if guard is not None)
 
     @cached_property
     def torques(self) -> TorqueFunction:

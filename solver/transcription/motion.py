@@ -59,6 +59,14 @@ class Motion:
         """(T, B, 3) m, world."""
         return np.asarray(self.pose(times).centres + self.com(times)[:, None])
 
+    def joint_rotations(self, times: FloatArray) -> FloatArray:
+        """(T, B, 3, 3) of each body's joint, child to parent; the root's to the world."""
+        posed = self.pose(times)
+        parents = [joint.parent for joint in posed.character.joints[1:]]
+        turned = posed.rotations.copy()
+        turned[:, 1:] = np.swapaxes(posed.rotations[:, parents], -1, -2) @ turned[:, 1:]
+        return turned
+
     def contact_points(self, times: FloatArray) -> FloatArray:
         """(T, P, 3) m, of the points that touch at some time."""
         points = self.transcription.points

@@ -138,6 +138,11 @@ class Rows:
         return np.asarray(self.lower == self.upper)
 
     @property
+    def guards(self) -> BoolArray:
+        """(R,) flags of the guard rows."""
+        return np.asarray(by_kind(self.kind, {kind: 0.0 for kind in RowKind if kind.guards}) == 0.0)
+
+    @property
     def tolerance(self) -> FloatArray:
         """(R,) feasibility tolerance of each, in its kind's unit."""
         return by_kind(self.kind, {kind: kind.tolerance for kind in RowKind})

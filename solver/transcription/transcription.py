@@ -11,7 +11,7 @@ pin       c + p_i(theta) - place = 0 at every break while a point is pinned, and
 push      forces push and stay in their friction cones, at every force node and so at every
           instant: both sets are convex (friction_cones.py)
 others    the artist's constraints (constraint.py)
-solid     floor and limbs keep out of each other where they would not (keep_out.py)
+guards    what the motion must not do either, where it would (guard_rows.py)
 
 A point is pinned while it carries force; at a landing and a lift-off its place gives as soles do
 (compliant_sole.py). Each point's force begins and ends at zero, and accelerations may jump only
@@ -35,7 +35,7 @@ from ..numerics.splines import ORDER, SplineBasis, gauss_instants
 from .constraint import Constraint, DiscretisedConstraint
 from .contact_pins import Pins, PointContact, touching_spans
 from .friction_cones import FrictionCones
-from .keep_out import KeepOut
+from .guard_rows import GuardRows
 from .rows import FORCE_BLOCKS, Layout, Rows
 from .sampling import ChannelJacobian, Instants
 
@@ -47,8 +47,8 @@ class Transcription:
     """Constraint rows of one motion problem on one basis.
 
     points: the bodies' points that touch. contacts: when and where they do. moment: the rate of
-    angular momentum about the centre of mass. solid: what limbs are kept out of. active: which
-    unknowns exist. discretised: the constraints on this basis, solids last.
+    angular momentum about the centre of mass. guards: at most one of a kind. active: which unknowns
+    exist. discretised: the constraints on this basis, guards last.
     """
 
     character: Character
@@ -57,7 +57,7 @@ class Transcription:
     contacts: tuple[PointContact, ...]
     moment: MomentFunction
     constraints: tuple[Constraint, ...] = ()
-    solid: KeepOut | None = None
+    guards: tuple[GuardRows, ...] = ()
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block)
 
@@ -76,28 +76,36 @@ class Transcription:
             DiscretisedConstraint(constraint, self.character, self.basis, self.layout, first + i)
             for i, constraint in enumerate(self.constraints)
         ]
-        if self.solid is not None:
-            self.discretised.append(self._discretised_solid(self.solid))
+        self.discretised += self._discretised(self.guards)
 
-    def _discretised_solid(self, solid: KeepOut) -> DiscretisedConstraint:
-        owners = len(self.contacts) + len(self.constraints) + solid.items
-        return DiscretisedConstraint(solid, self.character, self.basis, self.layout, owners)
+    def _discretised(self, guards: tuple[GuardRows, ...]) -> list[DiscretisedConstraint]:
+        made, first = [], len(self.contacts) + len(self.constraints)
+        for guard in guards:
+            owners = first + guard.items
+            made.append(
+                DiscretisedConstraint(guard, self.character, self.basis, self.layout, owners)
+            )
+            first += len(guard.names)
+        return made
 
-    def keeping_out(self, solid: KeepOut | None) -> "Transcription":
-        """The same with other keep-out rows."""
+    def guarded(self, guards: tuple[GuardRows, ...]) -> "Transcription":
+        """The same with other guards; bounds that are relaxed stay so."""
         twin = copy(self)
-        twin.solid = solid
-        twin.discretised = self.discretised[: len(self.constraints)]
-        if solid is not None:
-            twin.discretised.append(self._discretised_solid(solid))
+        twin.guards = guards
+        asked = self.discretised[: len(self.constraints)]
+        twin.discretised = [*asked, *self._discretised(guards)]
         return twin
 
     @property
     def owners(self) -> tuple[str, ...]:
-        """Names of the rows' owners: contacts, then constraints, then what is kept out."""
+        """Names of the rows' owners: contacts, then constraints, then the guards' items."""
         contacts = tuple(c.contact.name for c in self.contacts)
-        solid = () if self.solid is None else self.solid.names
-        return (*contacts, *(c.name for c in self.constraints), *solid)
+        guarded = tuple(name for guard in self.guards for name in guard.names)
+        return (*contacts, *(c.name for c in self.constraints), *guarded)
+
+    def guard(self, kind: RowKind) -> GuardRows | None:
+        """The guard rows of a kind."""
+        return next((guard for guard in self.guards if guard.kind is kind), None)
 
     def relaxed(self, x: FloatArray, share: float) -> "Transcription":
         """Homotopy: bounds that x (K, n_block) violates lie `share` of the way to their own."""
@@ -113,7 +121,7 @@ class Transcription:
         """
         basis = replace(self.basis, breaks=warp(self.basis.breaks))
         contacts = tuple(contact.retimed(warp) for contact in self.contacts)
-        return replace(self, basis=basis, contacts=contacts, constraints=(), solid=None)
+        return replace(self, basis=basis, contacts=contacts, constraints=(), guards=())
 
     @property
     def n_unknowns(self) -> int:
@@ -152,9 +160,9 @@ class Transcription:
         parts += [each.rows(x) for each in self.discretised]
         return self._only_active(Rows.join(parts))
 
-    def solid_rows(self, x: FloatArray) -> Rows:
-        """The keep-out rows alone; they are the last of `rows`. There must be some."""
-        return self.discretised[-1].rows(x)
+    def guard_rows(self, x: FloatArray) -> Rows:
+        """The guard rows alone; they are the last of `rows`. There must be some."""
+        return Rows.join([each.rows(x) for each in self.discretised[-len(self.guards) :]])
 
     def values(self, x: FloatArray, places: FloatArray) -> FloatArray:
         """(R,) values of `rows` without their Jacobian."""

@@ -28,8 +28,9 @@ from ..data.scaling import scaled_problem, scaled_recording, scaled_schedule, sc
 from ..data.scene import SceneObject
 from ..data.traces import Traces, scaled_traces
 from ..optimisation.sqp import Step
+from ..results.joint_report import joint_turns
 from ..results.report import report
-from ..results.trace_sampling import motion_traces, recorded_traces
+from ..results.trace_sampling import motion_traces, recorded_traces, track_times
 from ..results.violations import most_telling
 from ..scene.checks import check_scene
 from ..stages.fit import Fit, fit
@@ -133,7 +134,10 @@ class AdaptationResult:
 
     def traces(self) -> Traces:
         """In the recording's own lengths."""
-        return self.subject.motion_traces(self.adaptation.motion, self.adaptation.setup.schedule)
+        motion, schedule = self.adaptation.motion, self.adaptation.setup.schedule
+        seen = self.subject.motion_traces(motion, schedule)
+        times = track_times(motion, self.subject.recording)
+        return replace(seen, changes=joint_turns(self.adaptation, times))
 
     def report(self, origin: Origin, stages: list[StageReport] | None = None) -> Report:
         """At the stated stature. stages: None leaves out times."""

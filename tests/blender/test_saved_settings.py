@@ -67,7 +67,7 @@ def test_renamed_bones_are_found_by_their_keys(performer: bpy.types.Object) -> N
 def test_it_adapts_again_to_the_same_performance(performer: bpy.types.Object) -> None:
     settings = performer.hangtime
     settings.keep_times = True  # as that state always did
-    settings.keep_out = False
+    settings.keep_out = settings.human_ranges = False
     saved, before = settings.adapted, joint_centres(performer)
     assert performer.animation_data.action == saved
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}

@@ -23,8 +23,8 @@ from hangtime.solver.objectives.tracking_cost import CostWeights, TrackingCost
 from hangtime.solver.optimisation.sqp import FeasibleSet, Outcome, restore
 from hangtime.solver.stages.fit import motion_target
 from hangtime.solver.transcription.constraint import Constraint, ConstraintFunction, exchange
-from hangtime.solver.transcription.constraint_functions import TwistAngle
 from hangtime.solver.transcription.contact_pins import PointContact
+from hangtime.solver.transcription.joint_measures import TwistAngle
 from hangtime.solver.transcription.motion import Motion
 from hangtime.solver.transcription.rows import Layout
 from hangtime.solver.transcription.sampling import Instants, State

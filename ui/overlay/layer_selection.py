@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from .context.figure_cache import FigureCache
 from .context.layer import Layer, Part
 from .context.view_context import ViewContext
-from .layers import ghosts, limits, motion, pins
+from .layers import changes, ghosts, limits, motion, pins
 
 
 def layers(view: ViewContext, figures: FigureCache) -> Iterator[Layer]:
@@ -31,6 +31,8 @@ def _motion(view: ViewContext) -> Iterator[Layer]:
         yield motion.path(view, recorded, Part.RECORDED_PATH)
     if options.path and adapted is not None:
         yield motion.path(view, adapted, Part.ADAPTED_PATH)
+    if options.changes and view.live is None and adapted is not None:
+        yield changes.layer(view, adapted)
     shown = adapted or recorded
     if (options.path or options.momentum) and shown is not None:
         yield motion.centre(view, shown)

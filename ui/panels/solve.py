@@ -51,6 +51,7 @@ class AdvancedPanel(ArmaturePanel):
         layout.prop(settings, "method")
         layout.prop(settings, "keep_times")
         layout.prop(settings, "keep_out")
+        layout.prop(settings, "human_ranges")
         refine = layout.column(heading="Refine")
         refine.prop(settings, "objective")
         refine.prop(settings, "stay_close")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.armature.traces_store import keep
 from hangtime.bridge.constraint_kinds import KINDS
 from hangtime.bridge.rows.choices import Span
 from hangtime.tests.blender.helpers.overlays import (
@@ -20,6 +23,7 @@ from hangtime.tests.blender.helpers.overlays import (
     in_world,
     seen,
     shown,
+    traced,
     words,
 )
 from hangtime.ui.overlay.context.layer import Layer, Part
@@ -244,3 +248,22 @@ def test_a_pose_is_hung_where_the_figure_is(armature: bpy.types.Object) -> None:
     hips, _ = bone_in_world(armature, "hips")
     assert np.linalg.norm(other - hips, axis=1).min() < 0.01 * armature.scale[0]
     assert np.abs(other - body).max() > 0.05
+
+
+def test_limbs_tell_by_colour_how_far_their_joints_are_turned(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.view.changes = True
+    traces = traced(armature, adapted=True)
+    turned = np.zeros(traces.heads.shape[:2])
+    turned[:, 1] = np.radians(50.0)
+    keep(armature.hangtime.adapted, replace(traces, changes=turned), armature.matrix_world)
+    layer = shown(armature)[Part.CHANGES]
+    assert words(layer) == ["50°"]
+    (bodies,) = [s for s in layer.build() if isinstance(s, Shape)]
+    red, *_, blue = np.split(bodies.colours, len(FIGURE))[1::-1]
+    assert red[:, 0].max() > red[:, 2].max()
+    assert blue[:, 2].max() > blue[:, 0].max()
+
+
+def test_a_motion_stored_without_its_changes_shows_none(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.view.changes = True
+    assert list(shown(armature)[Part.CHANGES].build()) == []

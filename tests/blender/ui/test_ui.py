@@ -569,6 +569,16 @@ def test_limbs_keep_out_unless_switched_off(analysed: bpy.types.Object) -> None:
     assert not problem_of(analysed.hangtime, recording).requests.solution.solid
 
 
+def test_joints_are_a_person_s_unless_switched_off(analysed: bpy.types.Object) -> None:
+    recording = read_recorded(analysed, FIRST, LAST)
+    assert problem_of(analysed.hangtime, recording).requests.solution.human
+    analysed.hangtime.human_ranges = False
+    assert not problem_of(analysed.hangtime, recording).requests.solution.human
+    analysed.hangtime.human_ranges = True
+    ask_by_text(analysed, "[solution]\nhuman = false\n")
+    assert not problem_of(analysed.hangtime, recording).requests.solution.human
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

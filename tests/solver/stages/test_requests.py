@@ -36,8 +36,8 @@ from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.constraint import dense_violation
-from hangtime.solver.transcription.constraint_functions import BendAngle
 from hangtime.solver.transcription.friction_cones import FrictionCones
+from hangtime.solver.transcription.joint_measures import BendAngle
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 

@@ -82,10 +82,10 @@ def test_a_fit_alone_is_unchanged() -> None:
 def test_what_is_off_has_no_rows() -> None:
     adaptation = adapt(fitted_hop(), soft(FAR))
     assert adaptation.setup.solid is None
-    assert adaptation.motion.transcription.solid is None
+    assert adaptation.motion.transcription.guard(RowKind.SOLID) is None
     told = report(adaptation, soft(FAR), Origin("hop"))
     assert not told.recorded_overlaps
-    assert not told.conditions
+    assert all(each.kind is not RowKind.SOLID for each in told.conditions)
 
 
 def test_what_is_asked_for_under_the_floor_is_reached_and_told() -> None:
@@ -98,14 +98,14 @@ def test_what_is_asked_for_under_the_floor_is_reached_and_told() -> None:
     assert_valid(adaptation.motion, adaptation.setup.schedule)
     told = report(adaptation, problem, Origin("hop"))
     assert [row.met for row in told.conditions if row.name == "Reach"] == [True]
-    assert {row.name for row in told.overlaps} >= {"Left foot in the floor"}
+    assert {row.name for row in told.given_up} >= {"Left foot in the floor"}
     assert any("Left foot in the floor" in line for line in headline(told))
 
 
 def test_the_recordings_own_overlaps_are_told_once() -> None:
     told = report(adapt(fitted_hop(), MotionProblem()), MotionProblem(), Origin("hop"))
     assert told.recorded_overlaps
-    assert not told.overlaps
+    assert not told.given_up
 
 
 def test_a_landing_that_is_pinned_lower_has_its_own_floor() -> None:

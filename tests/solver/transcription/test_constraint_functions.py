@@ -12,12 +12,15 @@ from hangtime.solver.constraints.joint_constraints import bend_function
 from hangtime.solver.numerics.rotations import axis_rotation, rotation_matrix, rotation_vector, unit
 from hangtime.solver.transcription.constraint import ConstraintFunction
 from hangtime.solver.transcription.constraint_functions import (
-    BendAngle,
     BodyOrientation,
-    ConeAngle,
     JointAngles,
     PeakForce,
     PointPosition,
+)
+from hangtime.solver.transcription.joint_measures import (
+    BendAngle,
+    ConeAngle,
+    SideAngle,
     TwistAngle,
 )
 from hangtime.solver.transcription.sampling import Instants, State
@@ -179,7 +182,9 @@ def functions(t: Transcription, body: int) -> dict[str, ConstraintFunction]:
         "bend": BendAngle(joint, along, straight, flexion),
         "cone": ConeAngle(joint, along, frame, np.ones(2)),
         "stretched cone": ConeAngle(joint, along, frame, np.array([0.6, 1.7])),
+        "aside": SideAngle(joint, along, flexion),
         "twist": TwistAngle(joint, along),
+        "twist from a pose": TwistAngle(joint, along, zero=rotation_matrix(wanted)),
         "place": PointPosition(point, moving_place, slope),
         "orientation": BodyOrientation(body, constant(rotation_matrix(wanted))),
         "angles": JointAngles(mine, constant(0.1 * mine)),

@@ -20,11 +20,12 @@ from hangtime.solver.data.requests import (
 )
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Status
+from hangtime.solver.human.human_guard import RangeLeft, recorded_ranges
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
 from hangtime.solver.solid.solid_world import Penetrations, SolidDistance, solid_world
 from hangtime.solver.transcription.contact_pins import PlaceTrajectory, PointContact
-from hangtime.solver.transcription.keep_out import KeepOut
+from hangtime.solver.transcription.guard_rows import GuardRows
 from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.solver.transcription.transcription import Transcription
 from hangtime.tests.helpers.toy_problems import (
@@ -90,7 +91,19 @@ def solid() -> Transcription:
     times, none = np.linspace(0.0, DURATION, len(items)), np.zeros(len(items))
     every = Penetrations(world.names, items, times, none, none, np.zeros((len(items), 3)))
     function = SolidDistance(world.surfaces, every)
-    return replace(standing(), solid=KeepOut(world.names, items, times, none, function))
+    return replace(standing(), guards=(GuardRows(world.names, items, times, none, function),))
+
+
+@cache
+def human() -> Transcription:
+    """Both ends of every joint's range, each at an instant of its own."""
+    ranges = recorded_ranges(stood())
+    count = 2 * len(ranges)
+    items, times = np.arange(count) // 2, np.linspace(0.0, DURATION, count)
+    ends = tuple(replace(each, lower=-1.0, upper=1.0) for each in ranges)
+    function = RangeLeft(ends, items, np.arange(count) % 2 == 0)
+    names = tuple(each.name for each in ranges)
+    return replace(standing(), guards=(GuardRows(names, items, times, np.zeros(count), function),))
 
 
 def directional(t: Transcription, x: np.ndarray, direction: np.ndarray) -> np.ndarray:
@@ -98,7 +111,7 @@ def directional(t: Transcription, x: np.ndarray, direction: np.ndarray) -> np.nd
     return (ahead - behind) / (2.0 * STEP)
 
 
-MAKERS = (standing, tilted, carried, discretised, solid)
+MAKERS = (standing, tilted, carried, discretised, solid, human)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -39,6 +39,7 @@ from hangtime.solver.data.report import (
     TorquesReport,
     TorqueUse,
 )
+from hangtime.solver.data.reports.joints import JointChange, RecordedRange
 from hangtime.solver.data.requests import ReductionKind
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scaling import (
@@ -104,6 +105,7 @@ TRACES = Traces(
     joints=(),
     torques=NONE[:, :, 0],
     flights=(FlightParabola("flight 1", 1.0, 2.0, np.ones((3, 3))),),
+    changes=np.ones((5, 1)),
 )
 FAULT = faults.NoSolution(Status.STOPPED, (Violation("pin", RowKind.PIN, 1.0),))
 FLIGHT = FlightSummary(None, 1.1, 0.5)
@@ -127,7 +129,9 @@ REPORT = Report(
     torque_limits=(TorqueUse("Limp arm", 0.2, 0.1, 1.5),),
     fit_to_recording=FitQuality(1.0, 0.1, 2.5, 3.0),
     recorded_overlaps=(RecordedOverlap("Left hand in left thigh", 12.0, 2.0),),
+    recorded_ranges=(RecordedRange("Left knee bends", 7.0, 2.0),),
     change=MotionChange(2.0, 1.0),
+    joint_changes=(JointChange("thigh.L", 12.0, 3.0),),
     jumps=(JumpReport("flight 1", 0.0, 0.1, 0, 3, RecordedFlight(1.0), FLIGHT, FLIGHT, None, 0.0),),
     durations=Durations.FOUND,
     phases=(PhaseReport("flight 1", 0.1, 0.125),),

@@ -30,6 +30,7 @@ class Part(Enum):
     RECORDED_GHOSTS = auto()
     ADAPTED_GHOSTS = auto()
     GHOST_NOW = auto()
+    CHANGES = auto()
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ MOVE: Colour = (1.00, 0.45, 0.40, 0.9)  # from where a pin was found to where it
 LIMIT: Colour = (0.95, 0.22, 0.26, 1.0)
 WITHIN: Colour = (1.0, 1.0, 1.0, 0.95)  # how a limb is bent now, within its limits
 BEYOND: Colour = (1.0, 0.78, 0.15, 1.0)
+UNCHANGED: Colour = (0.45, 0.60, 0.85, 1.0)  # of a joint that is as it was recorded
 POSE: Colour = (1.0, 1.0, 1.0, 0.55)
 ADAPTED: Colour = (0.40, 0.72, 1.0, 1.0)
 RECORDED: Colour = (0.80, 0.80, 0.80, 1.0)

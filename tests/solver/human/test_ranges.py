@@ -1,0 +1,96 @@
+"""Human ranges: zeros, senses and ends of every joint, on a person's figure in a T-pose."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hangtime.solver.arrays import FloatArray
+from hangtime.solver.body.character import Character
+from hangtime.solver.human.ranges import JointRange, joint_ranges, rest_figure
+from hangtime.solver.numerics.rotations import rotation_matrix
+from hangtime.solver.transcription.joint_measures import BendAngle
+from hangtime.tests.helpers.fitted_hop import fitted_hop
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def character() -> Character:
+    return fitted_hop().motion.transcription.character
+
+
+@cache
+def ranges() -> dict[str, JointRange]:
+    motion = fitted_hop().motion
+    found = joint_ranges(character(), motion.angles(np.linspace(0.0, motion.duration, 100)))
+    assert len({each.name for each in found}) == len(found)
+    return {each.name: each for each in found}
+
+
+def left() -> FloatArray:
+    return rest_figure(character()).left
+
+
+def forward() -> FloatArray:
+    return rest_figure(character()).forward
+
+
+def hinge(name: str) -> FloatArray:
+    """The axis that a joint bends about, (3,); of other joints none."""
+    measure = ranges()[name].measure
+    return np.cross(measure.straight, measure.flexion) if isinstance(measure, BendAngle) else UP
+
+
+def excess(name: str, axis: FloatArray, degrees: float) -> float:
+    """Degrees that a joint is beyond its range, turned about an axis (parent's frame) from rest."""
+    return float(np.degrees(ranges()[name].beyond(turned(axis, degrees))[0]))
+
+
+def turned(axis: FloatArray, degrees: float) -> FloatArray:
+    return rotation_matrix(np.radians(degrees) * axis)[None]
+
+
+def test_every_joint_has_a_range() -> None:
+    ranged = {each.body for each in ranges().values()}
+    jointed = {i for i, joint in enumerate(character().joints) if joint.parent >= 0}
+    assert jointed == ranged
+
+
+def test_the_rest_pose_is_in_every_range() -> None:
+    for each in ranges().values():
+        assert each.beyond(np.eye(3)[None])[0] < 0.0 or "Elbow" in each.name.title(), each.name
+
+
+# axis, degrees to its end: about the left axis a positive turn takes up forwards
+ENDS = [
+    ("Left knee bends", "own", 135.0),
+    ("Left knee bends", "own", -10.0),
+    ("Left hip turns", "up", 45.0),
+    ("Right hip turns", "up", -45.0),
+    ("Left collarbone moves", "forward", 45.0),
+    ("Left collarbone moves", "forward", -10.0),
+    ("Right collarbone moves", "forward", -45.0),
+    ("Right collarbone moves", "forward", 10.0),
+    ("Neck 3 turns", "up", 20.0),
+    ("Neck 3 bends", "left", 15.0),
+    ("Left shoulder turns", "left", -90.0),
+    ("Left shoulder turns", "left", 70.0),
+    ("Right shoulder turns", "left", -90.0),
+    ("Right shoulder turns", "left", 70.0),
+]
+
+
+@pytest.mark.parametrize(("name", "axis", "end"), ENDS)
+def test_ranges_end_where_the_tables_say(name: str, axis: str, end: float) -> None:
+    about = {"left": left(), "up": UP, "forward": forward(), "own": hinge(name)}[axis]
+    beyond = end + np.sign(end) * 5.0
+    assert excess(name, about, end) == pytest.approx(0.0, abs=2.5)
+    assert excess(name, about, beyond) == pytest.approx(5.0, abs=3.0)
+    assert excess(name, about, 0.5 * end) < 0.0
+
+
+def test_a_range_holds_what_a_recording_does() -> None:
+    neck = ranges()["Neck 3 bends"]
+    folded = turned(left(), 40.0)
+    wider = neck.holding(folded)
+    assert wider.beyond(folded)[0] == pytest.approx(0.0, abs=1e-9)
+    assert neck.holding(turned(left(), 5.0)).upper == neck.upper
