@@ -33,6 +33,7 @@ from ..operator_types import OperatorResult
 from ..words.report_text import as_text, certificate_lines, durations_lines, overlap_lines, retimed
 from .common import hindrance, required_armature
 from .live import live
+from .scene import note_surfaces, read_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered, take_best
@@ -149,8 +150,9 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     recording = yield from read_wanted(armature)
     if analysis_key(settings, recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
-    problem = problem_of(settings, recording)
-    return Asked(armature.name, armature.session_uid, recording, problem)
+    scene = yield from read_surfaces(armature, recording.frames)
+    problem = problem_of(settings, recording, scene.objects)
+    return Asked(armature.name, armature.session_uid, recording, problem, scene)
 
 
 def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
@@ -160,14 +162,28 @@ def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
-    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
+    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile.
+
+    Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
+    """
     session().advance(SolveState.CHECKING)
     armature = yield from _unchanged(asked)
+    stale = yield from stale_surfaces(asked, armature)
     session().advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
         within = asked.recording.window(*present(asked.problem.frames))
-        return _write_other(changed_recording(within, limbs), answer, armature)
+        done = _write_other(changed_recording(within, limbs), answer, armature)
+    else:
+        done = yield from _write_own(answer, armature)
+    remarks = note_surfaces(armature, asked, answer.report, stale)
+    settings = settings_of(armature)
+    settings.status = "\n".join([settings.status, *remarks])
+    return "; ".join([done, *remarks])
+
+
+def _write_own(answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
+    """The answer as a new action of the armature."""
     stood = armature.matrix_world.copy()
     action = yield from write_adapted_incrementally(armature, answer.track)
     keep(action, answer.traces, stood)
