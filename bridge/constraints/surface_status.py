@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 from ...solver.data.report import ConstraintReport, Report
 from ..properties.settings import HangtimeSettings
+from ..properties.shown_overlaps import IN
 from ..rows.choices import Met
 from ..scene.members import objects_of
 
 KEPT_OUT = "Nothing new is in it"
-IN = " in "  # between a body's and an object's name, as the solver calls what stays in what
 
 
 def write_surface_status(

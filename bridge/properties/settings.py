@@ -312,6 +312,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
+    overlaps: declared(text(), options=HIDDEN)  # what is in what: of the recording, of itself
 
 
 def settings_of(armature: bpy.types.Object) -> HangtimeSettings:

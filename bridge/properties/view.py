@@ -24,6 +24,7 @@ class HangtimeView(bpy.types.PropertyGroup):
     forces: _switch("Contact Forces", "Forces of the ground as arrows")
     path: _switch("Centre of Mass", "Its path, and the parabola of each flight")
     momentum: _switch("Angular Momentum", "As an arrow at the centre of mass", on=False)
+    shapes: _switch("Shapes", "The body's solid shapes; red where one is in something", on=False)
     ghosts: _switch("Ghosts", "The adapted motion beside the recording, at chosen frames")
     ghost_step: declared(whole("Every", "Frames from one ghost to the next", default=30, min=1))
     recording_too: _switch("Recording's Ghosts", "Also show the recording at these frames")

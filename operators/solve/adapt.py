@@ -18,6 +18,7 @@ from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import analysis_key, problem_of, wanted_range
 from ...bridge.constraints.status import write_status
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
@@ -215,6 +216,7 @@ def _note(
     write_status(settings, answer.report)
     action_settings(action).report = as_text(answer.report)
     store_times(action, answer.report.times)
+    store_overlaps(action, answer.report)
     action_settings(action).performer = performer
 
 

@@ -5,7 +5,9 @@ Data alone, without CasADi: Blender keeps and draws it. results/trace_sampling.p
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from ..arrays import FloatArray
 
@@ -32,7 +34,9 @@ class Traces:
     touch; points: (T, C, 3) m; forces: (T, C, 3) N on the body, zero while they do not touch;
     weight: N, the body's. joints: bones whose torques are known; torques: (T, J) N·m, the largest
     component of each joint. Of a recording the contacts are all points that might touch; forces,
-    torques and flights it has none (T, 0, 3).
+    torques and flights it has none (T, 0, 3). solids: names of the bodies whose solid shapes,
+    capsules, are traced, one each; their ends solid_starts, solid_ends: (T, S, 3) m, and
+    solid_radii: (S,) m.
     """
 
     frames: FloatArray
@@ -49,11 +53,16 @@ class Traces:
     joints: tuple[str, ...]
     torques: FloatArray
     flights: tuple[FlightParabola, ...]
+    solids: tuple[str, ...] = ()
+    solid_starts: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 3)))
+    solid_ends: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 3)))
+    solid_radii: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 def scaled_traces(traces: Traces, factor: float) -> Traces:
     """Traces of a figure `factor` times as large: lengths scaled, forces and torques kept."""
-    lengths = ("heads", "tails", "com", "velocity", "points")
+    solids = ("solid_starts", "solid_ends", "solid_radii")
+    lengths = ("heads", "tails", "com", "velocity", "points", *solids)
     flights = tuple(replace(f, parabola=factor * f.parabola) for f in traces.flights)
     scaled = {name: factor * getattr(traces, name) for name in lengths}
     return replace(traces, **scaled, flights=flights)

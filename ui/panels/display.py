@@ -11,7 +11,7 @@ from .sidebar import SidebarPanel, split
 
 _COLUMNS = {
     "Constraints": ("pins", "limits", "poses"),
-    "Motion": ("path", "forces", "momentum"),
+    "Motion": ("path", "forces", "momentum", "shapes"),
 }
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
