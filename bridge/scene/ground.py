@@ -11,7 +11,7 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from ...solver.arrays import FloatArray
-from ...solver.data.faults import NoFaces
+from ...solver.data.faults import SceneFault
 from .members import Member
 from .mesh import Triangles, read_triangles
 from .read import seen_at
@@ -72,7 +72,7 @@ def _placed(evaluated: bpy.types.Object) -> tuple[BVHTree, float] | None:
     """The tree of an object's faces, and its highest vertex."""
     try:
         shape: Triangles = read_triangles(evaluated)
-    except NoFaces:
+    except SceneFault:
         return None
     matrix = np.array(evaluated.matrix_world)
     vertices = shape.vertices @ matrix[:3, :3].T + matrix[:3, 3]

@@ -8,7 +8,8 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray, IntArray
-from ...solver.data.faults import NoFaces
+from ...solver.data.faults import NoFaces, TooManyFaces
+from ...solver.scene.checks import MOST_TRIANGLES
 
 SAME = 1e-5  # of its size, by which no vertex moves in a mesh that keeps its shape
 
@@ -32,7 +33,7 @@ class Triangles:
 def read_triangles(evaluated: bpy.types.Object) -> Triangles:
     """The faces of an object as the dependency graph has it, modifiers applied.
 
-    Raises NoFaces, also where Blender can make no mesh of it.
+    Raises NoFaces, also where Blender can make no mesh of it, and TooManyFaces.
     """
     try:
         mesh = evaluated.to_mesh()
@@ -40,9 +41,12 @@ def read_triangles(evaluated: bpy.types.Object) -> Triangles:
         raise NoFaces(evaluated.name) from problem
     try:
         mesh.calc_loop_triangles()
+        count = len(mesh.loop_triangles)
+        if count > MOST_TRIANGLES:  # before they are sent anywhere
+            raise TooManyFaces(evaluated.name, count, MOST_TRIANGLES)
         vertices = np.empty(3 * len(mesh.vertices), np.float32)
         mesh.vertices.foreach_get("co", vertices)
-        corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+        corners = np.empty(3 * count, np.int32)
         mesh.loop_triangles.foreach_get("vertices", corners)
     finally:
         evaluated.to_mesh_clear()

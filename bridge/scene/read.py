@@ -44,7 +44,7 @@ def read_scene(
 ) -> Incremental[SceneReading]:
     """Read solid objects at frames (T,), a few frames a slice. showing: as of `in_slices`.
 
-    Raises NoFaces.
+    Raises NoFaces, TooManyFaces.
     """
     if not of:
         return SceneReading()

@@ -10,7 +10,7 @@ from ...bridge.properties.settings import settings_of
 from ...bridge.scene.members import members
 from ...bridge.scene.read import SceneReading, changed_objects, read_scene
 from ...solver.arrays import FloatArray
-from ...solver.data.faults import NoFaces, ObjectGone
+from ...solver.data.faults import SceneFault
 from ...solver.data.report import Report
 from .session import Asked
 
@@ -19,7 +19,7 @@ STALE = "{} changed while this was solved; press Adapt again"
 
 
 def read_surfaces(armature: bpy.types.Object, frames: FloatArray) -> Incremental[SceneReading]:
-    """The armature's surfaces at frames (T,). Raises ObjectGone, NoFaces."""
+    """The armature's surfaces at frames (T,). Raises ObjectGone, NoFaces, TooManyFaces."""
     solid = members(settings_of(armature), current_scene())
     return (yield from read_scene(solid, frames, showing_recorded(armature)))
 
@@ -30,7 +30,7 @@ def stale_surfaces(asked: Asked, armature: bpy.types.Object) -> Incremental[tupl
         return ()
     try:
         now = yield from read_surfaces(armature, asked.recording.frames)
-    except (ObjectGone, NoFaces) as fault:
+    except SceneFault as fault:
         return (fault.thing,)
     return changed_objects(asked.scene, now)
 

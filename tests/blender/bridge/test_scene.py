@@ -11,10 +11,11 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.scene import mesh
 from hangtime.bridge.scene.ground import ground_faces
 from hangtime.bridge.scene.members import ground_members, is_gone
 from hangtime.bridge.scene.read import changed_objects
-from hangtime.solver.data.faults import NoFaces, ObjectGone
+from hangtime.solver.data.faults import NoFaces, ObjectGone, TooManyFaces
 from hangtime.solver.data.scene import SceneRole
 from hangtime.tests.blender.helpers.rows import reopen
 from hangtime.tests.blender.helpers.solids import (
@@ -145,6 +146,16 @@ def test_what_has_no_faces_is_told_by_name(
     with pytest.raises(NoFaces) as told:
         read(armature)
     assert told.value.thing == "Crate"
+
+
+def test_too_many_faces_are_told_before_they_are_sent(
+    armature: bpy.types.Object, box: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mesh, "MOST_TRIANGLES", 11)
+    with pytest.raises(TooManyFaces) as told:
+        read(armature)
+    assert (told.value.thing, told.value.count) == (box.name, 12)
+    assert bpy.context.scene.frame_current == 1
 
 
 def test_a_collection_is_all_its_objects_but_the_performer_s(armature: bpy.types.Object) -> None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.constraints.motion_problem import analysis_key, problem_of
 from hangtime.bridge.constraints.surface_status import write_surface_status
 from hangtime.operators.drag.drag_state import Landing
@@ -236,3 +238,22 @@ def test_a_row_says_what_stays_in_it(rig: bpy.types.Object, deep: bool) -> None:
         assert (row.met, row.status) == ("MET", "Nothing new is in it")
     row.role = "OBSTACLE"  # another question
     assert (row.met, row.status) == ("UNKNOWN", "")
+
+
+@pytest.mark.slow
+def test_a_jump_lands_on_a_crate(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    landing = [row for row in settings.contacts if row.phase == "ground 2"]
+    x, y, _ = np.mean([row.at for row in landing], axis=0)
+    crate = make_box("Crate", at=(x, y, 0.1))
+    crate.scale = (0.8, 0.8, 0.2)
+    add_row(analysed, crate)
+    bpy.context.scene.hangtime.armature = analysed
+    contact, up = settings.contacts.find(landing[0].name), (0.0, 0.0, 0.2 - landing[0].at[2])
+    bpy.ops.hangtime.drag_pin(contact=contact, shift=up, ground="Crate", whole=True)
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    (row,) = settings.surfaces
+    assert row.met != "UNKNOWN"
+    traces = kept(settings.adapted).traces
+    np.testing.assert_allclose(traces.points[-1, :, 2], 0.2, atol=1e-3)
+    assert settings.status.startswith("Solved in")
