@@ -111,12 +111,9 @@ class SurfaceList(bpy.types.UIList):
         line.prop(row, "used", text="")
         line = line.row(align=True)
         line.active = row.used
-        line = line.split(factor=0.6, align=True)
         line.label(text=row.called, icon=ROLE_ICONS[row.role])
-        end = line.row(align=True)
-        end.prop(row, "role", text="")
         if row.status:
-            end.label(text="", icon=MET_ICONS[row.met])
+            line.label(text="", icon=MET_ICONS[row.met])
 
 
 class ContactList(bpy.types.UIList):

@@ -1,5 +1,7 @@
 """World: what is solid around the performer, and whether limbs keep out of it."""
 
+from textwrap import fill
+
 import bpy
 
 from ...bridge.accessors import present
@@ -11,8 +13,9 @@ from ...bridge.scene.members import is_gone
 from ...operators.lists.row_lists import RowList
 from ...operators.names import OperatorId
 from .lists import MET_ICONS, ROLE_ICONS, SurfaceList
-from .sidebar import ArmaturePanel, draw_list, settings_in, split
+from .sidebar import ArmaturePanel, draw_list, lines, settings_in, split
 
+NARROW = 34  # characters in a line of a sidebar as wide as Blender makes it
 GONE = "Not in the scene any more"
 
 
@@ -54,8 +57,9 @@ def _draw_surface(layout: bpy.types.UILayout, row: HangtimeSurface, scene: bpy.t
     if is_gone(row, scene):
         layout.label(text=GONE, icon="ERROR")
     elif row.status:
-        layout.label(text=row.status, icon=MET_ICONS[row.met])
+        lines(layout, fill(row.status, NARROW), icon=MET_ICONS[row.met])
     layout.prop(row, "collection" if row.collection is not None else "object")
+    layout.row().prop(row, "role", expand=True)
 
 
 def _draw_switches(
