@@ -13,7 +13,7 @@ from ..bridge.properties import settings, stances
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
 from ..operators.export import exports
-from ..operators.lists import body_changes, constraints, contacts, presets
+from ..operators.lists import body_changes, constraints, contacts, presets, surfaces
 from ..operators.solve import adapt, analyze, results, session
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
@@ -21,15 +21,15 @@ from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
 from .panels import constraints as constraint_panels
 from .panels import contacts as contact_panels
-from .panels import display, lists, menus, setup, solve
+from .panels import display, lists, menus, setup, solve, world
 from .plots import handler as plots
 from .timeline import handler as timeline
 
 # A panel comes after the one that it is part of.
 MODULES = (
-    *(analyze, adapt, contacts, constraints, body_changes, presets, results, exports),
+    *(analyze, adapt, contacts, constraints, body_changes, surfaces, presets, results, exports),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
-    *(lists, menus, setup, contact_panels, constraint_panels, solve, display),
+    *(lists, menus, setup, contact_panels, constraint_panels, world, solve, display),
     *(pin_handles, limit_handles),
 )
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 
 import bpy
@@ -48,7 +48,7 @@ def read_recorded_incrementally(
     if armature is None or current_action(armature) is None:
         whole_frames(armature, first, last)
     assert armature is not None
-    showing = partial(_showing, armature, recorded_action(armature))
+    showing = showing_recorded(armature)
     with showing():
         frames = whole_frames(armature, first, last, beyond)
     poses = yield from sample_incrementally(armature, frames, showing)
@@ -56,9 +56,14 @@ def read_recorded_incrementally(
         return recording_of(armature, frames, poses)
 
 
+def showing_recorded(armature: bpy.types.Object) -> Callable[[], AbstractContextManager[None]]:
+    """Contexts in which the armature performs the recording, whichever action is shown."""
+    return partial(_showing, armature, recorded_action(armature))
+
+
 def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
     """The recording's poses at frames (T,), whichever of its actions is shown."""
-    with _showing(armature, recorded_action(armature)):
+    with showing_recorded(armature)():
         return sample(armature, frames)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from time import perf_counter
 from typing import TypeVar
 
@@ -34,23 +35,33 @@ def complete(slices: Incremental[T]) -> T:
             return result
 
 
+def in_slices(
+    frames: FloatArray,
+    look: Callable[[FloatArray], T],
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[list[T]]:
+    """What `look` finds at frames (T,), a few a slice. showing: entered for each slice, such as to
+    let an armature perform another action meanwhile."""
+    found: list[T] = []
+    at, count = 0, FEWEST_FRAMES
+    while at < len(frames):
+        began = perf_counter()
+        with showing():
+            found.append(look(frames[at : at + count]))
+        at += count
+        spent = perf_counter() - began
+        count = max(FEWEST_FRAMES, int(count * min(SLICE_S / spent, 8.0)))
+        yield
+    return found
+
+
 def sample_incrementally(
     armature: bpy.types.Object,
     frames: FloatArray,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
 ) -> Incremental[Poses]:
-    """Sample poses, a few frames a slice. showing: entered for each slice, such as to let the
-    armature perform another action meanwhile."""
-    found: list[Poses] = []
-    at, count = 0, FEWEST_FRAMES
-    while at < len(frames):
-        began = perf_counter()
-        with showing():
-            found.append(sample(armature, frames[at : at + count]))
-        at += count
-        spent = perf_counter() - began
-        count = max(FEWEST_FRAMES, int(count * min(SLICE_S / spent, 8.0)))
-        yield
+    """Sample poses, a few frames a slice. showing: as of `in_slices`."""
+    found = yield from in_slices(frames, partial(sample, armature), showing)
     return Poses(
         found[0].bones,
         found[0].parents,

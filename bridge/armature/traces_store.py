@@ -19,7 +19,7 @@ from ...solver.data.traces import FlightParabola, Traces
 
 _CONTENT, _KEY = "hangtime_traces", "hangtime_traces_key"
 _ARRAYS = tuple(f.name for f in fields(Traces) if f.type == "FloatArray")
-_NAMES = ("bones", "contacts", "joints")
+_NAMES = ("bones", "contacts", "joints", "solids")
 _STOOD, _WEIGHT, _FLIGHTS = "stood", "weight", "flights"
 _REMEMBERED = 8
 
@@ -84,13 +84,10 @@ def _flight(packed: Mapping[str, NDArray[Any]], i: int, name: str) -> FlightPara
 @lru_cache(maxsize=_REMEMBERED)
 def _unpacked(stored: _Stored) -> StoredTraces:
     with np.load(BytesIO(stored.owner[_CONTENT]), allow_pickle=False) as packed:
-        # files that an earlier version saved lack what it did not know
+        # Files of earlier versions lack what traces did not have then.
         arrays = {n: packed[n].astype(float) for n in _ARRAYS if n in packed}
-        names = [tuple(packed[n].tolist()) for n in _NAMES]
+        names: dict[str, Any] = {n: tuple(packed[n].tolist()) for n in _NAMES if n in packed}
         flights = tuple(_flight(packed, i, n) for i, n in enumerate(packed[_FLIGHTS].tolist()))
         weight, stood = float(packed[_WEIGHT]), Matrix(packed[_STOOD].tolist())
-    bones, contacts, joints = names
-    traces = Traces(
-        **arrays, bones=bones, contacts=contacts, joints=joints, weight=weight, flights=flights
-    )
+    traces = Traces(**arrays, **names, weight=weight, flights=flights)
     return StoredTraces(traces, stood, stored.key)

@@ -18,17 +18,19 @@ from ...solver.data.faults import EmptyRange
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import Recording
 from ...solver.data.requests import Requests
+from ...solver.data.scene import SceneObject
 from ...solver.worker.protocol import Analysed
 from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.settings import HangtimeContact, HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
+from ..scene.members import ground_members
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
 _KEPT = (
-    *("name", "point", "bone", "phase", "added", "used", "empty"),
+    *("name", "point", "bone", "phase", "added", "used", "empty", "on"),
     *("found_start", "found_end", "start_frame", "end_frame", "found_at", "at"),
 )
 _UNMOVED = 1e-5  # Blender units
@@ -60,11 +62,16 @@ def analysis_key(settings: HangtimeSettings, recording: Recording) -> str:
 
 
 def problem_of(
-    settings: HangtimeSettings, recording: Recording, *, with_contacts: bool = True
+    settings: HangtimeSettings,
+    recording: Recording,
+    scene: tuple[SceneObject, ...] = (),
+    *,
+    with_contacts: bool = True,
 ) -> MotionProblem:
     """What the settings ask of a recording.
 
-    with_contacts: whether corrections and pins count; an analysis starts without them.
+    scene: the surfaces as they were read (bridge/scene). with_contacts: whether corrections, pins
+    and surfaces count; an analysis starts without them.
     Raises EmptyRange for a contact that ends before it begins, BadRecipe, and as `requests_of`.
     """
     if with_contacts:
@@ -79,6 +86,7 @@ def problem_of(
         contacts=_edits(settings) if with_contacts else (),
         added=_added(settings) if with_contacts else (),
         pins=_pins(settings, span) if with_contacts else (),
+        scene=scene if with_contacts else (),
         requests=_requests(settings, span) if with_contacts else Requests(),
     )
 
@@ -132,13 +140,14 @@ def _added(settings: HangtimeSettings) -> tuple[AddedContact, ...]:
 
 
 def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, ...]:
-    """A pin for each contact that has been moved.
+    """A pin for each contact that has been moved, or stands on a surface.
 
     Corrections renumber contacts and phases, so pins name both as they are called afterwards.
     """
     metres = metres_per_unit(current_scene())
     rate = frames_per_second(current_scene())
     duration = (span[1] - span[0]) / rate
+    ground = ground_members(settings, current_scene())
     used = [row for row in settings.contacts if row.used]
     bare = [_bare_contact(row, span[0], rate, duration) for row in used]
     schedule = ContactSchedule(numbered(bare), duration, floor_m=0.0)
@@ -146,11 +155,12 @@ def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, .
     pins = []
     for row, contact in zip(used, bare, strict=True):
         phase = _ground_phase(schedule, contact)
-        if phase is None or not moved(row):
+        on = next((each.name for each in ground if each.object == row.on), None)
+        if phase is None or not (moved(row) or on):
             continue
         x, y, z = (metres * value for value in row.at)
         name = called[contact.point, contact.start]
-        pins.append(Pin(row.name, phase.name, (name,), place=(x, y, z)))
+        pins.append(Pin(row.name, phase.name, (name,), place=(x, y, z), on=on))
     return tuple(pins)
 
 
@@ -204,7 +214,7 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     contacts = found.schedule.contacts
     rows = _resized(settings.contacts, len(contacts) + len(added))
     for row, contact in zip(rows, contacts, strict=False):
-        row.used, row.added, row.empty = True, False, None
+        row.used, row.added, row.empty, row.on = True, False, None, None
         phase = _ground_phase(found.schedule, contact)
         row.name, row.point, row.bone = contact.name, contact.point, contact.bone
         row.phase = phase.name if phase is not None else ""
@@ -248,4 +258,5 @@ def _restore(settings: HangtimeSettings, edits: list[SimpleNamespace]) -> None:
         row.empty = edit.empty
         by = [now - was for now, was in zip(edit.at, edit.found_at, strict=True)]
         place(settings, row, [a + b for a, b in zip(row.found_at, by, strict=True)])
+        row.on = edit.on
     settings.whole_stance = whole

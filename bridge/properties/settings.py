@@ -29,6 +29,8 @@ from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
 from .constraint import CLASSES as CONSTRAINT_CLASSES
 from .constraint import HangtimeConstraint
+from .surface import CLASSES as SURFACE_CLASSES
+from .surface import HangtimeSurface, has_faces
 from .view import CLASSES as VIEW_CLASSES
 from .view import HangtimeView
 
@@ -83,6 +85,14 @@ class HangtimeContact(bpy.types.PropertyGroup):
         )
     )
     empty: chosen(target("Empty", "Where this empty is, the point shall touch", poll=_is_empty))
+    on: chosen(
+        target(
+            "On",
+            "The ground that the point stands on, vertically below or above its place; "
+            "it must be among the surfaces. Dragging the pin there chooses it",
+            poll=has_faces,
+        )
+    )
 
 
 def _shift(axis: int, name: str, description: str) -> Any:
@@ -187,6 +197,8 @@ class HangtimeSettings(bpy.types.PropertyGroup):
 
     constraints: bpy.props.CollectionProperty(type=HangtimeConstraint, override=OVERRIDABLE_LIST)
     active_constraint: hidden(whole())
+    surfaces: bpy.props.CollectionProperty(type=HangtimeSurface, override=OVERRIDABLE_LIST)
+    active_surface: hidden(whole())
     body_changes: bpy.props.CollectionProperty(type=HangtimeBodyChange, override=OVERRIDABLE_LIST)
     active_body_change: hidden(whole())
     use_new_mass: chosen(
@@ -238,7 +250,8 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     keep_out: chosen(
         boolean(
             "Keep Out",
-            "Limbs keep out of each other and of the floor, as far as they do in the recording",
+            "Limbs keep out of each other, of the floor and of the surfaces, as far as they do in "
+            "the recording",
             default=True,
         )
     )
@@ -282,6 +295,13 @@ class HangtimeScene(bpy.types.PropertyGroup):
     """Which armature the sidebar is about, and what is shown of it."""
 
     view: declared(target(type=HangtimeView))
+    snap: declared(
+        boolean(
+            "Snap to Surfaces",
+            "While a contact is dragged it lands on the ground's faces; Ctrl lets go of them",
+            default=True,
+        )
+    )
 
     armature: declared(
         target(
@@ -300,6 +320,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
+    overlaps: declared(text(), options=HIDDEN)  # what is in what: of the recording, of itself
 
 
 def settings_of(armature: bpy.types.Object) -> HangtimeSettings:
@@ -324,6 +345,7 @@ CLASSES = (
     *ROW_CLASSES,
     *CONSTRAINT_CLASSES,
     *BODY_CHANGE_CLASSES,
+    *SURFACE_CLASSES,
     *VIEW_CLASSES,
     HangtimePart,
     HangtimeContact,

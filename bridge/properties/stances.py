@@ -27,11 +27,29 @@ def place(
     whole: None is as the settings have it (`whole_stance`).
     """
     shift = Vector(to) - Vector(row.at)
-    whole = settings.whole_stance if whole is None else whole
-    moving = stance_contacts(settings, row.phase) if whole else [row]
-    for contact in moving:
+    for contact in moving_with(settings, row, whole=whole):
         _put(contact, Vector(contact.at) + shift)
     _remember(settings, row.phase)
+
+
+def moving_with(
+    settings: Settings, row: ContactRow, *, whole: bool | None = None
+) -> list[ContactRow]:
+    """The contacts that go where a contact goes. whole: as of `place`."""
+    whole = settings.whole_stance if whole is None else whole
+    return stance_contacts(settings, row.phase) if whole else [row]
+
+
+def stand_on(
+    settings: Settings,
+    row: ContactRow,
+    ground: bpy.types.Object | None,
+    *,
+    whole: bool | None = None,
+) -> None:
+    """Lets a contact, and what goes with it, stand on an object. whole: as of `place`."""
+    for contact in moving_with(settings, row, whole=whole):
+        contact.on = ground
 
 
 def shift_stance(settings: Settings, stance: StanceRow, to: Sequence[float]) -> None:
@@ -58,6 +76,7 @@ def put_back(settings: Settings, stance: StanceRow) -> None:
     """Puts a stance's contacts where they were recorded."""
     for contact in stance_contacts(settings, stance.name):
         _put(contact, Vector(contact.found_at))
+        contact.on = None
     stance.shifted = (0.0, 0.0, 0.0)
     stance.turned = 0.0
 
@@ -98,6 +117,8 @@ def follow(empty: bpy.types.Object) -> None:
 
 
 def _put(row: ContactRow, to: Vector) -> None:
+    if abs(to.z - row.at[2]) > _SAME:
+        row.on = None  # a height that somebody states is not a surface's
     row.at = to
     if row.empty is None or (row.empty.matrix_world.translation - to).length <= _SAME:
         return

@@ -30,6 +30,7 @@ class HangtimeView(bpy.types.PropertyGroup):
         "recording's: blue as it was, yellow by 15°, red by 45° and more",
         on=False,
     )
+    shapes: _switch("Shapes", "The body's solid shapes; red where one is in something", on=False)
     ghosts: _switch("Ghosts", "The adapted motion beside the recording, at chosen frames")
     ghost_step: declared(whole("Every", "Frames from one ghost to the next", default=30, min=1))
     recording_too: _switch("Recording's Ghosts", "Also show the recording at these frames")

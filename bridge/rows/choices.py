@@ -15,6 +15,13 @@ class BodyKind(Enum):
     LIMB = "Limb"
 
 
+class SurfaceRole(Enum):
+    """What an object of the scene is to the performer; the names are the solver's."""
+
+    GROUND = "Ground"
+    OBSTACLE = "Obstacle"
+
+
 class Span(Enum):
     """During what a constraint holds."""
 

@@ -32,6 +32,7 @@ class ContactRow(Protocol):
     found_at: Any
     at: Any
     empty: Any
+    on: Any
 
 
 class StanceRow(Protocol):

@@ -1,5 +1,6 @@
 """State machines of dragging a pin, or one number such as an angle; without Blender."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 from math import hypot, radians
@@ -43,13 +44,28 @@ class _Drag:
         self.state = state
 
 
+@dataclass(frozen=True)
+class Landing:
+    """A face that a pin lands on: its height (m, world) there, and the name of its object."""
+
+    height: float
+    ground: str
+
+
 @dataclass
 class PinDrag(_Drag):
     """One drag of a pin that was at `start` (m, world). Slides over the ground unless held to an
-    axis."""
+    axis.
+
+    lands: the face at x and y (m, world), if any; None where pins do not snap to surfaces. floor:
+    the height, m, beside all faces of a pin that began on one; None leaves it where it is dragged.
+    """
 
     start: Vector
     axis: Axis | None = None
+    lands: Callable[[float, float], Landing | None] | None = None
+    floor: float | None = None
+    landing: Landing | None = field(default=None, init=False)
     _shift: Vector = (0.0, 0.0, 0.0)
     _loose: Vector = (0.0, 0.0, 0.0)  # how far it is pulled, before steps and axes
     _mouse: Vector = (0.0, 0.0, 0.0)
@@ -59,12 +75,13 @@ class PinDrag(_Drag):
         where the drag began, on that axis."""
         self._require_dragging()
         self.axis = None if self.axis is axis else axis
+        self.landing = None
         self._shift = self._loose = self._mouse = (0.0, 0.0, 0.0)
 
     def move(self, shift: Vector, *, precise: bool = False, snap: bool = False) -> Vector:
         """The mouse is `shift` (m) from where it began, on the plane or axis of the drag. Returns
         where the pin is now. precise: goes a tenth of the mouse's way, from here on and without
-        a jump at either end; snap: to whole steps."""
+        a jump at either end; snap: to whole steps, and not to faces."""
         self._require_dragging()
         share = PRECISE if precise else 1.0
         x, y, z = (
@@ -77,7 +94,19 @@ class PinDrag(_Drag):
             moved = [each if i == self.axis.value else 0.0 for i, each in enumerate(moved)]
         far = max(hypot(*moved) / FURTHEST, 1.0)  # near the horizon a pixel is a mile
         self._shift = (moved[0] / far, moved[1] / far, moved[2] / far)
+        self._land(holds=not snap and self.axis is not Axis.Z)
         return self.place
+
+    def _land(self, *, holds: bool) -> None:
+        """Takes the height of the face that the pin is above or below. holds: False lets go."""
+        self.landing = None
+        if self.lands is None or not holds:
+            return
+        x, y, _ = self.place
+        self.landing = self.lands(x, y)
+        height = self.floor if self.landing is None else self.landing.height
+        if height is not None:
+            self._shift = (*self._shift[:2], height - self.start[2])
 
     @property
     def shift(self) -> Vector:
@@ -98,7 +127,7 @@ class PinDrag(_Drag):
     def put_back(self) -> Vector:
         """The artist thinks better of it. Returns where the pin was."""
         self._end(DragState.PUT_BACK)
-        self._shift = (0.0, 0.0, 0.0)
+        self._shift, self.landing = (0.0, 0.0, 0.0), None
         return self.start
 
 

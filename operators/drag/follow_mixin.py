@@ -149,7 +149,8 @@ class FollowedDrag(PolledOperator):
         while True:
             if self._moved:
                 self._moved = False
-                stream.want(problem_of(settings_of(self._armature), asked.recording))
+                settings = settings_of(self._armature)
+                stream.want(problem_of(settings, asked.recording, asked.scene.objects))
             for message in stream.news():
                 self._hear(message)
             yield

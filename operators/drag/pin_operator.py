@@ -4,11 +4,12 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from ...bridge.accessors import present
+from ...bridge.accessors import current_scene, present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.settings import HangtimeContact, settings_of
-from ...bridge.properties.stances import place, stance_contacts
+from ...bridge.properties.stances import place, stance_contacts, stand_on
+from ...bridge.scene.members import ground_members
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.common import required_armature
@@ -16,12 +17,15 @@ from . import rays
 from .drag_state import Axis, PinDrag
 from .follow_mixin import FollowedDrag
 from .mouse import GIVEN, Pixel, pixel, pixel_of, ray_at
+from .snapping import Snapping
 
 FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
 FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon
 UP = Vector((0.0, 0.0, 1.0))
 NO_PIN = "There is no such contact or point"
 BEHIND = "Turn the view so that the pin is in front of you"
+
+Standing = tuple[Vector, bpy.types.Object | None]  # where a contact is, and on what
 
 
 class DragPinOperator(FollowedDrag, bpy.types.Operator):
@@ -32,7 +36,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         "motion follows as a ghost; letting go adapts. A click chooses it in its list"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
-    key_hints = "X Y Z: along an axis · Shift: finer · Ctrl: in steps · Esc: back"
+    key_hints = "X Y Z: along an axis · Shift: finer · Ctrl: in steps, off surfaces · Esc: back"
 
     contact: bpy.props.IntProperty(
         name="Contact",
@@ -60,13 +64,18 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
     shift: bpy.props.FloatVectorProperty(
         name="Shift", description="How far, in the world", subtype="TRANSLATION", unit="LENGTH"
     )
+    ground: bpy.props.StringProperty(
+        name="On",
+        description="The ground that the contact stands on afterwards, by its object's name",
+        options={"SKIP_SAVE"},
+    )
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         """In scripts and for redo: the pin moves by `shift`."""
         self._armature = required_armature(context)
         if self._find_row() is None:
             return self.refuse(NO_PIN)
-        self._put(Vector(self._place) + Vector(self.shift))
+        self._put(Vector(self._place) + Vector(self.shift), self.ground)
         return {"FINISHED"}
 
     def take(self, context: bpy.types.Context) -> str | None:
@@ -74,7 +83,13 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             return NO_PIN
         self._metres = metres_per_unit(present(context.scene))
         x, y, z = (self._metres * each for each in self._place)
-        self._drag = PinDrag((x, y, z), Axis.__members__.get(self.axis))
+        row, axis = self._row, Axis.__members__.get(self.axis)
+        self._snapping: Snapping | None = None
+        if not isinstance(row, HangtimeConstraint):
+            self._snapping = Snapping.of(self._armature, row, present(context.scene))
+        self._drag = PinDrag((x, y, z), axis)
+        if self._snapping is not None:
+            self._drag.lands, self._drag.floor = self._snapping.lands, self._snapping.floor
         sight = present(context.region_data).view_rotation @ UP
         self._ground = abs(sight.z) > FLAT
         self._normal = UP if self._ground else sight
@@ -96,15 +111,15 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         # As if the mouse had taken hold of the pin itself, wherever it did.
         ways = zip(self._pixel, pixel(event), self._press.at, strict=True)
         across, up = (pin + to - began for pin, to, began in ways)
-        now = self._aim(context, (across, up))
+        now = self._aim(context, (across, up), surfaces=not event.ctrl)
         if now is None:
             return  # above the horizon: it stays where it is
         x, y, z = (float(each) for each in self._metres * now - np.array(self._drag.start))
         to = self._drag.move((x, y, z), precise=event.shift, snap=event.ctrl)
-        self._put(Vector(to) / self._metres)
+        self._put(Vector(to) / self._metres, self._standing)
 
     def let_go(self) -> bool:
-        moved = self._drag.let_go()
+        moved, self.ground = self._drag.let_go(), self._standing
         self.shift = Vector(self._drag.shift) / self._metres
         return moved
 
@@ -112,8 +127,9 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         self._drag.put_back()
         settings = settings_of(self._armature)
         settings.active_contact, settings.active_constraint, places, point = self._was
-        for index, at in places.items():
+        for index, (at, on) in places.items():
             place(settings, settings.contacts[index], at.to_tuple(), whole=False)
+            settings.contacts[index].on = on
         row = self._row
         if isinstance(row, HangtimeConstraint):
             row.use_place, row.place = point
@@ -127,7 +143,8 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         way = "Over the ground" if self._ground else "Across the view"
         if self._drag.axis is not None:
             way = f"Along {self._drag.axis.name}"
-        return f"{way} {x:+.3f} {y:+.3f} {z:+.3f} m"
+        standing = f" · on {self._standing}" if self._standing else ""
+        return f"{way} {x:+.3f} {y:+.3f} {z:+.3f} m{standing}"
 
     # -- where ---------------------------------------------------------------------------------
 
@@ -152,14 +169,17 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         row = self._row
         return tuple(row.place if isinstance(row, HangtimeConstraint) else row.at)
 
-    def _put(self, to: Vector) -> None:
-        row = self._row
+    def _put(self, to: Vector, ground: str) -> None:
+        row, settings = self._row, settings_of(self._armature)
         if isinstance(row, HangtimeConstraint):
             row.use_place, row.place = True, to
-        else:
-            place(settings_of(self._armature), row, to.to_tuple(), whole=self.whole or None)
+            return
+        place(settings, row, to.to_tuple(), whole=self.whole or None)
+        members = ground_members(settings, current_scene())
+        on = next((each.object for each in members if each.name == ground), None)
+        stand_on(settings, row, on, whole=self.whole or None)
 
-    def _remembered(self) -> tuple[int, int, dict[int, Vector], tuple[bool, Vector]]:
+    def _remembered(self) -> tuple[int, int, dict[int, Standing], tuple[bool, Vector]]:
         """State to restore: what is chosen, contacts' places, the point's."""
         settings, row = settings_of(self._armature), self._row
         places, point = {}, (False, Vector())
@@ -167,7 +187,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
             point = (row.use_place, Vector(row.place))
         else:
             contacts = stance_contacts(settings, row.phase)
-            places = {settings.contacts.find(c.name): Vector(c.at) for c in contacts}
+            places = {settings.contacts.find(c.name): (Vector(c.at), c.on) for c in contacts}
         return settings.active_contact, settings.active_constraint, places, point
 
     def _choose(self) -> None:
@@ -177,13 +197,23 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         elif self.contact >= 0:
             settings.active_contact = self.contact
 
-    def _aim(self, context: bpy.types.Context, at: Pixel) -> rays.Vector | None:
-        """The place under a pixel on the ground, the plane that faces the viewer, or the axis
-        through the pin; Blender units, world. None where it points at none of that."""
+    @property
+    def _standing(self) -> str:
+        """The ground that the pin is on; empty where it is on none."""
+        landing = self._drag.landing
+        return landing.ground if landing is not None else ""
+
+    def _aim(self, context: bpy.types.Context, at: Pixel, *, surfaces: bool) -> rays.Vector | None:
+        """The place under a pixel on a surface, the ground, the plane that faces the viewer, or the
+        axis through the pin; Blender units, world. None where it points at none of that."""
         ray = ray_at(context, at)
         start = np.array(self._drag.start) / self._metres
         if self._drag.axis is not None:
             axis = rays.unit([float(i == self._drag.axis.value) for i in range(3)])
             distance = rays.along_line(ray, start, axis)
             return start + distance * axis if distance is not None else None
+        if surfaces and self._snapping is not None:
+            seen = self._snapping.seen(ray)
+            if seen is not None:
+                return np.array([*seen, start[2]])  # landing gives the height
         return rays.on_plane(ray, start, self._normal.to_tuple(), FARTHEST)

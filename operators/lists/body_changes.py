@@ -29,6 +29,7 @@ DESCRIPTIONS = {
     BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
     BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",
 }
+_BONED = (RowList.CONSTRAINTS, RowList.BODY_CHANGES)  # lists whose rows are about bones
 BonedRow = HangtimeConstraint | HangtimeBodyChange
 KIND_ITEMS = [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
 
@@ -65,7 +66,7 @@ class RemoveBodyChangeOperator(RemoveOperator, bpy.types.Operator):
 class _BonesOperator(AddingOperator):
     """Mixin: changes the bones of the chosen row of either list."""
 
-    of: bpy.props.EnumProperty(name="List", items=[(each.name, each.label, "") for each in RowList])
+    of: bpy.props.EnumProperty(name="List", items=[(each.name, each.label, "") for each in _BONED])
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, of = required_armature(context), RowList[self.of]

@@ -1,4 +1,4 @@
-"""What the operators on the lists of constraints and of body changes share."""
+"""What the operators on the lists of constraints, of body changes and of surfaces share."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ NO_ARMATURE = "Select the armature that carries the recording"
 LINKED = "The armature is linked; make a library override of it first"
 NO_CONSTRAINT = "Choose a constraint in the list first"
 NO_BODY_CHANGE = "Choose a weight or a limb in the list first"
+NO_SURFACE = "Choose a surface in the list first"
 NONE_SELECTED = "Select bones in pose mode first"
 FROM_LIBRARY = "It comes from the linked file; switch it off instead, and add one of your own"
 
@@ -27,6 +28,7 @@ class RowList(Enum):
 
     CONSTRAINTS = ("constraints", "active_constraint", NO_CONSTRAINT)
     BODY_CHANGES = ("body_changes", "active_body_change", NO_BODY_CHANGE)
+    SURFACES = ("surfaces", "active_surface", NO_SURFACE)
 
     def rows(self, settings: HangtimeSettings) -> bpy.types.bpy_prop_collection_idprop[Any]:
         rows: bpy.types.bpy_prop_collection_idprop[Any] = getattr(settings, self.value[0])

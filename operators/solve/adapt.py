@@ -18,6 +18,7 @@ from ...bridge.armature.write import write_action
 from ...bridge.constraints.motion_problem import analysis_key, problem_of, wanted_range
 from ...bridge.constraints.status import write_status
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
@@ -40,6 +41,7 @@ from ..words.report_text import (
 )
 from .common import hindrance, required_armature
 from .live import live
+from .scene import note_surfaces, read_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered, take_best
@@ -156,8 +158,9 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     recording = yield from read_wanted(armature)
     if analysis_key(settings, recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
-    problem = problem_of(settings, recording)
-    return Asked(armature.name, armature.session_uid, recording, problem)
+    scene = yield from read_surfaces(armature, recording.frames)
+    problem = problem_of(settings, recording, scene.objects)
+    return Asked(armature.name, armature.session_uid, recording, problem, scene)
 
 
 def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
@@ -167,14 +170,28 @@ def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
 
 
 def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
-    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile."""
+    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile.
+
+    Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
+    """
     session().advance(SolveState.CHECKING)
     armature = yield from _unchanged(asked)
+    stale = yield from stale_surfaces(asked, armature)
     session().advance(SolveState.WRITING)
     limbs = asked.problem.requests.body.limbs
     if limbs:
         within = asked.recording.window(*present(asked.problem.frames))
-        return _write_other(changed_recording(within, limbs), answer, armature)
+        done = _write_other(changed_recording(within, limbs), answer, armature)
+    else:
+        done = yield from _write_own(answer, armature)
+    remarks = note_surfaces(armature, asked, answer.report, stale)
+    settings = settings_of(armature)
+    settings.status = "\n".join([settings.status, *remarks])
+    return "; ".join([done, *remarks])
+
+
+def _write_own(answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
+    """The answer as a new action of the armature."""
     stood = armature.matrix_world.copy()
     action = yield from write_adapted_incrementally(armature, answer.track)
     keep(action, answer.traces, stood)
@@ -206,6 +223,7 @@ def _note(
     write_status(settings, answer.report)
     action_settings(action).report = as_text(answer.report)
     store_times(action, answer.report.times)
+    store_overlaps(action, answer.report)
     action_settings(action).performer = performer
 
 

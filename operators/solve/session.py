@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Protocol
 
+from ...bridge.scene.read import SceneReading
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.worker.protocol import Adapted
@@ -13,12 +14,13 @@ from .solving import SolveState, Solving
 @dataclass(frozen=True)
 class Asked:
     """A request: of which armature (its name then, and its number in this session), what its
-    recording was, and what was asked."""
+    recording and the scene's surfaces were, and what was asked."""
 
     armature: str
     uid: int
     recording: Recording
     problem: MotionProblem
+    scene: SceneReading = field(default_factory=SceneReading)
 
 
 class Running(Protocol):

@@ -173,6 +173,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.TooSteep: "“{request}” stands on “{thing}” where it is {slope:.0f}° steep, and "
     "“{contact}” holds with a friction of {friction:g} at most; ask for more friction, or stand "
     "where it is flatter.",
+    faults.ObjectGone: "“{thing}” is not in the scene any more; remove it from the list in the "
+    "panel World, or switch it off.",
 }
 PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
 

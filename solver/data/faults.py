@@ -450,3 +450,7 @@ class TooSteep(RequestFault):
     thing: str
     slope: float
     friction: float
+
+
+class ObjectGone(SceneFault):
+    """An object, or a collection, that was chosen is not in the scene any more."""

@@ -35,7 +35,9 @@ class Traces:
     weight: N, the body's. joints: bones whose torques are known; torques: (T, J) N·m, the largest
     component of each joint. changes: (T, B) rad that each bone's joint is turned from the
     recording's; (0, 0) where nothing is told. Of a recording the contacts are all points that might
-    touch; forces, torques and flights it has none (T, 0, 3).
+    touch; forces, torques and flights it has none (T, 0, 3). solids: names of the bodies whose solid
+    shapes, capsules, are traced, one each; their ends solid_starts, solid_ends: (T, S, 3) m, and
+    solid_radii: (S,) m.
     """
 
     frames: FloatArray
@@ -53,11 +55,16 @@ class Traces:
     torques: FloatArray
     flights: tuple[FlightParabola, ...]
     changes: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    solids: tuple[str, ...] = ()
+    solid_starts: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 3)))
+    solid_ends: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 3)))
+    solid_radii: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 def scaled_traces(traces: Traces, factor: float) -> Traces:
     """Traces of a figure `factor` times as large: lengths scaled, forces and torques kept."""
-    lengths = ("heads", "tails", "com", "velocity", "points")
+    solids = ("solid_starts", "solid_ends", "solid_radii")
+    lengths = ("heads", "tails", "com", "velocity", "points", *solids)
     flights = tuple(replace(f, parabola=factor * f.parabola) for f in traces.flights)
     scaled = {name: factor * getattr(traces, name) for name in lengths}
     return replace(traces, **scaled, flights=flights)

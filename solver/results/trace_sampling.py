@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.recording import Recording
 from ..data.traces import FlightParabola, Traces
+from ..solid.shapes import Capsules, capsules
 from ..transcription.motion import Motion, motion_inverse_dynamics
 
 PARABOLA_POINTS = 25
@@ -55,6 +57,7 @@ def recorded_traces(performance: Performance) -> Traces:
         joints=(),
         torques=none[:, :, 0],
         flights=(),
+        **_solids(character, figure),
     )
 
 
@@ -98,6 +101,7 @@ def motion_traces(
             for phase in schedule.phases
             if phase.kind is PhaseKind.FLIGHT
         ),
+        **_solids(character, figure),
     )
 
 
@@ -129,6 +133,22 @@ def _torques(motion: Motion, times: FloatArray, dynamics: InverseDynamics | None
 def _tails(character: Character, figure: _Figure) -> FloatArray:
     tips = np.stack([body.tip for body in character.bodies])
     return np.asarray(figure.centres + np.einsum("tbij,bj->tbi", figure.rotations, tips))
+
+
+def _solids(character: Character, figure: _Figure) -> dict[str, Any]:
+    """What traces hold of the body's solid shapes."""
+    shapes = Capsules.of(capsules(character))
+    turns, centres = figure.rotations[:, shapes.bodies], figure.centres[:, shapes.bodies]
+    start, end = (
+        centres + np.einsum("tsij,sj->tsi", turns, local) for local in (shapes.start, shapes.end)
+    )
+    names = tuple(character.bodies[body].name for body in shapes.bodies)
+    return {
+        "solids": names,
+        "solid_starts": start,
+        "solid_ends": end,
+        "solid_radii": shapes.radius,
+    }
 
 
 def _momentum(

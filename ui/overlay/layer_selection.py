@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from .context.figure_cache import FigureCache
 from .context.layer import Layer, Part
 from .context.view_context import ViewContext
-from .layers import changes, ghosts, limits, motion, pins
+from .layers import changes, ghosts, limits, motion, pins, shapes
 
 
 def layers(view: ViewContext, figures: FigureCache) -> Iterator[Layer]:
@@ -34,6 +34,9 @@ def _motion(view: ViewContext) -> Iterator[Layer]:
     if options.changes and view.live is None and adapted is not None:
         yield changes.layer(view, adapted)
     shown = adapted or recorded
+    performed = adapted if view.live or view.performs_adapted else recorded
+    if options.shapes and performed is not None:
+        yield shapes.layer(view, performed)
     if (options.path or options.momentum) and shown is not None:
         yield motion.centre(view, shown)
 

@@ -74,5 +74,6 @@ class ContactPanel(ArmaturePanel):
         frames.prop(row, "start_frame")
         frames.prop(row, "end_frame")
         layout.column(align=True).prop(row, "place")
+        layout.prop(row, "on")
         layout.prop(row, "empty")
         layout.operator(OperatorId.PLACE_BY_EMPTY, icon="EMPTY_AXIS")

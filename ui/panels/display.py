@@ -11,7 +11,7 @@ from .sidebar import SidebarPanel, split
 
 _COLUMNS = {
     "Constraints": ("pins", "limits", "poses"),
-    "Motion": ("path", "forces", "momentum", "changes"),
+    "Motion": ("path", "forces", "momentum", "changes", "shapes"),
 }
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
@@ -19,7 +19,7 @@ _CURVES = ("plot_forces", "plot_com", "plot_torque")
 class DisplayPanel(SidebarPanel):
     bl_idname = "HANGTIME_PT_display"
     bl_label = "Display"
-    bl_order = 8
+    bl_order = 9
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context: bpy.types.Context) -> None:

@@ -1,4 +1,4 @@
-"""The lists of contacts, constraints and body changes, and what their kinds look like."""
+"""The lists of contacts, constraints, body changes and surfaces, and what their kinds look like."""
 
 import bpy
 
@@ -6,7 +6,8 @@ from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS
 from ...bridge.constraints.linked_rows import linked_count
 from ...bridge.properties.settings import HangtimeContact, HangtimeSettings
-from ...bridge.rows.choices import BodyKind, Met
+from ...bridge.properties.surface import HangtimeSurface
+from ...bridge.rows.choices import BodyKind, Met, SurfaceRole
 from ...bridge.rows.kind import Icon, Row
 from ..drawing.editor import ui_scale
 
@@ -21,6 +22,12 @@ MET_ICONS: dict[str, Icon] = {
     Met.UNKNOWN.name: "INFO",
     Met.MET.name: "CHECKMARK",
     Met.MISSED.name: "ERROR",
+}
+
+
+ROLE_ICONS: dict[str, Icon] = {
+    SurfaceRole.GROUND.name: "SNAP_FACE",
+    SurfaceRole.OBSTACLE.name: "CUBE",
 }
 
 
@@ -82,6 +89,31 @@ class BodyChangeList(_RowList):
         if row.kind == BodyKind.LIMB.name:
             return f"× {row.length:.2g}" if row.length != 1.0 else ""
         return f"{100.0 * row.share:.0f} %" if row.by_share else f"{row.mass:.3g} kg"
+
+
+class SurfaceList(bpy.types.UIList):
+    bl_idname = "HANGTIME_UL_surfaces"
+
+    def draw_item(
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        _settings: HangtimeSettings | None,
+        surface: HangtimeSurface | None,
+        _icon: int | None,
+        _active_owner: HangtimeSettings | None,
+        _active_name: str | None,
+        _index: int | None,
+        _filter: int | None,
+    ) -> None:
+        row = present(surface)
+        line = layout.row(align=True)
+        line.prop(row, "used", text="")
+        line = line.row(align=True)
+        line.active = row.used
+        line.label(text=row.called, icon=ROLE_ICONS[row.role])
+        if row.status:
+            line.label(text="", icon=MET_ICONS[row.met])
 
 
 class ContactList(bpy.types.UIList):

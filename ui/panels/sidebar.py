@@ -1,16 +1,12 @@
 """Bases and helpers of the sidebar's panels."""
 
-from typing import Literal
-
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, settings_of
-from ...bridge.rows.kind import Row
+from ...bridge.rows.kind import Icon, Row
 from ...operators.names import CATEGORY
 from ...operators.solve.common import chosen_armature
-
-Icon = Literal["NONE", "CHECKMARK", "ERROR"]
 
 
 class SidebarPanel(bpy.types.Panel):

@@ -17,7 +17,7 @@ CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
 class SolvePanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_solve"
     bl_label = "Solve"
-    bl_order = 5
+    bl_order = 6
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
@@ -50,7 +50,6 @@ class AdvancedPanel(ArmaturePanel):
         settings = settings_in(context)
         layout.prop(settings, "method")
         layout.prop(settings, "keep_times")
-        layout.prop(settings, "keep_out")
         layout.prop(settings, "human_ranges")
         refine = layout.column(heading="Refine")
         refine.prop(settings, "objective")
@@ -63,7 +62,7 @@ class AdvancedPanel(ArmaturePanel):
 class ResultPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_result"
     bl_label = "Result"
-    bl_order = 6
+    bl_order = 7
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
@@ -85,7 +84,7 @@ class ResultPanel(ArmaturePanel):
 class ExportPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_export"
     bl_label = "Export"
-    bl_order = 7
+    bl_order = 8
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, _context: bpy.types.Context) -> None:

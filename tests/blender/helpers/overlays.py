@@ -21,6 +21,7 @@ WHERE = {"as made": Matrix.Identity(4), "scaled and turned": WORLD}
 FIGURE = rigs.MOVING
 ENDS = {"hips": "spine", "spine": "head", "thigh": "shin", "shin": "foot"}  # where they go on
 METRES = 0.01  # of a Blender unit
+THICK = 0.03  # m, radius of the solid shapes
 FRAME = 9.0
 
 
@@ -76,6 +77,10 @@ def traced(armature: bpy.types.Object, *, adapted: bool = False) -> Traces:
         joints=(),
         torques=np.zeros((count, 0)),
         flights=(FlightParabola("flight 1", 12.0, 18.0, np.eye(3)),) * contacts,
+        solids=FIGURE,
+        solid_starts=heads + shift,
+        solid_ends=tails + shift,
+        solid_radii=np.full(len(FIGURE), THICK),
     )
 
 

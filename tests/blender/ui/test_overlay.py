@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import json
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.traces_store import keep
 from hangtime.bridge.constraint_kinds import KINDS
+from hangtime.bridge.properties.shown_overlaps import ShownOverlap
 from hangtime.bridge.rows.choices import Span
 from hangtime.tests.blender.helpers.overlays import (
     FIGURE,
     FRAME,
     METRES,
+    THICK,
     WHERE,
     adapted,
     bone_in_world,
@@ -222,6 +225,35 @@ def test_forces_are_arrows_as_long_as_they_are_strong(armature: bpy.types.Object
     assert words(layer) == ["2.0 × weight"]
     assert looks(shown(armature, 14.0)[Part.FORCES]) == set()
     assert list(shown(armature, 500.0)[Part.FORCES].build()) == []
+
+
+def test_solid_shapes_are_round_their_bones_and_red_where_one_is_in_something(
+    armature: bpy.types.Object,
+) -> None:
+    view = bpy.context.scene.hangtime.view
+    assert Part.SHAPES not in shown(armature)
+    view.shapes = True
+    recorded = ShownOverlap("Head in shin", 21.4, FRAME)
+    armature.hangtime.adapted.hangtime.overlaps = json.dumps([[astuple(recorded)], []])
+    layer = shown(armature)[Part.SHAPES]
+    for bone in FIGURE:
+        head, _ = bone_in_world(armature, bone)
+        assert np.linalg.norm(in_world(layer) - head, axis=1).min() < 1.01 * THICK / METRES
+    red = in_world(layer, Look.BOLD)
+    for bone in ("head", "shin"):
+        head, _ = bone_in_world(armature, bone)
+        assert np.linalg.norm(red - head, axis=1).min() < 1.01 * THICK / METRES
+    assert words(layer) == ["Head in shin 21 mm"]
+    assert words(shown(armature, FRAME + 4.0)[Part.SHAPES]) == []
+
+
+def test_shapes_of_the_result_have_its_own_overlaps(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.view.shapes = True
+    after = ShownOverlap("Foot in Crate", 7.0, FRAME)
+    armature.hangtime.adapted.hangtime.overlaps = json.dumps([[], [astuple(after)]])
+    assert words(shown(armature)[Part.SHAPES]) == []
+    armature.animation_data.action = armature.hangtime.adapted
+    assert words(shown(armature)[Part.SHAPES]) == ["Foot in Crate 7 mm"]
 
 
 def test_the_path_is_a_line_on_the_ground_and_a_parabola_in_flight(

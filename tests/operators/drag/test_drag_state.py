@@ -3,7 +3,7 @@
 from math import inf, radians
 
 import pytest
-from hangtime.operators.drag.drag_state import Axis, DragState, PinDrag, ValueDrag
+from hangtime.operators.drag.drag_state import Axis, DragState, Landing, PinDrag, ValueDrag
 
 START = (1.0, 2.0, 0.0)
 STEP = radians(5.0)
@@ -67,6 +67,51 @@ def test_putting_back_forgets_the_move() -> None:
     drag.move((0.1, 0.0, 0.0))
     assert drag.put_back() == START
     assert drag.place == START
+
+
+def crate(x: float, _y: float) -> Landing | None:
+    """A crate of half a metre, of a metre in x and all of y."""
+    return Landing(0.5, "Crate") if 1.5 < x < 2.5 else None
+
+
+def test_a_pin_lands_on_what_is_below_and_comes_down_again() -> None:
+    drag = PinDrag(START, lands=crate)
+    assert drag.move((0.2, 0.0, 0.0)) == pytest.approx((1.2, 2.0, 0.0))
+    assert drag.landing is None
+    assert drag.move((0.8, 0.1, 0.0)) == pytest.approx((1.8, 2.1, 0.5))
+    assert drag.landing == Landing(0.5, "Crate")
+    assert drag.shift == pytest.approx((0.8, 0.1, 0.5))
+    assert drag.move((0.2, 0.0, 0.0)) == pytest.approx((1.2, 2.0, 0.0))
+    assert drag.landing is None
+
+
+def test_stepping_lets_go_of_the_surface() -> None:
+    drag = PinDrag(START, lands=crate)
+    assert drag.move((0.81, 0.0, 0.0), snap=True) == pytest.approx((1.8, 2.0, 0.0))
+    assert drag.landing is None
+
+
+def test_along_x_a_pin_lands_and_along_z_it_does_not() -> None:
+    drag = PinDrag(START, Axis.X, crate)
+    assert drag.move((0.8, 0.3, 0.0)) == pytest.approx((1.8, 2.0, 0.5))
+    drag.key(Axis.Z)
+    assert drag.landing is None
+    assert PinDrag((2.0, 0.0, 0.5), Axis.Z, crate).move((0.0, 0.0, 0.2)) == pytest.approx(
+        (2.0, 0.0, 0.7)
+    )
+
+
+def test_beside_the_crate_that_it_stood_on_a_pin_falls_to_the_floor() -> None:
+    drag = PinDrag((2.0, 0.0, 0.5), lands=crate, floor=0.01)
+    assert drag.move((1.0, 0.0, 0.0)) == pytest.approx((3.0, 0.0, 0.01))
+    assert drag.move((0.1, 0.0, 0.0)) == pytest.approx((2.1, 0.0, 0.5))
+
+
+def test_putting_back_stands_nowhere_else() -> None:
+    drag = PinDrag(START, lands=crate)
+    drag.move((0.8, 0.0, 0.0))
+    assert drag.put_back() == START
+    assert drag.landing is None
 
 
 @pytest.mark.parametrize("end", ["let_go", "put_back"])

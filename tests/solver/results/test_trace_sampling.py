@@ -63,9 +63,23 @@ def test_the_fit_looks_like_its_recording(seen: Traces) -> None:
     assert np.abs(seen.velocity - was.velocity).mean() < 0.1
 
 
+def test_solid_shapes_follow_their_bodies(seen: Traces) -> None:
+    heads = {bone: seen.heads[:, i] for i, bone in enumerate(seen.bones)}
+    character = fitted_hop().motion.transcription.character
+    bone_of = {body.name: body.bone for body in character.bodies}
+    assert set(seen.solids) == set(bone_of)
+    for i, name in enumerate(seen.solids):
+        apart = np.linalg.norm(seen.solid_starts[:, i] - heads[bone_of[name]], axis=1)
+        np.testing.assert_allclose(apart, apart[0], atol=1e-9)
+        assert apart[0] < 0.2  # side by side where the trunk is wide
+        length = np.linalg.norm(seen.solid_ends[:, i] - seen.solid_starts[:, i], axis=1)
+        np.testing.assert_allclose(length, length[0], atol=1e-9)
+
+
 def test_a_larger_figure_has_longer_ways_and_the_same_forces(seen: Traces) -> None:
     twice = scaled_traces(seen, 2.0)
     np.testing.assert_array_equal(twice.heads, 2.0 * seen.heads)
+    np.testing.assert_array_equal(twice.solid_radii, 2.0 * seen.solid_radii)
     np.testing.assert_array_equal(twice.flights[0].parabola, 2.0 * seen.flights[0].parabola)
     np.testing.assert_array_equal(twice.forces, seen.forces)
     np.testing.assert_array_equal(twice.frames, seen.frames)

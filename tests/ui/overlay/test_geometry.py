@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hangtime.bridge.shapes.limits import cone_rim
 from hangtime.solver.numerics.rotations import axis_rotation
-from hangtime.ui.overlay.geometry import arcs, shapes, solids
+from hangtime.ui.overlay.geometry import arcs, shapes, solids, wires
 from hangtime.ui.overlay.geometry.body_rotations import TracedFigure, body_turns, posed, shortest
 from hangtime.ui.overlay.geometry.limit_poses import Joints, bends, cones, twists
 from hangtime.ui.overlay.geometry.shapes import Look, Shape
@@ -50,6 +50,21 @@ def test_arrows_reach_from_foot_to_tip_and_look_outwards() -> None:
 
 def test_nothing_has_no_arrow() -> None:
     assert len(solids.arrows(np.zeros((2, 3)), np.zeros((2, 3)), 0.03, RED).points) == 0
+
+
+def test_capsules_stay_a_radius_from_their_segments() -> None:
+    starts, ends = np.array([X, Z]), np.array([X + 2 * TURN[1], Z])  # the second is a ball
+    radii = np.array([0.2, 0.5])
+    made = wires.capsules(starts, ends, radii, RED, Look.THIN)
+    points = made.points.reshape(-1, 3).astype(float)
+    off = []
+    for start, end in zip(starts, ends, strict=True):
+        way = end - start
+        along = (points - start) @ way / max(way @ way, 1e-12)
+        off.append(np.linalg.norm(points - start - along.clip(0, 1)[:, None] * way, axis=1))
+    apart = np.minimum(*(abs(each - radius) for each, radius in zip(off, radii, strict=True)))
+    assert apart.max() < 1e-5
+    assert (points @ TURN[1]).max() > (ends[0] @ TURN[1]) + 0.19  # the caps
 
 
 def test_bodies_span_their_bones_and_look_outwards() -> None:

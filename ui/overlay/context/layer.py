@@ -24,6 +24,7 @@ class Part(Enum):
     LIMITS = auto()
     POSES = auto()
     FORCES = auto()
+    SHAPES = auto()
     CENTRE = auto()
     RECORDED_PATH = auto()
     ADAPTED_PATH = auto()

@@ -8,7 +8,7 @@ import bpy
 from mathutils import Matrix
 
 from ....bridge.accessors import current_action, present
-from ....bridge.armature.poses import metres_per_unit
+from ....bridge.armature.poses import frames_per_second, metres_per_unit
 from ....bridge.armature.traces_store import StoredTraces, kept
 from ....bridge.properties.constraint import HangtimeConstraint
 from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
@@ -48,6 +48,7 @@ class ViewContext:
     options: HangtimeView
     frame: float
     metres: float  # of a Blender unit
+    rate: float = 24.0  # frames a second
 
     @cached_property
     def recorded_frame(self) -> float:
@@ -138,4 +139,5 @@ def read_view(context: bpy.types.Context) -> ViewContext | None:
     if not armature.visible_get(view_layer=context.view_layer, viewport=space):
         return None
     frame, metres = scene.frame_current_final, metres_per_unit(scene)
-    return ViewContext(armature, settings_of(armature), options, frame, metres)
+    rate = frames_per_second(scene)
+    return ViewContext(armature, settings_of(armature), options, frame, metres, rate)

@@ -1,0 +1,167 @@
+"""Solid objects of the scene as the solver's records: faces in metres, movement frame by frame.
+
+What cannot move is looked at once; the rest at every frame, a few at a time, and the scene is
+between them as the artist had it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
+
+import bpy
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.data.scene import SceneObject
+from ..accessors import current_scene
+from ..armature.incremental import Incremental, in_slices
+from ..armature.poses import evaluated, metres_per_unit
+from .members import Member
+from .mesh import Triangles, read_triangles
+from .movable import may_deform, may_move
+from .rigid import rigid_movement
+
+_NEAR = 1e-5  # m and of rotations' entries; less is the same place
+T = TypeVar("T")
+Showing = Callable[[], AbstractContextManager[object]]
+
+
+@dataclass(frozen=True)
+class SceneReading:
+    """objects: as the solver takes them. reshaped: names of those whose shape changes while the
+    frames pass; they have that of the first frame throughout."""
+
+    objects: tuple[SceneObject, ...] = ()
+    reshaped: tuple[str, ...] = ()
+
+
+def read_scene(
+    of: Sequence[Member], frames: FloatArray, showing: Showing = nullcontext
+) -> Incremental[SceneReading]:
+    """Read solid objects at frames (T,), a few frames a slice. showing: as of `in_slices`.
+
+    Raises NoFaces, TooManyFaces.
+    """
+    if not of:
+        return SceneReading()
+    objects = [member.object for member in of]
+    first = yield from in_slices(frames[:1], partial(_shapes, objects), showing)
+    shapes = first[0][0]
+    matrices = yield from _matrices(objects, frames, showing)
+    changed = yield from _reshaped(objects, shapes, frames, showing)
+    records = []
+    for member, shape, way in zip(of, shapes, matrices, strict=True):
+        record, stretches = _record(member, shape, way, frames)
+        records.append(record)
+        if stretches:
+            changed.add(member.object)
+    return SceneReading(tuple(records), tuple(m.name for m in of if m.object in changed))
+
+
+def changed_objects(before: SceneReading, now: SceneReading) -> tuple[str, ...]:
+    """Names of objects that are no longer what they were, have come or have gone."""
+    old, new = ({each.name: each for each in read.objects} for read in (before, now))
+    return tuple(
+        name
+        for name in dict.fromkeys((*old, *new))
+        if name not in old or name not in new or not _same(old[name], new[name])
+    )
+
+
+def _same(one: SceneObject, other: SceneObject) -> bool:
+    if one.role is not other.role or not np.array_equal(one.triangles, other.triangles):
+        return False
+    pairs = (
+        (one.vertices, other.vertices),
+        (one.frames, other.frames),
+        (one.positions, other.positions),
+        (one.rotations, other.rotations),
+    )
+    return all(a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=_NEAR) for a, b in pairs)
+
+
+def _record(
+    member: Member, shape: Triangles, matrices: FloatArray, frames: FloatArray
+) -> tuple[SceneObject, bool]:
+    """An object's record, and whether its scale changes."""
+    metres = metres_per_unit(current_scene())
+    movement = rigid_movement(matrices, metres)
+    inside_out = np.linalg.det(movement.baked) < 0.0
+    record = SceneObject(
+        member.name,
+        member.role,
+        vertices=metres * shape.vertices @ movement.baked.T,
+        triangles=shape.corners[:, ::-1].copy() if inside_out else shape.corners,
+        frames=frames if movement.moves else frames[:1],
+        positions=movement.positions,
+        rotations=movement.rotations,
+    )
+    return record, movement.stretches
+
+
+def _matrices(
+    objects: Sequence[bpy.types.Object], frames: FloatArray, showing: Showing
+) -> Incremental[list[FloatArray]]:
+    """Each object's matrices (T, 4, 4); one (1, 4, 4) of an object that nothing could move."""
+    still = yield from in_slices(frames[:1], partial(_worlds, objects), showing)
+    matrices = [still[0][:, i] for i in range(len(objects))]
+    moving = [i for i, each in enumerate(objects) if may_move(each)]
+    if moving and len(frames) > 1:
+        look = partial(_worlds, [objects[i] for i in moving])
+        found = np.concatenate((yield from in_slices(frames, look, showing)))
+        for n, i in enumerate(moving):
+            matrices[i] = found[:, n]
+    return matrices
+
+
+def _reshaped(
+    objects: Sequence[bpy.types.Object],
+    first: Sequence[Triangles],
+    frames: FloatArray,
+    showing: Showing,
+) -> Incremental[set[bpy.types.Object]]:
+    """The objects that have another shape halfway or at the end."""
+    soft = {each: shape for each, shape in zip(objects, first, strict=True) if may_deform(each)}
+    if not soft:
+        return set()
+    later = np.unique(frames[[len(frames) // 2, -1]])
+    found = yield from in_slices(later, partial(_shapes, list(soft)), showing)
+    looks = [look for part in found for look in part]
+    return {
+        each
+        for i, (each, shape) in enumerate(soft.items())
+        if not all(shape.same_shape(look[i]) for look in looks)
+    }
+
+
+def _worlds(objects: Sequence[bpy.types.Object], frames: FloatArray) -> FloatArray:
+    """(T, N, 4, 4) matrices of N objects, Blender units."""
+    return np.array(seen_at(objects, frames, lambda seen: np.array(seen.matrix_world)))
+
+
+def _shapes(objects: Sequence[bpy.types.Object], frames: FloatArray) -> list[list[Triangles]]:
+    """Shapes of objects, by frame."""
+    return seen_at(objects, frames, read_triangles)
+
+
+def seen_at(
+    objects: Sequence[bpy.types.Object],
+    frames: FloatArray,
+    look: Callable[[bpy.types.Object], T],
+) -> list[list[T]]:
+    """What `look` finds of each object, as the dependency graph has it at frames (T,).
+
+    The scene's frame, and what is hidden, are afterwards what they were.
+    """
+    scene, found = current_scene(), []
+    with evaluated(objects):
+        for frame in frames:
+            whole = int(np.floor(frame))
+            scene.frame_set(whole, subframe=frame - whole)
+            graph = bpy.context.evaluated_depsgraph_get()
+            found.append([look(each.evaluated_get(graph)) for each in objects])
+    return found

@@ -1,0 +1,259 @@
+"""The list of surfaces, contacts that stand on them, and results beside them."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.traces_store import kept
+from hangtime.bridge.constraints.motion_problem import analysis_key, problem_of
+from hangtime.bridge.constraints.surface_status import write_surface_status
+from hangtime.operators.drag.drag_state import Landing
+from hangtime.operators.drag.rays import Ray
+from hangtime.operators.drag.snapping import Snapping
+from hangtime.operators.solve.adapt import ask_for
+from hangtime.operators.solve.scene import note_surfaces, stale_surfaces
+from hangtime.operators.solve.session import Asked
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.report import ConstraintReport
+from hangtime.solver.data.row_kinds import RowKind
+from hangtime.tests.blender.helpers.rows import make_rig
+from hangtime.tests.blender.helpers.solids import add_row, make_box, read
+
+FIRST, LAST = 1.0, 24.0
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def rig() -> bpy.types.Object:
+    """Animated, with a heel's contact on the ground before and after a flight."""
+    armature = make_rig()
+    bpy.context.scene.hangtime.armature = armature
+    for row in armature.hangtime.contacts:
+        row.found_at = row.at = (float(row.name[-1]), 0.0, 0.0)
+        stance = armature.hangtime.stances.add()
+        stance.name, stance.forward_axis = row.phase, (1.0, 0.0, 0.0)
+    return armature
+
+
+def select(*solids: bpy.types.Object) -> None:
+    bpy.ops.object.select_all(action="DESELECT")
+    for each in solids:
+        each.select_set(True)
+
+
+def pins(armature: bpy.types.Object) -> dict[str, str | None]:
+    """On what each pin stands."""
+    problem = problem_of(armature.hangtime, read_recorded(armature, FIRST, LAST))
+    return {pin.name: pin.on for pin in problem.pins}
+
+
+# ---------------------------------------------------------------- the list
+
+
+def test_what_is_selected_becomes_a_row_each_and_never_two(rig: bpy.types.Object) -> None:
+    crate, wall = make_box("Crate"), make_box("Wall")
+    select(crate, wall, rig)
+    assert bpy.ops.hangtime.add_surfaces(role="OBSTACLE") == {"FINISHED"}
+    select(crate)
+    assert bpy.ops.hangtime.add_surfaces(role="GROUND") == {"FINISHED"}
+    rows = {row.called: row.role for row in rig.hangtime.surfaces}
+    assert rows == {"Crate": "GROUND", "Wall": "OBSTACLE"}
+    assert rig.hangtime.surfaces[rig.hangtime.active_surface].object == crate
+
+
+def test_nothing_solid_that_is_selected_is_said(rig: bpy.types.Object) -> None:
+    select(rig)
+    assert bpy.ops.hangtime.add_surfaces(role="GROUND") == {"CANCELLED"}
+    assert not rig.hangtime.surfaces
+
+
+def test_the_active_collection_is_one_row(rig: bpy.types.Object) -> None:
+    add = bpy.ops.hangtime.add_surfaces
+    assert add(role="GROUND", collection=True) == {"CANCELLED"}  # the scene's own
+    stage = bpy.data.collections.new("Stage")
+    bpy.context.scene.collection.children.link(stage)
+    layer = bpy.context.view_layer
+    layer.active_layer_collection = layer.layer_collection.children["Stage"]
+    make_box("Crate")
+    assert add(role="GROUND", collection=True) == {"FINISHED"}
+    (row,) = rig.hangtime.surfaces
+    assert (row.collection, row.called) == (stage, "Stage")
+    assert [each.name for each in read(rig).objects] == ["Crate"]
+
+
+def test_a_row_s_object_is_selected(rig: bpy.types.Object) -> None:
+    crate = make_box("Crate")
+    add_row(rig, crate)
+    select(rig)
+    assert bpy.ops.hangtime.select_surface() == {"FINISHED"}
+    assert bpy.context.selected_objects == [crate]
+    assert bpy.context.scene.hangtime.armature == rig
+
+
+def test_adding_and_removing_can_be_undone(rig: bpy.types.Object) -> None:
+    name = rig.name
+    select(make_box("Crate"))
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.hangtime.add_surfaces("EXEC_DEFAULT", True, role="GROUND")
+    bpy.ops.hangtime.remove_surface("EXEC_DEFAULT", True)
+    assert len(bpy.data.objects[name].hangtime.surfaces) == 0
+    bpy.ops.ed.undo()
+    assert [row.called for row in bpy.data.objects[name].hangtime.surfaces] == ["Crate"]
+    bpy.ops.ed.undo()
+    assert len(bpy.data.objects[name].hangtime.surfaces) == 0
+
+
+# ---------------------------------------------------------------- contacts on them
+
+
+def test_a_dragged_contact_stands_where_it_was_put(rig: bpy.types.Object) -> None:
+    crate = make_box("Crate")
+    add_row(rig, crate)
+    assert pins(rig) == {}
+    bpy.ops.hangtime.drag_pin(contact=1, shift=(0.5, 0.0, 0.5), ground="Crate")
+    assert rig.hangtime.contacts[1].on == crate
+    assert pins(rig) == {"Heel 2": "Crate"}
+    crate.name = "Box"
+    assert pins(rig) == {"Heel 2": "Box"}
+
+
+def test_whoever_states_a_height_stands_on_nothing(rig: bpy.types.Object) -> None:
+    add_row(rig, make_box("Crate"))
+    settings = rig.hangtime
+    bpy.ops.hangtime.drag_pin(contact=1, shift=(0.5, 0.0, 0.5), ground="Crate")
+    settings.stances["ground 2"].forward += 0.1
+    assert pins(rig) == {"Heel 2": "Crate"}
+    settings.stances["ground 2"].up += 0.1
+    assert pins(rig) == {"Heel 2": None}
+    bpy.ops.hangtime.drag_pin(contact=1, shift=(0.0, 0.0, 0.1), ground="Crate")
+    settings.contacts[1].place[2] += 0.2
+    assert pins(rig) == {"Heel 2": None}
+
+
+def test_a_contact_leaves_a_surface_that_is_removed(rig: bpy.types.Object) -> None:
+    row = add_row(rig, make_box("Crate"))
+    bpy.ops.hangtime.drag_pin(contact=1, shift=(0.5, 0.0, 0.5), ground="Crate")
+    row.role = "OBSTACLE"
+    assert pins(rig) == {"Heel 2": None}
+    row.role = "GROUND"
+    assert bpy.ops.hangtime.remove_surface() == {"FINISHED"}
+    assert rig.hangtime.contacts[1].on is None
+    assert pins(rig) == {"Heel 2": None}
+    assert rig.hangtime.contacts[1].at[2] == pytest.approx(0.5)
+
+
+def test_a_contact_put_back_stands_on_the_floor(rig: bpy.types.Object) -> None:
+    add_row(rig, make_box("Crate"))
+    rig.hangtime.active_contact = 1
+    bpy.ops.hangtime.drag_pin(shift=(0.5, 0.0, 0.5), ground="Crate")
+    assert bpy.ops.hangtime.put_back() == {"FINISHED"}
+    assert pins(rig) == {}
+
+
+# ---------------------------------------------------------------- snapping
+
+
+def test_a_contact_lands_on_the_crate_in_metres(rig: bpy.types.Object) -> None:
+    bpy.context.scene.unit_settings.scale_length = 0.01
+    add_row(rig, make_box("Crate", at=(200.0, 0.0, 30.0), size=60.0))
+    snapping = Snapping.of(rig, rig.hangtime.contacts[1], bpy.context.scene)
+    assert snapping.lands(2.1, 0.1) == Landing(pytest.approx(0.6), "Crate")
+    assert snapping.lands(3.0, 0.1) is None
+    assert snapping.seen(Ray.of((100.0, 0.0, 160.0), (1.0, 0.0, -1.0))) == pytest.approx((200.0, 0))
+    assert snapping.seen(Ray.of((100.0, 0.0, 30.0), (1.0, 0.0, 0.0))) is None
+    assert snapping.floor is None
+
+
+def test_a_contact_that_stands_on_something_knows_its_floor(rig: bpy.types.Object) -> None:
+    add_row(rig, make_box("Crate"))
+    bpy.ops.hangtime.drag_pin(contact=1, shift=(0.5, 0.0, 0.5), ground="Crate")
+    assert Snapping.of(rig, rig.hangtime.contacts[1], bpy.context.scene).floor == 0.0
+
+
+@pytest.mark.parametrize("why", ["no ground", "switched off", "unused", "deleted"])
+def test_nothing_snaps(rig: bpy.types.Object, why: str) -> None:
+    crate = make_box("Crate")
+    row = add_row(rig, crate, "OBSTACLE" if why == "no ground" else "GROUND")
+    bpy.context.scene.hangtime.snap = why != "switched off"
+    row.used = why != "unused"
+    if why == "deleted":
+        bpy.context.scene.collection.objects.unlink(crate)
+    assert Snapping.of(rig, rig.hangtime.contacts[1], bpy.context.scene) is None
+
+
+# ---------------------------------------------------------------- solving
+
+
+@pytest.fixture
+def asked(rig: bpy.types.Object) -> Asked:
+    """As after the worker was asked, a crate beside the rig."""
+    add_row(rig, make_box("Crate"))
+    recording = read_recorded(rig, FIRST, LAST)
+    return Asked(rig.name, rig.session_uid, recording, MotionProblem(), read(rig, recording.frames))
+
+
+def test_the_surfaces_are_part_of_the_problem(rig: bpy.types.Object) -> None:
+    add_row(rig, make_box("Crate"))
+    settings = rig.hangtime
+    settings.use_range, settings.first_frame, settings.last_frame = True, int(FIRST), int(LAST)
+    settings.analysed = analysis_key(settings, read_recorded(rig, FIRST, LAST))
+    asked = complete(ask_for(bpy.context))
+    assert [each.name for each in asked.problem.scene] == ["Crate"]
+    assert asked.scene.objects == asked.problem.scene
+
+
+def test_a_surface_that_is_edited_meanwhile_is_told_and_nothing_is_lost(
+    rig: bpy.types.Object, asked: Asked
+) -> None:
+    assert complete(stale_surfaces(asked, rig)) == ()
+    bpy.data.objects["Crate"].location.z += 0.1
+    stale = complete(stale_surfaces(asked, rig))
+    assert stale == ("Crate",)
+    (line,) = note_surfaces(rig, asked, SimpleNamespace(overlaps=()), stale)
+    assert line == "Crate changed while this was solved; press Adapt again"
+    assert rig.hangtime.surfaces[0].status == line
+    bpy.data.objects.remove(bpy.data.objects["Crate"])
+    assert complete(stale_surfaces(asked, rig)) == ("Crate",)
+
+
+@pytest.mark.parametrize("deep", [True, False])
+def test_a_row_says_what_stays_in_it(rig: bpy.types.Object, deep: bool) -> None:
+    row = add_row(rig, make_box("Crate"))
+    overlaps = [
+        ConstraintReport(name, RowKind.SOLID, amount, 12.0, met=False)
+        for name, amount in (("Left foot in Crate", 12.0), ("Left hand in the floor", 99.0))
+    ][not deep :]
+    write_surface_status(rig.hangtime, SimpleNamespace(overlaps=overlaps), {})
+    if deep:
+        assert (row.met, row.status) == ("MISSED", "In the way: Left foot 12 mm at frame 12")
+    else:
+        assert (row.met, row.status) == ("MET", "Nothing new is in it")
+    row.role = "OBSTACLE"  # another question
+    assert (row.met, row.status) == ("UNKNOWN", "")
+
+
+@pytest.mark.slow
+def test_a_jump_lands_on_a_crate(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    landing = [row for row in settings.contacts if row.phase == "ground 2"]
+    x, y, _ = np.mean([row.at for row in landing], axis=0)
+    crate = make_box("Crate", at=(x, y, 0.1))
+    crate.scale = (0.8, 0.8, 0.2)
+    add_row(analysed, crate)
+    bpy.context.scene.hangtime.armature = analysed
+    contact, up = settings.contacts.find(landing[0].name), (0.0, 0.0, 0.2 - landing[0].at[2])
+    bpy.ops.hangtime.drag_pin(contact=contact, shift=up, ground="Crate", whole=True)
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    (row,) = settings.surfaces
+    assert row.met != "UNKNOWN"
+    traces = kept(settings.adapted).traces
+    np.testing.assert_allclose(traces.points[-1, :, 2], 0.2, atol=1e-3)
+    assert settings.status.startswith("Solved in")

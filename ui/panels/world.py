@@ -1,0 +1,69 @@
+"""World: what is solid around the performer, and whether limbs keep out of it."""
+
+from textwrap import fill
+
+import bpy
+
+from ...bridge.accessors import present
+from ...bridge.properties.settings import HangtimeSettings, scene_settings
+from ...bridge.properties.surface import HangtimeSurface
+from ...bridge.rows.choices import SurfaceRole
+from ...bridge.rows.kind import Icon
+from ...bridge.scene.members import is_gone
+from ...operators.lists.row_lists import RowList
+from ...operators.names import OperatorId
+from .lists import MET_ICONS, ROLE_ICONS, SurfaceList
+from .sidebar import ArmaturePanel, draw_list, lines, settings_in, split
+
+NARROW = 34  # characters in a line of a sidebar as wide as Blender makes it
+GONE = "Not in the scene any more"
+
+
+class AddSurfaceMenu(bpy.types.Menu):
+    bl_idname = "HANGTIME_MT_add_surface"
+    bl_label = "Add Surface"
+    bl_description = "Let objects of the scene be solid"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        for collection, what in ((False, "Selected"), (True, "Active Collection")):
+            for role in SurfaceRole:
+                text = f"{what} as {role.value}"
+                icon: Icon = "OUTLINER_COLLECTION" if collection else ROLE_ICONS[role.name]
+                entry = layout.operator(OperatorId.ADD_SURFACES, text=text, icon=icon)
+                entry.role, entry.collection = role.name, collection
+            layout.separator()
+
+
+class WorldPanel(ArmaturePanel):
+    bl_idname = "HANGTIME_PT_world"
+    bl_label = "World"
+    bl_order = 5
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, settings = split(self), settings_in(context)
+        side = draw_list(layout, SurfaceList, settings, "surfaces", rows=3)
+        side.menu(AddSurfaceMenu.bl_idname, text="", icon="ADD")
+        side.operator(OperatorId.REMOVE_SURFACE, text="", icon="REMOVE")
+        side.separator()
+        side.operator(OperatorId.SELECT_SURFACE, text="", icon="RESTRICT_SELECT_OFF")
+        index = RowList.SURFACES.chosen(settings)
+        if index >= 0:
+            _draw_surface(layout, settings.surfaces[index], present(context.scene))
+        _draw_switches(layout, settings, context)
+
+
+def _draw_surface(layout: bpy.types.UILayout, row: HangtimeSurface, scene: bpy.types.Scene) -> None:
+    if is_gone(row, scene):
+        layout.label(text=GONE, icon="ERROR")
+    elif row.status:
+        lines(layout, fill(row.status, NARROW), icon=MET_ICONS[row.met])
+    layout.prop(row, "collection" if row.collection is not None else "object")
+    layout.row().prop(row, "role", expand=True)
+
+
+def _draw_switches(
+    layout: bpy.types.UILayout, settings: HangtimeSettings, context: bpy.types.Context
+) -> None:
+    layout.prop(settings, "keep_out")
+    layout.prop(scene_settings(context.scene), "snap")
