@@ -35,9 +35,9 @@ class Traces:
     weight: N, the body's. joints: bones whose torques are known; torques: (T, J) N·m, the largest
     component of each joint. changes: (T, B) rad that each bone's joint is turned from the
     recording's; (0, 0) where nothing is told. Of a recording the contacts are all points that might
-    touch; forces, torques and flights it has none (T, 0, 3). solids: names of the bodies whose solid
-    shapes, capsules, are traced, one each; their ends solid_starts, solid_ends: (T, S, 3) m, and
-    solid_radii: (S,) m.
+    touch; forces, torques and flights it has none (T, 0, 3). solids: names of the bodies whose
+    solid shapes, capsules, are traced, one each; their ends solid_starts, solid_ends: (T, S, 3) m,
+    and solid_radii: (S,) m.
     """
 
     frames: FloatArray
