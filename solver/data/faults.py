@@ -450,3 +450,24 @@ class TooSteep(RequestFault):
     thing: str
     slope: float
     friction: float
+
+
+@dataclass
+class GroundNotThere(Fault):
+    """A pin stands on an object whose poses do not cover its phase; frames: first, last."""
+
+    pin: str
+    object: str
+    phase: str
+    known: tuple[float, float]
+    needed: tuple[float, float]
+
+
+@dataclass
+class JerkyGround(Fault):
+    """A pin stands on an object that jumps at a frame; m/s², of the point that it stands on."""
+
+    pin: str
+    object: str
+    frame: float
+    acceleration: float
