@@ -16,6 +16,8 @@ under = "Landing"               # instead of place: its top (in its middle) is w
                                 # contacts land, x ahead; or under = "flight 1": on the floor
                                 # below the highest point of that flight
 forward = 0.2                   # m from there along the travel; left, up
+
+How it moves beside its path is in object_rates.py.
 """
 
 from collections.abc import Sequence
@@ -37,11 +39,12 @@ from ...solver.scene.triangle_mesh import placed_mesh
 from ..formats.obj import UnreadableMesh, read_obj
 from ..recipe_syntax.items import TRAVEL_KEYS
 from ..recipe_syntax.table import Table, shown
+from .object_rates import RATE_KEYS, rate_values, read_rates
 
 HEADER = "object"
 SHAPES = ("box", "ramp", "file", "points")
 PLACING = ("place", "axes", "path")
-KEYS = ("name", "role", *SHAPES, "faces", *PLACING, "turn", "under", *TRAVEL_KEYS)
+KEYS = ("name", "role", *SHAPES, "faces", *PLACING, "turn", "under", *TRAVEL_KEYS, *RATE_KEYS)
 PATH_KEYS = ("frame", "place", "turn", "axes")
 BOX_QUADS = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
 # Corners: base 0 to 3, the upper edge 4 and 5.
@@ -110,7 +113,16 @@ def _read(table: Table, name: str) -> SceneObject:
             table.refuse("path", "the path's frames must ascend")
     positions = np.array([each.vector("place") or (0.0, 0.0, 0.0) for each in keys])
     rotations = np.stack([_turn(each) for each in keys])
-    return SceneObject(name, role, vertices, triangles, np.array(frames), positions, rotations)
+    return SceneObject(
+        name,
+        role,
+        vertices,
+        triangles,
+        np.array(frames),
+        positions,
+        rotations,
+        read_rates(table),
+    )
 
 
 def _turn(table: Table) -> FloatArray:
@@ -240,12 +252,12 @@ def object_values(thing: SceneObject) -> dict[str, Any]:
     values: dict[str, Any] = {"name": thing.name, "role": thing.role.value}
     values["points"] = _tuples(thing.vertices)
     values["faces"] = _tuples(thing.triangles)
-    if thing.moves or thing.frames[0] != 0.0:
+    if len(thing.frames) > 1 or thing.frames[0] != 0.0:
         poses = zip(thing.frames.tolist(), thing.positions, thing.rotations, strict=True)
         values["path"] = tuple({"frame": frame} | _pose(p, r) for frame, p, r in poses)
     else:
         values |= _pose(thing.positions[0], thing.rotations[0])
-    return values
+    return values | rate_values(thing)
 
 
 def _pose(position: FloatArray, rotation: FloatArray) -> dict[str, Any]:

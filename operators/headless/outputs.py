@@ -14,6 +14,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.report import Report, as_json
 from ...solver.data.scaling import scaled_problem
 from ...solver.results.npz_export import save
+from ...solver.scene.object_motion import ObjectMotion
 from ...solver.worker.pipeline import AdaptationResult
 from ..words.report_text import as_text
 from .clip import LoadedClip
@@ -111,8 +112,13 @@ class Outputs:
     def _build_scene(self) -> None:
         from ...bridge.files.scene_objects import build_scene
 
-        subject = self.result.subject
-        build_scene(scaled_problem(subject.problem, 1.0 / subject.factor).scene)
+        subject, line = self.result.subject, self.result.adaptation.setup.context.timeline
+        scene = scaled_problem(subject.problem, 1.0 / subject.factor).scene
+        frames = self.result.track.frames
+        moving = (ObjectMotion.of(thing, line.first_frame, line.rate) for thing in scene)
+        build_scene(
+            tuple(each.keyed_at(frames) if each.thing.steady else each.thing for each in moving)
+        )
 
     def _beside(self) -> tuple[float, float, float]:
         """To the left of where the recording travels, m, world."""

@@ -1,7 +1,7 @@
 """The pictures of a result: the body at instants, with what holds it (thesis 6)."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 
@@ -103,10 +103,11 @@ def contact_holds(motion: Motion, times: FloatArray) -> Iterator[ContactHold]:
     t = motion.transcription
     for contact, place in zip(t.contacts, motion.places, strict=True):
         body = t.character.bodies[t.points[contact.point].body]
-        if contact.track is not None:
-            moves = [np.interp(times, contact.track.times, x) for x in contact.track.moves.T]
-            place = place + np.stack(moves, axis=1)
-        yield ContactHold(body.part, place, (contact.contact.start, contact.contact.end))
+        span = (contact.contact.start, contact.contact.end)
+        if contact.track is not None or contact.ride is not None:
+            rigid = replace(contact, sole=None)
+            place = rigid.holds(np.clip(times, *span)).of(place)
+        yield ContactHold(body.part, place, span)
 
 
 def bars(holds: Sequence[ContactHold]) -> Iterator[Bar]:

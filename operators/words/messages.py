@@ -146,6 +146,11 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "that the others do not; leave out the empty and the repeated ones.",
     faults.UnknownPhase: "The pin “{pin}” names the phase “{phase}”, on which nothing touches the "
     "ground; there are {known:names}.",
+    faults.GroundNotThere: "The pin “{pin}” stands on “{object}” from frame {needed[0]:.1f} to "
+    "{needed[1]:.1f} ({phase}), but its motion is known from frame {known[0]:g} to {known[1]:g} "
+    "only; key it for all of these frames, or pin another phase.",
+    faults.JerkyGround: "“{object}”, on which the pin “{pin}” stands, jumps at frame {frame:.0f} "
+    "({acceleration:.0f} m/s²), and nobody could stay on it; smooth its keys there.",
     faults.UnknownContact: "The pin “{pin}” names “{what}”, which does not touch in its phase; "
     "what touches is {known:names}.",
     faults.NoFaces: "The object “{thing}” has no faces, so nothing can stand on it or run into it; "

@@ -1,6 +1,7 @@
 """Wording of the report: what changed, then how well it holds."""
 
 from collections.abc import Iterator
+from math import hypot
 
 from ...solver.data.contacts import PhaseKind
 from ...solver.data.report import (
@@ -20,6 +21,7 @@ LEFT_AT_MOST = {
 }  # BW·m, rms; what the project promises
 LEAST_RETIMED = 0.0005  # s
 LEAST_TURN = 1.0  # degrees of a joint, to be told
+SAME_SPEED = 0.05  # m/s
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
 DURATIONS = {  # where they are not as one would expect
     Durations.NONE_FOUND: (
@@ -29,6 +31,7 @@ DURATIONS = {  # where they are not as one would expect
     Durations.NOT_MET: (
         "As recorded: what is asked for was not reached with those that go with the moved landing"
     ),
+    Durations.MOVING_GROUND: "As recorded or asked for: ground that moves keeps its own time",
 }
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
@@ -195,12 +198,27 @@ def _changes(report: Report) -> Iterator[str]:
             f"{phase.phase.capitalize():<11} takes {phase.adapted_s:.3f} s instead of "
             f"{phase.recorded_s:.3f} s"
         )
+    yield from moving_ground_lines(report)
     yield from (f"{'Durations':<12}{line}" for line in durations_lines(report))
     for peak in report.forces.peaks:
         yield (
             f"{peak.phase.capitalize():<11} what carries the body pushes with at most "
             f"{peak.peak_bw:.1f} times the body's weight (frame {peak.frame:.0f})"
         )
+
+
+def moving_ground_lines(report: Report) -> Iterator[str]:
+    """Stances on ground that moves, and those that a take-off from it carries on."""
+    for each in report.moving_ground:
+        phase, moved = each.phase.capitalize(), hypot(*each.moved_m)
+        if each.object is None:
+            yield f"{phase:<11} is carried on by {moved:.2f} m, with the speed of the ground left"
+            continue
+        first, last = each.ground_speed_m_s
+        speeds = f"{first:.1f}" if abs(last - first) < SAME_SPEED else f"{first:.1f} to {last:.1f}"
+        yield f"{phase:<11} rides on {each.object} at {speeds} m/s"
+        if each.kept_speed_share is not None:
+            yield f"            and leaves it with {100 * each.kept_speed_share:.0f} % of its speed"
 
 
 def retimed(report: Report) -> list[PhaseReport]:

@@ -1,5 +1,7 @@
 """Target positions of contacts: the recorded places, moved by the artist's pins (thesis 6.2)."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ..arrays import FloatArray
@@ -7,6 +9,7 @@ from ..data.constants import UP
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.faults import ContradictoryPins, UnknownContact, UnknownPhase
 from ..data.problem import MotionProblem, OffsetAxes, Pin
+from ..data.scene import SceneObject
 from ..scene.checks import named
 from ..scene.triangle_mesh import placed_mesh
 from .landing import Footing, Ground, land
@@ -24,9 +27,14 @@ def pinned_places(
 
 
 def pinned_footing(
-    problem: MotionProblem, performance: Performance, schedule: ContactSchedule
+    problem: MotionProblem,
+    performance: Performance,
+    schedule: ContactSchedule,
+    standing: Mapping[Pin, SceneObject] | None = None,
 ) -> Footing:
     """Target position of every contact, and the normal of what it stands on.
+
+    standing: of pins on objects that move, the object as it is when they land.
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins, UnknownObject, and as `land` does.
     """
@@ -39,7 +47,8 @@ def pinned_footing(
         chosen = chosen_contacts(pin, phase, schedule)
         target = _moved(pin, phase, chosen, performance, schedule)
         if pin.on is not None:
-            footing = _landed(pin, problem, chosen, target, performance, schedule)
+            thing = (standing or {}).get(pin) or named(pin.name, pin.on, problem.scene)
+            footing = _landed(pin, thing, chosen, target, performance, schedule)
             target, normals[chosen] = footing.places, footing.normals
             landed |= {schedule.contacts[i].name: pin for i in chosen}
         for i, place in zip(chosen, target, strict=True):
@@ -55,14 +64,13 @@ def pinned_footing(
 
 def _landed(
     pin: Pin,
-    problem: MotionProblem,
+    thing: SceneObject,
     chosen: list[int],
     places: FloatArray,
     performance: Performance,
     schedule: ContactSchedule,
 ) -> Footing:
     """The chosen contacts, at places (k, 3) m, on the object that their pin names."""
-    thing = named(pin.name, pin.on or "", problem.scene)
     contacts = [schedule.contacts[i] for i in chosen]
     return land(
         Ground(pin.name, thing, placed_mesh(thing)), contacts, places, performance.character

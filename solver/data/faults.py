@@ -454,3 +454,24 @@ class TooSteep(RequestFault):
 
 class ObjectGone(SceneFault):
     """An object, or a collection, that was chosen is not in the scene any more."""
+
+
+@dataclass
+class GroundNotThere(Fault):
+    """A pin stands on an object whose poses do not cover its phase; frames: first, last."""
+
+    pin: str
+    object: str
+    phase: str
+    known: tuple[float, float]
+    needed: tuple[float, float]
+
+
+@dataclass
+class JerkyGround(Fault):
+    """A pin stands on an object that jumps at a frame; m/s², of the point that it stands on."""
+
+    pin: str
+    object: str
+    frame: float
+    acceleration: float

@@ -126,6 +126,24 @@ class ContactReport:
 
 
 @dataclass(frozen=True)
+class MovingGroundReport:
+    """A stance that rides on an object that moves, or that a take-off from one carries on.
+
+    object, pin: what it stands on, and by which pin; None for one that is carried on. moved_m:
+    world, its contacts' centre at its first instant, by the ground's motion alone.
+    ground_speed_m_s: where it stands, at its start and end. kept_speed_share: of the ground's
+    velocity at the take-off, what the centre of mass has on top of the fit's; None without one.
+    """
+
+    phase: str
+    object: str | None
+    pin: str | None
+    moved_m: Vector
+    ground_speed_m_s: tuple[float, float]
+    kept_speed_share: float | None
+
+
+@dataclass(frozen=True)
 class PhaseResidual:
     """Dynamics residual over all phases of one kind."""
 
@@ -366,6 +384,7 @@ class Report:
     equations: tuple[Violation, ...]
     conditions: tuple[ConstraintReport, ...]
     contacts: tuple[ContactReport, ...]
+    moving_ground: tuple[MovingGroundReport, ...]
     between_nodes: DenseResiduals
     forces: ForcesReport
     objective_end_over_start: float | None

@@ -8,6 +8,7 @@ from .contacts import ContactSchedule
 from .problem import MotionProblem
 from .recording import PoseTrack, Recording
 from .requests import Bound, PointRequest, Vector
+from .scene import SteadyMotion
 
 
 def scaled_recording(recording: Recording, factor: float) -> Recording:
@@ -33,10 +34,22 @@ def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
         body=replace(requests.body, added=tuple(added)),
     )
     scene = tuple(
-        replace(thing, vertices=factor * thing.vertices, positions=factor * thing.positions)
+        replace(
+            thing,
+            vertices=factor * thing.vertices,
+            positions=factor * thing.positions,
+            steady=thing.steady and _scaled_rates(thing.steady, factor),
+        )
         for thing in problem.scene
     )
     return replace(problem, pins=tuple(pins), requests=requests, scene=scene)
+
+
+def _scaled_rates(steady: SteadyMotion, factor: float) -> SteadyMotion:
+    velocity, pivot, belt = (
+        _times(factor, each) for each in (steady.velocity, steady.pivot, steady.belt)
+    )
+    return replace(steady, velocity=velocity, pivot=pivot, belt=belt)
 
 
 def _scaled_point(point: PointRequest, factor: float) -> PointRequest:

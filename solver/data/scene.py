@@ -6,6 +6,7 @@ from enum import Enum
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from .requests import Vector
 
 
 class SceneRole(Enum):
@@ -15,6 +16,20 @@ class SceneRole(Enum):
     OBSTACLE = "obstacle"  # limbs keep out of it
 
 
+@dataclass(frozen=True)
+class SteadyMotion:
+    """Motion at constant rates, on top of the poses that an object has; none at the first instant.
+
+    velocity: (3,) m/s, world. spin: rad/s about the world's vertical through pivot (3,) m, which
+    goes along. belt: (3,) m/s in the object's axes, of its surface alone: the object stays.
+    """
+
+    velocity: Vector = (0.0, 0.0, 0.0)
+    spin: float = 0.0
+    pivot: Vector = (0.0, 0.0, 0.0)
+    belt: Vector = (0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class SceneObject:
     """A triangle mesh in the world.
@@ -22,7 +37,8 @@ class SceneObject:
     name: the artist's. vertices: (V, 3) m, in the object's own axes, scale and modifiers applied.
     triangles: (F, 3) indices, counter-clockwise seen from outside. frames: (T,) scene frames,
     ascending, at which positions (T, 3) m and rotations (T, 3, 3), object to world, are known; one
-    frame of an object that stands still. Two are equal whose values are.
+    frame of an object that stands still. steady: how it, or its surface, moves beside, from the
+    result's first instant on. Two are equal whose values are.
     """
 
     name: str
@@ -32,16 +48,17 @@ class SceneObject:
     frames: FloatArray
     positions: FloatArray
     rotations: FloatArray
+    steady: SteadyMotion | None = None
 
     @property
     def moves(self) -> bool:
-        """Whether it is a platform: it moves while the motion lasts."""
-        return len(self.frames) > 1
+        """Whether it is a platform: it, or its surface, moves while the motion lasts."""
+        return len(self.frames) > 1 or self.steady is not None
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, SceneObject):
             return NotImplemented
-        named = self.name == other.name and self.role is other.role
+        named = (self.name, self.role, self.steady) == (other.name, other.role, other.steady)
         pairs = zip(self._arrays, other._arrays, strict=True)
         return self is other or (named and all(np.array_equal(one, two) for one, two in pairs))
 

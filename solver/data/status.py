@@ -20,6 +20,7 @@ class Durations(Enum):
     FOUND = "found"  # those that go with the moved landings and take-offs
     NONE_FOUND = "none found"  # no motion was found with others, so they are as recorded
     NOT_MET = "not met"  # what is asked for was not reached with those found: as recorded
+    MOVING_GROUND = "moving ground"  # a stance rides on what keeps its own time: as recorded
 
 
 class DragStatus(Enum):

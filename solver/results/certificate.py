@@ -140,9 +140,10 @@ def friction_used(
         if each.friction is not None:
             during = (times >= each.contact.start) & (times <= each.contact.end)
             mine = forces[:, each.point] * during[:, None]
-            across = mine @ each.normal
+            normals = each.normals(times)
+            across = (mine * normals).sum(axis=1)
             pressed += across
-            along += mine - across[:, None] * each.normal
+            along += mine - across[:, None] * normals
     carried = np.where(pressed > STANDING, pressed, np.inf)
     return np.asarray(np.linalg.norm(along, axis=1) / carried)
 
@@ -186,8 +187,9 @@ def loaded_drifts(motion: Motion) -> list[LoadedDrift]:
         rigid = replace(each, sole=None)  # what the sole gives counts
         off = rigid.pin_error(places[loaded, each.point], motion.places[i], at)
         off = off if each.held is None else off @ each.held
-        height = off @ each.normal
-        slide = np.linalg.norm(off - height[:, None] * each.normal, axis=1)
+        normals = each.normals(at)
+        height = (off * normals).sum(axis=1)
+        slide = np.linalg.norm(off - height[:, None] * normals, axis=1)
         drifts.append(LoadedDrift(at, slide, height))
     return drifts
 

@@ -1,5 +1,6 @@
 """A motion as sampled rigid bodies and forces, so that anybody can check its physics."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -49,9 +50,9 @@ def _holds(motion: Motion, times: FloatArray) -> dict[str, NDArray[Any]]:
     friction, slides = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
     for each, at in zip(motion.transcription.contacts, motion.places, strict=True):
         during = (times >= each.contact.start) & (times <= each.contact.end)
-        moves = 0.0 if each.track is None else each.track.at(times[during])
-        place[during, each.point] = at + moves
-        normal[during, each.point] = each.normal
+        rigid = replace(each, sole=None)  # what the sole gives is not the surface's
+        place[during, each.point] = rigid.holds(times[during]).of(at)
+        normal[during, each.point] = each.normals(times[during])
         friction[during, each.point] = np.inf if each.friction is None else each.friction
         slides[during, each.point] = each.held is not None and len(each.held) < 3
     return {

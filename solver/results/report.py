@@ -47,6 +47,7 @@ from ..transcription.torque_constraint import TorqueFunction
 from .certificate import LoadedDrift, certificate, friction_used, loaded_drifts
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .joint_report import joint_changes, recorded_ranges
+from .moving_ground import moving_ground
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
 from .violations import condition_violations, pins_of_contacts, worst_constraints
@@ -86,6 +87,7 @@ def report(
             _contact(adaptation, i, pins.get(each.contact.name), drifts[i])
             for i, each in enumerate(transcription.contacts)
         ),
+        moving_ground=tuple(moving_ground(adaptation, problem)),
         between_nodes=dense_residuals(motion, schedule.phases),
         forces=_forces(adaptation),
         objective_end_over_start=adaptation.gain,

@@ -21,7 +21,7 @@ from ..transcription.motion import Motion
 from .durations import TimedMotion, find_durations
 from .fit import THIRD_DERIVATIVE_WEIGHT, dense_instants, greville_abscissae
 from .reseat import com_shift
-from .warm_start import continuation_steps, stance_moves, warm_start
+from .warm_start import Standing, continuation_steps, stance_moves, warm_start
 
 MIN_MOVE = 1e-6  # m, of a landing relative to its take-off
 LEGS_AND_TRUNK = (Part.PELVIS, Part.SPINE, Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE)
@@ -68,7 +68,7 @@ def changed_jumps(
 
     kept: intervals whose durations are to stay.
     """
-    moves = stance_moves(schedule, start.places, target)
+    moves = stance_moves(schedule, Standing.still(start.places), Standing.still(target))
     return tuple(
         jump
         for jump in _jumps(start, schedule)
@@ -92,7 +92,8 @@ def anticipate(
 
     jumps: those that change; at least one. None where no such motion is found.
     """
-    moves = tuple(replace(move, turn=0.0) for move in stance_moves(schedule, start.places, target))
+    standings = Standing.still(start.places), Standing.still(target)
+    moves = tuple(move.straight for move in stance_moves(schedule, *standings))
     places = start.places.copy()
     for move in moves:
         for i, contact in enumerate(schedule.contacts):
@@ -122,8 +123,9 @@ def _timed(
     for part in range(1, parts + 1):
         warp = TimeWarp.of(stretches, start.duration)
         to = start.places + part / parts * (places - start.places)
-        moves = stance_moves(warp.schedule(schedule), motion.places, to)
-        carried = warm_start(motion, tuple(replace(move, turn=0.0) for move in moves))
+        standings = Standing.still(motion.places), Standing.still(to)
+        moves = stance_moves(warp.schedule(schedule), *standings)
+        carried = warm_start(motion, tuple(move.straight for move in moves))
         flights = [Interval(float(warp(j.take_off)), float(warp(j.landing))) for j in jumps]
         found = find_durations(motion, carried, to, flights)
         if found is None:

@@ -1,6 +1,6 @@
 """Where a problem's contacts stand: places by its pins, and faces with their normals."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,17 +12,24 @@ from ..data.constants import UP
 from ..data.contacts import ContactSchedule, Phase
 from ..data.faults import TooSteep
 from ..data.problem import MotionProblem, Pin
+from ..data.scene import SceneObject
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
 from .fit import Fit
 
 
-def find_footing(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> Footing:
+def find_footing(
+    fit: Fit,
+    problem: MotionProblem,
+    schedule: ContactSchedule,
+    standing: Mapping[Pin, SceneObject] | None = None,
+) -> Footing:
     """Where the problem's pins put the contacts of its schedule.
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins, and as `land` does.
+    standing: of pins on objects that move, the object as it is when they land. Raises UnknownPhase,
+    UnknownContact, ContradictoryPins, and as `land` does.
     """
-    found = pinned_footing(problem, fit.performance, fit.schedule)
+    found = pinned_footing(problem, fit.performance, fit.schedule, standing)
     row = {contact.name: i for i, contact in enumerate(fit.schedule.contacts)}
     places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
     normals = np.tile(UP, (len(places), 1))
@@ -34,13 +41,8 @@ def find_footing(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) ->
     return Footing(places, normals, found.pins)
 
 
-def find_target_places(fit: Fit, problem: MotionProblem, schedule: ContactSchedule) -> FloatArray:
-    """The places (n_contacts, 3) m, world, of `find_footing`, which says what it raises."""
-    return find_footing(fit, problem, schedule).places
-
-
 def on_faces(motion: Motion, footing: Footing) -> Motion:
-    """The motion with contacts whose friction, and sole, go with the faces that they stand on.
+    """The motion with contacts whose friction goes with the faces that they stand on.
 
     Raises TooSteep.
     """
@@ -60,10 +62,7 @@ def _on_face(contact: PointContact, normal: FloatArray, pin: Pin) -> PointContac
     if contact.friction is not None and steep >= contact.friction:
         angle = float(np.degrees(np.arctan(steep)))
         raise TooSteep(pin.name, contact.contact.name, pin.on or "", angle, contact.friction)
-    sole = contact.sole
-    if sole is not None:  # it gives along the normal
-        sole = replace(sole, moves=sole.moves[:, 2:] * normal)
-    return replace(contact, normal=normal, sole=sole)
+    return replace(contact, normal=normal)
 
 
 def pin_turns(

@@ -19,7 +19,7 @@ from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
 from .guards import guarded, in_the_way
 from .setup import Setup, set_up
-from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
+from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
@@ -150,16 +150,19 @@ def _best_feasible(
 def _continuation(setup: Setup, times: int, progress: Progress | None) -> ContinuationAttempt:
     """Solves in as many steps as the pins' moves ask for, times `times`; bounds ease in."""
     motion, schedule = setup.start, setup.schedule
-    before = motion.places
-    whole = stance_moves(schedule, before, setup.target_places, setup.turns)
+    before = last = Standing.still(motion.places)
+    whole = stance_moves(schedule, before, setup.target, setup.turns)
     steps = times * continuation_steps(whole)
     outcomes: list[Outcome] = []
     for step in range(1, steps + 1):
-        places = setup.target_places
+        standing, places = setup.target, setup.target_places
         transcription = setup.start.transcription
         if step < steps:
-            places = partial_places(schedule, before, places, whole, step / steps)
-        start = warm_start(motion, stance_moves(schedule, motion.places, places))
+            places = partial_places(schedule, before.places, places, whole, step / steps)
+            standing = setup.target.slowed(step / steps).with_places(places)
+        if step < steps and standing.moves:
+            transcription = transcription.riding(standing.rides)
+        start = warm_start(motion, stance_moves(schedule, last, standing))
         if step == 1:  # where nothing is gripped this changes nothing
             start = reach_grips(Motion(transcription, start, places), setup.target_places).x
         if step < steps:
@@ -168,6 +171,7 @@ def _continuation(setup: Setup, times: int, progress: Progress | None) -> Contin
         outcome = _restored(feasible, start, setup, progress, last=step == steps)
         outcomes.append(outcome)
         motion = setup.feasible_set(outcome.transcription, places).motion(outcome.x)
+        last = standing
         if not outcome.solved:
             break
     return ContinuationAttempt(tuple(outcomes), steps)

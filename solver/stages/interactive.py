@@ -4,9 +4,10 @@ Moving a pin changes the rows' values, not their Jacobian, so most steps go on w
 (chord steps); a new one is made where they no longer come near. Each update steps from the last one
 by the smallest change: measured against steps towards the motion nearest to the fit, that is as
 near to what the solve will find and does not jitter. Far moves are made by continuation, one step
-an update. The solve proper, once the pin is let go, starts from the fit again. While a pin moves
-phases last as long as they did; once it rests they take the durations that go with its place. What
-is solid is looked for in the motion before each update, and kept out by the update.
+an update; moving ground comes up to its speed likewise. The solve proper, once the pin is let go,
+starts from the fit again. While a pin moves phases last as long as they did; once it rests they
+take the durations that go with its place. What is solid is looked for in the motion before each
+update, and kept out by the update.
 """
 
 from dataclasses import replace
@@ -22,10 +23,10 @@ from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import restore
 from ..transcription.motion import Motion
 from .fit import Fit
-from .footing import find_target_places
 from .implicit import Adaptation
+from .platforms import find_standing
 from .setup import Setup, set_up
-from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
+from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 CHORD_STEPS = 2  # an update, on the same factor
 MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
@@ -49,13 +50,15 @@ class Follower:
         if last is None:
             self.setup = set_up(fit, problem)
             self.motion, self._metric = self.setup.start, self.setup.metric
+            self._standing = Standing.still(self.motion.places)
         else:
             self.setup = last.setup
             self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
             self._metric = self.setup.metric_of(self.motion)
+            self._standing = Standing.of(self.motion)
         self._timed, self._rested = problem, 0  # whose durations these are; updates at one place
         self._linearised: LinearisedProblem | None = None
-        self._held = self.motion
+        self._held = self.motion, self._standing
         self._given_up: set[str] = set()  # solids that are let be
         self._blocked = 0  # updates in which a solid is furthest from where it should be
         self.violation = np.inf
@@ -71,32 +74,35 @@ class Follower:
         elif self._rested >= RESTING_UPDATES and self._timed != problem:
             self._retime(problem)
         self._problem = problem
-        target = find_target_places(self._fit, problem, self.setup.schedule)
-        was = self.motion.places
-        whole = stance_moves(self.setup.schedule, was, target)
+        target, schedule, was = self._target(problem), self.setup.schedule, self._standing
+        whole = stance_moves(schedule, was, target)
         steps = continuation_steps(whole)
         if steps > 1:
-            target = partial_places(self.setup.schedule, was, target, whole, 1.0 / steps)
-        x = warm_start(self.motion, stance_moves(self.setup.schedule, was, target))
+            places = partial_places(schedule, was.places, target.places, whole, 1.0 / steps)
+            target = target.slowed(was.share + (1.0 - was.share) / steps).with_places(places)
+        x = warm_start(self.motion, stance_moves(schedule, was, target))
         self._keep_out()
         if not self._step(x, target):
-            self.motion, self._linearised = self._held, None
+            (self.motion, self._standing), self._linearised = self._held, None
             self._let_be(np.array(True))
             return DragStatus.DIVERGED
         self._watch_solids()
         if self.violation < HELD_VIOLATION:
-            self._held = self.motion
+            self._held = self.motion, self._standing
         there = steps == 1 and self.violation <= 1.0 and self._timed == problem
         return DragStatus.CONVERGED if there else DragStatus.CONVERGING
+
+    def _target(self, problem: MotionProblem) -> Standing:
+        return find_standing(self._fit, problem, self.setup.context)[0]
 
     def _set_up(self, problem: MotionProblem) -> None:
         """Sets up for other requests, from the same unknowns where basis and layout allow."""
         setup = set_up(self._fit, problem)
         old, new = self.motion.transcription, setup.start.transcription
-        start = setup.start
+        start, standing = setup.start, Standing.still(setup.start.places)
         if new.basis is old.basis and new.layout == old.layout:
-            start = Motion(new, self.motion.x, self.motion.places)
-        self._begin(setup, start, problem)
+            start, standing = Motion(new, self.motion.x, self.motion.places), self._standing
+        self._begin(setup, start, standing, problem)
 
     def _retime(self, problem: MotionProblem) -> None:
         """Begins anew where other durations go with the pins, or where they had changed.
@@ -107,16 +113,20 @@ class Follower:
         self._timed = problem
         if np.allclose(setup.start.duration, self.motion.duration, atol=SAME_DURATION):
             return
-        start, target = setup.start, setup.target_places
-        feasible = setup.feasible_set(start.transcription, target)
-        x = warm_start(start, stance_moves(setup.schedule, start.places, target))
+        start, target = setup.start, setup.target
+        feasible = setup.feasible_set(start.transcription, target.places)
+        still = Standing.still(start.places)
+        x = warm_start(start, stance_moves(setup.schedule, still, target))
         found = restore(feasible, setup.metric, x, stage="drag", max_steps=RETIMING_STEPS)
         if found.violation < HELD_VIOLATION:
-            self._begin(setup, feasible.motion(found.x), problem)
+            self._begin(setup, feasible.motion(found.x), target, problem)
 
-    def _begin(self, setup: Setup, start: Motion, problem: MotionProblem) -> None:
+    def _begin(
+        self, setup: Setup, start: Motion, standing: Standing, problem: MotionProblem
+    ) -> None:
         self.setup, self.motion, self._metric = setup, start, setup.metric
-        self._linearised, self._held, self._timed = None, start, problem
+        self._standing, self._linearised, self._timed = standing, None, problem
+        self._held = start, standing
 
     def _keep_out(self) -> None:
         """Rows for what is in each other now, without those that are far from it by now."""
@@ -152,9 +162,12 @@ class Follower:
             items = np.unique(guard.items[np.broadcast_to(which, guard.items.shape)])
             self._given_up |= {guard.names[item] for item in items.tolist()}
 
-    def _step(self, x: FloatArray, places: FloatArray) -> bool:
+    def _step(self, x: FloatArray, standing: Standing) -> bool:
         """A few chord steps from unknowns x; False, having changed nothing, where they diverge."""
-        feasible = self.setup.feasible_set(self.motion.transcription, places)
+        t = self.motion.transcription
+        if Standing.of(self.motion).rides != standing.rides:
+            t = t.riding(standing.rides)
+        feasible = self.setup.feasible_set(t, standing.places)
         value = feasible.values(x)
         try:
             linearised = self._linearised or feasible.linearise(feasible.rows(x), self._metric)
@@ -172,7 +185,7 @@ class Follower:
             return False
         self.violation = after
         self._linearised = None if stale and after > 1.0 else linearised
-        self.motion = feasible.motion(x)
+        self.motion, self._standing = feasible.motion(x), standing
         return True
 
 

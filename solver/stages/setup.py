@@ -50,10 +50,12 @@ from .fit import (
     motion_metric,
     point_contacts,
 )
-from .footing import find_footing, on_faces, pin_turns
+from .footing import on_faces, pin_turns
 from .guards import Guard
+from .platforms import find_standing
 from .reseat import reseat
 from .surroundings import surroundings
+from .warm_start import Standing
 
 MAX_SPAN = 0.08  # s, between knots that are not the fit's
 MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
@@ -71,11 +73,11 @@ class Setup:
     """A problem ready to be solved.
 
     start: the initial guess, whose transcription has the problem's constraints; its places are
-    where its contacts are. fitted_places, target_places: (n_contacts, 3) m, where they were in the
-    fit, and where they shall be. metric: W at
-    the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the changes of a
-    block that a reduction allows, None all. requests: those set up here. recording: of the figure
-    as it is asked for. space: the reduced coordinates, None where there are none.
+    where its contacts are, on still ground. fitted_places: (n_contacts, 3) m, where they were in
+    the fit; target: where they shall be, and the rides from there, which the transcription has.
+    metric: W at the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the
+    changes of a block that a reduction allows, None all. requests: those set up here. recording: of
+    the figure as it is asked for. space: the reduced coordinates, None where there are none.
     durations: where they come from. scene: what is around.
     """
 
@@ -83,7 +85,7 @@ class Setup:
     context: EvaluationContext
     start: Motion
     fitted_places: FloatArray
-    target_places: FloatArray
+    target: Standing
     metric: BlockBanded
     turns: dict[str, float]
     basis: FloatArray | None
@@ -108,6 +110,11 @@ class Setup:
         return metric
 
     @property
+    def target_places(self) -> FloatArray:
+        """(n_contacts, 3) m."""
+        return self.target.places
+
+    @property
     def schedule(self) -> ContactSchedule:
         return self.context.schedule
 
@@ -116,8 +123,8 @@ class Setup:
         """What is solid; None where limbs and floor may go through each other."""
         if not self.requests.solution.solid:
             return None
-        clears = self.requests.clears
-        return surroundings(self.fit, self.context, self.target_places, self.scene, clears)
+        lowest = self.target.lowest(self.schedule)
+        return surroundings(self.fit, self.context, lowest, self.scene, self.requests.clears)
 
     @cached_property
     def human(self) -> HumanGuard | None:
@@ -172,11 +179,12 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     context = replace(context, schedule=with_added(context.schedule, contacts))
     start = _start(fit, problem, context, added)
     fitted_places = start.places
-    footing = find_footing(fit, problem, context.schedule)
-    target_places = footing.places
+    target, footing = find_standing(fit, problem, context)
     start = on_faces(start, footing)
-    context, start, durations = _anticipated(fit, problem, context, start, target_places)
-    start = _with_constraints(start, problem, context)
+    durations = Durations.MOVING_GROUND
+    if not target.moves:  # the ground's clock is no jumper's to stretch
+        context, start, durations = _anticipated(fit, problem, context, start, target.places)
+    start = _with_constraints(_riding(start, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
     kept = same and weights is ADAPT_COST_WEIGHTS
@@ -194,7 +202,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         context,
         start,
         fitted_places,
-        target_places,
+        target,
         metric,
         turns,
         basis,
@@ -245,6 +253,12 @@ def _anticipated(
         travel=partial(_travel, fit, phases),
     )
     return context, found.motion, Durations.FOUND
+
+
+def _riding(start: Motion, target: Standing) -> Motion:
+    """The initial guess with contacts that ride on what the target has them stand on."""
+    t = start.transcription
+    return replace(start, transcription=t.riding(target.rides)) if target.moves else start
 
 
 def _weighs_torques(requests: Requests) -> bool:

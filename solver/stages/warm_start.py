@@ -1,11 +1,13 @@
 """Warm start: each stance moves rigidly with its contacts, flights blend (thesis 6.4).
 
-That is the thesis's rotating and splicing of stages for the full twists, without the seams. Large
-edits are made by continuation, in several steps.
+That is the thesis's rotating and splicing of stages for the full twists, without the seams. Where
+the ground moves, a stance's move goes on with it; a flight begins with the move at its take-off and
+ends with that at its landing, which in between is a steady speed on top. Large edits are made by
+continuation, in several steps.
 """
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,46 +16,138 @@ from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, PhaseKind
 from ..numerics.rotations import axis_rotation
 from ..transcription.motion import Motion
+from ..transcription.ride import Ride
 from ..transcription.transcription import Transcription
 from .fit import dense_instants, greville_abscissae
 
 MAX_SHIFT_PER_STEP = 0.5  # m, of a continuation step
+MAX_SPEED_PER_STEP = 1.5  # m/s, by which a landing or a stance changes speed
 MAX_TURN_PER_STEP = np.radians(45.0)
+LOWEST_SAMPLES = 50  # of a contact's height on moving ground
+RIDE_RATE = 60.0  # Hz, at which the move of a stance on moving ground is sampled
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where contacts stand: places (n_contacts, 3) m, and the rides that begin there."""
+
+    places: FloatArray
+    rides: tuple[Ride | None, ...]
+
+    @staticmethod
+    def still(places: FloatArray) -> "Standing":
+        """On ground that does not move."""
+        return Standing(places, (None,) * len(places))
+
+    @staticmethod
+    def of(motion: Motion) -> "Standing":
+        return Standing(motion.places, tuple(c.ride for c in motion.transcription.contacts))
+
+    @property
+    def moves(self) -> bool:
+        return any(ride is not None for ride in self.rides)
+
+    @property
+    def share(self) -> float:
+        """The share of its speed at which the ground moves: 0 where it stands still."""
+        return max((ride.share for ride in self.rides if ride is not None), default=0.0)
+
+    def at(self, contact: int, times: FloatArray) -> FloatArray:
+        """(T, 3) m, where a contact stands, or would, at instants (T,) s."""
+        ride, place = self.rides[contact], self.places[contact]
+        return np.tile(place, (len(times), 1)) if ride is None else ride.poses(times).of(place)
+
+    def lowest(self, schedule: ContactSchedule) -> FloatArray:
+        """(n_contacts, 3) m, of each contact where its ground is the lowest while it stands."""
+        places = self.places.copy()
+        for i, contact in enumerate(schedule.contacts):
+            if self.rides[i] is not None:
+                at = self.at(i, np.linspace(contact.start, contact.end, LOWEST_SAMPLES))
+                places[i] = at[at[:, 2].argmin()]
+        return places
+
+    def with_places(self, places: FloatArray) -> "Standing":
+        return Standing(places, self.rides)
+
+    def slowed(self, share: float) -> "Standing":
+        """On ground that moves at a share of its speed."""
+        rides = tuple(None if ride is None else ride.slowed(share) for ride in self.rides)
+        return Standing(self.places, rides)
 
 
 @dataclass(frozen=True)
 class RigidMove:
-    """Rigid move of a stance that lasts from start to end, s.
+    """Rigid move of a stance at instants (T,) s from its start to its end; one where it stays.
 
-    turn: rad, about the vertical through pivot (3,) m. shift: (3,) m, world.
+    turns: (T,) rad, about the vertical through pivots (T, 3) m. shifts: (T, 3) m, world.
     """
 
     start: float
     end: float
-    pivot: FloatArray
-    turn: float
-    shift: FloatArray
+    times: FloatArray
+    pivots: FloatArray
+    turns: FloatArray
+    shifts: FloatArray
 
-    def of(self, points: FloatArray) -> FloatArray:
-        """Points (T, 3) m moved."""
-        return np.asarray(
-            (points - self.pivot) @ axis_rotation(2, self.turn).T + self.pivot + self.shift
-        )
+    def of(self, points: FloatArray, times: FloatArray) -> FloatArray:
+        """Points (N, 3) m moved at instants (N,) s, before the start and after the end as there."""
+        pivots, shifts = self._at(self.pivots, times), self._at(self.shifts, times)
+        turned = np.einsum("nij,nj->ni", axis_rotation(2, self.turn(times)), points - pivots)
+        return np.asarray(turned + pivots + shifts)
+
+    def turn(self, times: FloatArray) -> FloatArray:
+        """(N,) rad at instants (N,) s."""
+        return np.interp(times, self.times, self.turns)
+
+    def _at(self, values: FloatArray, times: FloatArray) -> FloatArray:
+        return np.stack([np.interp(times, self.times, each) for each in values.T], axis=1)
+
+    @property
+    def shift(self) -> FloatArray:
+        """(3,) m, at the start."""
+        return np.asarray(self.shifts[0])
+
+    @property
+    def velocities(self) -> FloatArray:
+        """(2, 3) m/s of the shift, at the start and at the end."""
+        if len(self.times) == 1:
+            return np.zeros((2, 3))
+        return np.asarray(np.gradient(self.shifts, self.times, axis=0)[[0, -1]])
+
+    def share(self, share: float) -> "RigidMove":
+        """A share of the move at the start, for all of the time."""
+        return _still(self, self.pivots[0], share * self.turns[0], share * self.shift)
+
+    @property
+    def back(self) -> "RigidMove":
+        """The inverse of the move at the start, for all of the time."""
+        return _still(self, self.pivots[0] + self.shift, -self.turns[0], -self.shift)
+
+    @property
+    def straight(self) -> "RigidMove":
+        """The move at the start without its turn, for all of the time."""
+        return _still(self, self.pivots[0], 0.0, self.shift)
+
+
+def _still(move: RigidMove, pivot: FloatArray, turn: float, shift: FloatArray) -> RigidMove:
+    once = np.array([move.start])
+    return RigidMove(move.start, move.end, once, pivot[None], np.array([turn]), shift[None])
 
 
 def stance_moves(
     schedule: ContactSchedule,
-    before: FloatArray,
-    after: FloatArray,
+    before: Standing,
+    after: Standing,
     wanted: Mapping[str, float] | None = None,
 ) -> tuple[RigidMove, ...]:
     """Least-squares rigid move (planar Kabsch) of each ground phase's contacts.
 
-    before, after: (n_contacts, 3) m. Grips and other contacts that were asked for move nothing: the
-    arms reach for them (arm_ik.py). wanted: turns by phase, rad. Places alone cannot tell a half
-    turn left from one right, nor a whole turn from none.
+    Grips and other contacts that were asked for move nothing: the arms reach for them (arm_ik.py).
+    wanted: turns by phase, rad. Places alone cannot tell a half turn left from one right, nor a
+    whole turn from none; without a wish a stance is turned as the one before it ended.
     """
-    moves = []
+    moves: list[RigidMove] = []
+    turned = 0.0
     for phase in schedule.phases:
         if phase.kind is not PhaseKind.GROUND:
             continue
@@ -64,17 +158,37 @@ def stance_moves(
         ]
         if not mine:
             continue
-        old, new = before[mine], after[mine]
-        pivot, to = old.mean(axis=0), new.mean(axis=0)
-        a, b = old - pivot, new - to
-        turn = np.arctan2(
-            (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(),
-            (a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1]).sum(),
-        )
-        asked = (wanted or {}).get(phase.name, 0.0)
-        turn += 2 * np.pi * np.round((asked - turn) / (2 * np.pi))
-        moves.append(RigidMove(phase.start, phase.end, pivot, float(turn), to - pivot))
+        times = np.array([phase.start])
+        if any(standing.rides[i] is not None for standing in (before, after) for i in mine):
+            count = 2 + int(RIDE_RATE * (phase.end - phase.start))
+            times = np.linspace(phase.start, phase.end, count)
+        asked = turned + (wanted or {}).get(phase.name, 0.0)
+        move = _least_squares(phase.start, phase.end, times, mine, (before, after), asked)
+        turned += float(move.turns[-1] - move.turns[0])
+        moves.append(move)
     return tuple(moves)
+
+
+def _least_squares(
+    start: float,
+    end: float,
+    times: FloatArray,
+    contacts: Sequence[int],
+    standings: tuple[Standing, Standing],
+    asked: float,
+) -> RigidMove:
+    """asked: rad, the turn at the start, to a whole turn."""
+    old, new = (np.stack([each.at(i, times) for i in contacts], axis=1) for each in standings)
+    pivots, to = old.mean(axis=1), new.mean(axis=1)
+    a, b = old - pivots[:, None], new - to[:, None]
+    turns = np.unwrap(
+        np.arctan2(
+            (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]).sum(axis=1),
+            (a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]).sum(axis=1),
+        )
+    )
+    turns += 2 * np.pi * np.round((asked - turns[0]) / (2 * np.pi))
+    return RigidMove(start, end, times, pivots, turns, to - pivots)
 
 
 def warm_start(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
@@ -86,7 +200,7 @@ def warm_start(motion: Motion, moves: tuple[RigidMove, ...]) -> FloatArray:
     at = greville_abscissae(basis)
     com, _ = _blend(moves, at, x[:, layout.com])
     x[:, layout.com] = com
-    if any(abs(move.turn) > 1e-6 for move in moves):
+    if any(np.abs(move.turns).max() > 1e-6 for move in moves):
         _turn_root(t, x, moves)
         _turn_forces(t, x, moves)
     return x
@@ -101,11 +215,11 @@ def _blend(
     low = np.floor(position).astype(int)
     high = np.minimum(low + 1, len(moves) - 1)
     share = position - low
-    moved = np.stack([move.of(points) for move in moves])
-    turns = np.array([move.turn for move in moves])
+    moved = np.stack([move.of(points, times) for move in moves])
+    turns = np.stack([move.turn(times) for move in moves])
     each = np.arange(len(times))
     place = (1 - share)[:, None] * moved[low, each] + share[:, None] * moved[high, each]
-    return place, (1 - share) * turns[low] + share * turns[high]
+    return place, (1 - share) * turns[low, each] + share * turns[high, each]
 
 
 def _turn_root(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) -> None:
@@ -130,13 +244,24 @@ def _turn_forces(t: Transcription, x: FloatArray, moves: tuple[RigidMove, ...]) 
 
 
 def continuation_steps(moves: tuple[RigidMove, ...]) -> int:
-    """Number of continuation steps in which moves relative to each other are made."""
-    relative = [b.shift - a.shift for a, b in itertools.pairwise(moves)]
-    turns = [b.turn - a.turn for a, b in itertools.pairwise(moves)]
-    furthest = max((float(np.linalg.norm(shift)) for shift in relative), default=0.0)
-    largest = max((abs(turn) for turn in turns), default=0.0)
-    parts = np.array([furthest / MAX_SHIFT_PER_STEP, largest / MAX_TURN_PER_STEP])
-    return max(1, int(np.ceil(parts.max() - 1e-6)))
+    """Number of continuation steps in which moves relative to each other are made.
+
+    What a take-off's own speed does to the landing after it costs none.
+    """
+    parts = [1.0]
+    for a, b in itertools.pairwise(moves):
+        flown = b.start - a.end
+        gap = b.shifts[0] - a.shifts[-1] - flown * a.velocities[1]
+        braked = b.velocities[0] - a.velocities[1]
+        parts += [
+            float(np.linalg.norm(gap)) / MAX_SHIFT_PER_STEP,
+            abs(b.turns[0] - a.turns[-1]) / MAX_TURN_PER_STEP,
+            float(np.linalg.norm(braked)) / MAX_SPEED_PER_STEP,
+        ]
+    for move in moves:
+        gained = np.linalg.norm(move.velocities[1] - move.velocities[0])
+        parts.append(float(gained) / MAX_SPEED_PER_STEP)
+    return int(np.ceil(max(parts) - 1e-6))
 
 
 def partial_places(
@@ -149,11 +274,11 @@ def partial_places(
     """Places (n_contacts, 3) m after a share of each stance's whole move from before to after."""
     places = before + share * (after - before)
     for move in moves:
-        part = RigidMove(move.start, move.end, move.pivot, share * move.turn, share * move.shift)
-        back = RigidMove(move.start, move.end, move.pivot + move.shift, -move.turn, -move.shift)
+        part, back = move.share(share), move.back
+        at = np.array([move.start])
         for i, contact in enumerate(schedule.contacts):
             if contact.start < move.end and contact.end > move.start:
                 # What the move leaves over (feet that part) comes in by the same share.
-                rest = back.of(after[i : i + 1]) - before[i]
-                places[i] = part.of(before[i : i + 1] + share * rest)[0]
+                rest = back.of(after[i : i + 1], at) - before[i]
+                places[i] = part.of(before[i : i + 1] + share * rest, at)[0]
     return places

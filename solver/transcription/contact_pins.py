@@ -3,7 +3,8 @@
 While a point is pinned its place is fixed at every break; its velocity is zero at the pin's ends
 and at double knots inside, where the spline is only once differentiable and each side needs its own
 end condition. These are as many rows as a cubic has freedom, so they stay independent. A place may
-move (a lift, a swing), and a point may slide along a surface: then only its height is held.
+move along a path or ride on moving ground (ride.py), and a point may slide along a
+surface: then only its height is held.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,7 +17,9 @@ from ..body.kinematics import BodyPoint, Pose, point_velocity
 from ..data.contacts import Contact
 from ..data.row_kinds import RowKind
 from ..numerics.interpolation import interpolate
+from ..numerics.rigid_motion import Poses
 from ..numerics.splines import ORDER, SplineBasis
+from .ride import Ride
 from .rows import Layout, Rows
 
 DEFAULT_FRICTION = 1.0  # of a rubber sole on a hall's floor
@@ -66,15 +69,17 @@ class PointContact:
     """A contact in the equations; `point` indexes the transcription's points. World axes.
 
     held: (k, 3) unit directions in which the point is held; None in all. track: trajectory of its
-    place. sole: how the point sinks to its place and rises from it (compliant_sole.py). friction:
-    coefficient, None for a grip, which may pull as well as push. normal: (3,) of the surface.
-    pyramid: a four-sided friction pyramid inside the cone.
+    place. ride: on ground that moves. sole: how the point sinks to its place along the normal and
+    rises from it (compliant_sole.py). friction: coefficient, None for a grip, which may pull as
+    well as push. normal: (3,) of the surface, where the ride begins. pyramid: a four-sided
+    friction pyramid inside the cone.
     """
 
     contact: Contact
     point: int
     held: FloatArray | None = None
     track: PlaceTrajectory | None = None
+    ride: Ride | None = None
     sole: PlaceTrajectory | None = None
     friction: float | None = DEFAULT_FRICTION
     normal: FloatArray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
@@ -88,23 +93,43 @@ class PointContact:
             None if each is None else replace(each, times=warp(each.times))
             for each in (self.track, self.sole)
         )
-        return replace(self, contact=contact, track=track, sole=sole)
+        ride = None if self.ride is None else self.ride.retimed(warp)
+        return replace(self, contact=contact, track=track, ride=ride, sole=sole)
 
     def pin_error(self, at: FloatArray, place: FloatArray, times: FloatArray) -> FloatArray:
         """(T, k) errors of points at (T, 3) against where they are held at instants (T,) s, m.
 
-        place: (3,) m, where the contact's track begins.
+        place: (3,) m, where the contact's track and ride begin.
         """
-        error = at - place - self.moves(times)
+        error = at - self.holds(times).of(place)
         return error if self.held is None else np.asarray(error @ self.held.T)
 
-    def moves(self, times: FloatArray, *, velocity: bool = False) -> FloatArray:
-        """(T, 3) m from its place to where the point is held at instants (T,) s, or velocity."""
-        moves = np.zeros((len(times), 3))
-        for each in (self.track, self.sole):
-            if each is not None:
-                moves += each.velocity(times) if velocity else each.at(times)
-        return moves
+    def holds(self, times: FloatArray) -> Poses:
+        """Poses from its place to where the point is held at instants (T,) s."""
+        poses = Poses.still(len(times)) if self.ride is None else self.ride.poses(times)
+        shift = poses.shift
+        if self.track is not None:
+            shift = shift + self.track.at(times)
+        if self.sole is not None:
+            shift = shift + self.sole.at(times)[:, 2:] * (poses.turn @ self.normal)
+        return Poses(poses.turn, shift)
+
+    def hold_rates(self, times: FloatArray) -> Poses:
+        """Rates of change of `holds`."""
+        rates = Poses.resting(len(times)) if self.ride is None else self.ride.rates(times)
+        shift = rates.shift
+        if self.track is not None:
+            shift = shift + self.track.velocity(times)
+        if self.sole is not None:
+            shift = shift + self.sole.velocity(times)[:, 2:] * self.normals(times)
+            shift = shift + self.sole.at(times)[:, 2:] * (rates.turn @ self.normal)
+        return Poses(rates.turn, shift)
+
+    def normals(self, times: FloatArray) -> FloatArray:
+        """(T, 3) normals of the surface at instants (T,) s; they turn with what it rides on."""
+        if self.ride is None:
+            return np.tile(self.normal, (len(times), 1))
+        return np.asarray(self.ride.poses(times).turn @ self.normal)
 
 
 @dataclass(frozen=True)
@@ -112,17 +137,21 @@ class _PinPairs:
     """M pairs of a contact and one of the pins' breaks (`at`) at which it is held.
 
     point: (M,) of the contact. axes: (M, 3, 3), rows the directions in which it may be held.
-    moves: (M, 3) displacement of its place, or the velocity of that. kept: (3 M,) held directions.
-    turned: whether any axes are not the world's.
+    holds: M poses that its place is held at, or their rates. kept: (3 M,) held directions. turned:
+    whether any axes are not the world's.
     """
 
     contact: IntArray
     at: IntArray
     point: IntArray
     axes: FloatArray
-    moves: FloatArray
+    holds: Poses
     kept: BoolArray
     turned: bool
+
+    def held(self, places: FloatArray) -> FloatArray:
+        """(M, 3) where places (n_contacts, 3) m are held, m, or how fast that goes, m/s."""
+        return self.holds.of(places[self.contact])
 
 
 class Pins:
@@ -161,16 +190,18 @@ class Pins:
     ) -> _PinPairs:
         contact, at = np.nonzero(which)
         axes, kept = np.tile(np.eye(3), (len(contact), 1, 1)), np.ones((len(contact), 3), bool)
-        moves = np.zeros((len(contact), 3))
+        holds = Poses(np.zeros((len(contact), 3, 3)), np.zeros((len(contact), 3)))
         for i, each in enumerate(contacts):
             mine = contact == i
-            moves[mine] = each.moves(self.times[at[mine]], velocity=velocity)
+            when = self.times[at[mine]]
+            poses = each.hold_rates(when) if velocity else each.holds(when)
+            holds.turn[mine], holds.shift[mine] = poses.turn, poses.shift
             if each.held is not None:
                 count = len(each.held)
                 axes[mine, :count], kept[mine, count:] = each.held, False
         point = np.array([c.point for c in contacts], dtype=int)[contact]
         turned = any(c.held is not None for c in contacts)
-        return _PinPairs(contact, at, point, axes, moves, kept.ravel(), turned)
+        return _PinPairs(contact, at, point, axes, holds, kept.ravel(), turned)
 
     def angles(self, window: FloatArray) -> FloatArray:
         """(U, n_angles) joint angles at the pins' breaks, rad; window (U, 4, n_block)."""
@@ -183,7 +214,7 @@ class Pins:
         error = self._error(window, posed, points, places).ravel()[self._position.kept]
         some, back = np.unique(self._velocity.at, return_inverse=True)
         velocities = posed.at(some).point_rates(points, self._angle_velocities(window)[some])
-        drift = self._drift(window, velocities[back, self._velocity.point])
+        drift = self._drift(window, velocities[back, self._velocity.point], places)
         return np.concatenate([error, drift.ravel()[self._velocity.kept]])
 
     def rows(
@@ -196,7 +227,7 @@ class Pins:
         """
         return [
             self._position_rows(window, posed, points, places),
-            self._velocity_rows(window, posed, points),
+            self._velocity_rows(window, posed, points, places),
         ]
 
     def _error(
@@ -205,15 +236,13 @@ class Pins:
         held = self._position
         com = np.einsum("uk,ukj->uj", self._basis[0], window[:, :, self.layout.com])
         at = com[held.at] + posed.points(points)[held.at, held.point]
-        return np.asarray(
-            np.einsum("mij,mj->mi", held.axes, at - places[held.contact] - held.moves)
-        )
+        return np.asarray(np.einsum("mij,mj->mi", held.axes, at - held.held(places)))
 
-    def _drift(self, window: FloatArray, velocities: FloatArray) -> FloatArray:
+    def _drift(self, window: FloatArray, velocities: FloatArray, places: FloatArray) -> FloatArray:
         held = self._velocity
         com = np.einsum("uk,ukj->uj", self._basis[1], window[:, :, self.layout.com])
         return np.asarray(
-            np.einsum("mij,mj->mi", held.axes, com[held.at] + velocities - held.moves)
+            np.einsum("mij,mj->mi", held.axes, com[held.at] + velocities - held.held(places))
         )
 
     def _angle_velocities(self, window: FloatArray) -> FloatArray:
@@ -232,7 +261,9 @@ class Pins:
         error = self._error(window, posed, points, places)
         return self._rows(held, error, jacobian, RowKind.PIN)
 
-    def _velocity_rows(self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint]) -> Rows:
+    def _velocity_rows(
+        self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint], places: FloatArray
+    ) -> Rows:
         held = self._velocity
         some, back = np.unique(held.at, return_inverse=True)
         few = posed.at(some)
@@ -245,7 +276,7 @@ class Pins:
             )
         for axis in range(3):
             jacobian[:, axis, :, self.layout.com.start + axis] = self._basis[1][held.at]
-        drift = self._drift(window, found[0][each])
+        drift = self._drift(window, found[0][each], places)
         return self._rows(held, drift, jacobian, RowKind.PIN_SPEED)
 
     def _empty(self, held: _PinPairs) -> FloatArray:

@@ -2,7 +2,7 @@
 
 The bounds hold at the force nodes; forces are linear between these and the sets are convex, so
 they hold at every instant. The round cone is |f_t| <= mu f_n; the pyramid has the four planes
-|f_1| + |f_2| <= mu f_n inside it.
+|f_1| + |f_2| <= mu f_n inside it. On ground that tilts they turn with it from node to node.
 """
 
 from collections.abc import Sequence
@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.row_kinds import RowKind
+from ..numerics.rigid_motion import Poses
 from ..numerics.rotations import perpendicular, unit
 from ..numerics.splines import ORDER, SplineBasis
 from .contact_pins import PointContact, touching_spans
@@ -44,8 +45,13 @@ class FrictionCones:
         point = np.array([contacts[i].point for i in self._owner], dtype=int)
         self._columns = layout.force_columns(point)
         self._mu = np.array([contacts[i].friction for i in self._owner], dtype=float)
-        frames = np.array([_frame(contact.normal) for contact in contacts]).reshape(-1, 3, 3)
-        self._frames = frames[self._owner]
+        self._frames = np.zeros((len(self._owner), 3, 3))
+        for i, contact in enumerate(contacts):
+            mine = self._owner == i
+            turns = Poses.still(int(mine.sum())).turn
+            if contact.ride is not None:
+                turns = contact.ride.poses(self._times[mine]).turn
+            self._frames[mine] = _frame(contact.normal) @ np.swapaxes(turns, 1, 2)
         self._pyramid = np.array([contacts[i].pyramid for i in self._owner], dtype=bool)
 
     def forces(self, x: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ A point is pinned while it carries force; at a landing and a lift-off its place 
 where the body lands or leaves as a whole: so the forces' sum is continuous within a stance.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 
@@ -36,6 +36,7 @@ from .constraint import Constraint, DiscretisedConstraint
 from .contact_pins import Pins, PointContact, touching_spans
 from .friction_cones import FrictionCones
 from .guard_rows import GuardRows
+from .ride import Ride
 from .rows import FORCE_BLOCKS, Layout, Rows
 from .sampling import ChannelJacobian, Instants
 
@@ -122,6 +123,13 @@ class Transcription:
         basis = replace(self.basis, breaks=warp(self.basis.breaks))
         contacts = tuple(contact.retimed(warp) for contact in self.contacts)
         return replace(self, basis=basis, contacts=contacts, constraints=(), guards=())
+
+    def riding(self, rides: Sequence[Ride | None]) -> "Transcription":
+        """The same unknowns with contacts (n_contacts,) that ride on moving ground."""
+        contacts = tuple(
+            replace(contact, ride=ride) for contact, ride in zip(self.contacts, rides, strict=True)
+        )
+        return replace(self, contacts=contacts)
 
     @property
     def n_unknowns(self) -> int:

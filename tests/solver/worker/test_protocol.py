@@ -24,6 +24,7 @@ from hangtime.solver.data.report import (
     ForcesReport,
     JumpReport,
     MotionChange,
+    MovingGroundReport,
     PhaseReport,
     PhaseResidual,
     PinReport,
@@ -121,6 +122,9 @@ REPORT = Report(
     equations=(Violation("flight 1", RowKind.BALANCE, np.float64(1e-6)),),
     conditions=(ConstraintReport("knee", RowKind.BEND, 0.1, 2.0, True),),
     contacts=(),
+    moving_ground=(
+        MovingGroundReport("ground 1", "train", "Ride", (0.0, 1.0, 0.0), (3.0, 3.0), 0.9),
+    ),
     between_nodes=DenseResiduals(1000.0, flight=PhaseResidual(0.0, 0.0, 0.0, 0.0)),
     forces=ForcesReport((ForcePeak("ground 1", 3.0, 2.0, 0.4),), 0.0),
     objective_end_over_start=None,
