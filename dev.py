@@ -6,7 +6,7 @@
   analyze CLIP [--write-recipe FILE]      what touches when, and a recipe to start from
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
-  gallery [NAMES...] [--out DIR]          make the thesis's results, with pictures and a table
+  gallery [NAMES...] [--out DIR]          the thesis's results and the scene's, with a table
   pairs [CLIP:FIRST-LAST ...] [--out DIR] adapt real jumps to each other's landings, and compare
   solid [NAMES...] [--out DIR]            how solid the world is and how human the body, by MuJoCo
   validate [FOLDER] [--out DIR]           forces of the fit against force plates, with a table

@@ -16,6 +16,8 @@ from ...solver.solid.shapes import Capsule
 
 POINT = 1e-7  # m, radius of a ball that is a point, and half the length of a capsule that is a ball
 NEAR = 1e-3  # m; what is further apart is not looked at closer
+FLAT = 1e-6  # m, by which a corner may be outside of a face's plane
+SKIN = 0.1  # m, of a mesh that is not convex: each face as a slab that is so thick
 FLOOR = "floor"
 
 
@@ -58,6 +60,10 @@ class ShapeModel:
 
     def depths(self, poses: Poses, pairs: Sequence[tuple[str, str]]) -> FloatArray:
         """(T, P) m that the geoms of each pair of names are in each other; 0 where they are not."""
+        return np.maximum(-self.distances(poses, pairs, NEAR), 0.0)
+
+    def distances(self, poses: Poses, pairs: Sequence[tuple[str, str]], most: float) -> FloatArray:
+        """(T, P) m between the geoms of each pair of names, at most `most`; negative inside."""
         ids = [(self._id(one), self._id(other)) for one, other in pairs]
         data, found = mujoco.MjData(self.model), np.zeros((len(poses.turns), len(pairs)))
         ends = np.zeros(6)
@@ -65,8 +71,7 @@ class ShapeModel:
             data.mocap_pos[:], data.mocap_quat[:] = places, quaternions(turns)
             mujoco.mj_kinematics(self.model, data)
             for p, (one, other) in enumerate(ids):
-                apart = mujoco.mj_geomDistance(self.model, data, one, other, NEAR, ends)
-                found[t, p] = max(-apart, 0.0)
+                found[t, p] = mujoco.mj_geomDistance(self.model, data, one, other, most, ends)
         return found
 
     def _id(self, name: str) -> int:
@@ -99,3 +104,41 @@ def _add(body: ET.Element, name: str, capsule: Capsule) -> None:
 
 def _text(numbers: FloatArray) -> str:
     return " ".join(repr(float(x)) for x in numbers.ravel())
+
+
+def convex_pieces(vertices: FloatArray, triangles: IntArray) -> list[FloatArray]:
+    """Corners (N, 3) m of convex solids that a mesh (V, 3) m, (F, 3), is made of.
+
+    A part that hangs together and is convex is one; of another, each face is a slab below it, which
+    tells depths up to SKIN.
+    """
+    corners = vertices[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = np.linalg.norm(across, axis=1)
+    corners, normals = corners[size > 0.0], across[size > 0.0] / size[size > 0.0, None]
+    pieces: list[FloatArray] = []
+    for part in _parts(corners):
+        points = np.unique(corners[part].reshape(-1, 3), axis=0)
+        above = np.einsum("fi,fpi->fp", normals[part], points - corners[part][:, :1])
+        if above.max() < FLAT and above.min() < -FLAT:
+            pieces.append(points)
+        else:
+            below = corners[part] - SKIN * normals[part][:, None]
+            pieces += list(np.concatenate([corners[part], below], axis=1))
+    return pieces
+
+
+def _parts(corners: FloatArray) -> list[IntArray]:
+    """Indices of the triangles (F, 3, 3) m of each part that hangs together."""
+    _, names = np.unique(np.round(corners.reshape(-1, 3) / FLAT), axis=0, return_inverse=True)
+    faces = names.reshape(-1, 3)
+    label = np.arange(faces.max() + 1)
+    while True:
+        least = label[faces].min(axis=1)
+        new = label.copy()
+        np.minimum.at(new, faces.ravel(), np.repeat(least, 3))
+        if np.array_equal(new, label):
+            break
+        label = new
+    mine = label[faces[:, 0]]
+    return [np.flatnonzero(mine == each) for each in np.unique(mine)]

@@ -8,10 +8,10 @@ from pathlib import Path
 from ...solver.data.problem import MotionProblem
 from ...solver.data.requests import Requests
 from ..figures.clips import CLIPS, EDITS
-from ..gallery.jobs import load, names
+from ..gallery.jobs import Page, load, names
 
 CASES, RESULTS = "cases.pickle", "results.pickle"  # of a process, in its folder
-QUICK = ("broad jump 116 cm, +0.3 m forward", "half_twist_right", "dunk", "run_hurdle")
+QUICK = ("broad jump 116 cm, +0.3 m forward", "half_twist_right", "run_hurdle", "crate_landing")
 
 
 class Source(Enum):
@@ -19,6 +19,7 @@ class Source(Enum):
 
     FIGURES = "Edits of the figures"
     GALLERY = "Results of the gallery"
+    SCENE = "Results in a scene"
 
 
 @dataclass(frozen=True)
@@ -48,9 +49,13 @@ def cases() -> tuple[Case, ...]:
         for clip in CLIPS
         for edit in EDITS
     )
-    results = (load(name) for name in names())
-    made = (Case(r.name, Source.GALLERY, r.clip, r.problem) for r in results)
-    return (*edits, *made)
+    results = (
+        Case(name, source, result.clip, result.problem)
+        for page, source in ((Page.THESIS, Source.GALLERY), (Page.SCENE, Source.SCENE))
+        for name in names(page)
+        for result in (load(name),)
+    )
+    return (*edits, *results)
 
 
 def groups(chosen: Iterable[Case]) -> list[tuple[Case, ...]]:

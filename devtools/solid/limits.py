@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from statistics import median
 
 from ..checks.penetrations import Keeper
+from .cases import Source
 from .result import CaseResult, Physics
 
 
@@ -29,7 +30,10 @@ PHYSICS = {
     "ground_moment": SolidLimit("BW·m", 0.001, 0.0003),
 }
 # Musts that are not reached yet, each with the value that it must not pass meanwhile.
-KNOWN_MISSES: dict[str, float] = {}
+KNOWN_MISSES = {
+    "joints beyond recording and human range": 99.0,  # nothing keeps joints in their ranges yet
+    "ground: root moment not explained, rms": 0.0013,  # the run's longer flights: hard landings
+}
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,8 @@ def _found(results: Sequence[CaseResult]) -> Iterator[tuple[str, float, SolidLim
         joint, name = max(bent, key=lambda each: each[0].degrees)
         where = f"{name}: {joint.joint}, frame {joint.frame:g}" if joint.joint else ""
         yield "joints beyond recording and human range", joint.degrees, JOINTS, where
-    ratios = [(ratio, r.name) for r in good if (ratio := r.ratio) is not None]
+    free = [r for r in good if r.source is not Source.SCENE]  # there more than a body is solid
+    ratios = [(ratio, r.name) for r in free if (ratio := r.ratio) is not None]
     if ratios:
         yield "time with solids over without, median", median(x for x, _ in ratios), RATIO, ""
         yield "time with solids over without, worst", *_split(max(ratios), WORST_RATIO)

@@ -57,7 +57,7 @@ def measured(case: Case, subject: Subject, fitted: Fit, *, quick: bool) -> CaseR
         case.name,
         case.source,
         solved=adaptation.solved,
-        penetrations=solid_check(adaptation, shown.times, scale).worst(shown),
+        penetrations=solid_check(adaptation, subject.problem, shown.times, scale).worst(shown),
         joint=worst_joint(shown, result.recording, adaptation.motion.transcription.character),
         physics=Physics(
             *(

@@ -15,11 +15,13 @@ with 2 cores) and wrote this page; `DIR/figures.json` has every number.
 NOTES = """
 - **Penetration**: by MuJoCo's distances (`mj_geomDistance`), on capsules, balls and a plane built
   from the solver's shapes and moved by the bones of the action as written into Blender, at every
-  frame of it. *New* is what is deeper than in the fit at the same (warped) instant, by MuJoCo too.
+  frame of it. *New* is what is deeper than in the fit at the same (warped) instant, by MuJoCo too;
+  of the scene, whose meshes are MuJoCo's as convex solids, everything is new.
 - **Joints**: degrees beyond the human range (`solver/body/human_limits.py`) and beyond what the
   recording itself does, whichever is wider, by the written bones' rotations.
 - **Time**: of an adaptation from the stored fit with floor and own limbs solid, over that without;
-  by turns in one process that has nothing beside it, the least of two or three runs each.
+  by turns in one process that has nothing beside it, the least of two or three runs each. Results
+  in a scene do not count: without solids there is no scene.
 - **Physics**: what nothing explains by MuJoCo's inverse dynamics at 960 Hz, of the motion that the
   action was written from; force in body weights and moment in body weights x m, rms.
 - **Known misses** are declared in `devtools/solid/limits.py`, with the value that each must not

@@ -7,8 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hangtime.devtools.checks.joint_ranges import directions, excess, rest_figure, worst_joint
-from hangtime.devtools.checks.mujoco_shapes import Poses, capsule_depths, floor_depths
+from hangtime.devtools.checks.mujoco_shapes import (
+    Poses,
+    capsule_depths,
+    convex_pieces,
+    floor_depths,
+)
 from hangtime.devtools.checks.penetrations import Keeper, Penetration, solid_check
+from hangtime.devtools.checks.scenery import PlacedObject, distances_to, scene_depths
 from hangtime.devtools.solid import limits
 from hangtime.devtools.solid.cases import QUICK, Source, cases, groups
 from hangtime.devtools.solid.limits import faults, figures
@@ -16,7 +22,9 @@ from hangtime.devtools.solid.main import tell
 from hangtime.devtools.solid.result import CaseResult, Physics
 from hangtime.devtools.solid.table import page
 from hangtime.solver.body.human_limits import BendRange, ConeRange
+from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.scene import SceneObject, SceneRole
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.solid.shapes import Capsule
 from hangtime.solver.stages.implicit import Adaptation, unadapted
@@ -54,6 +62,51 @@ def test_a_ball_is_as_deep_in_the_floor_as_its_lowest_point() -> None:
     assert sunk == pytest.approx(np.array([[0.42, 0.07]]), abs=1e-6)
 
 
+def unit_box(low: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles of a box, 1 m along each side."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    return corners + low, np.array(faces)
+
+
+def test_a_mesh_falls_into_its_convex_parts_and_else_into_slabs() -> None:
+    vertices, faces = unit_box()
+    assert len(convex_pieces(vertices, faces)) == 1
+    both = np.concatenate([vertices, vertices + 2.0])
+    assert len(convex_pieces(both, np.concatenate([faces, faces + 8]))) == 2
+    dented = vertices.copy()
+    dented[7] = 0.4  # a corner is pushed in
+    assert len(convex_pieces(dented, faces)) == 12
+
+
+@pytest.mark.parametrize("height", [0.98, 1.0, 1.03])
+def test_a_point_is_as_far_off_a_moving_box_as_it_is_above_it(height: float) -> None:
+    thing = PlacedObject(
+        "Box",
+        tuple(convex_pieces(*unit_box())),
+        np.eye(3)[None],
+        np.array([[5.0, 0.0, 0.2]]),
+    )
+    point = Capsule(0, np.zeros(3), np.zeros(3), 0.0)
+    poses = still((5.5, 0.5, 0.2 + height))
+    assert distances_to([point], thing, poses)[0, 0] == pytest.approx(height - 1.0, abs=1e-6)
+    depth = scene_depths([point], [thing], poses)[0, 0]
+    assert depth == pytest.approx(max(1.0 - height, 0.0), abs=1e-6)
+
+
+def test_a_figure_in_a_box_is_told_with_the_objects_name() -> None:
+    adaptation, shown = shown_hop()
+    vertices, faces = unit_box()
+    middle = shown.heads[10, shown.index("Head")] - 0.5
+    still_there = np.zeros(1), middle[None], np.eye(3)[None]
+    box = SceneObject("Crate", SceneRole.OBSTACLE, vertices, faces, *still_there)
+    scene = solid_check(adaptation, MotionProblem(scene=(box,)), shown.times).worst(shown)[-1]
+    assert scene.keeper is Keeper.SCENE
+    assert scene.what.endswith("in Crate")
+    assert scene.deeper_mm > 100.0
+
+
 def shown_hop() -> tuple[Adaptation, Recording]:
     """The hop's fit as Blender would show it."""
     adaptation = unadapted(fitted_hop())
@@ -68,14 +121,14 @@ def shown_hop() -> tuple[Adaptation, Recording]:
 
 def test_a_fit_is_nowhere_deeper_than_itself() -> None:
     adaptation, shown = shown_hop()
-    for each in solid_check(adaptation, shown.times).worst(shown):
+    for each in solid_check(adaptation, MotionProblem(), shown.times).worst(shown):
         assert each.deeper_mm < 1e-3
 
 
 def test_a_figure_that_sinks_is_in_the_floor_by_as_much() -> None:
     adaptation, shown = shown_hop()
     shown.heads[:, :, 2] -= 0.02
-    floor, body = solid_check(adaptation, shown.times).worst(shown)
+    floor, body = solid_check(adaptation, MotionProblem(), shown.times).worst(shown)
     assert (floor.keeper, body.deeper_mm) == (Keeper.FLOOR, pytest.approx(0.0, abs=1e-3))
     assert floor.deeper_mm == pytest.approx(20.0, abs=0.01)
     assert "foot in the floor" in floor.what
@@ -85,7 +138,7 @@ def test_a_forearm_turned_into_the_trunk_is_named_with_its_frame() -> None:
     adaptation, shown = shown_hop()
     arm, trunk = shown.index("LeftForeArm"), shown.index("Hips")
     shown.heads[7, arm] = shown.heads[7, trunk]
-    _, body = solid_check(adaptation, shown.times).worst(shown)
+    _, body = solid_check(adaptation, MotionProblem(), shown.times).worst(shown)
     assert body.deeper_mm > 50.0
     assert body.frame == shown.frames[7]
     assert "left forearm" in body.what
