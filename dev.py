@@ -6,8 +6,9 @@
   analyze CLIP [--write-recipe FILE]      what touches when, and a recipe to start from
   test [pytest arguments]                 run the tests
   figures --out DIR                       measure everything that the project promises
-  gallery [NAMES...] [--out DIR]          make the thesis's results, with pictures and a table
+  gallery [NAMES...] [--out DIR]          the thesis's results and the scene's, with a table
   pairs [CLIP:FIRST-LAST ...] [--out DIR] adapt real jumps to each other's landings, and compare
+  solid [NAMES...] [--out DIR]            how solid the world is and how human the body, by MuJoCo
   validate [FOLDER] [--out DIR]           forces of the fit against force plates, with a table
   compare BEFORE AFTER [--within X]       whether two folders of results hold the same motions
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
@@ -30,7 +31,8 @@ from devtools.environment.problem import SetUpError
 from solver.one_thread import ONE_THREAD
 
 PEERS = "benchmark"  # has an environment of its own
-MEASURED = ("figures", "gallery", "pairs", "validate", PEERS)  # with one thread of linear algebra
+# with one thread of linear algebra
+MEASURED = ("figures", "gallery", "pairs", "solid", "validate", PEERS)
 # command: module of the package, arguments before the user's, whether it needs dev.txt
 COMMANDS = {
     "demo": ("devtools.demo", [], False),
@@ -40,6 +42,7 @@ COMMANDS = {
     "figures": ("devtools.figures.main", [], True),
     "gallery": ("devtools.gallery.main", [], True),
     "pairs": ("devtools.pairs.main", [], True),
+    "solid": ("devtools.solid.main", [], True),
     "validate": ("devtools.validation.main", [], True),
     "compare": ("devtools.gallery.compare", [], False),
     "window": ("devtools.window.main", [], False),

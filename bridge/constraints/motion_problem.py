@@ -13,10 +13,9 @@ import bpy
 import numpy as np
 
 from ...solver.data.contacts import Contact, ContactSchedule, Phase, PhaseKind, numbered
-from ...solver.data.digest import digest
 from ...solver.data.faults import EmptyRange
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
-from ...solver.data.recording import Recording
+from ...solver.data.recording import Recording, digest
 from ...solver.data.requests import Requests
 from ...solver.data.scene import SceneObject
 from ...solver.worker.protocol import Analysed

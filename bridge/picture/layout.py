@@ -113,7 +113,9 @@ def lay_out(rows: Sequence[SheetRow], view: View | None = None) -> Layout:
     canvas = Canvas(axes, np.array([0.0, -aside, 0.0]))
     turned = [canvas.row(row) for row in rows]
     lead = turned[0]
-    slide = spread(lead, SPACING * (view.figures - 1))
+    slide = np.zeros(len(lead.times))
+    if not view.in_place:
+        slide = spread(lead, SPACING * (view.figures - 1))
     wished = lead.times[instants(lead, lead.com[:, 0] + slide, view.figures)]
     floor = min(_ground(row) for row in turned)
     tiers = tuple(_tier(r, np.interp(r.times, lead.times, slide), wished, floor) for r in turned)
@@ -180,9 +182,11 @@ def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) ->
 
 
 def _marks(row: SheetRow, slide: FloatArray, shown: Sequence[int]) -> Iterable[Mark]:
-    """Every mark with every figure it belongs to, where that figure is drawn."""
+    """Every mark with every figure it belongs to, where that figure is drawn; where figures are in
+    place an object stands there once, as it is with the last of them."""
     for mark in row.marks:
-        for i in during(mark.span, row.times, shown):
+        once = isinstance(mark, Thing) and not slide.any()
+        for i in during(mark.span, row.times, shown)[-1 if once else 0 :]:
             yield moved(at(mark, i), np.eye(3), slide[i] * RIGHT)
 
 

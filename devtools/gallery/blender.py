@@ -1,7 +1,7 @@
 """The process with Blender: reads a result's clip; writes its action, FBX and picture, and checks
 on the written action that everything is where it was asked to be."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +17,10 @@ from ...bridge.picture.sheet import View
 from ...operators.headless.quiet import quiet
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import BEYOND, Recording
+from ..checks.penetrations import SolidCheck
 from ..processes import dump, undump
 from .checks import Check, PointCheck
-from .jobs import Json, Result, load, write_json
+from .jobs import Json, Page, Result, load, write_json
 
 FIGURES = 9
 WIDTH = 1600
@@ -55,12 +56,24 @@ def _write(armature: bpy.types.Object, result: Result, folder: Path, *, picture:
     action = write_action(armature, track, name=result.name)
     shown = record(armature, track.frames)
     content: Json = {"checks": [_checked(check, shown) for check in found]}
+    content |= _solid(drawn["solid"], shown)
     with quiet():
         export_fbx(armature, action, folder / "adapted.fbx")
         if picture:
-            view = View(figures=FIGURES, heading=drawn["heading"])
+            scene = result.page is Page.SCENE
+            view = View(figures=FIGURES, heading=drawn["heading"], in_place=scene)
             draw_sheet([drawn["row"]], folder / "sheet.png", view, width=WIDTH)
     write_json(content, folder / "written.json")
+
+
+def _solid(check: SolidCheck, shown: Recording) -> Json:
+    """What is in each other and what stands on objects, by MuJoCo."""
+    return {
+        "penetrations": [
+            asdict(each) | {"keeper": each.keeper.value} for each in check.worst(shown)
+        ],
+        "standing": [asdict(each) for each in check.standing(shown)],
+    }
 
 
 def _checked(check: Check, shown: Recording) -> Json:

@@ -142,7 +142,7 @@ def _contacts(adaptation: Adaptation) -> Iterator[PointCheck]:
         axes = np.eye(3) if contact.held is None else contact.held.T
         span = contact.contact
         times = np.linspace(span.start, span.end, 500)
-        places = place + contact.moves(times)
+        places = contact.holds(times).of(place)
         edges = np.zeros(axes.shape[1])
         when = span.name, span.start, span.end
         yield PointCheck(*when, span.bone, span.offset, times, places, axes, edges, edges)

@@ -7,6 +7,7 @@ solver's memory and any crash are each one's own.
 import json
 import re
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from ...solver.data.problem import MotionProblem
 from ..environment.virtual_environment import ROOT
 from ..processes import run_module
 
-GALLERY = ROOT / "examples" / "gallery"
+EXAMPLES = ROOT / "examples"
 BLENDER, SOLVE = "devtools.gallery.blender", "devtools.gallery.solve"
 LONGEST = 400.0  # s, that solving one result may take by all methods together
 LEFT = ("sheet.png", "adapted.fbx", "report.json", "trajectory.npz")  # what a result leaves
@@ -23,11 +24,23 @@ SCRATCH = ("recording.pickle", "drawn.pickle", "measured.json", "written.json")
 Json = dict[str, Any]
 
 
+class Page(Enum):
+    """A page of the gallery, by the folder of its recipes."""
+
+    THESIS = "gallery"
+    SCENE = "world"
+
+    @property
+    def folder(self) -> Path:
+        return EXAMPLES / self.value
+
+
 @dataclass(frozen=True)
 class Result:
     """One recipe of the gallery. title: its first comment. clip: the recording's file."""
 
     name: str
+    page: Page
     title: str
     problem: MotionProblem
     clip: Path
@@ -40,25 +53,29 @@ class Result:
 
 def load(name: str) -> Result:
     """Raises BadRecipe, and KeyError for a recipe that names no clip."""
-    path = GALLERY / f"{name}.toml"
+    page = next((page for page in Page if (page.folder / f"{name}.toml").is_file()), Page.THESIS)
+    path = page.folder / f"{name}.toml"
     text = read_recipe_text(path)
     recipe = parse_recipe(text, str(path))
     if recipe.clip is None:
         raise KeyError(f"{path.name} names no clip")
     title = text.lstrip().splitlines()[0].lstrip("# ").rstrip(".")
-    return Result(name, title, recipe.problem, (path.parent / recipe.clip).resolve())
+    return Result(name, page, title, recipe.problem, (path.parent / recipe.clip).resolve())
 
 
-def names() -> list[str]:
-    """Jumps before runs, their fits first, by the thesis's figures where the title tells them."""
+def names(page: Page) -> list[str]:
+    """Of the thesis jumps before runs, their fits first, by its figures where the title tells them;
+    those in a scene by their numbers."""
 
     def order(path: Path) -> tuple[bool, bool, int, str]:
         with path.open(encoding="utf-8") as file:
-            figure = re.search(r"figure 6-(\d+)", file.readline())
+            figure = re.search(r"(?:figure 6-|scene )(\d+)", file.readline())
         number = int(figure[1]) if figure else 0
+        if page is Page.SCENE:
+            return False, False, number, path.stem
         return path.stem.startswith("run_"), not path.stem.endswith("_fit"), number, path.stem
 
-    return [path.stem for path in sorted(GALLERY.glob("*.toml"), key=order)]
+    return [path.stem for path in sorted(page.folder.glob("*.toml"), key=order)]
 
 
 def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
@@ -68,16 +85,16 @@ def work(result: Result, folder: Path, *, pictures: bool, quick: bool) -> Json:
         (folder / name).unlink(missing_ok=True)
     said = run_module(BLENDER, ["read", result.name, str(folder)], LONGEST)
     if said is None:
-        said = run_module(
-            SOLVE, [result.name, str(folder), *(["--quick"] if quick else [])], LONGEST
-        )
+        words = ["--quick"] if quick or result.page is Page.SCENE else []
+        said = run_module(SOLVE, [result.name, str(folder), *words], LONGEST)
     found = _read(folder / "measured.json")
     if said is None and (folder / "drawn.pickle").is_file():
         words = ["write", result.name, str(folder), *([] if pictures else ["--no-picture"])]
         said = run_module(BLENDER, words, LONGEST)
     if said is not None:
         found["failed"] = said
-    found |= {"name": result.name, "title": result.title} | _read(folder / "written.json")
+    found |= {"name": result.name, "page": result.page.value, "title": result.title}
+    found |= _read(folder / "written.json")
     for scratch in SCRATCH:
         (folder / scratch).unlink(missing_ok=True)
     return found

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from .jobs import Json
+from .jobs import Json, Page
 
 METHODS = ("implicit", "implicit with torques", "explicit")
 
@@ -41,6 +41,8 @@ LOOKS = {  # what a picture must not show, at any instant
     "below_floor_cm": GalleryLimit("cm under the floor", 2.0, 0.0),
     "jerk": GalleryLimit("times the fit's sharpest acceleration", 2.5, 1.0),
 }
+DEPTH = GalleryLimit("mm", 5.0, 1.0)  # by which anything is in floor, scene or body, by MuJoCo
+STANDING = GalleryLimit("mm", 2.0, 0.5)  # that a foot stands off the face it was put on
 LEAST_KNEE = 0.0  # degrees; below zero a knee is bent backwards
 
 
@@ -82,13 +84,33 @@ def faults(row: Json) -> list[str]:
         value = row.get("residuals", {}).get(name)
         if value is not None and not value <= limit.must:
             found.append(f"{name.replace('_', ' ')} {value:.2g} {limit.unit}")
-    found += _ugly(row.get("looks", {}))
+    found += [*_penetrations(row), *_ugly(row.get("looks", {}))]
     for method, solved in row.get("methods", {}).items():
         if not solved.get("solved", True) and method != "implicit":
             found.append(f"{method}: {solved['status']}")
         if solved.get("peak_memory_gb", 0.0) > MEMORY.must:
             found.append(f"{method}: {solved['peak_memory_gb']:.2f} GB")
     return found
+
+
+def _penetrations(row: Json) -> Iterator[str]:
+    """What is in each other, and what does not stand where it should, in words."""
+    for each in row.get("penetrations", ()):
+        if not each["deeper_mm"] <= DEPTH.must:
+            yield f"{each['what']} by {each['deeper_mm']:.1f} mm at frame {each['frame']:g}"
+    for each in row.get("standing", ()):
+        if not each["off_mm"] <= STANDING.must:
+            yield f"{each['contact']} {each['off_mm']:.1f} mm off {each['object']}"
+
+
+def deepest(row: Json) -> float | None:
+    """mm that anything of a result is deeper in something than its fit; None where not measured."""
+    return max((each["deeper_mm"] for each in row.get("penetrations", ())), default=None)
+
+
+def furthest_off(row: Json) -> float | None:
+    """mm that a foot of a result stands off its face; None where none was put on one."""
+    return max((each["off_mm"] for each in row.get("standing", ())), default=None)
 
 
 def _ugly(looks: Json) -> Iterator[str]:
@@ -104,18 +126,28 @@ def _ugly(looks: Json) -> Iterator[str]:
 def figures(rows: Sequence[Json]) -> list[GalleryFigure]:
     """Every number of every result, and over all of them what has a limit."""
     found = [figure for row in rows for figure in _of(row)]
-    adapted = adaptations(rows)
-    good, count = sum(not faults(row) for row in adapted), len(adapted)
-    found.append(GalleryFigure("results in order", good, "1", count, count, good == count, "all"))
+    adapted = thesis(rows)
+    parts = {"results in order": adapted, "in a scene in order": of_page(rows, Page.SCENE)}
+    found += [_in_order(name, mine) for name, mine in parts.items() if mine]
     for method, limit in SECONDS.items():
         if taken := times(adapted, method):
             found.append(_figure(f"{method}, median", median(taken), limit, "all"))
     return found
 
 
-def adaptations(rows: Sequence[Json]) -> list[Json]:
-    """The results that are no fits."""
-    return [row for row in rows if not row["name"].endswith("_fit")]
+def thesis(rows: Sequence[Json]) -> list[Json]:
+    """The thesis's results that are no fits."""
+    return [row for row in of_page(rows, Page.THESIS) if not row["name"].endswith("_fit")]
+
+
+def of_page(rows: Sequence[Json], page: Page) -> list[Json]:
+    """The results of one page."""
+    return [row for row in rows if row["page"] == page.value]
+
+
+def _in_order(name: str, rows: Sequence[Json]) -> GalleryFigure:
+    good, count = sum(not faults(row) for row in rows), len(rows)
+    return GalleryFigure(name, good, "1", count, count, good == count, "all")
 
 
 def times(rows: Sequence[Json], method: str) -> list[float]:
@@ -147,6 +179,12 @@ def _of(row: Json) -> Iterator[GalleryFigure]:
         slack = SLACK.get(c["unit"], 0.01)
         label = f"{c['kind']}: {c['name']}"
         yield GalleryFigure(label, c["worst"], c["unit"], slack, None, c["worst"] <= slack, name)
+    for key, measured, limit in (
+        ("deepest penetration", deepest(row), DEPTH),
+        ("off its face", furthest_off(row), STANDING),
+    ):
+        if measured is not None:
+            yield _figure(key, measured, limit, name)
     for part in ("loads", "from_fit", "shape", "looks"):
         for key, value in row.get(part, {}).items():
             if isinstance(value, float):

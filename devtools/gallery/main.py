@@ -1,8 +1,8 @@
 """Makes the thesis's gallery: python3 dev.py gallery [NAMES...] [--out DIR].
 
-Each result comes from its recipe in examples/gallery: a picture, an FBX, its report, its
-trajectory, and a row of docs/gallery.md, which a run of the whole gallery writes anew. Ends with 1
-where a result is not as it should be.
+Each result comes from its recipe in examples/gallery, or examples/world: a picture, an FBX, its
+report, its trajectory, and a row of docs/gallery.md, which a run of the whole gallery writes anew.
+Ends with 1 where a result is not as it should be.
 """
 
 import argparse
@@ -11,8 +11,9 @@ from pathlib import Path
 
 from ...solver.data.faults import BadRecipe
 from ..environment.virtual_environment import ROOT
-from .jobs import Json, load, names, work, write_json
-from .limits import faults, figures
+from .jobs import Json, Page, load, names, work, write_json
+from .limits import faults, figures, of_page
+from .scene_table import SCENE_HEAD, scene_section
 from .table import line, page
 
 PAGE = ROOT / "docs" / "gallery.md"
@@ -24,11 +25,12 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--no-pictures", action="store_true", help="leave out the drawing")
     parser.add_argument("--quick", action="store_true", help="the implicit solution alone")
+    parser.add_argument("--scene", action="store_true", help="only those in a scene")
     options = parser.parse_args(argv)
-    known = names()
+    known = names(Page.SCENE) if options.scene else [*names(Page.THESIS), *names(Page.SCENE)]
     unknown = [name for name in options.names if name not in known]
     if unknown:
-        print(f"No recipe '{unknown[0]}' in examples/gallery; there are: {', '.join(known)}.")
+        print(f"No recipe '{unknown[0]}' in examples; there are: {', '.join(known)}.")
         return 2
     try:
         chosen = [load(name) for name in options.names or known]
@@ -44,16 +46,24 @@ def main(argv: list[str]) -> int:
         folder, pictures = options.out / result.name, not options.no_pictures
         rows.append(work(result, folder, pictures=pictures, quick=options.quick))
         print(line(rows[-1]), flush=True)
-    return tell(rows, options.out, whole=not options.names and not options.quick)
+    if not options.names and (options.scene or not options.quick):
+        write_page(rows, scene_alone=options.scene)
+    return tell(rows, options.out)
 
 
-def tell(rows: list[Json], out: Path, *, whole: bool) -> int:
-    """Writes the figures, and the page of the whole gallery; 1 where anything failed."""
+def write_page(rows: list[Json], *, scene_alone: bool) -> None:
+    """Writes docs/gallery.md; the thesis's part stays as it is where only the scene was made."""
+    old = PAGE.read_text(encoding="utf-8").partition(SCENE_HEAD)[0]
+    first = old if scene_alone else page(of_page(rows, Page.THESIS))
+    section = scene_section(of_page(rows, Page.SCENE))
+    PAGE.write_text(f"{first.rstrip()}\n\n{section}", encoding="utf-8")
+
+
+def tell(rows: list[Json], out: Path) -> int:
+    """Writes the figures; 1 where anything failed."""
     found = figures(rows)
     content = {"figures": [asdict(figure) for figure in found], "results": rows}
     write_json(content, out / "figures.json")
-    if whole:
-        PAGE.write_text(page(rows), encoding="utf-8")
     bad = [row["name"] for row in rows if faults(row)]
     missed = [f for f in found if f.result == "all" and not f.ok]
     for figure in missed:

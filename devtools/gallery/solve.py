@@ -106,20 +106,23 @@ def write_down(result: Result, adapted: AdaptationResult, found: Json, folder: P
     """Measures and writes what needs no Blender; MuJoCo is loaded now that the memory is known."""
     from ...operators.headless.annotate import marks_of
     from ...operators.headless.picture import adapted_row, heading
+    from ..checks.penetrations import solid_check
     from .checks import checks
     from .measure import measured
 
-    adaptation = adapted.adaptation
+    adaptation, track, subject = adapted.adaptation, adapted.track, adapted.subject
     found |= measured(adaptation)
     write_json(found, folder / "measured.json")
     write_json(as_json(adapted.report(Origin(result.clip.name))), folder / "report.json")
     save(adaptation.motion, folder / "trajectory.npz")
     marks = marks_of(adaptation, adapted.subject.problem)
+    times = (track.frames - track.frames[0]) / subject.recording.rate
     drawn = {
         "heading": heading(adaptation),  # which all results of a clip share
         "row": adapted_row(adaptation, result.heading, marks),
-        "track": adapted.track,
+        "track": track,
         "recording": adapted.recording,
         "checks": checks(adaptation),
+        "solid": solid_check(adaptation, subject.problem, times, subject.factor),
     }
     dump(drawn, folder / "drawn.pickle")

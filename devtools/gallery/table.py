@@ -10,9 +10,9 @@ from .limits import (
     METHODS,
     RESIDUALS,
     SECONDS,
-    adaptations,
     faults,
     of_method,
+    thesis,
     times,
     worst,
 )
@@ -28,9 +28,9 @@ TABLE_6_1 = {
 }
 HEAD = """# The gallery
 
-`python3 dev.py gallery` makes these results anew, each from its recipe in `examples/gallery`, and
-wrote this page. A result lies in its folder: `sheet.png`, `adapted.fbx`, `report.json`,
-`trajectory.npz`. Recordings: `examples/recordings`.
+`python3 dev.py gallery` makes these results anew, each from its recipe in `examples/gallery`, or
+`examples/world` for those in a scene, and wrote this page. A result lies in its folder:
+`sheet.png`, `adapted.fbx`, `report.json`, `trajectory.npz`. Recordings: `examples/recordings`.
 """
 NOTES = """
 Seconds and iterations are those from the stored fit, with one thread of linear algebra. *Flight*
@@ -43,16 +43,16 @@ cones), by MuJoCo (torques, forces), or by the solver between its rows (turns, p
 
 
 def page(rows: Sequence[Json]) -> str:
-    """The whole page."""
+    """The page of the thesis's results."""
     parts = [HEAD, *_limits(rows), "", *_rows(rows), NOTES, *_sizes(rows), "", *_claims(rows)]
     return "\n".join(parts).rstrip() + "\n"
 
 
 def _limits(rows: Sequence[Json]) -> Iterator[str]:
-    adapted = adaptations(rows)
-    good = sum(not faults(row) for row in adapted)
+    adapted = thesis(rows)
     yield "| figure | found | must | aim |"
     yield "|---|---|---|---|"
+    good = sum(not faults(row) for row in adapted)
     yield f"| results in order | {good} of {len(adapted)} | {len(adapted)} | {len(adapted)} |"
     for key, limit in RESIDUALS.items():
         values = [row["residuals"][key] for row in adapted if "residuals" in row]
@@ -77,11 +77,12 @@ def _rows(rows: Sequence[Json]) -> Iterator[str]:
     )
     yield "|---|---|---|---|---|---|---|---|---|---|---|---|"
     for row in rows:
-        yield "| " + " | ".join(_cells(row)) + " |"
+        yield "| " + " | ".join(cells(row)) + " |"
 
 
-def _cells(row: Json) -> Iterator[str]:
-    yield f"[{row['title'].partition(':')[0]}](../examples/gallery/{row['name']}.toml)"
+def cells(row: Json) -> Iterator[str]:
+    """The cells of a result's row."""
+    yield link(row)
     unknowns, count = (of_method(row, "implicit", key) for key in ("unknowns", "rows"))
     yield "" if unknowns is None else f"{unknowns:.0f}; {count:.0f}"
     for method in METHODS:
@@ -104,6 +105,11 @@ def _solution(row: Json, method: str) -> str:
     if solved is None:
         return ""
     return f"{solved['seconds']:.2f} s; {solved['iterations']}"
+
+
+def link(row: Json) -> str:
+    """A result's name, linked to its recipe."""
+    return f"[{row['title'].partition(':')[0]}](../examples/{row['page']}/{row['name']}.toml)"
 
 
 def _sizes(rows: Sequence[Json]) -> Iterator[str]:

@@ -22,9 +22,8 @@ from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
-from ...solver.data.digest import same_motion
 from ...solver.data.faults import ChangedMeanwhile, Fault
-from ...solver.data.recording import BEYOND, Recording
+from ...solver.data.recording import BEYOND, Recording, same_motion
 from ...solver.data.report import ConstraintReport
 from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status

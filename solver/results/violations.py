@@ -10,8 +10,8 @@ from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
+from ..optimisation.guards import Guard
 from ..stages.fit import Fit
-from ..stages.guards import Guard
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation, dense_violation
 

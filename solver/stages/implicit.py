@@ -10,6 +10,7 @@ from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.requests import Method, ObjectiveKind
 from ..data.status import Durations, Status
+from ..optimisation.guards import guarded, in_the_way
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
 from ..transcription.motion import Motion
@@ -17,7 +18,6 @@ from ..transcription.transcription import Transcription
 from .arm_ik import reach_grips
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
-from .guards import guarded, in_the_way
 from .setup import Setup, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 

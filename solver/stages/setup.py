@@ -33,6 +33,7 @@ from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis, phase_breaks
 from ..objectives.least_squares import torque_metric
 from ..objectives.tracking_cost import CostWeights
+from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
 from ..solid.solid_world import SolidWorld
@@ -51,7 +52,6 @@ from .fit import (
     point_contacts,
 )
 from .footing import on_faces, pin_turns
-from .guards import Guard
 from .platforms import find_standing
 from .reseat import reseat
 from .surroundings import surroundings

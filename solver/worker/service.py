@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 
 from ..analysis.pinned_places import travel_axes
 from ..data.contacts import PhaseKind
-from ..data.digest import digest
 from ..data.faults import Fault
 from ..data.problem import MotionProblem
-from ..data.recording import Recording
+from ..data.recording import Recording, digest
 from ..data.report import Origin
 from ..data.requests import Requests
 from ..optimisation.sqp import Step, Stopped

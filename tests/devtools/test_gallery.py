@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from hangtime.bridge.picture.annotations import Box, Cone, LimitArc, Tint
-from hangtime.devtools.gallery import jobs, limits, main, table
+from hangtime.devtools.gallery import jobs, limits, main, scene_table, table
 from hangtime.devtools.gallery.checks import BendCheck, Check, ConeCheck, PointCheck
 from hangtime.operators.headless.annotate import marks_of
 from hangtime.operators.headless.picture import instants
@@ -85,10 +85,11 @@ def test_a_knee_bent_the_other_way_is_seen() -> None:
 
 
 def test_every_recipe_is_read_and_says_what_it_is() -> None:
-    names = jobs.names()
-    results = [jobs.load(name) for name in names]
-    assert len(names) == 29
-    assert sum(name.endswith("_fit") for name in names) == 2
+    thesis, scene = (jobs.names(page) for page in jobs.Page)
+    results = [jobs.load(name) for name in (*thesis, *scene)]
+    assert (len(thesis), len(scene)) == (29, 8)
+    assert sum(name.endswith("_fit") for name in thesis) == 2
+    assert all(jobs.load(name).problem.scene for name in scene)
     assert all(": " in result.title or result.name.endswith("_fit") for result in results)
     assert {result.clip.suffix for result in results} == {".bvh"}
 
@@ -99,6 +100,7 @@ def row(**changes: object) -> jobs.Json:
     solved |= {"unknowns": 3000, "rows": 1500, "peak_memory_gb": 0.5}
     good = {
         "name": "diagonal",
+        "page": "gallery",
         "title": "Diagonal: left",
         "methods": {"implicit": solved},
         "conditions": [],
@@ -116,6 +118,14 @@ def row(**changes: object) -> jobs.Json:
     return good | changes
 
 
+def deep(mm: float) -> jobs.Json:
+    return {"keeper": "scene", "deeper_mm": mm, "what": "left shank in Crate", "frame": 200.0}
+
+
+def off(mm: float) -> jobs.Json:
+    return {"contact": "Left heel 2", "object": "Crate", "off_mm": mm}
+
+
 def limp(worst: float) -> jobs.Json:
     return {"name": "Limp", "kind": "torque", "worst": worst, "unit": "N·m", "by": "us"}
 
@@ -131,6 +141,8 @@ def limp(worst: float) -> jobs.Json:
         ({"looks": {"least_knee_deg": -4.0}}, "backwards"),
         ({"methods": {"implicit": {"solved": False, "status": "stalled"}}}, "stalled"),
         ({"methods": {}}, "not solved"),
+        ({"penetrations": [deep(9.0)]}, "left shank in Crate by 9.0 mm at frame 200"),
+        ({"standing": [off(4.0)]}, "Left heel 2 4.0 mm off Crate"),
     ],
 )
 def test_what_is_wrong_with_a_result_is_said(changes: jobs.Json, word: str) -> None:
@@ -147,6 +159,17 @@ def test_the_page_shows_a_failure_and_the_thesis_s_sizes() -> None:
     assert "**failed**: no way" in page
     assert "| results in order | 1 of 2 |" in page
     assert "| jump | 3000-3000 | 1100-2400 | 1500-1500 | 700-1700 |" in page
+
+
+def test_results_in_a_scene_have_a_table_and_a_count_of_their_own() -> None:
+    solid = {"penetrations": [deep(0.4)], "standing": [off(0.2)]}
+    crate = row(name="crate_landing", page="world", title="Crate (scene 1): up", **solid)
+    assert "| results in order | 1 of 1 |" in table.page([row()])
+    found = {f.name: f.value for f in limits.figures([row(), crate]) if f.result == "all"}
+    assert (found["results in order"], found["in a scene in order"]) == (1, 1)
+    scene = scene_table.scene_section([crate])
+    assert "[Crate (scene 1)](../examples/world/crate_landing.toml)" in scene
+    assert "| 0.4 | 0.2 |" in scene
 
 
 def test_what_is_asked_for_is_marked_where_it_is() -> None:

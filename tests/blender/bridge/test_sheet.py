@@ -9,6 +9,8 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from hangtime.bridge.picture import cycles, layout
+from hangtime.bridge.picture.annotations import Thing
+from hangtime.bridge.picture.mark_meshes import Look
 from hangtime.bridge.picture.render import draw_sheet
 from hangtime.bridge.picture.sheet import Limb, SheetRow, View
 from hangtime.solver.data.faults import OutputNotWritable
@@ -146,6 +148,19 @@ def test_a_raised_landing_stands_on_a_step_and_the_ground_does_not(rows):
     assert step.top == pytest.approx(0.2)
     landed = [figure.com[0] for figure in adapted.figures if figure.time >= 0.7]
     assert step.left < min(landed) < max(landed) < step.right
+
+
+def test_in_place_nothing_slides_and_an_object_is_there_once(rows):
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    plate = Thing(corners, np.array([[0, 1, 2]]))
+    row = replace(rows[0], marks=(plate,))
+    (tier,) = layout.lay_out([row], View(in_place=True)).tiers
+    assert np.ptp(tier.path[:, 0]) == pytest.approx(np.ptp(row.com[:, 0]))
+    (drawn,) = (solid for solid in tier.marks if solid.look is Look.THING)
+    assert len(drawn.mesh.faces) == 3  # of its one triangle
+    (slid,) = layout.lay_out([row]).tiers
+    (often,) = (solid for solid in slid.marks if solid.look is Look.THING)
+    assert len(often.mesh.faces) == 3 * len(slid.figures)
 
 
 def test_travel_runs_to_the_right_whatever_the_heading():

@@ -19,9 +19,9 @@ from hangtime.operators.solve.common import said
 from hangtime.operators.solve.session import Asked, session
 from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
-from hangtime.solver.data.digest import digest
 from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature
 from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.recording import digest
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import mocap_path
 

@@ -12,11 +12,11 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.row_kinds import RowKind
 from ..numerics.block_banded import BlockBanded
-from ..optimisation.sqp import FeasibleSet
 from ..transcription.constraint import DenseViolation
 from ..transcription.guard_rows import GuardRows
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
+from .sqp import FeasibleSet
 
 HARD_PULL = 0.1  # of the hardest, for another row to be in the way as well
 
