@@ -200,7 +200,7 @@ MISSED = {  # of a constraint, by its type
     RowKind.FRICTION: "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
     RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} of the body's weight",
     RowKind.SOLID: "{name} stays in by {amount:millimetres}",
-    RowKind.RANGE: "{name} {amount:.0f}° beyond its range",
+    RowKind.RANGE: "{name} {amount:.3g}° beyond its range",
     RowKind.TORQUE: "“{name}” needs {amount:.3g} N·m more than its limit",
 }
 

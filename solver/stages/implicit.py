@@ -4,13 +4,15 @@ Far edits are made by continuation (Allgower & Georg 1990): pins and bounds move
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 from ..arrays import FloatArray
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.requests import Method, ObjectiveKind
+from ..data.row_kinds import RowKind
 from ..data.status import Durations, Status
-from ..optimisation.guards import guarded, in_the_way
+from ..optimisation.guards import Guard, guarded, in_the_way
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
 from ..transcription.motion import Motion
@@ -184,20 +186,23 @@ def _restored(
 
     On the way to the last step these are the ranges of joints alone: there floors and limbs are
     not where they shall be, but a joint that once is far beyond its range finds a long way back.
+    Where not all can be kept, floor and limbs go before ranges.
     """
-    guards = [guard for guard in setup.guards if last or guard is setup.human]
-
-    def with_guards(now: FeasibleSet, x: FloatArray) -> FeasibleSet:
-        t = guarded(now.motion(x), guards, set())
-        return now if t is now.transcription else replace(now, transcription=t)
-
-    if guards:
+    guards = tuple(guard for guard in setup.guards if last or guard is setup.human)
+    solids = tuple(guard for guard in guards if guard is not setup.human)
+    for some in (guards, solids) if len(solids) < len(guards) else (guards,):
+        wider = partial(_with_guards, some)
         outcome = restore(
-            feasible, setup.metric, start, stage="adapt", progress=progress, wider=with_guards
+            feasible, setup.metric, start, stage="adapt", progress=progress, wider=wider
         )
         if outcome.solved or not outcome.transcription.guards:
             return outcome
     return restore(feasible, setup.metric, start, stage="adapt", progress=progress)
+
+
+def _with_guards(guards: tuple[Guard, ...], now: FeasibleSet, x: FloatArray) -> FeasibleSet:
+    t = guarded(now.motion(x), guards, set())
+    return now if t is now.transcription else replace(now, transcription=t)
 
 
 def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | None) -> list[Outcome]:
@@ -228,6 +233,8 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
             outcomes.append(outcome := tried)
         elif new.guards is old.guards:
             break  # what was solved for stands; what it misses in between is reported
+        elif tried.solved and (ranges := new.guard(RowKind.RANGE)) is not None:
+            given_up |= {ranges.names[item] for item in ranges.items.tolist()}
         else:
             given_up |= in_the_way(feasible, metric, tried.x)
     else:

@@ -279,6 +279,7 @@ def test_the_recipe_in_the_documentation_is_understood() -> None:
         "longest_span",
         "keep_times",
         "solid",
+        "human",
         "gravity",
         "kind",
         "dimensions",
