@@ -21,6 +21,7 @@ from ...solver.transcription.joint_measures import (
     SideAngle,
     TwistAngle,
 )
+from ...solver.transcription.motion import Motion
 
 TURN = 2.0 * np.pi
 
@@ -34,12 +35,17 @@ class JointExcess:
     frame: float
 
 
-def worst_joint(shown: Recording, performance: Performance) -> JointExcess:
+def worst_joint(
+    shown: Recording, performance: Performance, fitted: Motion | None = None
+) -> JointExcess:
     """Over every frame and joint of what Blender shows. performance: what widens the ranges, and
-    tells the way that joints bend; of the same bones."""
-    character = performance.character
+    tells the way that joints bend; of the same bones. fitted: widens them too, where it is given.
+    """
+    character, done = performance.character, performance.angles
+    if fitted is not None:
+        done = np.concatenate([done, fitted.angles(performance.times)])
     worst = JointExcess(0.0, "", float(shown.frames[0]))
-    for limit in joint_ranges(character, performance.angles):
+    for limit in joint_ranges(character, done):
         turns = (turned(r, character, limit.body) for r in (shown, performance.recording))
         over = excess(limit, *turns)
         frame = int(over.argmax())

@@ -408,6 +408,11 @@ class Report:
         return tuple(c for c in self.conditions if c.kind.guards and not c.met)
 
     @property
+    def overlaps(self) -> tuple[ConstraintReport, ...]:
+        """The solids that could not be kept out of each other."""
+        return tuple(c for c in self.given_up if c.kind is RowKind.SOLID)
+
+    @property
     def failed(self) -> tuple[CertificateLine, ...]:
         """The certificate's lines that do not hold."""
         return tuple(line for line in self.certificate if not line.holds)

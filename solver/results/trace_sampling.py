@@ -108,7 +108,7 @@ def motion_traces(
 def track_times(motion: Motion, recording: Recording) -> FloatArray:
     """(T,) s of the frames of a motion's track."""
     frames = motion.track(recording).frames
-    return np.clip((frames - frames[0]) / _frame_rate(recording), 0.0, motion.duration)
+    return np.asarray(np.clip((frames - frames[0]) / _frame_rate(recording), 0.0, motion.duration))
 
 
 def _frame_rate(recording: Recording) -> float:

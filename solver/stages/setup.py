@@ -24,7 +24,16 @@ from ..data.contacts import ContactSchedule, Interval, Phase
 from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
-from ..data.requests import Dynamics, Method, ObjectiveKind, PointRequest, Requests
+from ..data.requests import (
+    AngleLimit,
+    ConeLimit,
+    Dynamics,
+    Method,
+    ObjectiveKind,
+    PointRequest,
+    Requests,
+    TwistLimit,
+)
 from ..data.scene import SceneObject
 from ..data.status import Durations
 from ..data.timeline import TimeWarp, timeline
@@ -134,7 +143,9 @@ class Setup:
         """
         if not self.requests.solution.human:
             return None
-        limits = (*self.requests.angles, *self.requests.cones, *self.requests.twists)
+        asked = self.requests
+        limits: tuple[AngleLimit | ConeLimit | TwistLimit, ...]
+        limits = (*asked.angles, *asked.cones, *asked.twists)
         reference, own = self.context.reference, frozenset(limit.bone for limit in limits)
         return HumanGuard(recorded_ranges(reference), reference, own)
 
