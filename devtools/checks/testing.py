@@ -8,7 +8,10 @@ import subprocess
 import sys
 import tempfile
 import xml.sax.saxutils
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import IO
 
 from ..environment.virtual_environment import ROOT
 from .summary import read_all
@@ -32,18 +35,42 @@ def main(argv: list[str]) -> int:
     with tempfile.TemporaryDirectory() as scratch:
         folder = (own.reports or Path(scratch)).resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        codes = [
-            run(arguments, folder / f"{name}.xml", own.limit) for name, arguments in suites.items()
-        ]
+        code = run_all(suites, folder, own.limit)
         print(read_all(folder), flush=True)
+    return code
+
+
+def run_all(suites: Mapping[str, list[str]], folder: Path, limit: float) -> int:
+    """1 where a suite fails. They run side by side, and are told one after the other."""
+    with ThreadPoolExecutor() as pool, contextlib.ExitStack() as logs:
+        waiting = []
+        for name, arguments in suites.items():
+            log = logs.enter_context(tempfile.TemporaryFile()) if waiting else None
+            report = folder / f"{name}.xml"
+            waiting.append((pool.submit(run, arguments, report, limit, log), log))
+        codes = []
+        for pending, log in waiting:
+            codes.append(pending.result())
+            if log is not None:
+                log.seek(0)
+                print(log.read().decode(errors="replace"), flush=True)
     return int(any(codes))
 
 
-def run(arguments: list[str], report: Path, limit: float) -> int:
-    """Exit code of one pytest process; a report is left even where the process was lost."""
+def run(arguments: list[str], report: Path, limit: float, log: IO[bytes] | None = None) -> int:
+    """Exit code of one pytest process; a report is left even where the process was lost.
+
+    log: takes what it says; None lets it say so itself.
+    """
     report.unlink(missing_ok=True)
     command = [sys.executable, str(RUNNER), f"--junitxml={report}", *arguments]
-    process = subprocess.Popen(command, cwd=ROOT, start_new_session=True)
+    process = subprocess.Popen(
+        command,
+        cwd=ROOT,
+        start_new_session=True,
+        stdout=log,
+        stderr=subprocess.STDOUT if log else None,
+    )
     try:
         code = process.wait(timeout=limit)
     except subprocess.TimeoutExpired:
