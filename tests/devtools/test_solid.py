@@ -159,7 +159,15 @@ def test_a_case_is_asked_with_solids_and_without() -> None:
 
 def result(depth: float = 0.5, **changes: object) -> CaseResult:
     deep = Penetration(Keeper.BODY, depth, "left hand in right thigh", 150.0)
-    good = CaseResult("dunk", Source.GALLERY, "", True, (deep,), None, GOOD, 1.2, 1.0)
+    good = CaseResult(
+        "dunk",
+        Source.GALLERY,
+        solved=True,
+        penetrations=(deep,),
+        physics=GOOD,
+        seconds=1.2,
+        free_seconds=1.0,
+    )
     return replace(good, **changes)  # type: ignore[arg-type]
 
 

@@ -20,6 +20,7 @@ from hangtime.tests.helpers.meshes import box, thing
 from hangtime.tests.helpers.toy_problems import jacobian_error
 
 TIMES = np.array([0.013, 0.21, 0.48, 0.7, 1.2])
+SOUGHT = 0.03  # a normal's error: an axis's deepest point is sought to 1 mm, some 5 cm off an edge
 SIZE = (0.5, 0.6, 0.7)
 TURN = axis_rotation(2, 0.3) @ axis_rotation(0, 0.2)
 
@@ -106,4 +107,4 @@ def test_the_jacobian_is_the_distances_derivative(*, moves: bool) -> None:
     none = np.zeros(len(items))
     where = Penetrations(seen.names, items, TIMES[instants], none, none, np.zeros((len(items), 3)))
     state = State(t.character, t.layout, Instants(t.basis, where.times), motion.x)
-    assert jacobian_error(state, SolidDistance(seen, where), 0) < 2e-3
+    assert jacobian_error(state, SolidDistance(seen, where), 0) < SOUGHT
