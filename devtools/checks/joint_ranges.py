@@ -41,11 +41,11 @@ def worst_joint(
     """Over every frame and joint of what Blender shows. performance: what widens the ranges, and
     tells the way that joints bend; of the same bones. fitted: widens them too, where it is given.
     """
-    character, done = performance.character, performance.angles
-    if fitted is not None:
-        done = np.concatenate([done, fitted.angles(performance.times)])
+    character = performance.character
     worst = JointExcess(0.0, "", float(shown.frames[0]))
-    for limit in joint_ranges(character, done):
+    for limit in joint_ranges(character, performance.angles):
+        if fitted is not None:
+            limit = limit.holding(fitted.joint_rotations(performance.times)[:, limit.body])
         turns = (turned(r, character, limit.body) for r in (shown, performance.recording))
         over = excess(limit, *turns)
         frame = int(over.argmax())
