@@ -9,7 +9,7 @@ import sys
 import tempfile
 import xml.sax.saxutils
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import IO
 
@@ -43,7 +43,7 @@ def main(argv: list[str]) -> int:
 def run_all(suites: Mapping[str, list[str]], folder: Path, limit: float) -> int:
     """1 where a suite fails. They run side by side, and are told one after the other."""
     with ThreadPoolExecutor() as pool, contextlib.ExitStack() as logs:
-        waiting = []
+        waiting: list[tuple[Future[int], IO[bytes] | None]] = []
         for name, arguments in suites.items():
             log = logs.enter_context(tempfile.TemporaryFile()) if waiting else None
             report = folder / f"{name}.xml"
