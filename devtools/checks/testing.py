@@ -45,7 +45,9 @@ def run_all(suites: Mapping[str, list[str]], folder: Path, limit: float) -> int:
     with ThreadPoolExecutor() as pool, contextlib.ExitStack() as logs:
         waiting: list[tuple[Future[int], IO[bytes] | None]] = []
         for name, arguments in suites.items():
-            log = logs.enter_context(tempfile.TemporaryFile()) if waiting else None
+            log: IO[bytes] | None = None
+            if waiting:
+                log = logs.enter_context(tempfile.TemporaryFile())
             report = folder / f"{name}.xml"
             waiting.append((pool.submit(run, arguments, report, limit, log), log))
         codes = []

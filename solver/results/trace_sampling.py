@@ -73,8 +73,8 @@ def motion_traces(
     torques and momentum, which takes a third of the time.
     """
     character = motion.transcription.character
-    frames, times = motion.track(recording).frames, track_times(motion, recording)
-    per_second = _frame_rate(recording)
+    frames, times = motion.frames(recording)
+    per_second = float((recording.frames[-1] - recording.frames[0]) / recording.times[-1])
     figure = _figure(motion, times)
     momentum = np.zeros((len(times), 3))
     if dynamics is not None:
@@ -91,7 +91,7 @@ def motion_traces(
         velocity=motion.com(times, 1),
         momentum=momentum,
         contacts=tuple(names.get(i, "") for i in range(len(motion.transcription.points))),
-        points=motion.contact_points(times),
+        points=_points(motion, figure),
         forces=motion.forces(times),
         weight=character.mass * STANDARD_GRAVITY,
         joints=() if dynamics is None else tuple(body.bone for body in character.bodies[1:]),
@@ -103,17 +103,6 @@ def motion_traces(
         ),
         **_solids(character, figure),
     )
-
-
-def track_times(motion: Motion, recording: Recording) -> FloatArray:
-    """(T,) s of the frames of a motion's track."""
-    frames = motion.track(recording).frames
-    return np.asarray(np.clip((frames - frames[0]) / _frame_rate(recording), 0.0, motion.duration))
-
-
-def _frame_rate(recording: Recording) -> float:
-    """Scene frames a second."""
-    return float((recording.frames[-1] - recording.frames[0]) / recording.times[-1])
 
 
 def _figure(motion: Motion, times: FloatArray) -> _Figure:
@@ -128,6 +117,15 @@ def _torques(motion: Motion, times: FloatArray, dynamics: InverseDynamics | None
     joints = motion.transcription.character.joints[1:]
     slices = [slice(j.first - 3, j.dofs.stop - 3) for j in joints]
     return np.stack([torques[:, part].max(axis=1, initial=0.0) for part in slices], axis=1)
+
+
+def _points(motion: Motion, figure: _Figure) -> FloatArray:
+    """(T, C, 3) m of the points that may touch."""
+    points = motion.transcription.points
+    bodies = [point.body for point in points]
+    local = np.array([point.place for point in points]).reshape(-1, 3)
+    turned = np.einsum("tcij,cj->tci", figure.rotations[:, bodies], local)
+    return np.asarray(figure.centres[:, bodies] + turned)
 
 
 def _tails(character: Character, figure: _Figure) -> FloatArray:

@@ -72,14 +72,19 @@ class Motion:
         points = self.transcription.points
         return np.asarray(self.pose(times).points(points) + self.com(times)[:, None])
 
-    def track(self, recording: Recording) -> PoseTrack:
-        """Bone poses at the recording's frames, or as many as this motion lasts."""
+    def frames(self, recording: Recording) -> tuple[FloatArray, FloatArray]:
+        """The recording's frames, or as many as this motion lasts, and their instants, s; (T,)."""
         times, frames = recording.times, recording.frames
         if abs(times[-1] - self.duration) > 1e-6:
             rate = (len(times) - 1) / float(times[-1])
             times = np.arange(int(self.duration * rate + 1e-6) + 1) / rate
             step = (frames[-1] - frames[0]) / (len(frames) - 1)
             frames = frames[0] + step * np.arange(len(times))
+        return frames, np.minimum(times, self.duration)
+
+    def track(self, recording: Recording) -> PoseTrack:
+        """Bone poses at the recording's frames, or as many as this motion lasts."""
+        frames, times = self.frames(recording)
         posed = self.pose(times)
         bones = [recording.index(b.bone) for b in self.transcription.character.bodies]
         rest = np.stack([recording.bones[b].rotation for b in bones])

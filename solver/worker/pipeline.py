@@ -30,7 +30,7 @@ from ..data.traces import Traces, scaled_traces
 from ..optimisation.sqp import Step
 from ..results.joint_report import joint_turns
 from ..results.report import report
-from ..results.trace_sampling import motion_traces, recorded_traces, track_times
+from ..results.trace_sampling import motion_traces, recorded_traces
 from ..results.violations import most_telling
 from ..scene.checks import check_scene
 from ..stages.fit import Fit, fit
@@ -136,7 +136,7 @@ class AdaptationResult:
         """In the recording's own lengths."""
         motion, schedule = self.adaptation.motion, self.adaptation.setup.schedule
         seen = self.subject.motion_traces(motion, schedule)
-        times = track_times(motion, self.subject.recording)
+        _, times = motion.frames(self.subject.recording)
         return replace(seen, changes=joint_turns(self.adaptation, times))
 
     def report(self, origin: Origin, stages: list[StageReport] | None = None) -> Report:
