@@ -19,6 +19,7 @@ NOTES = """
   of the scene, whose meshes are MuJoCo's as convex solids, everything is new.
 - **Joints**: degrees beyond the human range (`solver/human/ranges.py`) and beyond what the
   recording or its fit does, whichever is widest, by the written bones' rotations.
+  Results that are known to bend a joint further (`KNOWN_BENT`) are in the table alone.
 - **Time**: of an adaptation from the stored fit with floor and own limbs solid, over that without;
   by turns in one process that has nothing beside it, the least of two or three runs each. Results
   in a scene do not count: without solids there is no scene.

@@ -92,7 +92,7 @@ def headline(report: Report) -> list[str]:
 def given_up_lines(report: Report) -> list[str]:
     """What is in each other, and the joints that go beyond their range: lines."""
     return [
-        f"{_given_up(each)} (frame {each.worst_violation_frame:.0f}), which what is asked for needs"
+        f"{_given_up(each)} (frame {each.worst_violation_frame:.0f}), beside what is asked for"
         for each in report.given_up
     ]
 
