@@ -37,6 +37,7 @@ KNOWN_BENT = {"bar_grab": "left wrist", "dunk": "right wrist", "shelf_reach": "r
 # Musts that are not reached yet, each with the value that it must not pass meanwhile.
 KNOWN_MISSES = {
     BENT: 60.0,  # fits are not kept in the ranges: a toe that the recording hardly bends
+    NEWLY_BENT: 4.0,  # run_hurdle's right ankle, at 3.0 on one processor; it has the artist's limit
     "ground: root moment not explained, rms": 0.0013,  # the run's longer flights: hard landings
 }
 
