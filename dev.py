@@ -8,7 +8,10 @@
   figures --out DIR                       measure everything that the project promises
   gallery [NAMES...] [--out DIR]          the thesis's results and the scene's, with a table
   pairs [CLIP:FIRST-LAST ...] [--out DIR] adapt real jumps to each other's landings, and compare
+  reach [--out DIR]                       how the body shares a reach, joint by joint
   solid [NAMES...] [--out DIR]            how solid the world is and how human the body, by MuJoCo
+  rigs [NAMES...] [--out DIR]             map skeletons of all conventions, adapt one jump on each
+  keys [--out DIR]                        what reduced keys leave of adapted jumps, in Blender
   validate [FOLDER] [--out DIR]           forces of the fit against force plates, with a table
   compare BEFORE AFTER [--within X]       whether two folders of results hold the same motions
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
@@ -32,7 +35,7 @@ from solver.one_thread import ONE_THREAD
 
 PEERS = "benchmark"  # has an environment of its own
 # with one thread of linear algebra
-MEASURED = ("figures", "gallery", "pairs", "solid", "validate", PEERS)
+MEASURED = ("figures", "gallery", "keys", "pairs", "reach", "rigs", "solid", "validate", PEERS)
 # command: module of the package, arguments before the user's, whether it needs dev.txt
 COMMANDS = {
     "demo": ("devtools.demo", [], False),
@@ -42,7 +45,10 @@ COMMANDS = {
     "figures": ("devtools.figures.main", [], True),
     "gallery": ("devtools.gallery.main", [], True),
     "pairs": ("devtools.pairs.main", [], True),
+    "rigs": ("devtools.rigs.main", [], True),
+    "reach": ("devtools.reach.main", [], False),
     "solid": ("devtools.solid.main", [], True),
+    "keys": ("devtools.keys.main", [], True),
     "validate": ("devtools.validation.main", [], True),
     "compare": ("devtools.gallery.compare", [], False),
     "window": ("devtools.window.main", [], False),

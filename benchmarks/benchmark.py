@@ -34,7 +34,7 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="dev.py benchmark", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--limit", type=float, metavar="SECONDS", help="for each peer, else 60")
-    parser.add_argument("--quick", action="store_true", help="10 s a peer, short clips")
+    parser.add_argument("--quick", action="store_true", help="10 s a peer, the quick ones")
     parser.add_argument("--write-docs", action="store_true", help="rewrite docs/benchmark.md")
     options = parser.parse_args(argv)
     try:
@@ -42,9 +42,7 @@ def main(argv: list[str]) -> int:
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2
-    extent = Extent(options.limit or 60.0)
-    if options.quick:
-        extent = Extent(options.limit or 10.0, lengths=(2.0, 5.0), repeats=3)
+    extent = Extent.quick(options.limit or 10.0) if options.quick else Extent(options.limit or 60.0)
     tables: list[Table] = []
     for table in Benchmark(extent).tables():
         tables.append(table)

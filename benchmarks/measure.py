@@ -19,9 +19,10 @@ from .timing import REPEATS, in_turns
 Peer = Callable[[Task, float], PeerResult]
 
 
+FIRST_TIME = "IPOPT, as first written with CasADi"
 PEERS: dict[str, Peer] = {
     "IPOPT, fair": ipopt_peer.solve,
-    "IPOPT, as first written with CasADi": naive_peer.solve,
+    FIRST_TIME: naive_peer.solve,
     "Drake with SNOPT": snopt_peer.solve,
 }
 
@@ -33,6 +34,13 @@ class Extent:
     limit_s: float
     lengths: tuple[float, ...] = scaling.LENGTHS
     repeats: int = REPEATS
+    peers: tuple[str, ...] = tuple(PEERS)
+
+    @staticmethod
+    def quick(limit_s: float) -> "Extent":
+        """About a minute: short clips, once each, and no peer whose set-up takes minutes."""
+        peers = tuple(name for name in PEERS if name != FIRST_TIME)
+        return Extent(limit_s, lengths=(2.0, 5.0), repeats=1, peers=peers)
 
 
 class Benchmark:
@@ -78,8 +86,8 @@ class Benchmark:
             apart = None if off is None or distance is None else off / distance
             violation = found.outcome.violation
             rows.append((name, seconds, seconds / one, None, steps, found.solved, violation, apart))
-        for name, solve in PEERS.items():
-            peer = solve(self.task, self.extent.limit_s)
+        for name in self.extent.peers:
+            peer = PEERS[name](self.task, self.extent.limit_s)
             apart = None if distance is None else peer.distance / distance
             times = (peer.seconds, peer.seconds / one, peer.setup / one)
             rows.append((name, *times, peer.iterations, peer.solved, peer.violation, apart))
@@ -130,7 +138,7 @@ class Benchmark:
         return Table("One iteration", caption, rows)
 
     def _lengths(self) -> Table:
-        rows = list(scaling.lengths(self.extent.lengths))
+        rows = list(scaling.lengths(self.extent.lengths, min(3, self.extent.repeats)))
         ratios = {
             "unknowns": "unknowns / first",
             "fit (s)": "fit / first",

@@ -90,7 +90,8 @@ class Graph:
         unknown = [kind for kind in kinds if kind not in write]
         if unknown:
             raise ValueError(f"rows of kind {unknown} are not written for CasADi")
-        return ca.vertcat(*(write[kind](_When.of(self.listed, kind)) for kind in kinds))
+        parts = (write[kind](_When.of(self.listed, kind)) for kind in kinds)
+        return ca.densify(ca.vertcat(*parts))  # IPOPT takes no rows that are zero whatever x is
 
     # -- the rows --------------------------------------------------------------------------
 

@@ -35,14 +35,14 @@ WELDED: dict[str, tuple[Part, ...]] = {
 }
 
 
-def lengths(seconds: tuple[float, ...] = LENGTHS) -> Iterator[Row]:
-    """Windows of the hops, each fitted and its first landing moved."""
+def lengths(seconds: tuple[float, ...] = LENGTHS, repeats: int = 3) -> Iterator[Row]:
+    """Windows of the hops, each fitted and its first landing moved, repeatedly."""
     for length in seconds:
         problem = hops(FIRST, length)
         analysis = analyse(recording(HOPS), problem)
         fitted, fit_s = timed(partial(fit, analysis.performance, analysis.schedule))
         _ = fitted.metric  # part of the stored fit
-        adaptation, adapt_s = in_turns({"": partial(adapt, fitted, problem)}, 3)[""]
+        adaptation, adapt_s = in_turns({"": partial(adapt, fitted, problem)}, repeats)[""]
         yield {
             "window": f"{length:g} s",
             "unknowns": adaptation.motion.transcription.n_unknowns,

@@ -7,13 +7,17 @@ first derivatives alone, as ever, and builds its Hessian from them.
 
 SNOPT looks at its clock between major iterations only, and its first quadratic program alone may
 take minutes. So it runs in a process of its own that is ended when its time is up; it is then
-judged where it last asked for the rows.
+judged where it last asked for the rows. The process is begun afresh: one that is forked would wait
+for ever for the parent's threads, which a fork leaves behind.
 """
 
-import multiprocessing
+from __future__ import annotations
+
+import sys
+import tempfile
 import time
 from dataclasses import dataclass
-from multiprocessing.sharedctypes import SynchronizedArray
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,53 +25,86 @@ from pydrake.autodiffutils import ExtractValue, InitializeAutoDiff
 from pydrake.solvers import MathematicalProgram, SnoptSolver, SolverOptions
 
 from ..devtools.peers.task import Equations, PeerResult, Task, judged, metric_matrix
+from ..devtools.processes import LAUNCHER, dump, undump
 from ..solver.arrays import BoolArray, FloatArray
 from ..solver.data.row_kinds import RowKind
+from .watched_process import Limits, run
 
 LINEAR = (RowKind.BALANCE, RowKind.PUSH)
+SET_UP = 120.0  # s, at most, from the process's start to SNOPT's
 GRACE = 1.0  # s, for the process to hand over its answer
 TIME_IS_UP = "ended when its time was up"
 
 
 def solve(task: Task, limit_s: float) -> PeerResult:
-    """Solves a task by SNOPT; the limit is for its iterations, without the set-up."""
-    begun = time.perf_counter()
-    equations = Equations(task)
-    start = task.start[task.transcription.active]
-    apart = multiprocessing.get_context("fork")  # the problem is inherited, not sent
-    board = _Board(apart.Array("d", start.tolist()), apart.Array("d", 2), apart.Array("c", 200))
-    process = apart.Process(target=_work, args=(task, equations, start, limit_s, board))
-    process.start()
-    while process.is_alive() and not board.begun:
-        process.join(0.05)
-    ready = board.begun or time.perf_counter()
-    process.join(limit_s + GRACE)
-    ended = time.perf_counter()
-    if process.is_alive():
-        process.kill()
-        process.join()
-    last = task.unpack(np.array(board.x[:]))
-    status = board.status.value.decode() or TIME_IS_UP
-    return judged(task, last, ended - ready, ready - begun, int(board.times[1]), status)
+    """Solves a task by SNOPT; the limit is for its iterations, without the set-up.
+
+    Raises RuntimeError with what the process said last, if it failed.
+    """
+    started = time.perf_counter()
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        board = _Board.made(folder, task.start[task.transcription.active])
+        dump(task, folder / "task")
+        command = [sys.executable, str(LAUNCHER), "benchmarks.snopt_peer", scratch, str(limit_s)]
+        limits = Limits(SET_UP, limit_s + GRACE)
+        run(command, folder / "said", limits, lambda: board.begun > 0.0)
+        ended = time.perf_counter()
+        ready = board.begun or ended
+        last = task.unpack(np.array(board.x))
+        status, asked = board.status or TIME_IS_UP, int(board.times[1])
+    return judged(task, last, ended - ready, ready - started, asked, status)
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Board:
-    """What the process tells meanwhile: x, the unknowns it last asked the rows for; times, when
-    SNOPT began (s) and how often it asked; status, how it ended."""
+    """What the process tells meanwhile, in files that both map into memory.
 
-    x: "SynchronizedArray[float]"
-    times: "SynchronizedArray[float]"
-    status: Any
+    x: (n,) the unknowns it last asked the rows for. times: (2,) when SNOPT began (s, by the
+    machine's clock, which both read alike), and how often it asked.
+    """
+
+    folder: Path
+    x: FloatArray
+    times: FloatArray
+
+    @staticmethod
+    def made(folder: Path, start: FloatArray) -> _Board:
+        """A new one, nothing told."""
+        np.save(folder / "x.npy", start)
+        np.save(folder / "times.npy", np.zeros(2))
+        return _Board.of(folder)
+
+    @staticmethod
+    def of(folder: Path) -> _Board:
+        """The one in a folder."""
+        return _Board(
+            folder, *(np.load(folder / name, mmap_mode="r+") for name in ("x.npy", "times.npy"))
+        )
 
     @property
     def begun(self) -> float:
-        return self.times[0]
+        """When SNOPT began, s; 0 before."""
+        return float(self.times[0])
+
+    @property
+    def status(self) -> str:
+        """How SNOPT ended; empty before."""
+        path = self.folder / "status"
+        return path.read_text(encoding="utf-8") if path.exists() else ""
 
 
-def _work(
-    task: Task, equations: Equations, start: FloatArray, limit_s: float, board: _Board
-) -> None:
+def main(argv: list[str]) -> int:
+    """In the process: argv are the folder and the limit, s."""
+    folder, limit_s = Path(argv[0]), float(argv[1])
+    task: Task = undump(folder / "task")
+    _work(task, limit_s, _Board.of(folder))
+    return 0
+
+
+def _work(task: Task, limit_s: float, board: _Board) -> None:
+    equations = Equations(task)
+    start = task.start[task.transcription.active]
     program = MathematicalProgram()
     x = program.NewContinuousVariables(equations.size)
     metric = metric_matrix(task).toarray()
@@ -82,11 +119,12 @@ def _work(
         "Iterations limit": 10**9,
     }.items():
         options.SetOption(SnoptSolver.id(), name, value)
-    board.times[0] = time.perf_counter()  # of the whole machine, so the parent may compare
+    board.times[0] = time.perf_counter()
     result = SnoptSolver().Solve(program, start, options)
-    board.x[:] = result.GetSolution(x).tolist()
+    board.x[:] = result.GetSolution(x)
     info = result.get_solver_details().info
-    board.status.value = f"SNOPT {info}, {result.get_solution_result().name}".encode()
+    words = f"SNOPT {info}, {result.get_solution_result().name}"
+    (board.folder / "status").write_text(words, encoding="utf-8")
 
 
 def _constrain(
@@ -117,7 +155,7 @@ class Curved:
         if x.dtype != object:
             return self.equations.values(x)[self.which]
         packed = np.asarray(ExtractValue(x)).ravel()
-        self.board.x[:] = packed.tolist()
+        self.board.x[:] = packed
         self.board.times[1] += 1
         values, jacobian = self.equations.jacobian(packed)
         # Drake's SNOPT asks with the identity as derivative, so the chain rule is done already.

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..solver.data.problem import MotionProblem
-from ..solver.data.requests import Method, SolverOptions
+from ..solver.data.solver_options import Method, SolverOptions
 
 IMPLICIT = "implicit (q, λ)"  # what everything else is measured against
 SOLUTIONS = {

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import bpy
 
 ATTRIBUTE = "hangtime"  # under which scenes, objects, actions and bones carry what is stored
+IN_STRIP = "hangtime_in_strip"  # of actions that Hangtime laid into strips; needs no registration
 
 T = TypeVar("T")
 
@@ -37,9 +38,23 @@ def pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
 
 
 def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The action that animates the armature now."""
+    """The action that animates the armature now, in a strip that Hangtime made or without."""
     data = armature.animation_data
-    return data.action if data is not None else None
+    if data is None or data.action is not None:
+        return data.action if data is not None else None
+    seen = [strip for track, strip in take_strips(armature) if not (track.mute or strip.mute)]
+    return seen[-1].action if seen else None
+
+
+def take_strips(
+    armature: bpy.types.Object,
+) -> list[tuple[bpy.types.NlaTrack, bpy.types.NlaStrip]]:
+    """The strips that Hangtime made for an armature, with their tracks; the take's comes first."""
+    data = armature.animation_data
+    if data is None:
+        return []
+    strips = ((track, strip) for track in data.nla_tracks for strip in track.strips)
+    return [each for each in strips if each[1].action and each[1].action.get(IN_STRIP)]
 
 
 def current_scene() -> bpy.types.Scene:

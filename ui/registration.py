@@ -12,24 +12,33 @@ from ..bridge.accessors import ATTRIBUTE, present
 from ..bridge.properties import settings, stances
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
-from ..operators.export import exports
-from ..operators.lists import body_changes, constraints, contacts, presets, surfaces
-from ..operators.solve import adapt, analyze, results, session
+from ..operators.export import exports, recipe_export
+from ..operators.lists import (
+    body_changes,
+    bone_presets,
+    constraints,
+    contacts,
+    presets,
+    support_box,
+    surfaces,
+)
+from ..operators.solve import adapt, analyze, results, session, takes, watch
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
 from .panels import constraints as constraint_panels
 from .panels import contacts as contact_panels
-from .panels import display, lists, menus, setup, solve, world
+from .panels import display, keys, lists, menus, setup, solve, world
 from .plots import handler as plots
 from .timeline import handler as timeline
 
 # A panel comes after the one that it is part of.
 MODULES = (
-    *(analyze, adapt, contacts, constraints, body_changes, surfaces, presets, results, exports),
+    *(analyze, adapt, contacts, constraints, body_changes, surfaces, support_box, presets),
+    *(bone_presets, results, takes, exports, recipe_export),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
-    *(lists, menus, setup, contact_panels, constraint_panels, world, solve, display),
+    *(lists, menus, setup, contact_panels, constraint_panels, world, solve, keys, display),
     *(pin_handles, limit_handles),
 )
 
@@ -61,8 +70,10 @@ def register() -> Callable[[], None]:
             )
             setattr(carrier, ATTRIBUTE, group_of)
             undo.callback(delattr, carrier, ATTRIBUTE)
-        bpy.app.handlers.depsgraph_update_post.append(_follow_empties)
-        undo.callback(bpy.app.handlers.depsgraph_update_post.remove, _follow_empties)
+        for follow in (_follow_empties, watch.follow_takes):
+            bpy.app.handlers.depsgraph_update_post.append(follow)
+            undo.callback(bpy.app.handlers.depsgraph_update_post.remove, follow)
+        undo.callback(watch.forget)
         undo.callback(session.session().end)
         # Keys are pairs, whatever the stubs say.
         bpy.app.translations.register(__package__, TRANSLATIONS)  # type: ignore[arg-type]

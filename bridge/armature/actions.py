@@ -9,21 +9,24 @@ from functools import partial
 import bpy
 
 from ...solver.arrays import FloatArray
-from ...solver.data.recording import PoseTrack, Recording
+from ...solver.data.recording import Recording
 from ..accessors import current_action, current_scene
 from ..properties.settings import action_settings, settings_of
 from . import fcurves
 from .incremental import Incremental, complete, sample_incrementally
 from .poses import Poses, sample
 from .read import recording_of, whole_frames
-from .write import write_incrementally
+from .strips import show_strip, strips_of, without_strips
 
 
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """Recorded action: the armature's own, or the one that this was adapted from."""
+    """Recorded action: the armature's own, or the one that this was adapted from.
+
+    A result counts as the recording where the artist starts from it.
+    """
     action = current_action(armature)
-    if action is None:
-        return None
+    if action is None or action == settings_of(armature).source:
+        return action
     return action_settings(action).recording or action
 
 
@@ -58,7 +61,7 @@ def read_recorded_incrementally(
 
 def showing_recorded(armature: bpy.types.Object) -> Callable[[], AbstractContextManager[None]]:
     """Contexts in which the armature performs the recording, whichever action is shown."""
-    return partial(_showing, armature, recorded_action(armature))
+    return partial(showing_action, armature, recorded_action(armature))
 
 
 def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
@@ -67,48 +70,37 @@ def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
         return sample(armature, frames)
 
 
-def write_adapted_incrementally(
-    armature: bpy.types.Object, track: PoseTrack
-) -> Incremental[bpy.types.Action]:
-    """Write an adapted performance as a new action, which is assigned and knows its recording.
-
-    Before the last slice the armature is as it was.
-    """
-    original = recorded_action(armature)
-    assert original is not None
-    slot = fcurves.slot_identifier(armature)
-    action = yield from write_incrementally(
-        armature,
-        track,
-        original,
-        slot,
-        name=f"{original.name} adapted",
-        showing=partial(_showing, armature, original),
-    )
-    action_settings(action).recording = original
-    show(armature, action, slot)
-    settings_of(armature).adapted = action
-    return action
-
-
 def show(
     armature: bpy.types.Object, action: bpy.types.Action | None, slot: str | None = None
 ) -> None:
-    """Let the armature perform an action; the pose follows."""
-    fcurves.assign(armature, action, slot or fcurves.slot_identifier(armature))
+    """Let the armature perform an action, in its strip where it has one; the pose follows."""
+    slot = slot or fcurves.slot_identifier(armature)
+    if action is not None and strips_of(armature, action):
+        fcurves.assign(armature, None)
+        show_strip(armature, action)
+    else:
+        fcurves.assign(armature, action, slot)
+    _evaluate()
+
+
+def _evaluate() -> None:
     scene = current_scene()
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
 @contextmanager
-def _showing(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
+def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
     """Context in which the armature performs `action`; afterwards what it performed before."""
-    before, slot = current_action(armature), fcurves.slot_identifier(armature)
-    if action == before:
+    data = armature.animation_data
+    assigned = data.action if data is not None else None
+    if action == assigned and assigned is not None:
         yield
         return
-    fcurves.assign(armature, action, slot)
-    try:
-        yield
-    finally:
-        show(armature, before, slot)
+    slot = fcurves.slot_identifier(armature)
+    with without_strips(armature):
+        fcurves.assign(armature, action, slot)
+        try:
+            yield
+        finally:
+            fcurves.assign(armature, assigned, slot)
+    _evaluate()

@@ -7,7 +7,7 @@ so that interpolating between two frames never takes the long way round. Angles 
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ...solver.numerics.rotations import axis_rotation
+from ...solver.numerics.rotations import axis_rotation, rotation_matrix
 
 EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 _LOCKED = 1e-6  # cosine of the middle angle under which the outer two are told apart by noise only
@@ -41,6 +41,20 @@ def channels(rotations: FloatArray, mode: str, near: FloatArray | None = None) -
     if mode == "AXIS_ANGLE":
         return axis_angles(rotations, near)
     return eulers(rotations, mode, near)
+
+
+def rotations_of(values: FloatArray, mode: str) -> FloatArray:
+    """Rotations (T, 3, 3) of channels (T, n) in Blender's rotation mode `mode`, as Blender reads
+    them: quaternions and axes may have any length but zero."""
+    if mode in EULER_ORDERS:
+        first, second, third = (
+            axis_rotation(axis, values[:, axis]) for axis in ("XYZ".index(c) for c in mode)
+        )
+        return np.asarray(third @ second @ first)
+    if mode == "QUATERNION":
+        q = _unit(values)
+        return rotation_matrix(2.0 * np.arctan2(_length(q[:, 1:]), q[:, :1]) * _unit(q[:, 1:]))
+    return rotation_matrix(values[:, :1] * _unit(values[:, 1:]))
 
 
 def quaternions(rotations: FloatArray, near: FloatArray | None = None) -> FloatArray:
@@ -133,6 +147,10 @@ def _running_sign(vectors: FloatArray, near: FloatArray | None) -> FloatArray:
     return np.cumprod(np.where(np.einsum("ti,ti->t", vectors, before) < 0.0, -1.0, 1.0))
 
 
+def _length(vectors: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
 def _unit(vectors: FloatArray) -> FloatArray:
-    norms = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    norms = _length(vectors)
     return np.asarray(vectors / np.where(norms > 0.0, norms, 1.0))

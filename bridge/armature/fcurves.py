@@ -8,19 +8,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ...solver.arrays import FloatArray
-from ..accessors import current_action, present
+from ..accessors import current_action, take_strips
 
 CurveHolder: TypeAlias = "bpy.types.Action | bpy.types.ActionChannelbag"  # 4.2 has no channelbags
 
+KeyTable: TypeAlias = "dict[str, NDArray[Any]]"
+"""What the keys of a curve carry, by Blender's names, a column (n, ...) each."""
+
 _LINEAR = 1  # values of the enums in foreach_get and foreach_set
 _FREE_HANDLE = 0
+_AUTO_CLAMPED = 4
+_NEW_KEY = {"amplitude": 0.8, "back": 1.70158, "period": 4.1, "interpolation": _LINEAR}
+_THIRD = 1.0 / 3.0  # frames, of a handle that nothing uses while its key is linear
 _FLOATS = {"co": 2, "handle_left": 2, "handle_right": 2, "amplitude": 1, "back": 1, "period": 1}
 _ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
 _EPSILON = 1e-4  # frames
@@ -29,9 +35,7 @@ _EPSILON = 1e-4  # frames
 def holder(owner: bpy.types.Object) -> CurveHolder | None:
     """Container of the F-curves of the action that animates `owner`; None where nothing does."""
     action = current_action(owner)
-    if action is None or not hasattr(action, "slots"):
-        return action
-    return _bag(action, present(owner.animation_data).action_slot)
+    return None if action is None else holder_in(action, slot_identifier(owner))
 
 
 def curves_of(owner: bpy.types.Object) -> list[bpy.types.FCurve]:
@@ -45,6 +49,14 @@ def holder_in(action: bpy.types.Action, slot: str | None) -> CurveHolder | None:
     if not hasattr(action, "slots"):
         return action
     return _bag(action, next((s for s in action.slots if s.identifier == slot), None))
+
+
+def all_curves(action: bpy.types.Action) -> list[bpy.types.FCurve]:
+    """F-curves of an action, of all of its slots where it has slots."""
+    if not hasattr(action, "slots"):
+        return list(action.fcurves)
+    bags = (_bag(action, slot) for slot in action.slots)
+    return [curve for bag in bags if bag is not None for curve in bag.fcurves]
 
 
 def _bag(action: bpy.types.Action, slot: bpy.types.ActionSlot | None) -> CurveHolder | None:
@@ -75,6 +87,9 @@ def new_holder(owner: bpy.types.Object, name: str) -> CurveHolder:
 def slot_identifier(owner: bpy.types.Object) -> str | None:
     """Identifier of the slot that `owner` uses; None without one and before Blender 4.4."""
     slot = getattr(owner.animation_data, "action_slot", None)
+    if slot is None:
+        slots = (getattr(strip, "action_slot", None) for _, strip in take_strips(owner))
+        slot = next((each for each in slots if each is not None), None)
     return slot.identifier if slot is not None else None
 
 
@@ -147,17 +162,20 @@ def write_channels(
         _write_channel(curves, path, index, frames, column, group)
 
 
-def _write_channel(
-    curves: CurveHolder, path: str, index: int, frames: FloatArray, values: FloatArray, group: str
-) -> None:
-    """Make the curve of `path` and `index` these keys (T,) alone, linear in between.
-
-    A new curve goes to the group of that name, which is made where it is missing.
-    """
+def ensured(curves: CurveHolder, path: str, index: int, group: str) -> bpy.types.FCurve:
+    """The curve of that path and index; a new one goes to the group of that name."""
     curve = curves.fcurves.find(path, index=index)
     if curve is None:
         curve = curves.fcurves.new(path, index=index)
         curve.group = curves.groups.get(group) or curves.groups.new(group)
+    return curve
+
+
+def _write_channel(
+    curves: CurveHolder, path: str, index: int, frames: FloatArray, values: FloatArray, group: str
+) -> None:
+    """Make the curve of `path` and `index` these keys (T,) alone, linear in between."""
+    curve = ensured(curves, path, index, group)
     for modifier in list(curve.modifiers):
         curve.modifiers.remove(modifier)
     curve.mute = False
@@ -182,10 +200,11 @@ def crop(curve: bpy.types.FCurve, first: float, last: float) -> None:
         return
     added = _cut_frames(at, inside, first, last)
     values = np.array([curve.evaluate(frame) for frame in added])
-    table = {name: column[inside] for name, column in _table(curve).items()}
+    kept = {name: column[inside] for name, column in table(curve).items()}
     if inside.any():
-        _free_handles(table)
-    _rewrite(curve, table, added, values)
+        _free_handles(kept)
+    put(curve, joined(kept, linear_keys(kept, added, values)))
+    curve.update()
 
 
 def _cut_frames(at: FloatArray, inside: NDArray[np.bool_], first: float, last: float) -> FloatArray:
@@ -199,45 +218,52 @@ def _cut_frames(at: FloatArray, inside: NDArray[np.bool_], first: float, last: f
     return whole if before and after else np.asarray(whole[[0, -1]])
 
 
-def _table(curve: bpy.types.FCurve) -> dict[str, NDArray[np.generic]]:
-    """Everything that the keys of a curve carry, a column (n, …) each."""
+def table(curve: bpy.types.FCurve) -> KeyTable:
+    """Everything that the keys of a curve carry."""
     count = len(curve.keyframe_points)
-    table: dict[str, NDArray[np.generic]] = {}
+    found: KeyTable = {}
     for name, width in _FLOATS.items():
-        table[name] = np.empty((count, width), np.float32)
+        found[name] = np.empty((count, width), np.float32)
     for name in _ENUMS:
-        table[name] = np.empty((count, 1), np.int32)
-    for name, column in table.items():
+        found[name] = np.empty((count, 1), np.int32)
+    for name, column in found.items():
         flat = column.ravel()
         curve.keyframe_points.foreach_get(name, flat)
-        table[name] = flat.reshape(column.shape)
-    return table
+        found[name] = flat.reshape(column.shape)
+    return found
 
 
-def _free_handles(table: dict[str, NDArray[np.generic]]) -> None:
-    """Keep the outermost keys' tangents, which Blender would flatten for want of a neighbour."""
-    for name in ("handle_left_type", "handle_right_type"):
-        table[name][[0, -1]] = _FREE_HANDLE
-
-
-def _rewrite(
-    curve: bpy.types.FCurve,
-    table: dict[str, NDArray[np.generic]],
-    frames: FloatArray,
-    values: FloatArray,
-) -> None:
-    """Make the keys of a curve those of `table` and linear ones at `frames` (n,)."""
-    kept, count = len(table["co"]), len(table["co"]) + len(frames)
+def put(curve: bpy.types.FCurve, keys_of: KeyTable) -> None:
+    """Make the keys of a curve those of a table, bit by bit: no handle is worked out anew."""
     points = curve.keyframe_points
     points.clear()
-    points.add(count)
-    added = np.column_stack([frames, values]).astype(np.float32)
-    order = np.argsort(np.concatenate([table["co"][:, 0], added[:, 0]]), kind="stable")
-    for name, column in _table(curve).items():
-        column[:kept] = table[name]
-        if name == "co":
-            column[kept:] = added
-        elif name == "interpolation":
-            column[kept:] = _LINEAR
-        points.foreach_set(name, column[order].ravel())
-    curve.update()
+    points.add(len(keys_of["co"]))
+    for name, column in keys_of.items():
+        points.foreach_set(name, column.ravel())
+
+
+def joined(one: KeyTable, other: KeyTable) -> KeyTable:
+    """The keys of both tables, in order."""
+    order = np.argsort(np.concatenate([one["co"][:, 0], other["co"][:, 0]]), kind="stable")
+    return {name: np.concatenate([one[name], other[name]])[order] for name in one}
+
+
+def linear_keys(like: KeyTable, frames: FloatArray, values: FloatArray) -> KeyTable:
+    """Keys at frames (n,) that are linear in between. like: a table of the same columns."""
+    count = len(frames)
+    made = {
+        name: np.zeros((count, *column.shape[1:]), column.dtype) for name, column in like.items()
+    }
+    for name, value in _NEW_KEY.items():
+        made[name][:] = value
+    made["co"][:] = np.column_stack([frames, values])
+    for side, name in ((-1.0, "handle_left"), (1.0, "handle_right")):
+        made[name][:] = np.column_stack([frames + side * _THIRD, values])
+        made[f"{name}_type"][:] = _AUTO_CLAMPED
+    return made
+
+
+def _free_handles(keys_of: KeyTable) -> None:
+    """Keep the outermost keys' tangents, which Blender would flatten for want of a neighbour."""
+    for name in ("handle_left_type", "handle_right_type"):
+        keys_of[name][[0, -1]] = _FREE_HANDLE

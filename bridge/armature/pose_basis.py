@@ -25,22 +25,22 @@ def pose_bases(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> di
     wanted = dict(zip(track.bones, _wanted_rotations(poses, track), strict=True))
     result: dict[str, FloatArray] = {}
     new: dict[str, FloatArray] = {}
-    for name in _chain(armature, track.bones):
+    for name in with_ancestors(armature, track.bones):
         bone = armature_data(armature).bones[name]
         old = poses.matrices[:, poses.bones.index(name)]
         old_parent = poses.matrices[:, poses.bones.index(bone.parent.name)] if bone.parent else None
         parent = new[bone.parent.name] if bone.parent else None
-        basis = _solve(bone, old_parent, old)
+        basis = basis_under(bone, old_parent, old)
         target = old.copy()
         target[:, :3, :3] = wanted.get(name, old[:, :3, :3])
         target[:, :3, 3] += shift
         if name == carrier:
-            basis[:, :3, 3] = _solve(bone, parent, target)[:, :3, 3]
+            basis[:, :3, 3] = basis_under(bone, parent, target)[:, :3, 3]
         if name in wanted:
             stretch = np.swapaxes(proper(basis[:, :3, :3]), 1, 2) @ basis[:, :3, :3]
-            basis[:, :3, :3] = proper(_solve(bone, parent, target)[:, :3, :3]) @ stretch
+            basis[:, :3, :3] = proper(basis_under(bone, parent, target)[:, :3, :3]) @ stretch
         result[name] = basis
-        new[name] = _place(bone, parent, basis)
+        new[name] = place(bone, parent, basis)
     return result
 
 
@@ -64,19 +64,19 @@ def carrier_of(bone: bpy.types.Bone) -> bpy.types.Bone:
     return bone
 
 
-def _chain(armature: bpy.types.Object, bones: tuple[str, ...]) -> list[str]:
+def with_ancestors(armature: bpy.types.Object, bones: tuple[str, ...]) -> list[str]:
     """These bones and all their ancestors, parents first."""
     rest = [armature_data(armature).bones[name] for name in bones]
     found = {b.name: b for bone in rest for b in (bone, *bone.parent_recursive)}
     return sorted(found, key=lambda name: len(found[name].parent_recursive))
 
 
-def _place(bone: bpy.types.Bone, parent: FloatArray | None, basis: FloatArray) -> FloatArray:
+def place(bone: bpy.types.Bone, parent: FloatArray | None, basis: FloatArray) -> FloatArray:
     """Poses (T, 4, 4), in the armature's space, of a bone with these channels under `parent`."""
     return _convert(bone, parent, basis, invert=False)
 
 
-def _solve(bone: bpy.types.Bone, parent: FloatArray | None, pose: FloatArray) -> FloatArray:
+def basis_under(bone: bpy.types.Bone, parent: FloatArray | None, pose: FloatArray) -> FloatArray:
     """The channels (T, 4, 4) that bring a bone under `parent` to these poses."""
     return _convert(bone, parent, pose, invert=True)
 

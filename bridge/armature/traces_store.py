@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from ...solver.data.traces import FlightParabola, Traces
 
 _CONTENT, _KEY = "hangtime_traces", "hangtime_traces_key"
+_KEYS = (_CONTENT, _KEY)
+_WAITING = ("hangtime_waiting_traces", "hangtime_waiting_traces_key")
 _ARRAYS = tuple(f.name for f in fields(Traces) if f.type == "FloatArray")
 _NAMES = ("bones", "contacts", "joints", "solids")
 _STOOD, _WEIGHT, _FLIGHTS = "stood", "weight", "flights"
@@ -58,6 +60,26 @@ def forget(owner: bpy.types.ID) -> None:
     for name in (_CONTENT, _KEY):
         if owner.get(name) is not None:
             del owner[name]
+
+
+def put_by(armature: bpy.types.ID, take: bpy.types.ID) -> None:
+    """Let a recording's traces, which an armature has, wait with a take."""
+    _move_content(armature, _KEYS, take, _WAITING)
+
+
+def take_up(armature: bpy.types.ID, take: bpy.types.ID) -> None:
+    """Let an armature have the recording's traces that wait with a take; none where none do."""
+    _move_content(take, _WAITING, armature, _KEYS)
+
+
+def _move_content(
+    source: bpy.types.ID, names: tuple[str, str], target: bpy.types.ID, called: tuple[str, str]
+) -> None:
+    for name, other in zip(names, called, strict=True):
+        if target.get(other) is not None:  # see `keep`
+            del target[other]
+        if source.get(name) is not None:
+            target[other] = source[name]
 
 
 def kept(owner: bpy.types.ID | None) -> StoredTraces | None:

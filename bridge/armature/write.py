@@ -85,10 +85,15 @@ def _write_bases(
         fcurves.crop(curve, float(track.frames[0]), float(track.frames[-1]))
 
 
+def rotation_channel(bone: bpy.types.PoseBone) -> str:
+    """The property that holds a bone's rotation in its mode."""
+    return _ROTATION_CHANNELS.get(bone.rotation_mode, _EULER_CHANNEL)
+
+
 def _write_rotation(
     curves: fcurves.CurveHolder, bone: bpy.types.PoseBone, frames: FloatArray, basis: FloatArray
 ) -> None:
-    used = _ROTATION_CHANNELS.get(bone.rotation_mode, _EULER_CHANNEL)
+    used = rotation_channel(bone)
     for channel in (*_ROTATION_CHANNELS.values(), _EULER_CHANNEL):
         if channel != used:
             _remove(curves, bone.path_from_id(channel))

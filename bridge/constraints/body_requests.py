@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...solver.data.requests import AddedMass, BodyChange, LimbChange
+from ...solver.data.requests import AddedMass, BodyChange, LimbChange, Shape, Through
 from ..properties.body_change import HangtimeBodyChange
 from ..properties.settings import HangtimeSettings
 from ..rows.choices import BodyKind
@@ -25,6 +25,15 @@ def body_change(
         gravity=round(settings.gravity, GRAVITY_DIGITS),
         added=tuple(_load(row, context) for row in loads),
         limbs=tuple(_limb(row, context) for row in limbs),
+    )
+
+
+def shapes_of(changes: Sequence[HangtimeBodyChange], context: RowContext) -> tuple[Shape, ...]:
+    """What of solid shapes and of joints shall be another. Raises NoBoneChosen, UnknownBone."""
+    return tuple(
+        Shape(row.name, some_bones(row, context), row.thickness, Through[row.through], row.human)
+        for row in changes
+        if row.kind == BodyKind.SHAPE.name
     )
 
 

@@ -1,28 +1,34 @@
-"""Which bone moves which part of the body: what was found by name, and the artist's choices."""
+"""Which bone moves which part of the body: what was found by itself, and the artist's choices."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import bpy
 import numpy as np
 
-from ...solver.body.anatomy import guess_anatomy
 from ...solver.data.recording import Bone
+from ...solver.skeleton.mapping import Evidence, guess_bones, guess_labels
+from ...solver.skeleton.parts import LABELS, REQUIRED_KEYS
+from ...solver.skeleton.tree import tree_of
 from ..accessors import armature_data
-from ..properties.settings import HangtimeSettings, settings_of
-
-_NEEDED = ("head", "upper arm", "forearm", "thigh", "shank", "foot")
+from ..properties.settings import HangtimePart, HangtimeSettings, settings_of
 
 
 def find_parts(armature: bpy.types.Object) -> None:
-    """Fills the settings' parts from the bones' names; what the artist chose stays."""
+    """Fills the settings' parts from the bones' names and places; what the artist chose stays."""
     settings = settings_of(armature)
     chosen = chosen_parts(settings)
+    bones = named_bones(armature)
     settings.parts.clear()
-    for label, bone in guess_anatomy(named_bones(armature)).items():
+    settings.convention = guess_bones(tree_of(bones)).convention
+    for label, guess in guess_labels(bones).items():
         part = settings.parts.add()
-        part.name, part.found = label, bone or ""
+        part.name = label
+        if guess is not None:
+            part.found, part.evidence = guess[0], guess[1].value
         part.bone = chosen.get(label, part.found)
-        part.needed = label.endswith(_NEEDED)
+        part.needed = LABELS[label] in REQUIRED_KEYS
 
 
 def chosen_parts(settings: HangtimeSettings) -> dict[str, str]:
@@ -35,12 +41,40 @@ def missing_parts(settings: HangtimeSettings) -> list[str]:
     return [part.name for part in settings.parts if part.needed and not part.bone]
 
 
+def evidence_of(part: HangtimePart) -> Evidence | None:
+    """What tells that a part's bone is the right one; None where there is none, or nobody knows."""
+    if part.bone and part.bone != part.found:
+        return Evidence.CHOSEN
+    return Evidence(part.evidence) if part.bone and part.evidence else None
+
+
+def choose_parts(armature: bpy.types.Object, bones: Mapping[str, str]) -> list[str]:
+    """Lets these bones move the parts, by label; the others are found anew.
+
+    Returns the bones that the armature lacks, whose parts stay as found.
+    """
+    settings = settings_of(armature)
+    settings.parts.clear()
+    find_parts(armature)
+    there = armature_data(armature).bones
+    for part in settings.parts:
+        bone = bones.get(part.name)
+        if bone is not None and bone in there:
+            part.bone = bone
+    return [bone for bone in bones.values() if bone not in there]
+
+
 def named_bones(armature: bpy.types.Object) -> list[Bone]:
-    """The bones by name and parent alone, parents first."""
+    """The bones at rest, parents first; in the armature's own space and units."""
     bones = sorted(armature_data(armature).bones, key=lambda bone: len(bone.parent_recursive))
-    names = [bone.name for bone in bones]
-    nowhere = np.zeros(3)
+    index = {bone.name: i for i, bone in enumerate(bones)}
     return [
-        Bone(b.name, names.index(b.parent.name) if b.parent else -1, nowhere, nowhere, np.eye(3))
-        for b in bones
+        Bone(
+            bone.name,
+            index[bone.parent.name] if bone.parent else -1,
+            np.array(bone.head_local, float),
+            np.array(bone.tail_local, float),
+            np.array(bone.matrix_local.to_3x3(), float),
+        )
+        for bone in bones
     ]

@@ -16,15 +16,16 @@ from ...solver.data.contacts import Contact, ContactSchedule, Phase, PhaseKind, 
 from ...solver.data.faults import EmptyRange
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import Recording, digest
-from ...solver.data.requests import Requests
-from ...solver.data.scene import SceneObject
+from ...solver.data.requests import Clear, Requests
+from ...solver.data.scene import CLEARANCE, SceneObject
+from ...solver.data.solver_options import HumanRanges
 from ...solver.worker.protocol import Analysed
 from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
 from ..properties.settings import HangtimeContact, HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
-from ..scene.members import ground_members
+from ..scene.members import ground_members, present_members
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
@@ -86,17 +87,21 @@ def problem_of(
         added=_added(settings) if with_contacts else (),
         pins=_pins(settings, span) if with_contacts else (),
         scene=scene if with_contacts else (),
-        requests=_requests(settings, span) if with_contacts else Requests(),
+        requests=_requests(settings, span, scene) if with_contacts else Requests(),
     )
 
 
-def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests:
+def _requests(
+    settings: HangtimeSettings, span: tuple[float, float], scene: tuple[SceneObject, ...]
+) -> Requests:
     """What the lists ask for, and what the armature's text does, which is a recipe's.
 
-    span: first and last scene frame. Raises BadRecipe, NamedTwice and as `requests_of`.
+    span: first and last scene frame. scene: as of `problem_of`. Raises BadRecipe, NamedTwice and
+    as `requests_of`.
     """
     armature: Any = settings.id_data
     listed = requests_of(settings, armature, span)
+    listed = replace(listed, clears=_clears(settings, scene))
     if settings.requests is not None:
         text = settings.requests
         listed = joined(listed, parse_recipe(text.as_string(), text.name).problem.requests)
@@ -104,9 +109,27 @@ def _requests(settings: HangtimeSettings, span: tuple[float, float]) -> Requests
         listed.solution,
         keep_times=listed.solution.keep_times or settings.keep_times,
         solid=listed.solution.solid and settings.keep_out,
-        human=listed.solution.human and settings.human_ranges,
+        human=_human(listed.solution.human, settings),
+        wider=max(listed.solution.wider, settings.wider_ranges),
     )
     return replace(listed, solution=solution)
+
+
+def _human(asked: HumanRanges, settings: HangtimeSettings) -> HumanRanges:
+    """What the settings and a recipe's text say: off where either does, else hard likewise."""
+    if not (asked and settings.human_ranges):
+        return HumanRanges.OFF
+    return HumanRanges.HARD if settings.hard_ranges else asked
+
+
+def _clears(settings: HangtimeSettings, scene: tuple[SceneObject, ...]) -> tuple[Clear, ...]:
+    """Of the hurdles among the surfaces."""
+    metres, there = metres_per_unit(current_scene()), {thing.name for thing in scene}
+    return tuple(
+        Clear(CLEARANCE.format(member.name), member.name, metres * member.clearance)
+        for member in present_members(settings, current_scene())
+        if member.clearance is not None and member.name in there
+    )
 
 
 def _require_ordered(settings: HangtimeSettings) -> None:

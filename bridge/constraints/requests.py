@@ -24,7 +24,7 @@ from ..properties.settings import HangtimeSettings
 from ..rows.choices import BodyKind
 from ..rows.row_parts import RowContext
 from ..rows.times import Clip
-from .body_requests import body_change
+from .body_requests import body_change, shapes_of
 from .target_paths import paths_of
 
 
@@ -51,7 +51,8 @@ def requests_of(
         kind = KINDS[row.kind]
         made.setdefault(kind.requests, []).append(kind.record(row, context))
     listed: dict[str, Any] = {field: tuple(records) for field, records in made.items()}
-    return Requests(**listed, body=body_change(settings, changes, context))
+    shapes = shapes_of(changes, context)
+    return Requests(**listed, shapes=shapes, body=body_change(settings, changes, context))
 
 
 def joined(first: Requests, second: Requests) -> Requests:

@@ -53,10 +53,20 @@ def add_body_change(
     if not bones:
         row.bones.add()
     of = f"{title(bones[0])} " if len(bones) == 1 else ""
-    what = "Weight" if kind is BodyKind.LOAD else "Limb" if not of else "Length"
-    row.name = free_name(settings, f"{of}{what}")
+    row.name = free_name(settings, f"{of}{_changed(kind, one=bool(of))}")
     settings.active_body_change = len(settings.body_changes) - 1
     return row
+
+
+def _changed(kind: BodyKind, *, one: bool) -> str:
+    """What a row changes, of one bone or of several."""
+    match kind:
+        case BodyKind.LOAD:
+            return "Weight"
+        case BodyKind.LIMB:
+            return "Length" if one else "Limb"
+        case BodyKind.SHAPE:
+            return "Shape"
 
 
 def set_bones(row: HangtimeConstraint | HangtimeBodyChange, bones: Iterable[str]) -> None:

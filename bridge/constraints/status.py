@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import isfinite
 
-from ...solver.data.report import Report
+from ...solver.data.reports.report import Report
 from ...solver.data.row_kinds import RowKind
 from ..properties.body_change import HangtimeBodyChange
 from ..properties.constraint import HangtimeConstraint

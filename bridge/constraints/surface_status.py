@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ...solver.data.report import ConstraintReport, Report
+from ...solver.data.reports.constraints import ConstraintReport
+from ...solver.data.reports.report import Report
+from ...solver.data.scene import CLEARANCE
 from ..properties.settings import HangtimeSettings
 from ..properties.shown_overlaps import IN
 from ..rows.choices import Met
@@ -35,13 +37,15 @@ def write_surface_status(
 
 
 def _deepest(report: Report, names: set[str]) -> ConstraintReport | None:
-    inside = (each for each in report.overlaps if each.name.partition(IN)[2] in names)
+    called = names | {CLEARANCE.format(name) for name in names}
+    inside = (each for each in report.overlaps if each.name.partition(IN)[2] in called)
     return max(inside, key=lambda each: each.worst_violation, default=None)
 
 
 def _in_the_way(overlap: ConstraintReport) -> str:
-    body, _, _ = overlap.name.partition(IN)
+    body, _, where = overlap.name.partition(IN)
+    what = "Not cleared" if where.startswith(CLEARANCE.format("")) else "In the way"
     return (
-        f"In the way: {body} {overlap.worst_violation:.0f} mm "
+        f"{what}: {body} {overlap.worst_violation:.0f} mm "
         f"at frame {overlap.worst_violation_frame:.0f}"
     )

@@ -60,6 +60,7 @@ def export_gltf(armature: bpy.types.Object, action: bpy.types.Action, path: str 
             use_selection=True,
             export_animations=True,
             export_animation_mode="ACTIVE_ACTIONS",
+            export_anim_single_armature=False,  # else 4.2 merges all actions that fit into one
             export_frame_range=True,
             export_force_sampling=True,
             export_optimize_animation_size=False,

@@ -1,4 +1,4 @@
-"""Reads the faces of an OBJ file (Wavefront's text format), as triangles.
+"""Reads and writes the faces of an OBJ file (Wavefront's text format), as triangles.
 
 Places are taken as they are written: metres, Z up (in Blender's exporter: forward Y, up Z).
 Polygons become fans; materials, normals and all else are left aside.
@@ -28,6 +28,13 @@ def read_obj(path: Path) -> tuple[FloatArray, IntArray]:
         except ValueError as error:
             raise UnreadableMesh(number, line.strip()) from error
     return np.array(vertices).reshape(-1, 3), np.array(triangles, dtype=int).reshape(-1, 3)
+
+
+def obj_text(vertices: FloatArray, triangles: IntArray) -> str:
+    """The text that is read as vertices (V, 3) m and triangles (F, 3), to the last digit."""
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (triangles + 1).tolist()]
+    return "\n".join([*lines, ""])
 
 
 class UnreadableMesh(Exception):

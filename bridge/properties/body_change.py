@@ -1,10 +1,10 @@
-"""What the extension stores of each weight that is carried and each limb that is changed."""
+"""What the extension stores of each weight that is carried, each limb and shape that is changed."""
 
 from __future__ import annotations
 
 import bpy
 
-from ..rows.choices import BodyKind
+from ..rows.choices import BodyKind, Through
 from ..rows.row import (
     MET,
     NAME,
@@ -35,6 +35,26 @@ class HangtimeBodyChange(bpy.types.PropertyGroup):
     offset: asked(OFFSET)
     length: asked(number("Length", "Times as long", min=0.2, max=5.0, default=1.0))
     mass_factor: asked(number("Mass", "Times as heavy", min=0.1, max=10.0, default=1.0))
+    thickness: asked(
+        number(
+            "Thickness", "Times as thick, where something meets it", min=0.05, max=5.0, default=1
+        )
+    )
+    through: asked(
+        choice(
+            "Go Through",
+            Through,
+            "What these bones may go through: hair and cloth through everything, a hand and what "
+            "it holds through each other",
+        )
+    )
+    human: asked(
+        boolean(
+            "Human Ranges",
+            "The joints of these bones keep to human ranges. Off for a tail, a hinge, a broken arm",
+            default=True,
+        )
+    )
 
 
 CLASSES = (HangtimeBodyChange,)

@@ -6,6 +6,7 @@ Lengths are in Blender units, world; frames are the scene's; angles in rad.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import pi
 from typing import Any
 
 import bpy
@@ -29,6 +30,10 @@ from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
 from .constraint import CLASSES as CONSTRAINT_CLASSES
 from .constraint import HangtimeConstraint
+from .keys import CLASSES as KEYS_CLASSES
+from .keys import HangtimeKeys
+from .result import CLASSES as RESULT_CLASSES
+from .result import HangtimeResultOptions
 from .surface import CLASSES as SURFACE_CLASSES
 from .surface import HangtimeSurface, has_faces
 from .view import CLASSES as VIEW_CLASSES
@@ -62,6 +67,8 @@ def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
 
 class HangtimeContact(bpy.types.PropertyGroup):
     """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2")."""
+
+    COMPUTED = ("place",)  # from what else is stored
 
     point: hidden(text())
     bone: hidden(text("Bone"))
@@ -121,6 +128,8 @@ def _set_turn(stance: HangtimeStance, to: float) -> None:
 class HangtimeStance(bpy.types.PropertyGroup):
     """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2")."""
 
+    COMPUTED = ("forward", "left", "up", "turn")
+
     forward_axis: hidden(vector())
     shifted: hidden(vector())
     turned: hidden(number())
@@ -142,10 +151,12 @@ class HangtimePart(bpy.types.PropertyGroup):
     """A part of the body and the bone that moves it; `name` is the part ("left foot").
 
     found: the bone that was found by itself; another one in `bone` is the artist's choice.
+    evidence: what told that it is this one, as of `Evidence`.
     """
 
     bone: chosen(text("Bone", "The bone that moves this part of the body"))
     found: hidden(text())
+    evidence: hidden(text())
     needed: hidden(boolean())
 
 
@@ -180,6 +191,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     last_frame: chosen(whole("Last", "Last frame that counts", default=250))
 
     parts: bpy.props.CollectionProperty(type=HangtimePart, override=OVERRIDABLE_LIST)
+    convention: hidden(text())  # by which the bones are named
 
     fit_quality: hidden(text())
     analysed: hidden(text())  # digest
@@ -263,6 +275,16 @@ class HangtimeSettings(bpy.types.PropertyGroup):
             default=True,
         )
     )
+    hard_ranges: chosen(
+        boolean(
+            "Hard",
+            "No joint goes beyond its range; what asks for that is reported as not met. Else "
+            "joints go beyond where nothing else meets what you ask for",
+        )
+    )
+    wider_ranges: chosen(
+        angle("Wider", "How much further than a person's joints may go", min=0.0, max=pi)
+    )
     objective: bpy.props.EnumProperty(
         name="Lessen",
         description="What Refine lessens, beside staying close",
@@ -287,7 +309,10 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         )
     )
 
+    result: bpy.props.PointerProperty(type=HangtimeResultOptions, override=OVERRIDABLE)
+    result_keys: bpy.props.PointerProperty(type=HangtimeKeys, override=OVERRIDABLE)
     adapted: hidden(target(type=bpy.types.Action))
+    source: hidden(target(type=bpy.types.Action))  # a result to start from; none: the recording
     status: hidden(text())
 
 
@@ -313,9 +338,22 @@ class HangtimeScene(bpy.types.PropertyGroup):
 
 
 class HangtimeAction(bpy.types.PropertyGroup):
-    """Of an adapted action: the recording that it was made from, and what was found."""
+    """Of an adapted action: the take that it was made from, how, and what was found.
+
+    edit: what was asked for, and the artist's changes to that since. next_edit: of a take from
+    which nothing is made yet. asked_key, take_key, own_key: digests of the settings, of the take's
+    keys and of its own when it was made. spans: the frames of all adaptations that it holds.
+    """
 
     recording: declared(target(type=bpy.types.Action), options=HIDDEN)
+    edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)
+    next_edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)
+    asked_key: declared(text(), options=HIDDEN)
+    take_key: declared(text(), options=HIDDEN)
+    own_key: declared(text(), options=HIDDEN)
+    spans: declared(text(), options=HIDDEN)
+    stale: declared(text(), options=HIDDEN)  # why it is not what would be made now
+    polished: declared(boolean(), options=HIDDEN)  # edited by hand since
     performer: declared(target(), options=HIDDEN)
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
@@ -347,6 +385,8 @@ CLASSES = (
     *BODY_CHANGE_CLASSES,
     *SURFACE_CLASSES,
     *VIEW_CLASSES,
+    *RESULT_CLASSES,
+    *KEYS_CLASSES,
     HangtimePart,
     HangtimeContact,
     HangtimeStance,

@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 
 import bpy
 
-from ...solver.data.report import Report
+from ...solver.data.reports.report import Report
 from .settings import action_settings
 
 IN = " in "  # between the names, as the solver calls what is in what

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ...solver.data.report import TimeMap
+from ...solver.data.reports.jumps import TimeMap
 from .settings import action_settings
 
 

@@ -116,10 +116,21 @@ def follow(empty: bpy.types.Object) -> None:
             place(settings, row, to.to_tuple())
 
 
+def move_empties(settings: Settings) -> None:
+    """Puts the empties that mark contacts to where the contacts are."""
+    for row in settings.contacts:
+        _move_empty(row)
+
+
 def _put(row: ContactRow, to: Vector) -> None:
     if abs(to.z - row.at[2]) > _SAME:
         row.on = None  # a height that somebody states is not a surface's
     row.at = to
+    _move_empty(row)
+
+
+def _move_empty(row: ContactRow) -> None:
+    to = Vector(row.at)
     if row.empty is None or (row.empty.matrix_world.translation - to).length <= _SAME:
         return
     world = row.empty.matrix_world.copy()

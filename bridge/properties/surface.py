@@ -6,8 +6,9 @@ import bpy
 
 from ..rows.choices import SurfaceRole
 from ..rows.row import MET, NAME, STATUS, USED, asked, chosen, hidden
-from ..rows.stored import choice, target
+from ..rows.stored import choice, number, target
 
+ROLES = "Feet land on the ground, limbs keep out of all three, and the way goes over a hurdle"
 SOLID_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "META")  # of objects: those that have faces
 
 
@@ -23,7 +24,16 @@ class HangtimeSurface(bpy.types.PropertyGroup):
     used: asked(USED)
     met: hidden(MET)
     status: hidden(STATUS)
-    role: asked(choice("Role", SurfaceRole, "Feet land on the ground; limbs keep out of both"))
+    role: asked(choice("Role", SurfaceRole, ROLES))
+    clearance: asked(
+        number(
+            "Clearance",
+            "How far above the hurdle's highest face beneath it every part of the body stays",
+            unit="LENGTH",
+            subtype="DISTANCE",
+            min=0.0,
+        )
+    )
     object: asked(target("Object", "The object that is solid", poll=has_faces))
     collection: asked(
         target(

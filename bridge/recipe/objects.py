@@ -23,7 +23,6 @@ How it moves beside its path is in object_rates.py.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -39,25 +38,14 @@ from ...solver.scene.triangle_mesh import placed_mesh
 from ..formats.obj import UnreadableMesh, read_obj
 from ..recipe_syntax.items import TRAVEL_KEYS
 from ..recipe_syntax.table import Table, shown
-from .object_rates import RATE_KEYS, rate_values, read_rates
+from ..shapes.boxes import SOLIDS
+from .object_rates import RATE_KEYS, read_rates
 
 HEADER = "object"
 SHAPES = ("box", "ramp", "file", "points")
 PLACING = ("place", "axes", "path")
 KEYS = ("name", "role", *SHAPES, "faces", *PLACING, "turn", "under", *TRAVEL_KEYS, *RATE_KEYS)
 PATH_KEYS = ("frame", "place", "turn", "axes")
-BOX_QUADS = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
-# Corners: base 0 to 3, the upper edge 4 and 5.
-RAMP_TRIANGLES = (
-    (0, 1, 2),
-    (0, 2, 3),
-    (3, 2, 5),
-    (3, 5, 4),
-    (0, 4, 5),
-    (0, 5, 1),
-    (0, 3, 4),
-    (1, 5, 2),
-)
 
 
 @dataclass(frozen=True)
@@ -150,7 +138,7 @@ def _shape(table: Table) -> tuple[FloatArray, IntArray]:
     key = "box" if "box" in table.values else "ramp"
     if not (size > 0.0).all():
         table.refuse(key, f'"{key}" must be above zero in all three')
-    return _box(size) if key == "box" else _ramp(size)
+    return SOLIDS[key](size)
 
 
 def _within(faces: FloatArray, count: int) -> bool:
@@ -179,23 +167,6 @@ def _from_file(table: Table) -> tuple[FloatArray, IntArray]:
         table.refuse("file", f"{path} cannot be read ({error.strerror}); check its path")
     except UnicodeDecodeError:
         table.refuse("file", f"{path.name} is no text; export it as OBJ")
-
-
-def _box(size: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Its base about the origin."""
-    shares = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
-    return (shares - [0.5, 0.5, 0.0]) * size, _triangles(BOX_QUADS)
-
-
-def _ramp(size: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Its base about the origin, rising along x."""
-    corners = [[-1, -1, 0], [-1, 1, 0], [1, 1, 0], [1, -1, 0], [1, -1, 1], [1, 1, 1]]
-    shares = np.array(corners, dtype=float) * [0.5, 0.5, 1.0]
-    return shares * size, np.array(RAMP_TRIANGLES)
-
-
-def _triangles(quads: Sequence[tuple[int, int, int, int]]) -> IntArray:
-    return np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
 
 
 # ---------------------------------------------------------------- placing
@@ -242,30 +213,3 @@ def _flight(under: Under, phases: Sequence[Phase]) -> Phase:
             return phase
     known = tuple(phase.name for phase in phases if phase.kind is PhaseKind.FLIGHT)
     raise UnknownPhaseIn(under.thing.name, under.what, known)
-
-
-# ---------------------------------------------------------------- writing
-
-
-def object_values(thing: SceneObject) -> dict[str, Any]:
-    """The values of an object's table."""
-    values: dict[str, Any] = {"name": thing.name, "role": thing.role.value}
-    values["points"] = _tuples(thing.vertices)
-    values["faces"] = _tuples(thing.triangles)
-    if len(thing.frames) > 1 or thing.frames[0] != 0.0:
-        poses = zip(thing.frames.tolist(), thing.positions, thing.rotations, strict=True)
-        values["path"] = tuple({"frame": frame} | _pose(p, r) for frame, p, r in poses)
-    else:
-        values |= _pose(thing.positions[0], thing.rotations[0])
-    return values | rate_values(thing)
-
-
-def _pose(position: FloatArray, rotation: FloatArray) -> dict[str, Any]:
-    values: dict[str, Any] = {"place": tuple(position.tolist())}
-    if not np.array_equal(rotation, np.eye(3)):
-        values["axes"] = _tuples(rotation)
-    return values
-
-
-def _tuples(rows: FloatArray | IntArray) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(row) for row in rows.tolist())

@@ -18,14 +18,32 @@ on = "Crate"                    # the points then stand on that object's faces, 
 [[contact]]                     # corrects a contact that the analysis found
 name = "Left toe 2"
 start_frame = 183.5             # and / or end_frame; or remove = true
+[[add_contact]]                 # touches, though the analysis did not find it
+point = "Left heel"
+start_frame = 183
+end_frame = 200
+[result]                        # the rest of the take that the frames are part of
+after = "carry"                 # goes with the last stance; or "return", to where it was; or "cut"
+return_frame = 400              # of the recording, by which it is back; default: after a second
+blend_in = 30                   # frames before the adapted ones, and
+blend_out = 30                  # after them, that are blended; default: a quarter of a second
+lock_others = true              # channels that physics does not own keep their times
+written_as = "strip"            # on top of the take, in the NLA; default: "action"
+
+[keys]                          # of the adapted frames
+on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has
+distance = 0.002                # m by which reduced keys may move a joint, in the world; and
+angle = 0.2                     # degrees by which they may turn a bone
 
 Objects of the scene are in objects.py, and what may be asked for beside in requests.py.
 """
 
 import json
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ...solver.body.anatomy import SIDED_PARTS
@@ -40,17 +58,37 @@ from ...solver.data.faults import (
     UnknownReductionBone,
     WrongWeights,
 )
-from ...solver.data.problem import ContactEdit, MassTable, MotionProblem, OffsetAxes, Pin
-from ..recipe_syntax.items import TOUCHING, TRAVEL_KEYS, Item, Kind, Values, angle, vector, word
+from ...solver.data.problem import (
+    AddedContact,
+    ContactEdit,
+    MassTable,
+    MotionProblem,
+    OffsetAxes,
+    Pin,
+)
+from ..recipe_syntax.items import (
+    TOUCHING,
+    TRAVEL_KEYS,
+    Item,
+    Kind,
+    Values,
+    angle,
+    number,
+    vector,
+    word,
+)
 from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
 from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
 from ..recipe_syntax.toml_text import entries
+from .keys import KEYS, KeyOptions
+from .object_texts import object_text
 from .objects import HEADER as OBJECT
-from .objects import Under, default_name, object_values, read_objects
+from .objects import Under, default_name, read_objects
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
+from .result import RESULT, ResultOptions
 
-OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact", "object")
-TOP_KEYS = (*OWN_KEYS, *REQUEST_KEYS)
+OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact", "keys")
+TOP_KEYS = (*OWN_KEYS, "add_contact", OBJECT, *REQUEST_KEYS, RESULT.header)
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
 PARTS = (
@@ -66,12 +104,14 @@ _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 bracke
 class Recipe:
     """Parsed recipe. clip: a path as written, relative to the recipe; None where not given.
 
-    under: objects of which the analysis is to tell the places.
+    under: objects of which the analysis is to tell the places. result, keys: None where not given.
     """
 
     problem: MotionProblem
     clip: str | None = None
     under: tuple[Under, ...] = ()
+    result: ResultOptions | None = None
+    keys: KeyOptions | None = None
 
 
 def read_recipe_text(path: str | Path) -> str:
@@ -100,12 +140,15 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
         mass_table=table.choice("mass_table", MassTable) or MotionProblem.mass_table,
         bones=_bones(table.table("bones", PARTS, "part of the body")),
         contacts=CONTACT.read_all(table),
+        added=ADDED.read_all(table),
         pins=PIN.read_all(table),
         scene=scene,
         requests=read_requests(table),
     )
     _refuse_same_names(table)
-    return Recipe(problem, table.word("clip"), under)
+    result = RESULT.read(table) if RESULT.header in table.values else None
+    keys = KEYS.read(table) if KEYS.header in table.values else None
+    return Recipe(problem, table.word("clip"), under, result, keys)
 
 
 def locate(text: str, fault: Fault) -> int | None:
@@ -281,11 +324,27 @@ CONTACT = Kind(
     named=False,
 )
 
+ADDED = Kind(
+    "add_contact",
+    AddedContact,
+    (word("point"), number("start_frame"), number("end_frame")),
+    needs=(("point",), ("start_frame",), ("end_frame",)),
+    named=False,
+)
+
 # ---------------------------------------------------------------- writing
 
 
-def write_recipe(problem: MotionProblem, *, clip: str | None = None) -> str:
-    """The TOML text that `parse_recipe` reads as this problem."""
+def write_recipe(
+    problem: MotionProblem,
+    *,
+    clip: str | None = None,
+    files: Mapping[str, str] = MappingProxyType({}),
+) -> str:
+    """The TOML text that `parse_recipe` reads as this problem.
+
+    files: of objects' meshes, by the objects' names; what has none is written out.
+    """
     top = {
         "clip": clip,
         "frames": problem.frames,
@@ -297,5 +356,6 @@ def write_recipe(problem: MotionProblem, *, clip: str | None = None) -> str:
     if problem.bones:
         parts.append("[bones]\n" + entries(problem.bones))
     parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)
-    parts += [f"[[{OBJECT}]]\n{entries(object_values(thing))}" for thing in problem.scene]
+    parts += ADDED.text(problem.added)
+    parts += [object_text(thing, files.get(thing.name)) for thing in problem.scene]
     return "\n".join(parts + request_texts(problem.requests))

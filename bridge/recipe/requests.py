@@ -68,6 +68,12 @@ object = "Hurdle"
 by = 0.05                       # m above it; default: 0
 bones = ["LeftFoot"]            # default: the whole body
 
+[[shape]]                       # what is no flesh: hair, cloth, what a hand holds
+bones = ["Hair", "Cape"]
+thickness = 0.5                 # times as thick, where limbs, floor and scene meet it
+through = "all"                 # or "each other": these bones may go through one another
+human = false                   # the joints of these bones may go beyond what a person's can
+
 [body]
 mass = 80                       # kg; default: the recording's
 gravity = 1.62                  # m/s²
@@ -94,7 +100,8 @@ method = "implicit"             # or "implicit with torques", "explicit"
 dynamics = "automatic"          # or "reduced", "standard"
 keep_times = true               # phases that no timing names last as long as recorded
 solid = false                   # limbs and floor may go through each other
-human = false                   # joints may go beyond what a person's can
+human = false                   # joints may go beyond what a person's can; or "hard": never
+wider = 10                      # degrees, by which joints may go further than a person's
 longest_span = 0.1              # s between knots; torque_span: of the torques
 [solution.objectives]           # weights, of the explicit solution
 "torque smoothness" = 1         # power, torque output, mass displacement, angle displacement,
@@ -107,9 +114,17 @@ matrix = [[{ bone = "Thigh.L", weights = [1, 0, 0] }, { bone = "Thigh.R", weight
 
 from typing import Any
 
-from ...solver.data.requests import AddedMass, BodyChange, Clear, LimbChange, Requests
+from ...solver.data.requests import (
+    AddedMass,
+    BodyChange,
+    Clear,
+    LimbChange,
+    Requests,
+    Shape,
+    Through,
+)
 from ..constraint_kinds import KINDS
-from ..recipe_syntax.items import BONE, BONES, Kind, number, one, vector
+from ..recipe_syntax.items import BONE, BONES, Kind, choice, flag, number, one, vector
 from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, Table
 from ..recipe_syntax.toml_text import sections
 from .solution import SOLUTION
@@ -141,8 +156,16 @@ CLEAR = Kind(
     needs=(("object",),),
 )
 
+SHAPE = Kind(
+    "shape",
+    Shape,
+    (BONES, number("thickness", ABOVE_ZERO), choice("through", Through), flag("human")),
+    needs=(("bones",),),
+)
+
 RECORDS: dict[str, Kind[Any]] = {kind.requests: kind.recipe for kind in KINDS.values()}
 RECORDS["clears"] = CLEAR
+RECORDS["shapes"] = SHAPE
 BODY_RECORDS: dict[str, Kind[Any]] = {"added": LOAD, "limbs": LIMB}  # by field of BodyChange
 NAMED = (*RECORDS.values(), *BODY_RECORDS.values())
 REQUEST_KEYS = (*(kind.header for kind in NAMED), BODY.header, SOLUTION.header)

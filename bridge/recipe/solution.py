@@ -1,14 +1,15 @@
 """Solver options of a recipe: method, objectives and reduction. Keys: see requests.py."""
 
-from ...solver.data.requests import (
+from ...solver.data.solver_options import (
     Dynamics,
+    HumanRanges,
     Method,
     ObjectiveKind,
     Reduction,
     ReductionKind,
     SolverOptions,
 )
-from ..recipe_syntax.items import Kind, Values, choice, flag, number, one, whole
+from ..recipe_syntax.items import Kind, Values, angle, choice, flag, number, one, whole
 from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table, listed
 
 Rows = tuple[tuple[tuple[str, tuple[float, ...]], ...], ...]
@@ -63,6 +64,17 @@ def _read_reduction(table: Table, key: str) -> Reduction:
     return reduction
 
 
+def _human(table: Table, key: str) -> HumanRanges:
+    """true, false or "hard"."""
+    if isinstance(table.values[key], bool):
+        return HumanRanges.SOFT if table.flag(key) else HumanRanges.OFF
+    return table.choice(key, HumanRanges) or HumanRanges.SOFT
+
+
+def _human_words(human: HumanRanges) -> bool | str:
+    return human.value if human else False
+
+
 REDUCTION = Kind(
     "reduction",
     Reduction,
@@ -84,7 +96,8 @@ SOLUTION = Kind(
         choice("dynamics", Dynamics),
         flag("keep_times"),
         flag("solid"),
-        flag("human"),
+        one("human", _human, _human_words),
+        angle("wider", NOT_NEGATIVE),
         number("longest_span", ABOVE_ZERO),
         number("torque_span", ABOVE_ZERO),
         one("objectives", _objectives, _weights),

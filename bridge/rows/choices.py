@@ -1,9 +1,12 @@
 """Choices that rows of the sidebar's lists store.
 
-The members' names are stored in the artist's file; the values are what the artist reads.
+The members' names are stored in the artist's file; the values are what the artist reads, or writes
+in a recipe.
 """
 
 from enum import Enum
+
+from ...solver.data.scene import SceneRole
 
 HOLD = "HOLD"  # the kind of constraint whose rows are phases by their own names
 
@@ -13,13 +16,28 @@ class BodyKind(Enum):
 
     LOAD = "Carried Weight"
     LIMB = "Limb"
+    SHAPE = "Shape and Joints"
+
+
+class Through(Enum):
+    """What the solid shapes of some bones may go through; the names are the solver's."""
+
+    NOTHING = "Nothing"
+    EACH_OTHER = "Each Other"
+    ALL = "Everything"
 
 
 class SurfaceRole(Enum):
-    """What an object of the scene is to the performer; the names are the solver's."""
+    """What an object of the scene is to the performer."""
 
     GROUND = "Ground"
     OBSTACLE = "Obstacle"
+    CLEAR = "Hurdle"  # an obstacle over which the way goes
+
+    @property
+    def solid(self) -> SceneRole:
+        """The same to the solver."""
+        return SceneRole.GROUND if self is SurfaceRole.GROUND else SceneRole.OBSTACLE
 
 
 class Span(Enum):
@@ -47,3 +65,26 @@ class Met(Enum):
     UNKNOWN = "Not Solved Yet"
     MET = "Met"
     MISSED = "Missed"
+
+
+class After(Enum):
+    """What becomes of the take after the frames that are adapted."""
+
+    CARRY = "carry"  # moved and turned with the last stance
+    RETURN = "return"  # back where it was by a frame
+    CUT = "cut"  # left out, and what is before them, too
+
+
+class WrittenAs(Enum):
+    """Form in which a result is written."""
+
+    ACTION = "action"
+    STRIP = "strip"  # on top of the take
+
+
+class KeyChoice(Enum):
+    """Frames that get keys."""
+
+    EVERY_FRAME = "every frame"
+    REDUCED = "reduced"  # the fewest within an error
+    TAKE = "as the take"  # where the take has keys

@@ -70,6 +70,8 @@ def _set_bone(row: HangtimeBone, name: str) -> None:
 class HangtimeBone(bpy.types.PropertyGroup):
     """A bone of the armature; `name` follows when the artist renames it (see bone_keys.py)."""
 
+    COMPUTED = ("name",)  # from what else is stored
+
     key: hidden(text())
     called: hidden(text())
     name: chosen(text("Bone", "A bone of the armature", get=_get_bone, set=_set_bone))

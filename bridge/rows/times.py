@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ...solver.analysis.timeline import moment_within
 from ...solver.data.faults import EmptyRange, NoPhaseChosen, UnknownPhaseIn
 from ...solver.data.requests import ALWAYS, Moment, When
-from ...solver.data.timeline import moment_within
 from ...solver.data.traces import Traces
 from .choices import HOLD, Instant, Span
 from .phases import clip_ends, names, phases_of, recorded_span

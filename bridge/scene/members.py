@@ -11,14 +11,16 @@ from ...solver.data.faults import ObjectGone
 from ...solver.data.scene import SceneRole
 from ..properties.settings import HangtimeSettings
 from ..properties.surface import SOLID_TYPES, HangtimeSurface
+from ..rows.choices import SurfaceRole
 
 
 @dataclass(frozen=True)
 class Member:
-    """A solid object, by the row that names it first."""
+    """A solid object, by the row that names it first. clearance: Blender units, of a hurdle."""
 
     object: bpy.types.Object
     role: SceneRole
+    clearance: float | None = None
 
     @property
     def name(self) -> str:
@@ -43,8 +45,13 @@ def present_members(settings: HangtimeSettings, scene: bpy.types.Scene) -> tuple
     for row in settings.surfaces:
         if row.used and not is_gone(row, scene):
             for each in objects_of(row):
-                found.setdefault(each.name_full, Member(each, SceneRole[row.role]))
+                found.setdefault(each.name_full, _member(each, row))
     return tuple(found.values())
+
+
+def _member(thing: bpy.types.Object, row: HangtimeSurface) -> Member:
+    role = SurfaceRole[row.role]
+    return Member(thing, role.solid, row.clearance if role is SurfaceRole.CLEAR else None)
 
 
 def ground_members(settings: HangtimeSettings, scene: bpy.types.Scene) -> tuple[Member, ...]:

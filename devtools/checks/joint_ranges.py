@@ -21,7 +21,6 @@ from ...solver.transcription.joint_measures import (
     SideAngle,
     TwistAngle,
 )
-from ...solver.transcription.motion import Motion
 
 TURN = 2.0 * np.pi
 
@@ -35,17 +34,12 @@ class JointExcess:
     frame: float
 
 
-def worst_joint(
-    shown: Recording, performance: Performance, fitted: Motion | None = None
-) -> JointExcess:
+def worst_joint(shown: Recording, performance: Performance) -> JointExcess:
     """Over every frame and joint of what Blender shows. performance: what widens the ranges, and
-    tells the way that joints bend; of the same bones. fitted: widens them too, where it is given.
-    """
+    tells the way that joints bend; of the same bones."""
     character = performance.character
     worst = JointExcess(0.0, "", float(shown.frames[0]))
     for limit in joint_ranges(character, performance.angles):
-        if fitted is not None:
-            limit = limit.holding(fitted.joint_rotations(performance.times)[:, limit.body])
         turns = (turned(r, character, limit.body) for r in (shown, performance.recording))
         over = excess(limit, *turns)
         frame = int(over.argmax())

@@ -16,6 +16,7 @@ from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.solid.mesh_surface import scene_shapes
+from ...solver.solid.shape_changes import ShapeChanges
 from ...solver.solid.shapes import Capsule, capsules, floor_balls, meeting_pairs
 from ...solver.solid.solid_world import floor_heights
 from ...solver.stages.implicit import Adaptation
@@ -68,15 +69,15 @@ class Solids:
     whole: tuple[Capsule, ...]
 
     @staticmethod
-    def of(motion: Motion, pairs: IntArray) -> "Solids":
+    def of(motion: Motion, pairs: IntArray, changes: ShapeChanges) -> "Solids":
         """Of a motion's figure."""
         t = motion.transcription
         return Solids(
             tuple(body.name for body in t.character.bodies),
-            tuple(capsules(t.character)),
+            tuple(capsules(t.character, changes)),
             pairs,
-            tuple(floor_balls(t.character, t.points)),
-            tuple(scene_shapes(t.character, t.points)),
+            tuple(floor_balls(t.character, t.points, changes)),
+            tuple(scene_shapes(t.character, t.points, changes)),
         )
 
     def depths(self, poses: Poses, floor: FloatArray) -> Mapping[Keeper, FloatArray]:
@@ -167,7 +168,8 @@ def solid_check(
     """
     setup, fitted = adaptation.setup, adaptation.fit
     figure, reference = fitted.motion.transcription.character, setup.context.reference
-    pairs = meeting_pairs(figure, capsules(figure))
+    changes = setup.shape_changes
+    pairs = meeting_pairs(figure, capsules(figure, changes), changes)
     old = np.clip(setup.context.timeline.to_old(times), 0.0, fitted.motion.duration)
     pose = fitted.motion.pose(old)
     before = Poses(pose.rotations, pose.centres + fitted.motion.com(old)[:, None])
@@ -177,11 +179,11 @@ def solid_check(
         placed_object(thing, times, line.first_frame, line.rate) for thing in problem.scene
     )
     return SolidCheck(
-        Solids.of(reference, pairs),
+        Solids.of(reference, pairs, changes),
         tuple(body.bone for body in reference.transcription.character.bodies),
         scale,
         floor_heights(setup.schedule, setup.target_places)(times),
-        Solids.of(fitted.motion, pairs).depths(before, floor),
+        Solids.of(fitted.motion, pairs, changes).depths(before, floor),
         scene,
         tuple(_stands(adaptation, problem, scene)),
     )

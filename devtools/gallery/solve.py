@@ -6,8 +6,9 @@ from pathlib import Path
 from statistics import median
 
 from ...solver.data.problem import MotionProblem
-from ...solver.data.report import Origin, as_json
-from ...solver.data.requests import Method
+from ...solver.data.reports.recording import Origin
+from ...solver.data.reports.report import as_json
+from ...solver.data.solver_options import Method
 from ...solver.results.npz_export import save
 from ...solver.stages.fit import Fit
 from ...solver.stages.implicit import Adaptation

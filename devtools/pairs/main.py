@@ -46,8 +46,10 @@ def main(argv: list[str]) -> int:
         print(f"{type(problem).__name__}: {problem}", file=sys.stderr)
         return 2
     asked = [(source.name, target.name) for source, target in chosen]
-    asked += [(name, name) for name in recorded]  # its own landing: nothing should change
-    moved = [jump.name for jump in given or broad_jumps() if jump.name in recorded]
+    moved: list[str] = []
+    if not options.only_pairs:
+        asked += [(name, name) for name in recorded]  # its own landing: nothing should change
+        moved = [jump.name for jump in given or broad_jumps() if jump.name in recorded]
     solved = solve(recorded, asked, solutions, moved, options.jobs)
     pairs = [
         compare(recorded[a], recorded[b], solution, solved[a], solved[b].fit)
@@ -60,7 +62,7 @@ def main(argv: list[str]) -> int:
     results.write(options.out / "figures.json")
     pictures = draw_some(results.moved(solutions[0]), recorded, solved, options.out)
     print(text(results))
-    if not given and options.pairs is None:
+    if not given and options.pairs is None and not options.only_pairs:
         (DOCS / "pairs.md").write_text(page(results), encoding="utf-8")
         for picture in pictures[:1]:
             (DOCS / "images" / "pairs.svg").write_bytes(picture.read_bytes())
@@ -72,6 +74,9 @@ def _options(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("jumps", nargs="*", metavar="CLIP:FIRST-LAST", help="two or more, BVH, AMC")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--pairs", type=int, metavar="N", help="so many of the default's 92")
+    parser.add_argument(
+        "--only-pairs", action="store_true", help="no null pairs, no round distances"
+    )
     parser.add_argument(
         "--solutions", default=DEFAULT, metavar="A,B", help='methods, or objectives as "power"'
     )

@@ -6,7 +6,8 @@ from pathlib import Path
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import Fault
 from ...solver.data.problem import OffsetAxes, Pin
-from ...solver.data.requests import Method, ObjectiveKind, Requests, SolverOptions
+from ...solver.data.requests import Requests
+from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
 from ...solver.stages.fit import Fit
 from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
 from ..processes import dump, undump

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from statistics import fmean
+from statistics import fmean, median
 
 from ...solver.data.status import Status
 from .compare import ComparedPair, Distances
@@ -51,6 +51,19 @@ LANDINGS = """
 
 What ours change against the fit, where nothing but the landing is moved.
 """
+SOLUTIONS = """
+## The solutions side by side
+
+Mean difference to the first solution's motions, mean distance of the joint centres to the person
+in crouch / flight / landing, and the median of the seconds from the fit.
+"""
+TOLD_OF_SOLUTIONS = (
+    "crouch_cm",
+    "take_off_speed",
+    "flight_time_ms",
+    "arm_swing_deg",
+    "peak_push_bw",
+)
 TOLD = """What changes in proportion to the distance, by least squares over the pairs: the
 person's, and ours. The share is that of the squares of the person's changes which this explains; it
 is also the slope that so good a prediction would have. The rest differs from take to take: no
@@ -66,7 +79,7 @@ def text(results: Results) -> str:
         [""],
     )
     parts += [aligned(jump_rows(results)), [""], aligned(told_rows(results)), [""]]
-    parts += [aligned(landing_rows(results)), [""]]
+    parts += [aligned(landing_rows(results)), [""], aligned(solution_rows(results)), [""]]
     parts += [aligned(distance_rows(results)), [""], aligned(figure_rows(results))]
     return "\n".join(line for part in parts for line in part)
 
@@ -77,6 +90,8 @@ def page(results: Results) -> str:
     lines += [*markdown(distance_rows(results)), HOW]
     lines += ["## The performers' own jumps\n", *markdown(jump_rows(results))]
     lines += ["", TOLD, *markdown(told_rows(results))]
+    if len(results.solutions) > 1:
+        lines += [SOLUTIONS, *markdown(solution_rows(results))]
     lines += [LANDINGS, *markdown(landing_rows(results)), "\n## The pairs"]
     for solution in results.solutions:
         lines += [f"\n{solution.capitalize()}:\n", *markdown(pair_rows(results, solution))]
@@ -130,6 +145,27 @@ def distance_rows(results: Results) -> Iterator[Row]:
         distances = [[getattr(pair, kind) for pair in some(first)] for kind in fixed]
         distances += [[pair.ours for pair in some(solution)] for solution in results.solutions]
         yield (words, str(len(some(first))), *(_mean(each) for each in distances))
+
+
+def solution_rows(results: Results) -> Iterator[Row]:
+    """A solution a row: how its motions differ from the first solution's, mean over the pairs, how
+    far they are from the person, and the seconds that they took."""
+    words = (f"{MEASURES[name][0]} ({MEASURES[name][1]})" for name in TOLD_OF_SOLUTIONS)
+    yield ("solution", "pairs", *words, "from the person (cm)", "seconds")
+    first = {(p.source, p.target): p for p in results.moved(results.solutions[0])}
+    for solution in results.solutions:
+        mine = [p for p in results.moved(solution) if (p.source, p.target) in first]
+        if not mine:
+            continue
+        others = [first[p.source, p.target] for p in mine]
+        both = list(zip(mine, others, strict=True))
+        changes = (
+            fmean(p.found_change(name) - other.found_change(name) for p, other in both)
+            for name in TOLD_OF_SOLUTIONS
+        )
+        seconds = f"{median(p.seconds for p in mine):.1f}"
+        told = (f"{change:+.2g}" for change in changes)
+        yield (solution, str(len(mine)), *told, _mean([p.ours for p in mine]), seconds)
 
 
 def landing_rows(results: Results) -> Iterator[Row]:

@@ -59,7 +59,6 @@ def measured(case: Case, subject: Subject, fitted: Fit, *, quick: bool) -> CaseR
         solved=adaptation.solved,
         penetrations=solid_check(adaptation, subject.problem, shown.times, scale).worst(shown),
         joint=worst_joint(shown, subject.analysis.performance),
-        new_joint=worst_joint(shown, subject.analysis.performance, fitted.motion),
         physics=Physics(
             *(
                 residual.rms(part, flying)

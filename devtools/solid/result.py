@@ -22,7 +22,7 @@ class CaseResult:
     """One case, solved with floor and limbs solid. failed: why there is none, else empty.
 
     penetrations: the deepest of each keeper. joint: beyond what the recording does and a person
-    can; new_joint: beyond what the fit does, too. seconds: with floor and limbs solid.
+    can. seconds: with floor and limbs solid.
     free_seconds: without, in the same process by turns.
     """
 
@@ -32,7 +32,6 @@ class CaseResult:
     solved: bool = False
     penetrations: tuple[Penetration, ...] = ()
     joint: JointExcess | None = None
-    new_joint: JointExcess | None = None
     physics: Physics | None = None
     seconds: float = 0.0
     free_seconds: float = 0.0

@@ -17,9 +17,8 @@ NOTES = """
   from the solver's shapes and moved by the bones of the action as written into Blender, at every
   frame of it. *New* is what is deeper than in the fit at the same (warped) instant, by MuJoCo too;
   of the scene, whose meshes are MuJoCo's as convex solids, everything is new.
-- **Joints**: degrees beyond the human range (`solver/human/ranges.py`) and beyond what the
-  recording or its fit does, whichever is widest, by the written bones' rotations.
-  Results that are known to bend a joint further (`KNOWN_BENT`) are in the table alone.
+- **Joints**: degrees beyond the human range (`solver/human/ranges.py`) or beyond what the
+  recording does, whichever is wider, by the written bones' rotations; so the fit's own count too.
 - **Time**: of an adaptation from the stored fit with floor and own limbs solid, over that without;
   by turns in one process that has nothing beside it, the least of two or three runs each. Results
   in a scene do not count: without solids there is no scene.
@@ -65,7 +64,7 @@ def text(found: Sequence[SolidFigure]) -> str:
 def line(result: CaseResult) -> str:
     """One case in a terminal's line."""
     deepest = max((p.deeper_mm for p in result.penetrations), default=0.0)
-    degrees = result.new_joint.degrees if result.new_joint else 0.0
+    degrees = result.joint.degrees if result.joint else 0.0
     time = f"{result.free_seconds:6.2f} s free {result.seconds:6.2f} s solid"
     wrong = "; ".join(faults(result)) or "in order"
     return f"{result.name:46}{deepest:6.1f} mm {degrees:5.1f}° {time}  {wrong}"
@@ -94,7 +93,7 @@ def _cells(result: CaseResult) -> Iterator[str]:
     for keeper in Keeper:
         each = deep.get(keeper)
         yield "" if each is None else _depth(each.deeper_mm, each.what, each.frame)
-    joint = result.new_joint
+    joint = result.joint
     yield "" if joint is None else _depth(joint.degrees, joint.joint, joint.frame)
     yield f"{result.free_seconds:.2f}"
     yield f"{result.seconds:.2f}"

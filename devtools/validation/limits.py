@@ -70,18 +70,13 @@ LIMITS = {
 }
 # Musts that are not reached yet, each with the value that it must not pass meanwhile.
 KNOWN_MISSES = {
-    "forward rms at 15 Hz, mean": 0.078,
-    "sideways rms at 15 Hz, mean": 0.043,
-    "joint centres, rms, worst": 3.6,
-    "joint centres, first and last ten frames, worst": 4.5,
-    OF_RECORDINGS + JERK: 1.6,
-    OF_RECORDINGS + KNEE: 4.8,
-    OF_RECORDINGS + "joint centres, rms, worst": 1.7,
+    "joint centres, rms, worst": 3.2,
+    "joint centres, first and last ten frames, worst": 3.8,
+    OF_RECORDINGS + JERK: 1.4,
 }
 # Recordings whose fit is not in order, and why. Tables show them; no figure has them.
 KNOWN_DEFECTS = {
-    "131_03_hop": "where one leg lands, the places of heel and toe are 11 cm apart, "
-    "of a foot of 19",
+    "131_03_hop": "its landing foot turns by 180° while it is loaded, and slides 8 cm on its ball",
 }
 KNOWN_REFUSALS = ("HamnerSubject04_run300",)  # on a treadmill: no place on the ground holds a foot
 

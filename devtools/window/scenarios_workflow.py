@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import bpy
@@ -181,10 +182,13 @@ def pins_bone(driver: Driver) -> Actions:
 def compares(driver: Driver) -> Actions:
     adapted = shown_action()
     recorded = origin(adapted).recording
-    yield from press(driver, "hangtime.compare")
-    yield Until("the recording", lambda: shown_action() == recorded)
-    yield from press(driver, "hangtime.compare")
-    yield Until("the adapted motion", lambda: shown_action() == adapted)
+    for action, button in ((recorded, 0.2), (adapted, 0.5)):
+        yield from press(driver, f'action="{action.name}", switch=True', button)
+        yield Until(action.name, partial(shows, action))
+
+
+def shows(action: bpy.types.Action) -> bool:
+    return shown_action() == action
 
 
 def accepts(driver: Driver) -> Actions:
@@ -201,11 +205,12 @@ def exports_fbx(driver: Driver) -> Actions:
 
 
 def exports_gltf(driver: Driver) -> Actions:
-    yield from export(driver, "hangtime.export_gltf", Path("/tmp/accepted.glb"), b"glTF")
+    path = Path("/tmp/accepted.glb")
+    yield from export(driver, "hangtime.export_gltf", path, b"glTF", 0.5)  # of three in a row
 
 
-def export(driver: Driver, command: str, path: Path, begins: bytes) -> Actions:
-    yield from press(driver, command)
+def export(driver: Driver, command: str, path: Path, begins: bytes, *columns: float) -> Actions:
+    yield from press(driver, command, *columns)
     yield from dialog(driver, path)
     yield Until("the file", path.is_file, 30)
     yield 1.0

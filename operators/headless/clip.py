@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...solver.data.faults import NoArmature, UnreadableClip
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
-from ...solver.data.report import Origin
+from ...solver.data.reports.recording import Origin
 from ...solver.worker.pipeline import Subject, measure
 from .quiet import quiet
 from .stages import Stages
@@ -95,12 +95,22 @@ def _open(path: Path) -> bpy.types.Object:
         raise UnreadableClip(str(path), None, problem) from error
     active = present(bpy.context.view_layer).objects.active
     if active is not None and active.type == "ARMATURE":
-        return active
+        return _recorded(active)
     armatures = [o for o in current_scene().objects if o.type == "ARMATURE"]
     animated = [o for o in armatures if o.animation_data and o.animation_data.action]
     if len(animated) != 1:
         raise NoArmature(path.name)
-    return animated[0]
+    return _recorded(animated[0])
+
+
+def _recorded(armature: bpy.types.Object) -> bpy.types.Object:
+    """The armature with its recording, also where the file shows what was made of it."""
+    from ...bridge.armature.actions import recorded_action, show
+
+    action = recorded_action(armature)
+    if action is not None:
+        show(armature, action)
+    return armature
 
 
 def _read(armature: bpy.types.Object, problem: MotionProblem) -> Recording:

@@ -8,9 +8,12 @@ from dataclasses import replace
 from io import TextIOWrapper
 from pathlib import Path
 
+from ...bridge.recipe.keys import KeyOptions
+from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.objects import placed_objects
 from ...bridge.recipe.problem import Recipe, locate, parse_recipe, read_recipe_text
-from ...solver.data.faults import BadRecipe, Fault, NoSolution
+from ...bridge.recipe.result import ResultOptions, require_return_after
+from ...solver.data.faults import BadRecipe, Fault, NoSolution, UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
@@ -48,7 +51,9 @@ def run(argv: Sequence[str]) -> int:
 
 
 def explained(fault: Fault, recipe: Path | None) -> str:
-    """The fault in words, with the recipe's line where one is to blame."""
+    """The fault in words, with the recipe's line where one is to blame, or lines to add to it."""
+    if isinstance(fault, UnseenSupport) and fault.boxes:
+        return "\n\n".join([sentence(fault), *support_texts(fault.boxes)]).rstrip()
     if recipe is None or isinstance(fault, BadRecipe):
         return sentence(fault)
     line = locate(read_recipe_text(recipe), fault)
@@ -73,7 +78,8 @@ def parser() -> argparse.ArgumentParser:
         "--no-picture", action="store_true", help="leave out sheet.png, half of the time"
     )
     analyzing = commands.add_parser("analyze", help="print a clip's phases and contacts")
-    analyzing.set_defaults(act=analyze, recipe=None)
+    analyzing.set_defaults(act=analyze)
+    analyzing.add_argument("--recipe", type=Path, help="whose frames, bones and objects count")
     analyzing.add_argument(
         "--write-recipe", type=Path, metavar="FILE", help="leave a recipe to start from"
     )
@@ -136,12 +142,16 @@ def adapt(options: argparse.Namespace) -> None:
     """
     recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     clip, problem = _clip(options, recipe), overridden(recipe.problem, options)
+    wanted = recipe.result or ResultOptions()
     stages = Stages(sys.stdout)
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages)
+        require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
-        outputs = Outputs(loaded, problem, result, outbox, stages)
+        outputs = Outputs(
+            loaded, problem, wanted, recipe.keys or KeyOptions(), result, outbox, stages
+        )
         if result.fault is not None:
             outputs.write_failure()
             outbox.deliver()
@@ -156,7 +166,10 @@ def adapt(options: argparse.Namespace) -> None:
 
 def analyze(options: argparse.Namespace) -> None:
     """Prints what a clip holds; leaves a recipe where asked. Raises Fault."""
-    problem = overridden(MotionProblem(), options)
+    asked = Recipe(MotionProblem())
+    if options.recipe is not None:
+        asked = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
+    problem = overridden(asked.problem, options)
     loaded = load(_clip(options, None), problem, Stages(sys.stdout))
     print()
     print(analysis_text(loaded.subject.analysis, loaded.origin), end="")

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...bridge.recipe.keys import KeyOptions
+from ...bridge.recipe.result import ResultOptions
+from ...bridge.rows.choices import KeyChoice, WrittenAs
 from ...solver.data.faults import OutputNotWritable
 from ...solver.data.problem import MotionProblem
-from ...solver.data.report import Report, as_json
+from ...solver.data.reports.keys import KeysReport
+from ...solver.data.reports.report import Report, as_json
 from ...solver.data.scaling import scaled_problem
 from ...solver.results.npz_export import save
 from ...solver.scene.object_motion import ObjectMotion
@@ -25,6 +29,10 @@ from .stages import Stages
 if TYPE_CHECKING:  # as in clip.py
     import bpy
 
+    from ...bridge.armature.fcurves import CurveHolder
+    from ...bridge.takes.plan import AdaptedMotion
+    from ...bridge.takes.span import WrittenTake
+
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 
 
@@ -32,11 +40,14 @@ ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
 
-    problem: as it was asked for, in the recording's own lengths.
+    problem: as it was asked for, in the recording's own lengths. options: of the rest of the take.
+    keys: of the adapted frames.
     """
 
     clip: LoadedClip
     problem: MotionProblem
+    options: ResultOptions
+    keys: KeyOptions
     result: AdaptationResult
     outbox: Outbox
     stages: Stages
@@ -44,7 +55,9 @@ class Outputs:
     def write(self, *, picture: bool = True) -> Report:
         """All files of a result that is what was asked for; the picture where wanted."""
         with self.stages.stage("Writing keyframes"):
-            performer, adapted = self._write_actions("adapted")
+            take = self._recorded_curves()
+            performer, adapted, written = self._write_actions("adapted")
+            keys = self._choose_keys(performer, adapted, take)
             self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
         with self.stages.stage("Exporting FBX"), quiet():
@@ -58,8 +71,8 @@ class Outputs:
                 save(self.result.adaptation.motion, self.outbox.path("trajectory.npz"))
             except OSError as error:
                 raise not_writable(self.outbox.folder / "trajectory.npz", error) from error
-            report = self._report()
-        self._write_report(report)
+            report = replace(self._report(), keys=keys)
+        self._write_report(report, written)
         return report
 
     def _draw(self) -> None:
@@ -73,41 +86,93 @@ class Outputs:
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""
+        written = None
         if self.result.adaptation.reached > 0.0:
-            self._write_actions("best found, short of the goal")
+            _, _, written = self._write_actions("best found, short of the goal")
             self._build_scene()
             _save_blend(self.outbox.path("best_found.blend"))
-        self._write_report(self._report())
+        self._write_report(self._report(), written)
 
     def _report(self) -> Report:
         """With the stages that have ended."""
         return self.result.report(self.clip.origin, self.stages.done)
 
-    def _write_report(self, report: Report) -> None:
-        text = json.dumps(as_json(report), indent=1, allow_nan=False)
-        self.outbox.write_text("report.json", text + "\n")
-        self.outbox.write_text("report.txt", as_text(report))
+    def _write_report(self, report: Report, written: WrittenTake | None) -> None:
+        records: dict[str, object] = dict(as_json(report))
+        text = as_text(report)
+        if written is not None:
+            from ..words.take_text import take_lines, take_record
 
-    def _write_actions(self, called: str) -> tuple[bpy.types.Object, bpy.types.Action]:
+            records["take"] = take_record(written)
+            text += "".join(f"\n{line}" for line in take_lines(written)) + "\n"
+        self.outbox.write_text("report.json", json.dumps(records, indent=1, allow_nan=False) + "\n")
+        self.outbox.write_text("report.txt", text)
+
+    def _write_actions(
+        self, called: str
+    ) -> tuple[bpy.types.Object, bpy.types.Action, WrittenTake | None]:
         """The adapted action on the armature, or on one of its own where limbs were changed; the
-        recording's on a copy beside it. Returns who performs the action, and the action."""
+        recording's on a copy beside it. Returns who performs the action, the action, and what was
+        done to the take where it is the whole one."""
         from mathutils import Vector
 
         from ...bridge.accessors import current_action, present
+        from ...bridge.armature.fcurves import slot_identifier
         from ...bridge.armature.reproportioned import build_reproportioned
+        from ...bridge.armature.strips import lay_strips
         from ...bridge.armature.write import side_by_side, write_action
+        from ...bridge.takes.write_result import write_result
 
         recorded = present(current_action(self.clip.armature))
         armature, track = self.clip.armature, self.result.track
+        name, written = f"{recorded.name} {called}", None
         if self.result.subject.problem.requests.body.limbs:
             armature, track, _ = build_reproportioned(self.result.recording, track)
-        adapted = write_action(armature, track, name=f"{recorded.name} {called}")
-        if armature is self.clip.armature:
+            adapted = write_action(armature, track, name=name)
+            self.clip.armature.location += Vector(self._beside())  # it performs the recording
+        else:
+            adapted, written = write_result(armature, self._motion(), name=name)
             side_by_side(armature, recorded, adapted, offset=self._beside())
-        else:  # the recording's own armature performs it
-            self.clip.armature.location += Vector(self._beside())
-        _show_frames(round(track.frames[0]), round(track.frames[-1]))
-        return armature, adapted
+            if self.options.written_as is WrittenAs.STRIP:
+                lay_strips(armature, recorded, adapted, slot_identifier(armature))
+        first, last = adapted.frame_range.to_tuple()
+        _show_frames(round(first), round(last))
+        return armature, adapted, written
+
+    def _motion(self) -> AdaptedMotion:
+        """The motion, to be put into the take."""
+        from ...bridge.takes.plan import AdaptedMotion
+
+        return AdaptedMotion(
+            self.result.track,
+            self.result.times,
+            self.result.moved,
+            self.options,
+            ends=any(hold.ends for hold in self.problem.requests.holds),
+        )
+
+    def _recorded_curves(self) -> CurveHolder | None:
+        """Before anything is written."""
+        from ...bridge.armature import fcurves
+
+        return fcurves.holder(self.clip.armature)
+
+    def _choose_keys(
+        self, performer: bpy.types.Object, adapted: bpy.types.Action, take: CurveHolder | None
+    ) -> KeysReport | None:
+        """Give the action the keys that are asked for; None where every frame has one."""
+        if self.keys.on is KeyChoice.EVERY_FRAME:
+            return None
+        from ...bridge.armature import fcurves
+        from ...bridge.armature.incremental import complete
+        from ...bridge.keys.events import events_of
+        from ...bridge.keys.written import KeyedAction, choose_keys
+
+        track, rate = self.result.track, self.result.recording.rate
+        slot = fcurves.slot_identifier(performer)
+        keyed = KeyedAction(adapted, slot, track.bones, track.frames, take)
+        events = events_of(self.result.schedule, float(track.frames[0]), rate)
+        return complete(choose_keys(performer, keyed, self.keys, events))
 
     def _build_scene(self) -> None:
         from ...bridge.files.scene_objects import build_scene

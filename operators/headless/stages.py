@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TextIO
 
-from ...solver.data.report import StageReport
+from ...solver.data.reports.report import StageReport
 from ...solver.optimisation.sqp import Step
 from ...solver.transcription.motion import Motion
 from ...solver.worker.pipeline import StageClock

@@ -1,4 +1,4 @@
-"""The list of body changes: add and remove weights and limbs; and the bones of either list."""
+"""The list of body changes: add and remove weights, limbs, shapes; and the bones of either list."""
 
 import bpy
 
@@ -28,6 +28,7 @@ _OF_ONE_BONE = {
 DESCRIPTIONS = {
     BodyKind.LOAD: "Let a bone carry a weight, such as a bag in a hand",
     BodyKind.LIMB: "Make bones longer or shorter, heavier or lighter",
+    BodyKind.SHAPE: "Say what bones go through, how thick they are and how far their joints go",
 }
 _BONED = (RowList.CONSTRAINTS, RowList.BODY_CHANGES)  # lists whose rows are about bones
 BonedRow = HangtimeConstraint | HangtimeBodyChange
@@ -37,7 +38,7 @@ KIND_ITEMS = [(kind.name, kind.value, DESCRIPTIONS[kind]) for kind in BodyKind]
 class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
     bl_idname = OperatorId.ADD_BODY_CHANGE
     bl_label = "Add Body Change"
-    bl_description = "Add a weight or a limb of the selected pose bones"
+    bl_description = "Add a weight, a limb or a shape of the selected pose bones"
 
     kind: bpy.props.EnumProperty(name="Kind", items=KIND_ITEMS)
 
@@ -59,7 +60,7 @@ class AddBodyChangeOperator(AddingOperator, bpy.types.Operator):
 class RemoveBodyChangeOperator(RemoveOperator, bpy.types.Operator):
     bl_idname = OperatorId.REMOVE_BODY_CHANGE
     bl_label = "Remove Body Change"
-    bl_description = "Delete the chosen weight or limb"
+    bl_description = "Delete the chosen weight, limb or shape"
     of = RowList.BODY_CHANGES
 
 

@@ -17,7 +17,7 @@ from ..solve.common import chosen_armature, required_armature
 NO_ARMATURE = "Select the armature that carries the recording"
 LINKED = "The armature is linked; make a library override of it first"
 NO_CONSTRAINT = "Choose a constraint in the list first"
-NO_BODY_CHANGE = "Choose a weight or a limb in the list first"
+NO_BODY_CHANGE = "Choose a weight, a limb or a shape in the list first"
 NO_SURFACE = "Choose a surface in the list first"
 NONE_SELECTED = "Select bones in pose mode first"
 FROM_LIBRARY = "It comes from the linked file; switch it off instead, and add one of your own"

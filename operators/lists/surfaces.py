@@ -40,6 +40,8 @@ class AddSurfacesOperator(AddingOperator, bpy.types.Operator):
         what = "every object of the active collection" if properties.collection else "the selection"
         if properties.role == SurfaceRole.GROUND.name:
             return f"Let feet land on {what}, and limbs keep out of it"
+        if properties.role == SurfaceRole.CLEAR.name:
+            return f"Let the way go over {what}, as over a hurdle"
         return f"Let limbs keep out of {what}"
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
@@ -48,14 +50,14 @@ class AddSurfacesOperator(AddingOperator, bpy.types.Operator):
             collection = present(context.collection)
             if collection == present(context.scene).collection:  # no property can hold it
                 return self.refuse(SCENES_OWN, "WARNING")
-            row = _row_of(settings, collection)
+            row = row_of(settings, collection)
             row.collection, row.name, row.role = collection, collection.name, self.role
             return {"FINISHED"}
         chosen = [o for o in context.selected_objects if o.type in SOLID_TYPES]
         if not chosen:
             return self.refuse(NOTHING_SOLID, "WARNING")
         for each in chosen:
-            row = _row_of(settings, each)
+            row = row_of(settings, each)
             row.object, row.name, row.role = each, each.name, self.role
         return {"FINISHED"}
 
@@ -105,7 +107,7 @@ class SelectSurfaceOperator(RowOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _row_of(
+def row_of(
     settings: HangtimeSettings, named: bpy.types.Object | bpy.types.Collection
 ) -> HangtimeSurface:
     """The row of an object or a collection, a new one at the end where it has none; chosen."""

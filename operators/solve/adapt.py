@@ -1,6 +1,6 @@
 """Adapt and Refine: a new action in which the contacts are where the artist put them."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from dataclasses import replace
 
 import bpy
@@ -9,23 +9,32 @@ from ...bridge.accessors import present
 from ...bridge.armature.actions import (
     read_recorded_incrementally,
     recorded_action,
-    write_adapted_incrementally,
 )
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
-from ...bridge.constraints.motion_problem import analysis_key, problem_of, wanted_range
+from ...bridge.constraints.motion_problem import (
+    analysis_key,
+    problem_of,
+    span_of,
+    wanted_range,
+)
 from ...bridge.constraints.status import write_status
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
+from ...bridge.recipe.result import require_return_after
+from ...bridge.takes.options import result_options
+from ...bridge.takes.plan import AdaptedMotion
+from ...bridge.takes.takes import adapted_spans, note_made, polished_result
+from ...bridge.takes.write_result import write_adapted_incrementally
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import BEYOND, Recording, same_motion
-from ...solver.data.report import ConstraintReport
-from ...solver.data.requests import Method, ObjectiveKind, SolverOptions
+from ...solver.data.reports.constraints import ConstraintReport
+from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
@@ -38,11 +47,14 @@ from ..words.report_text import (
     joint_lines,
     retimed,
 )
+from ..words.take_text import take_lines
 from .common import hindrance, required_armature
+from .keys import write_keys
 from .live import live
 from .scene import note_surfaces, read_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
+from .takes import LEFT_BEHIND
 from .task import Task, TaskOperator, answered, take_best
 
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
@@ -59,9 +71,26 @@ def unanalysed(context: bpy.types.Context) -> str | None:
 class _Adapting(TaskOperator):
     """Base of Adapt and Refine."""
 
+    # Whether the artist knows that edits made by hand in the last result do not go along.
+    leave_edits: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
         return unanalysed(context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        told = left_behind(required_armature(context))
+        if told and not (self.leave_edits or bpy.app.background):
+            leave = bpy.ops.hangtime.leave_edits  # type: ignore[attr-defined]  # our own
+            leave("INVOKE_DEFAULT", then=self.bl_idname, text=told)
+            return {"CANCELLED"}
+        return super().invoke(context, event)
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        told = left_behind(required_armature(context))
+        if told and not self.leave_edits:
+            self.report({"WARNING"}, told)
+        return super().execute(context)
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         """Solver options; asked: those of a recipe."""
@@ -147,6 +176,17 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
         return done
 
 
+def left_behind(armature: bpy.types.Object) -> str:
+    """What is to be said before edits made by hand in the last result do not go along; empty where
+    there are none."""
+    result = polished_result(armature)
+    if result is None:
+        return ""
+    result.use_fake_user = True
+    source = present(recorded_action(armature))
+    return LEFT_BEHIND.format(result.name, source.name, result.name)
+
+
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """The motion problem that the settings state, with the recording as it is.
 
@@ -157,6 +197,7 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     recording = yield from read_wanted(armature)
     if analysis_key(settings, recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
+    require_return_after(result_options(settings), span_of(settings, recording)[1])
     scene = yield from read_surfaces(armature, recording.frames)
     problem = problem_of(settings, recording, scene.objects)
     return Asked(armature.name, armature.session_uid, recording, problem, scene)
@@ -180,25 +221,40 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     limbs = asked.problem.requests.body.limbs
     if limbs:
         within = asked.recording.window(*present(asked.problem.frames))
-        done = _write_other(changed_recording(within, limbs), answer, armature)
+        done = yield from _write_other(changed_recording(within, limbs), answer, armature)
     else:
-        done = yield from _write_own(answer, armature)
+        done = yield from _write_own(asked, answer, armature)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
     settings.status = "\n".join([settings.status, *remarks])
     return "; ".join([done, *remarks])
 
 
-def _write_own(answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
+def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
     """The answer as a new action of the armature."""
     stood = armature.matrix_world.copy()
-    action = yield from write_adapted_incrementally(armature, answer.track)
+    motion = AdaptedMotion(
+        answer.track,
+        answer.report.times,
+        answer.moved,
+        result_options(settings_of(armature)),
+        ends=any(hold.ends for hold in asked.problem.requests.holds),
+        kept=adapted_spans(present(recorded_action(armature))),
+    )
+    action, written = yield from write_adapted_incrementally(armature, motion)
     keep(action, answer.traces, stood)
-    _note(armature, armature, action, answer)
+    _note(armature, armature, action, answer, take_lines(written))
+    span, later = (written.span, written.later) if written is not None else (None, 0)
+    try:
+        yield from write_keys(armature, armature, action, answer)
+    finally:  # cancelled it has a key on every frame
+        note_made(armature, action, span, later)
     return f"Wrote the action {action.name}"
 
 
-def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Object) -> str:
+def _write_other(
+    recording: Recording, answer: Adapted, armature: bpy.types.Object
+) -> Incremental[str]:
     """The answer on an armature of its own, for the artist's keeps its proportions."""
     other, track, _ = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
@@ -207,6 +263,7 @@ def _write_other(recording: Recording, answer: Adapted, armature: bpy.types.Obje
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
     _note(armature, other, action, answer)
+    yield from write_keys(armature, other, action, answer)
     return f"Made the armature {other.name}, which performs the adapted motion"
 
 
@@ -215,12 +272,16 @@ def _note(
     performer: bpy.types.Object,
     action: bpy.types.Action,
     answer: Adapted,
+    told: Sequence[str] = (),
 ) -> None:
-    """Keeps what was found beside the action, and how each constraint came out."""
+    """Keeps what was found beside the action, and how each constraint came out.
+
+    told: lines about the rest of the take.
+    """
     settings = settings_of(armature)
-    settings.status = summary(answer)
+    settings.status = "\n".join([summary(answer), *told])
     write_status(settings, answer.report)
-    action_settings(action).report = as_text(answer.report)
+    action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)
     store_overlaps(action, answer.report)
     action_settings(action).performer = performer

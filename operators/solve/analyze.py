@@ -1,14 +1,17 @@
 """Analyze and Fit: what touches when in a recording, and how near physics comes to it."""
 
+from collections.abc import Generator
+from dataclasses import replace
+
 import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.traces_store import keep
-from ...bridge.constraints.bone_mapping import find_parts, missing_parts
+from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
 from ...bridge.constraints.motion_problem import problem_of, span_of, write_analysis
-from ...bridge.properties.settings import scene_settings, settings_of
-from ...bridge.worker_client import shared
+from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import (
     Fault,
     MissingPart,
@@ -19,12 +22,16 @@ from ...solver.data.faults import (
 )
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
-from ...solver.data.report import FitQuality
+from ...solver.data.reports.report import FitQuality
+from ...solver.data.scene import SceneRole
+from ...solver.skeleton.bind_pose import bind_frames
+from ...solver.skeleton.mapping import UNSURE
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from .adapt import ask_for, read_wanted
 from .common import FaultyOperator, chosen_armature, required_armature, said
+from .scene import read_surfaces
 from .session import session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered
@@ -39,7 +46,10 @@ LOOSE = "only roughly like the recording: check the contacts' frames, and the sc
 class FindBonesOperator(FaultyOperator, bpy.types.Operator):
     bl_idname = OperatorId.FIND_BONES
     bl_label = "Find Bones"
-    bl_description = "Find by their names which bone moves which part of the body"
+    bl_description = (
+        "Find which bone moves which part of the body, by the bones' names and the skeleton's "
+        "shape. What you chose yourself stays"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -49,9 +59,16 @@ class FindBonesOperator(FaultyOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
         find_parts(armature)
-        missing = missing_parts(settings_of(armature))
+        settings = settings_of(armature)
+        missing = missing_parts(settings)
+        unsure = [p.name for p in settings.parts if evidence_of(p) in UNSURE]
         if missing:
             self.report({"WARNING"}, f"No bone was found for the {', '.join(missing)}")
+        elif unsure:
+            told = "by the skeleton's shape alone; look through them in the panel Bones"
+            self.report({"WARNING"}, f"{len(unsure)} bones were found {told}")
+        elif settings.convention:
+            self.report({"INFO"}, f"The bones are named as by {settings.convention}")
         return {"FINISHED"}
 
 
@@ -68,6 +85,9 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         armature = required_armature(context)
         settings = settings_of(armature)
         recording = yield from read_wanted(armature)
+        bind = _leave_out_bind_pose(settings, recording)
+        if bind:
+            recording = yield from read_wanted(armature)
         first, last = present(recorded_action(armature)).frame_range.to_tuple()
         span = span_of(settings, recording)
         if span[0] >= last or span[1] <= first:
@@ -77,9 +97,9 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
             raise MissingPart(missing)
         problem = problem_of(settings, recording, with_contacts=False)
         session().advance(SolveState.SOLVING)
-        job = shared().ask(RequestKind.ANALYSE, recording, problem)
+        session().support = None
         try:
-            answer = yield from answered(job, Analysed)
+            answer = yield from _analysed(armature, recording, problem)
         except Fault as fault:
             raise _telling(fault, armature, recording, problem) from None
         contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
@@ -92,7 +112,46 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         found = (
             f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
         )
+        found = f"{found}{bind}"
         return f"{found}; but {said(odd)}" if odd is not None else found
+
+
+def _leave_out_bind_pose(settings: HangtimeSettings, recording: Recording) -> str:
+    """Where the artist chose no range, one that begins after a bind pose; and words that say so."""
+    count = 0 if settings.use_range else bind_frames(recording)
+    if count == 0:
+        return ""
+    frames = recording.frames
+    settings.first_frame, settings.last_frame = int(frames[count]), int(frames[-1])
+    settings.use_range = True
+    held = (
+        f"Frames {frames[0]:g} to {frames[count - 1]:g} hold"
+        if count > 1
+        else "The first frame holds"
+    )
+    return f". {held} the rest pose; the range begins at frame {frames[count]:g}"
+
+
+def _analysed(
+    armature: bpy.types.Object, recording: Recording, problem: MotionProblem
+) -> Generator[PendingRequest | None, None, Analysed]:
+    """The analysis; in the scene where without it something unseen carries the body.
+
+    Raises any Fault of an analysis, and of reading the scene.
+    """
+    try:
+        return (yield from answered(_ask(recording, problem), Analysed))
+    except UnseenSupport as fault:
+        unseen = fault
+    scene = yield from read_surfaces(armature, recording.frames)
+    if not any(thing.role is SceneRole.GROUND for thing in scene.objects):
+        raise unseen
+    problem = replace(problem, scene=scene.objects)
+    return (yield from answered(_ask(recording, problem), Analysed))
+
+
+def _ask(recording: Recording, problem: MotionProblem) -> PendingRequest:
+    return shared().ask(RequestKind.ANALYSE, recording, problem)
 
 
 def _telling(
@@ -104,7 +163,10 @@ def _telling(
     from ...solver.body.character import build_character  # numpy's, but half of the solver
 
     height = build_character(recording, mass=problem.mass, chosen=problem.bones).height
-    return _odd_height(armature.name, height) or fault
+    odd = _odd_height(armature.name, height)
+    if odd is None and isinstance(fault, UnseenSupport) and fault.boxes:
+        session().support = (armature.session_uid, fault.boxes)
+    return odd or fault
 
 
 def _odd_height(armature: str, height: float) -> OddHeight | None:

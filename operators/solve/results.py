@@ -4,7 +4,9 @@ import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.armature.actions import recorded_action, show
+from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.takes.takes import results_from, source_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import chosen_armature, required_armature
@@ -13,12 +15,20 @@ from .task import CANCELLED
 
 NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
+NOT_SHOWN = "The recording is shown; show the result that is to go"
+BUILT_ON = "{} was made from this result; discard that one first"
 ACCEPTED = "The result is accepted already"
 
 
 def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
-    """The action that was adapted last."""
-    adapted: bpy.types.Action | None = settings_of(armature).adapted if armature else None
+    """The result that is shown, else the one that was adapted last."""
+    if armature is None:
+        return None
+    shown = current_action(armature)
+    adapted: bpy.types.Action | None = settings_of(armature).adapted
+    beside = adapted is not None and action_settings(adapted).performer not in (None, armature)
+    if shown is not None and source_of(shown) is not None and not beside:
+        return shown
     return adapted
 
 
@@ -128,20 +138,37 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
 class DiscardOperator(_OfResult, bpy.types.Operator):
     bl_idname = OperatorId.DISCARD
     bl_label = "Discard"
-    bl_description = "Delete the adapted action and show the recording; what you asked for stays"
+    bl_description = (
+        "Delete the result that is shown and show what it was made from; what you asked for stays"
+    )
     bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
+        if why is not None:
+            return why
+        armature, result = required_armature(context), required_result(context)
+        if performer_of(armature) == armature and current_action(armature) != result:
+            return NOT_SHOWN
+        built = results_from(result)
+        return BUILT_ON.format(built[0].name) if built else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, result = required_armature(context), required_result(context)
-        recorded, name = action_settings(result).recording, result.name
+        settings, recorded, name = settings_of(armature), source_of(result), result.name
+        performer = performer_of(armature)
+        if settings.source == result:
+            settings.source = None
         if current_action(armature) == result:
             show(armature, recorded)
-        if performer_of(armature) != armature:
-            bpy.data.objects.remove(performer_of(armature))
+        if performer != armature:
+            bpy.data.objects.remove(performer)
+        remove_strips(armature, result)
         bpy.data.actions.remove(result)
-        left = [a for a in bpy.data.actions if action_settings(a).recording == recorded]
-        settings_of(armature).adapted = left[-1] if left else None
-        settings_of(armature).status = ""
+        left = results_from(present(recorded))
+        settings.adapted = left[-1] if left else None
+        settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
 

@@ -11,7 +11,7 @@ from ...bridge.scene.members import members
 from ...bridge.scene.read import SceneReading, changed_objects, read_scene
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import SceneFault
-from ...solver.data.report import Report
+from ...solver.data.reports.report import Report
 from .session import Asked
 
 RESHAPED = "{} changes its shape; what counts is that of frame {:.0f}"

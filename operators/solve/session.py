@@ -7,6 +7,7 @@ from typing import Protocol
 from ...bridge.scene.read import SceneReading
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
+from ...solver.data.scene import SupportBox
 from ...solver.worker.protocol import Adapted
 from .solving import SolveState, Solving
 
@@ -33,11 +34,13 @@ class Running(Protocol):
 @dataclass
 class Session:
     """The solve under way, who runs it, why the last one failed, what it was asked, and the best
-    motion that it found."""
+    motion that it found; the armature (its number) whose body something unseen carries, and boxes
+    that would."""
 
     solving: Solving | None = None
     failure: str = ""
     best: tuple[Asked, Adapted] | None = None
+    support: tuple[int, tuple[SupportBox, ...]] | None = None
     running: list[Running] = field(default_factory=list)
 
     def advance(self, to: SolveState) -> None:
@@ -49,7 +52,7 @@ class Session:
         """Ends what runs, without a word; for when the extension goes."""
         for operator in list(self.running):
             operator.leave()
-        self.best, self.failure = None, ""
+        self.best, self.failure, self.support = None, "", None
 
 
 @cache

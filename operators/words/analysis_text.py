@@ -4,10 +4,11 @@ import json
 import os
 from pathlib import Path
 
+from ...bridge.recipe.object_texts import object_text
 from ...solver.analysis.analyse import Analysis
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.problem import MotionProblem
-from ...solver.data.report import Origin
+from ...solver.data.reports.recording import Origin
 
 
 def analysis_text(analysis: Analysis, origin: Origin) -> str:
@@ -29,7 +30,8 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
     for contact in analysis.schedule.contacts:
         span = _span(analysis, contact.start, contact.end)
         place = ", ".join(f"{x:.3f}" for x in contact.place)
-        lines.append(f"{contact.name:<16}{span:>17}  {contact.bone:<16}{place}")
+        on = f" on {contact.on}" if contact.on is not None else ""
+        lines.append(f"{contact.name:<16}{span:>17}  {contact.bone:<16}{place}{on}")
     return "\n".join(lines) + "\n"
 
 
@@ -93,6 +95,7 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
             f"# name = {_quoted(contacts[0].name)}",
             "# start_frame = 0  # or end_frame, or remove = true",
             "",
+            *(object_text(thing) for thing in problem.scene),
         ]
     )
 

@@ -44,6 +44,12 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is.",
         "No bone was found for the {part} (looked for {tried:names}); say which bone it is.",
     ),
+    faults.NotJoined: "The bones {bones:names} have no common bone above them, so that legs and "
+    "trunk do not hang together; parent them to one bone in edit mode, or choose others under "
+    "Bones.",
+    faults.NoSpine: "No bone of the spine was found: between “{pelvis}” (pelvis) and “{head}” "
+    "(head) there must be one that the arms hang on; choose other bones for pelvis, head and arms "
+    "under Bones, or parent the arms to a bone of the spine in edit mode.",
     faults.NonFiniteKey: "The bone “{bone}” has a value at frame {frame:g} that is no number; "
     "delete or mend that key.",
     faults.BadScale: "The scale of “{object_name}” is ({scale:numbers}), but it must be the same, "
@@ -77,9 +83,15 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "that begin earlier and end later, or correct the contacts' frames. The best found goes "
         "{reached:percent} of the way; furthest off: {worst:missed}.",
     ),
-    faults.UnseenSupport: "From frame {first:g} to {last:g} neither foot touches the ground, yet "
-    "the body does not fall, so something unseen carries it (a box, a rail, a hand); choose frames "
-    "without it. If nothing does, give the scene the recording's frame rate.",
+    faults.UnseenSupport: (
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall, so something unseen carries it (a box, a rail, a hand); choose frames without it, "
+        "or let what carries it be ground in the panel World. If nothing does, give the scene the "
+        "recording's frame rate.",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box. Add it (Add "
+        "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
+    ),
     faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
     "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
     "motion, or choose a recording that moves over the ground.",
@@ -121,6 +133,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "{known:names}.",
     faults.EmptyRange: "“{request}” ends at frame {last:g}, before it begins at frame {first:g}; "
     "swap them.",
+    faults.ReturnTooEarly: "The take is to be back by frame {frame:g}, but is adapted until frame "
+    "{last:g}; choose a later frame.",
     faults.CrossedBounds: "“{request}” asks for at least {at_least:.4g} {unit} and at most "
     "{at_most:.4g} {unit}, which nothing is; raise the one or lower the other.",
     faults.AsksNothing: "“{request}” asks for nothing; switch on one of its options, or it off.",
@@ -160,6 +174,12 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.InsideOut: "The faces of “{thing}” look inwards, so its inside would be the world; "
     "recalculate its normals (edit mode, Mesh > Normals > Recalculate Outside), or swap the order "
     "of its faces' corners.",
+    faults.NoThickness: "“{thing}” is pressed flat, its faces on each other, so that it has no "
+    "inside; give it some thickness, or choose a plane in its place.",
+    faults.StandsIn: "“{contact}” stands in “{thing}”, {metres:length} below its surface; let its "
+    "stance stand on it (On, in the panel Contacts), or move one of them.",
+    faults.StandsBelow: "The recording stands {metres:length} below the top of “{thing}”, in it; "
+    "lower the object so far, or raise the armature.",
     faults.TooManyFaces: "The object “{thing}” has {count} triangles, and {most} are the most; "
     "choose a simpler mesh in its place, or put a Decimate modifier on it.",
     faults.SameObjectName: "Two objects of the scene are called “{thing}”; rename one, so that the "
@@ -185,6 +205,7 @@ PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
 
 ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"
 AWAY = "“{name}” stays {amount:millimetres} from its place"
+AT_ITS_END = "{name} as far as its range goes"
 MISSED = {  # of a constraint, by its type
     RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
     RowKind.MOMENT: "in {name}, the body turns without cause ({amount:.3g} BW·m)",
@@ -240,6 +261,8 @@ def _variant(fault: Fault) -> int:
             return (2 if fault.reached else 1) if fault.worst else 0
         case faults.NothingTouches():
             return bool(fault.touching)
+        case faults.UnseenSupport():
+            return bool(fault.boxes)
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile():
@@ -279,7 +302,9 @@ class _Formatter(Formatter):
         return super().format_field(value, format_spec)
 
     def _missed(self, violation: Violation) -> str:
-        return self.format(self._translate(MISSED[violation.kind]), violation)
+        at_end = violation.kind is RowKind.RANGE and violation.amount == 0.0
+        template = AT_ITS_END if at_end else MISSED[violation.kind]
+        return self.format(self._translate(template), violation)
 
 
 def _length(metres: float) -> str:

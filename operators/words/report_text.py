@@ -4,13 +4,11 @@ from collections.abc import Iterator
 from math import hypot
 
 from ...solver.data.contacts import PhaseKind
-from ...solver.data.report import (
-    CertificateItem,
-    CertificateLine,
-    ConstraintReport,
-    PhaseReport,
-    Report,
-)
+from ...solver.data.reports.certificate import CertificateItem, CertificateLine
+from ...solver.data.reports.constraints import ConstraintReport
+from ...solver.data.reports.jumps import PhaseReport
+from ...solver.data.reports.keys import KeysReport
+from ...solver.data.reports.report import Report
 from ...solver.data.row_kinds import RowKind
 from ...solver.data.status import Durations, Status
 from .messages import outcome
@@ -69,7 +67,7 @@ def as_text(report: Report) -> str:
     lines += [*_certificate(report), ""]
     if report.conditions:
         lines += [*_conditions(report), *_torque_limits(report), ""]
-    lines += [*_objective(report), *_stages(report)]
+    lines += [*_objective(report), *_keys(report), *_stages(report)]
     return "\n".join(lines) + "\n"
 
 
@@ -305,6 +303,20 @@ def _objective(report: Report) -> Iterator[str]:
         yield f"Objective   {100.0 * left:.0f} % of what it was before it was lessened"
     else:
         yield "Objective   no motion was found with less of it; the one before stands"
+
+
+def keys_line(keys: KeysReport) -> str:
+    """How many keys a result has, and what they leave."""
+    return (
+        f"{keys.keys} keys, {keys.rate:.1f} a second and channel; joints at most "
+        f"{keys.largest_error_mm:.2f} mm off ({keys.error_bone}, frame {keys.error_frame:.0f}), "
+        f"bones {keys.largest_turn_deg:.2f}° ({keys.turn_bone}, frame {keys.turn_frame:.0f})"
+    )
+
+
+def _keys(report: Report) -> Iterator[str]:
+    if report.keys is not None:
+        yield f"Keys        {keys_line(report.keys)}"
 
 
 def _stages(report: Report) -> Iterator[str]:

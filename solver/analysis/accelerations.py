@@ -1,11 +1,15 @@
 """Velocities and accelerations of a recording: of its joint angles and of its centre of mass."""
 
+import numpy as np
+
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule
 from ..numerics.local_regression import derivative
 from .performance import Performance
 
-SMOOTHING_TIME = 0.012  # s; feet strike and knees give way within twice as long
+SMOOTHING_TIME = 0.018  # s; feet strike and knees give way within twice as long
+# A level force is a tenth of the vertical one, knows no impact, and is under the same noise.
+LEVEL_SMOOTHING_TIME = 0.03  # s
 SMOOTHING_FRAMES = 1.2  # where frames are further apart
 
 
@@ -35,7 +39,14 @@ def com_acceleration(
     In flight it is gravity, whatever the recording's noise says.
     """
     take, width = performance.take, smoothing_width(performance)
-    found = derivative(take.times, take.com, at, width, 2)
+    level = max(LEVEL_SMOOTHING_TIME, width)
+    found = np.concatenate(
+        [
+            derivative(take.times, take.com[:, axes], at, smoothed, 2)
+            for axes, smoothed in ((slice(0, 2), level), (slice(2, 3), width))
+        ],
+        axis=1,
+    )
     for flight in schedule.flights:
         found[(at > flight.start) & (at < flight.end)] = [0.0, 0.0, -performance.character.gravity]
     return found

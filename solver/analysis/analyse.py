@@ -15,8 +15,9 @@ from ..data.contacts import Contact, ContactSchedule, snap
 from ..data.faults import BadTiming, ClipTooShort, Treadmill, UnknownContactName, UnseenSupport
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
+from ..scene.support import boxes_beneath
 from .belt import belt_speed
-from .grounding import grounded, parted
+from .grounding import foot_sized, grounded, parted
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
 from .take import take_of
 
@@ -44,12 +45,16 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     take = take_of(recording, within)
     if len(take.frames) > len(within.frames):
         performance = replace(performance, longer=perform(take, character))
-    found = parted(find_contacts(performance))  # before corrections, for those are the last word
-    schedule = grounded(_corrected(found, problem, performance), performance)
+    # Parted before corrections, for those are the last word.
+    found = parted(find_contacts(performance, problem.scene))
+    standing = foot_sized(_corrected(found, problem, performance), performance)
+    schedule = grounded(standing, performance, problem.scene)
     for gap in schedule.unseen:
-        if speed := belt_speed(performance.times, contact_points(performance)[0]):
+        points, floor_m = contact_points(performance)
+        if speed := belt_speed(performance.times, points):
             raise Treadmill(speed)
-        raise UnseenSupport(_frame(within, gap.start), _frame(within, gap.end))
+        boxes = boxes_beneath(performance.times, points, gap, floor_m)
+        raise UnseenSupport(_frame(within, gap.start), _frame(within, gap.end), boxes)
     return Analysis(performance, schedule)
 
 

@@ -17,6 +17,7 @@ from ..data.contacts import (
     numbered,
 )
 from ..numerics.interpolation import interpolate
+from ..scene.support import Heights, level
 from .force_timing import timed_by_forces
 from .point_movement import STEP, PointMovement, even_clock, point_movement
 
@@ -38,13 +39,15 @@ def detect_contacts(
     com: FloatArray | None = None,
     duration_s: float | None = None,
     shortest_flight_s: float = 0.03,
+    ground: Heights | None = None,
 ) -> ContactSchedule:
     """Contact schedule of a recording.
 
     times: (T,) s. duration_s: the schedule is of [0, duration_s], None for all times; what is
     recorded before and after tells of the contacts that are cut off. points: by name ("Left heel").
     com: (T, 3) m, the centre of mass: an interval without contact in which it does not fall freely
-    is `unseen` support, not a flight. Gaps below shortest_flight_s are closed. A point that is low
+    is `unseen` support, not a flight. ground: heights of what points are above, None for the floor
+    alone. Gaps below shortest_flight_s are closed. A point that is low
     and slow touches; the contact lasts while it stays at its height of that contact, and a foot's
     as long as its force acts, to a fraction of a frame.
     """
@@ -54,7 +57,7 @@ def detect_contacts(
     touches = [
         touch
         for name, point in points.items()
-        for touch in _touches(clock, name, point, movements[name], floor_m)
+        for touch in _touches(clock, name, point, movements[name], ground or level(floor_m))
     ]
     heights = {name: movement.track[:, 2] for name, movement in movements.items()}
     legs = {
@@ -70,11 +73,11 @@ def detect_contacts(
 
 
 def _touches(
-    clock: FloatArray, name: str, point: ContactPoint, movement: PointMovement, floor_m: float
+    clock: FloatArray, name: str, point: ContactPoint, movement: PointMovement, ground: Heights
 ) -> Iterable[Contact]:
     """Contacts of one point, in order and disjoint. clock: (N,) s, of the movement."""
     thresholds = point.kind.value
-    low = movement.track[:, 2] < floor_m + thresholds.max_height
+    low = movement.track[:, 2] < ground(movement.track) + thresholds.max_height
     at_rest = low & (np.linalg.norm(movement.velocity, axis=1) < thresholds.max_speed)
     candidates = [
         candidate

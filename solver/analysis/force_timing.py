@@ -17,7 +17,7 @@ from .point_movement import acceleration, rate
 
 IMPACT_MIDDLE, IMPACT_REACH = -0.01, 0.035  # s from the landing by height; where it is sought
 IMPACT_DELAY = 0.008  # s from the force's beginning to the foot's greatest acceleration
-MIN_IMPACT = 15.0  # m/s²; a walker's heel strike has 25 to 40, landings from a jump 80 to 300
+MIN_IMPACT = 20.0  # m/s²; a walker's heel strike has 25 to 40, landings from a jump 80 to 300
 MIN_PUSH_SPEED = 0.4  # m/s; a leg that lengthens more slowly no longer pushes
 PUSH_REACH = 0.08  # s between that and the lift-off by height
 OTHER_END = {"heel": "toe", "toe": "heel"}

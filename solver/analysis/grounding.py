@@ -6,12 +6,17 @@ sole gives, and as the recording shows it. A foot that slides is at one place an
 in between it is not loaded.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..data.contacts import Contact, ContactSchedule
+from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
+from ..scene.support import ground_beneath
 from .performance import Performance
 
 NEAR_FLOOR = 0.04  # m; a place further away is on something else
@@ -22,6 +27,9 @@ SOLE_COMPLIANCE = 0.008
 SAME_PLACE = 0.01  # m; a recording tells where a foot stands no better, and its sole rolls as far
 MAX_STEP_SPEED = 1.0  # m/s; of a foot that is shifted from place to place
 MIN_STEP_TIME = 0.06  # s
+MAX_FOOT_CHANGE = 0.02  # m; by as much a foot's heel and toe come nearer as it bends and rolls
+MIN_OVERLAP = 0.01  # s; in which heel and toe stand together
+OVERLAP_SAMPLES = 9
 MAX_STEP_SHARE = 0.3  # of the shorter of two contacts that a step takes from each
 
 
@@ -52,20 +60,68 @@ def parted(schedule: ContactSchedule) -> ContactSchedule:
     return found
 
 
-def grounded(schedule: ContactSchedule, performance: Performance) -> ContactSchedule:
-    """The schedule with its places near the floor put upon it, and each contact's rise."""
-    contacts = tuple(_grounded(c, schedule, performance) for c in schedule.contacts)
+def foot_sized(schedule: ContactSchedule, performance: Performance) -> ContactSchedule:
+    """The schedule with heel and toe of a foot as far apart as the foot is long.
+
+    A foot that turns while it stands leaves its heel and toe places of different moments. The point
+    that stands for longer keeps its place.
+    """
+    contacts = list(schedule.contacts)
+    for i, j in combinations(range(len(contacts)), 2):
+        longer, shorter = sorted((i, j), key=lambda k: contacts[k].start - contacts[k].end)
+        apart = _recorded_apart(contacts[shorter], contacts[longer], performance)
+        if apart is None:
+            continue
+        found = (contacts[shorter].place - contacts[longer].place)[:2]
+        if abs(np.linalg.norm(found) - np.linalg.norm(apart)) > MAX_FOOT_CHANGE:
+            level = contacts[longer].place[:2] + apart
+            place = np.array([*level, contacts[shorter].place[2]])
+            contacts[shorter] = replace(contacts[shorter], place=place)
+    return replace(schedule, contacts=tuple(contacts))
+
+
+def _recorded_apart(one: Contact, other: Contact, performance: Performance) -> FloatArray | None:
+    """(2,) m, level, from the other point to this one while both stand; None if not of one foot."""
+    start, end = max(one.start, other.start), min(one.end, other.end)
+    feet = [c.point.rpartition(" ") for c in (one, other)]
+    if feet[0][0] != feet[1][0] or {f[2] for f in feet} != {"heel", "toe"}:
+        return None
+    if end - start < MIN_OVERLAP:
+        return None
+    between = _track(one, performance) - _track(other, performance)
+    instants = np.linspace(start, end, OVERLAP_SAMPLES)
+    return np.asarray(np.median(interpolate(performance.times, between, instants)[:, :2], axis=0))
+
+
+def _track(contact: Contact, performance: Performance) -> FloatArray:
+    """(T, 3) m, the contact's point as it was recorded."""
+    recording = performance.recording
+    bone = recording.index(contact.bone)
+    return np.asarray(recording.heads[:, bone] + recording.rotations[:, bone] @ contact.offset)
+
+
+def grounded(
+    schedule: ContactSchedule, performance: Performance, scene: Sequence[SceneObject] = ()
+) -> ContactSchedule:
+    """The schedule with its places near the ground put upon it, and each contact's rise.
+
+    scene: the objects that contacts may be on.
+    """
+    contacts = tuple(
+        _grounded(c, schedule, performance, ground_beneath(c, schedule.floor_m, scene))
+        for c in schedule.contacts
+    )
     return replace(schedule, contacts=contacts)
 
 
-def _grounded(contact: Contact, schedule: ContactSchedule, performance: Performance) -> Contact:
-    height = float(contact.place[2]) - schedule.floor_m
+def _grounded(
+    contact: Contact, schedule: ContactSchedule, performance: Performance, ground_m: float
+) -> Contact:
+    height = float(contact.place[2]) - ground_m
     if abs(height) < NEAR_FLOOR:
         height = float(np.clip(height, *PLACE_BAND))
-    place = np.array([*contact.place[:2], schedule.floor_m + height])
-    recording = performance.recording
-    bone = recording.index(contact.bone)
-    track = recording.heads[:, bone] + recording.rotations[:, bone] @ contact.offset
+    place = np.array([*contact.place[:2], ground_m + height])
+    track = _track(contact, performance)
     ends = np.array([contact.start, contact.end])
     above = interpolate(performance.times, track[:, 2], ends) - place[2]
     cut_off = (ends <= 0.0) | (ends >= schedule.duration)

@@ -1,6 +1,8 @@
 """Joint angles and centre of mass of a recording, and its candidate contact points."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -10,7 +12,9 @@ from ..body.character import Character, body_rotations
 from ..body.kinematics import BodyPoint
 from ..data.contacts import ContactPoint, ContactSchedule, PointKind, snap
 from ..data.recording import Recording
+from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
+from ..scene.support import StandingGround
 from .contact_detection import detect_contacts
 from .soles import FootTracks, floor_height, foot_points
 
@@ -73,17 +77,22 @@ def perform(recording: Recording, character: Character) -> Performance:
     )
 
 
-def find_contacts(performance: Performance) -> ContactSchedule:
+def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -> ContactSchedule:
     """Contact schedule of feet and hands, event times snapped so that no span is too short.
 
-    Found in the whole take, and told as far as they are within the recording.
+    Found in the whole take, and told as far as they are within the recording. Still ground of the
+    scene counts where the floor alone leaves support unseen: elsewhere the recording knows nothing
+    of what is put into its way.
     """
     take = performance.take
     points, floor_m = contact_points(take)
     duration = float(performance.times[-1])
-    schedule = detect_contacts(
-        take.times, points, floor_m=floor_m, com=take.com, duration_s=duration
+    detect = partial(
+        detect_contacts, take.times, points, floor_m=floor_m, com=take.com, duration_s=duration
     )
+    schedule, ground = detect(), StandingGround.of(floor_m, scene)
+    if schedule.unseen and ground.things:
+        schedule = ground.named(detect(ground=ground.heights))
     return snap(schedule, snap_tolerance(performance))
 
 

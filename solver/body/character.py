@@ -11,10 +11,12 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY, UP
-from ..data.faults import ZeroLengthBone
+from ..data.faults import StillBone, ZeroLengthBone
 from ..data.problem import MassTable
 from ..data.recording import Recording
 from ..numerics.rotations import unit
+from ..skeleton.ends import end_span
+from ..skeleton.tree import tree_of
 from .anatomy import Part, Segment, Side, map_anatomy
 from .joint_axes import JointAxes, ball_axes, hinge_axes, residual_angle, universal_axes
 from .mass_tables import BODY_DENSITY, BOX_ASPECT, MASS_FALLBACK, MASS_TABLES, SegmentInertia
@@ -31,14 +33,8 @@ EXTENDABLE_JOINTS = (Part.FOREARM, Part.FOOT, Part.CLAVICLE, Part.HAND)
 MAX_JOINT_RESIDUAL = np.radians(4.0)  # RMS; beyond it an extendable joint gets another DOF
 MIN_BONE_LENGTH = 1e-4  # m; a shorter bone has no direction
 MIN_BOX_LENGTH = 0.02  # m; of a body of almost no length, which still needs some inertia
+LEVEL = np.array([1.0, 1.0, 0.0])
 NECK_AREA_RATIO = 0.5  # a neck's cross-section as a share of the head's, to part their mass
-END_SEGMENT_LENGTH: Mapping[Part, tuple[float, float]] = {
-    # Bounds on a leaf's length as a share of body height: where a skeleton ends, files often lie.
-    Part.HEAD: (0.09, 0.16),
-    Part.HAND: (0.06, 0.11),
-    Part.TOE: (0.03, 0.07),
-    Part.FOOT: (0.10, 0.16),
-}
 
 
 @dataclass(frozen=True)
@@ -113,6 +109,13 @@ class Character:
                 return i
         return None
 
+    def moved_by(self, request: str, bone: str) -> int:
+        """Index of a bone's body. request: whose name a fault tells. Raises StillBone."""
+        known = tuple(body.bone for body in self.bodies)
+        if bone not in known:
+            raise StillBone(request, bone, known)
+        return known.index(bone)
+
     def ancestors(self, body: int) -> list[int]:
         """Indices of the body and its ancestors up to the root, nearest first."""
         line = []
@@ -135,7 +138,7 @@ def build_character(
     Raises MissingPart, ZeroLengthBone.
     """
     segments = map_anatomy(recording.bones, chosen)
-    parents = [_parent(recording, segments, i) for i in range(len(segments))]
+    parents = _parents(recording, segments)
     rotations = body_rotations(recording, [s.bone for s in segments])
     offsets = _offsets(recording, segments, parents, rotations)
     rest = [recording.bones[s.bone].head for s in segments]
@@ -164,15 +167,12 @@ def body_rotations(recording: Recording, bones: Sequence[int]) -> FloatArray:
     return np.asarray(recording.rotations[:, bones] @ np.swapaxes(rest, -1, -2))
 
 
-def _parent(recording: Recording, segments: Sequence[Segment], i: int) -> int:
-    """Index of the nearest segment above, -1 for the root."""
+def _parents(recording: Recording, segments: Sequence[Segment]) -> list[int]:
+    """Index of the nearest segment above each, -1 for the root."""
+    tree = tree_of(recording.bones)
     by_bone = {s.bone: k for k, s in enumerate(segments)}
-    bone = recording.bones[segments[i].bone].parent
-    while bone >= 0:
-        if bone in by_bone:
-            return by_bone[bone]
-        bone = recording.bones[bone].parent
-    return -1
+    lines = [tree.ancestors(segment.bone)[1:] for segment in segments]
+    return [next((by_bone[b] for b in line if b in by_bone), -1) for line in lines]
 
 
 def _offsets(
@@ -235,25 +235,28 @@ def _tip(
         short = float(np.linalg.norm(offsets[chain[0]])) < 0.01 * height
         after = _children(parents, chain[0]) if short and part is Part.SPINE else []
         return offsets[chain[0]] + (offsets[after[0]] if after else 0.0)
-    bone = recording.bones[segments[i].bone]
-    end = _farthest(recording, segments[i].bone)
-    span = end - bone.head
-    length = float(np.linalg.norm(span))
-    if length < MIN_BONE_LENGTH:
-        return np.asarray(span)
-    low, high = END_SEGMENT_LENGTH.get(part, (0.0, np.inf))
-    return np.asarray(span / length * np.clip(length, low * height, high * height))
+    onwards = _onwards(recording, segments, parents, i)
+    return end_span(recording.bones, segments[i].bone, part, onwards, height)
 
 
-def _farthest(recording: Recording, bone: int) -> FloatArray:
-    """The farthest rest point of a bone and of everything below it."""
-    below = {bone}
-    for i, other in enumerate(recording.bones):
-        if other.parent in below:
-            below.add(i)
-    head = recording.bones[bone].head
-    ends = [recording.bones[i].tail for i in below] + [recording.bones[i].head for i in below]
-    return max(ends, key=lambda end: float(np.linalg.norm(end - head)))
+def _onwards(
+    recording: Recording, segments: Sequence[Segment], parents: Sequence[int], i: int
+) -> FloatArray:
+    """(3,) where a last segment would lead by those before it, at rest; 0 where they do not tell.
+
+    Hands on from the forearm, heads up from the pelvis, feet and toes ahead.
+    """
+    rest = [recording.bones[s.bone].head for s in segments]
+    match segments[i].part:
+        case Part.HAND:
+            return rest[i] - rest[parents[i]]
+        case Part.HEAD:
+            return rest[i] - rest[0]
+        case Part.TOE:
+            return np.asarray((rest[i] - rest[parents[i]]) * LEVEL)
+        case Part.FOOT:
+            return _forward(segments, rest)
+    return np.zeros(3)
 
 
 def _check_lengths(

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..analysis.timeline import MIN_PHASE_DURATION
 from ..data.contacts import Contact, ContactSchedule
 from ..data.faults import BadTiming, FreePoint, NothingTouches, TakenName, UnknownPhaseIn
 from ..data.problem import MotionProblem
 from ..data.requests import ConeShape, PointRequest
-from ..data.timeline import MIN_PHASE_DURATION
 from ..transcription.contact_pins import PlaceTrajectory, PointContact
 from .evaluation_context import EvaluationContext, touches
 from .point_constraints import path_places, point_axes, point_place

@@ -6,14 +6,14 @@ from functools import cached_property
 
 import numpy as np
 
+from ..analysis.timeline import Timeline, active_interval
 from ..arrays import FloatArray
 from ..body.character import Character
 from ..body.kinematics import BodyPoint
 from ..data.contacts import Contact, ContactSchedule, Phase
-from ..data.faults import RootHasNoJoint, StillBone
+from ..data.faults import RootHasNoJoint
 from ..data.recording import Recording
 from ..data.requests import When
-from ..data.timeline import Timeline, active_interval
 from ..transcription.motion import Motion
 
 APEX_SAMPLING_RATE = 240.0  # Hz
@@ -55,10 +55,7 @@ class EvaluationContext:
 
     def body(self, name: str, bone: str) -> int:
         """Index of a bone's body. Raises StillBone."""
-        known = tuple(body.bone for body in self.character.bodies)
-        if bone not in known:
-            raise StillBone(name, bone, known)
-        return known.index(bone)
+        return self.character.moved_by(name, bone)
 
     def jointed(self, name: str, bone: str) -> int:
         """Index of a body with a joint to a parent. Raises StillBone, RootHasNoJoint."""

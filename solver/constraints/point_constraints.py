@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..analysis.timeline import Timeline
 from ..arrays import FloatArray
 from ..body.kinematics import BodyPoint
 from ..data.requests import Path, PointAxes, PointRequest
-from ..data.timeline import Timeline
 from ..numerics.rotations import perpendicular, unit
 from ..transcription.constraint import Bounds, Constraint
 from ..transcription.constraint_functions import PointPosition

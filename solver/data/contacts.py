@@ -94,7 +94,7 @@ class Contact:
     offset: (3,) m, bone-local, from the bone's head. place: (3,) m, world, Z up.
     start, end: s; the instants at which the force begins and ends. A contact that the clip cuts
     off starts at 0 or ends at the schedule's duration. rise: m above its place at these two; the
-    sole gives as much.
+    sole gives as much. on: the object of the scene that the recording has it on, None: the floor.
     """
 
     name: str
@@ -105,6 +105,7 @@ class Contact:
     end: float
     place: FloatArray
     rise: tuple[float, float] = (0.0, 0.0)
+    on: str | None = None
 
     @property
     def asked_for(self) -> bool:

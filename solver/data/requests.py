@@ -1,4 +1,4 @@
-"""Constraint, force, body, timing and solver requests as named records (thesis 3.3).
+"""Constraint, force, body and timing requests as named records (thesis 3.3).
 
 Every record carries the artist's name for it, by which it is reported. Bones are named as in the
 armature. Angles are in rad, lengths in m, forces in body weights, torques in N·m, world Z up.
@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from .constants import STANDARD_GRAVITY
+from .solver_options import SolverOptions
 
 Vector = tuple[float, float, float]
 Bound = tuple[float | None, float | None]  # lower, upper; None is free
@@ -292,85 +293,26 @@ class Clear:
     bones: tuple[str, ...] = ()
 
 
-class Dynamics(Enum):
-    """Dynamics formulation: whose equations of motion are in the problem (thesis 3.2).
+class Through(Enum):
+    """What the solid shapes of some bones may go through."""
 
-    AUTOMATIC: the root's, and those of the joints whose torques are limited or weighed.
-    """
-
-    AUTOMATIC = "automatic"
-    REDUCED = "reduced"
-    STANDARD = "standard"
-
-
-class Method(Enum):
-    """Solution method by its unknowns: implicit or explicit (thesis 4.3, 4.4)."""
-
-    IMPLICIT = "implicit"  # (q, lambda)
-    IMPLICIT_TORQUES = "implicit with torques"  # (q, tau, lambda)
-    EXPLICIT = "explicit"
-
-
-class ObjectiveKind(Enum):
-    """Objective terms of the explicit solution (thesis 4.3)."""
-
-    TORQUE_SMOOTHNESS = "torque smoothness"
-    POWER = "power"
-    TORQUE_OUTPUT = "torque output"
-    MASS_DISPLACEMENT = "mass displacement"
-    ANGLE_DISPLACEMENT = "angle displacement"
-    ANGLE_SMOOTHNESS = "angle smoothness"
-    TOTAL_CHANGE = "total change"
-    CLOSENESS = "closeness"
-
-
-class ReductionKind(Enum):
-    """Model-reduction method for the joints other than the root's (thesis 5)."""
-
-    PCA = "pca"
-    VARIMAX = "varimax"
-    QUARTIMAX = "quartimax"
-    OBLIQUE = "oblique"
-    ICA = "ica"
-    MIRROR_LEGS = "mirror legs"
-    MATRIX = "matrix"
+    NOTHING = "nothing"
+    EACH_OTHER = "each other"
+    ALL = "all"  # limbs, floor and scene alike
 
 
 @dataclass(frozen=True)
-class Reduction:
-    """Model reduction (thesis 5). dimensions: None chooses by `explained`, the share of variance.
+class Shape:
+    """What the solid shapes and the joints of some bones are: hair, cloth, what a hand holds.
 
-    matrix: for MATRIX, one row per combined coordinate: {bone: (weights of its angles)}.
+    thickness: scale factor on the shapes' thickness. human: whether the joints keep to human
+    ranges, where others do.
     """
 
-    kind: ReductionKind
-    dimensions: int | None = None
-    explained: float = 0.999
-    matrix: tuple[tuple[tuple[str, tuple[float, ...]], ...], ...] = ()
-
-
-@dataclass(frozen=True)
-class SolverOptions:
-    """Solver options. objectives: (kind, weight) of the explicit solution, weights as shares.
-
-    longest_span: s, between knots; torque_span: s, between knots of the torques' own splines;
-    None chooses them automatically. keep_times: phases last as long as recorded where no
-    PhaseTiming says otherwise; else those that a moved landing or take-off adjoins take the time
-    that goes with it. solid: floor and limbs keep out of each other, as far as they do in the
-    recording. human: joints keep to human ranges, or to the recording's where those are wider.
-    """
-
-    method: Method = Method.IMPLICIT
-    dynamics: Dynamics = Dynamics.AUTOMATIC
-    objectives: tuple[tuple[ObjectiveKind, float], ...] = (
-        (ObjectiveKind.TORQUE_SMOOTHNESS, 1.0),
-        (ObjectiveKind.CLOSENESS, 1.0),
-    )
-    reduction: Reduction | None = None
-    longest_span: float | None = None
-    torque_span: float | None = None
-    keep_times: bool = False
-    solid: bool = True
+    name: str
+    bones: tuple[str, ...]
+    thickness: float = 1.0
+    through: Through = Through.NOTHING
     human: bool = True
 
 
@@ -388,6 +330,7 @@ class Requests:
     orientations: tuple[OrientationRequest, ...] = ()
     forces: tuple[ForceRequest, ...] = ()
     clears: tuple[Clear, ...] = ()
+    shapes: tuple[Shape, ...] = ()
     body: BodyChange = field(default_factory=BodyChange)
     timings: tuple[PhaseTiming, ...] = ()
     holds: tuple[Hold, ...] = ()
@@ -398,7 +341,7 @@ class Requests:
         """The artist's names of all requests."""
         kinds = (self.points, self.lifts, self.angles, self.cones, self.twists, self.torques)
         more = (self.poses, self.orientations, self.forces, self.body.added, self.body.limbs)
-        every = (*kinds, *more, self.clears, self.timings, self.holds)
+        every = (*kinds, *more, self.clears, self.shapes, self.timings, self.holds)
         return tuple(request.name for kind in every for request in kind)
 
     @property

@@ -8,7 +8,7 @@ from .contacts import ContactSchedule
 from .problem import MotionProblem
 from .recording import PoseTrack, Recording
 from .requests import Bound, PointRequest, Vector
-from .scene import SteadyMotion
+from .scene import SteadyMotion, SupportBox
 
 
 def scaled_recording(recording: Recording, factor: float) -> Recording:
@@ -50,6 +50,11 @@ def _scaled_rates(steady: SteadyMotion, factor: float) -> SteadyMotion:
         _times(factor, each) for each in (steady.velocity, steady.pivot, steady.belt)
     )
     return replace(steady, velocity=velocity, pivot=pivot, belt=belt)
+
+
+def scaled_box(box: SupportBox, factor: float) -> SupportBox:
+    """The box with every length times `factor`, about the origin."""
+    return replace(box, size=_times(factor, box.size), place=_times(factor, box.place))
 
 
 def _scaled_point(point: PointRequest, factor: float) -> PointRequest:

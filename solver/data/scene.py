@@ -8,12 +8,27 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from .requests import Vector
 
+CLEARANCE = "the clearance of {}"  # an object's, by its name, as reports call it
+
 
 class SceneRole(Enum):
     """What an object of the scene is to the performer."""
 
     GROUND = "ground"  # feet land on its faces, and limbs keep out of it
     OBSTACLE = "obstacle"  # limbs keep out of it
+
+
+@dataclass(frozen=True)
+class SupportBox:
+    """A box that would carry what nothing in sight does.
+
+    size: (3,) m, along its own axes. place: (3,) m, world; the middle of its base. turn: rad,
+    counter-clockwise from above.
+    """
+
+    size: Vector
+    place: Vector
+    turn: float
 
 
 @dataclass(frozen=True)

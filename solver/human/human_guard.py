@@ -58,6 +58,10 @@ class RangeLeft:
     upper: BoolArray
     kind: RowKind = RowKind.RANGE
 
+    def some(self, which: BoolArray) -> "RangeLeft":
+        """Of some of the rows (U,)."""
+        return replace(self, items=self.items[which], upper=self.upper[which])
+
     def value(self, state: State) -> FloatArray:
         """(U, 1) rad."""
         left, angles = np.empty(len(self.items)), state.angles()
@@ -83,12 +87,14 @@ class RangeLeft:
 class HumanGuard:
     """Ranges of a motion's joints. human: those of any person; reference: the fit on this body.
 
-    own: bones whose joints have limits of the artist's, and none of these.
+    own: bones whose joints have limits of the artist's, and none of these. hard: whether none of
+    them may be given up.
     """
 
     human: tuple[JointRange, ...]
     reference: Motion
     own: frozenset[str] = frozenset()
+    hard: bool = False
     kind: RowKind = RowKind.RANGE
 
     @cached_property

@@ -7,6 +7,8 @@ rotation      of hip, shoulder, spine, neck and forearm about themselves, and of
               length: AAOS 1965, in Norkin and White, appendix A
 ankle         bends further forwards under load than free: 40, of the weight-bearing lunge
               (Bennell et al. 1998)
+knee          is pushed beyond straight, but does not go there by itself (Kapandji, The Physiology
+              of the Joints, volume 2): the table's 10 degrees of hyperextension do not count
 collarbone    Neumann, Kinesiology of the Musculoskeletal System, chapter 5; its axial rotation by
               Inman et al. 1944. An arm raised to the full asks for 30 of elevation and 31 of
               rotation (Inman et al. 1944; Ludewig et al. 2009)
@@ -35,7 +37,7 @@ from ..body.human_limits import (
     human_ranges,
 )
 from ..data.constants import UP
-from ..numerics.rotations import rotation_matrix, unit
+from ..numerics.rotations import shortest_rotation, unit
 from ..transcription.joint_measures import (
     ConeAngle,
     JointMeasure,
@@ -69,6 +71,10 @@ class JointRange:
     measure: JointMeasure
     lower: float
     upper: float
+
+    def widened(self, by: float) -> "JointRange":
+        """The same, but `by` rad wider at both ends."""
+        return replace(self, lower=self.lower - by, upper=self.upper + by)
 
     def holding(self, R: FloatArray) -> "JointRange":
         """The same, or as much wider as rotations (T, 3, 3), child to parent, ask for."""
@@ -123,10 +129,14 @@ def rest_figure(character: Character) -> RestFigure:
 
 
 def _loaded(character: Character, body: int, limit: BendRange) -> BendRange:
-    """An ankle's range as it is under load."""
-    if character.bodies[body].part is not Part.FOOT:
-        return limit
-    return replace(limit, upper=limit.upper + radians(LOADED_DORSIFLEXION - ANKLE_FLEXION[1]))
+    """An ankle's and a knee's range as it is under load."""
+    match character.bodies[body].part:
+        case Part.FOOT:
+            more = radians(LOADED_DORSIFLEXION - ANKLE_FLEXION[1])
+            return replace(limit, upper=limit.upper + more)
+        case Part.SHANK:
+            return replace(limit, lower=0.0)
+    return limit
 
 
 def _bend(
@@ -161,7 +171,8 @@ def _more(
             yield from _bend(character, i, f"{side} toe", limit, angles)
         case Part.THIGH if dofs == 3:
             outwards = _sense(along, figure.forward, figure.outward(body.side))
-            zero = _shortest(along, unit(figure.forward - UP))  # amid its bends: half a turn is far
+            middle = unit(figure.forward - UP)  # amid its bends: half a turn is far
+            zero = shortest_rotation(along, middle)
             yield _twist(character, i, name, outwards, HIP_ROTATION, zero)
         case Part.UPPER_ARM if dofs == 3:
             level = unit(figure.forward + figure.outward(body.side))
@@ -208,13 +219,6 @@ def _frame(along: FloatArray, other: FloatArray) -> FloatArray:
     across = other - along * (other @ along)
     across = unit(across if np.linalg.norm(across) > 1e-3 else np.cross(along, UP))
     return np.stack([along, across, np.cross(along, across)], axis=1)
-
-
-def _shortest(start: FloatArray, end: FloatArray) -> FloatArray:
-    """(3, 3) the shortest rotation between two unit vectors that are not opposite."""
-    axis = np.cross(start, end)
-    angle = np.arctan2(np.linalg.norm(axis), start @ end)
-    return np.asarray(rotation_matrix(axis * angle / max(float(np.linalg.norm(axis)), 1e-9)))
 
 
 def _clavicle(character: Character, figure: RestFigure, body: int) -> JointRange:

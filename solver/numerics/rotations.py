@@ -66,6 +66,13 @@ def rotation_matrix(vector: FloatArray) -> FloatArray:
     return np.asarray(np.eye(3) + a * K + b * (K @ K))
 
 
+def shortest_rotation(start: FloatArray, end: FloatArray) -> FloatArray:
+    """(3, 3) the shortest rotation between two unit vectors (3,) that are not opposite."""
+    axis = np.cross(start, end)
+    angle = np.arctan2(np.linalg.norm(axis), start @ end)
+    return rotation_matrix(axis * angle / max(float(np.linalg.norm(axis)), 1e-9))
+
+
 def cross_matrix(v: FloatArray) -> FloatArray:
     """(..., 3, 3) skew-symmetric matrices of v (..., 3): cross_matrix(v) @ w = v x w."""
     v = np.asarray(v, dtype=float)

@@ -17,6 +17,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 
 DEGREE = 3
 ORDER = DEGREE + 1
+THIRD_DERIVATIVE_WEIGHT = 1e-9  # regularises splines through samples that jump between contacts
 
 
 @dataclass(frozen=True)
@@ -199,3 +200,14 @@ def phase_breaks(
     double = np.isin(at, np.array(boundaries))
     double[[0, -1]] = False
     return at, double
+
+
+def greville_abscissae(basis: SplineBasis) -> FloatArray:
+    """(n_coefficients,) Greville abscissae, s: the instant that each coefficient stands for."""
+    k = basis.knots
+    return np.asarray((k[1:-3] + k[2:-2] + k[3:-1]) / 3.0)
+
+
+def dense_instants(basis: SplineBasis, per_span: int = 4) -> FloatArray:
+    """Gauss instants, s, that determine a spline on this basis."""
+    return gauss_instants(basis.breaks, per_span)[0]

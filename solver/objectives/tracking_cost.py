@@ -2,11 +2,12 @@
 
 The thesis's plain norm weighs a metre of pelvis like a radian of wrist. Here marker points spread
 over every body are compared, so a change costs what it visibly moves; and their accelerations
-likewise, times a time to the fourth, so that limbs do not jerk.
+likewise, times a time to the fourth, so that limbs do not jerk. Where joints have a price
+(joint_price.py), turning them counts the same way.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from ..numerics.splines import ORDER
 from ..transcription.rows import FORCE_BLOCKS
 from ..transcription.transcription import GAUSS_NODES, Transcription
 from .cost_to_go import CostToGo, EndTarget
+from .joint_price import JointPrice
 
 POSE_BATCH = 16  # spans
 
@@ -31,8 +33,10 @@ class CostWeights:
     the centre of mass itself. acceleration_time: s, its fourth power weighs marker accelerations.
     com_acceleration: (m/g)², of the centre of mass's acceleration: one of g weighs as much as so
     many metres. force: (m/BW)², of force errors. force_rate_time: s, its square weighs their rate
-    of change. friction: (m/BW)², of each point's force across the target's direction. goes_on:
-    whether the target goes on beyond both ends, so that markers must come back to it there.
+    of change. by_range: how much of `shape` is measured by what a change takes of the joints'
+    ranges instead of by what it moves, where joints have a price. friction: (m/BW)², of each
+    point's force across the target's direction. goes_on: whether the target goes on beyond both
+    ends, so that markers must come back to it there.
     """
 
     position: float = 0.0
@@ -42,6 +46,7 @@ class CostWeights:
     com_acceleration: float = 0.0
     force: float = 1e-6
     force_rate_time: float = 0.05
+    by_range: float = 0.5
     friction: float = 0.0
     goes_on: bool = False
 
@@ -60,7 +65,8 @@ def marker_points(character: Character) -> tuple[BodyPoint, ...]:
 class TrackingTarget:
     """Reference motion at the dynamics nodes (N,).
 
-    markers: (N, M, 3) m world. com: (N, 3) m world. accelerations: (N, n_angles) rad/s².
+    markers: (N, M, 3) m world. com: (N, 3) m world. angles: (N, n_angles) rad. accelerations:
+    (N, n_angles) rad/s².
     com_acceleration: (N, 3) m/s², world. forces: (K, 3 P) force values, body weights, laid out as
     in the unknowns. slope: (K, 2) horizontal over vertical component of the force that explains
     the target's movement, at the force values. ends: at the motion's ends.
@@ -68,6 +74,7 @@ class TrackingTarget:
 
     markers: FloatArray
     com: FloatArray
+    angles: FloatArray
     accelerations: FloatArray
     com_acceleration: FloatArray
     forces: FloatArray
@@ -80,8 +87,9 @@ class _NodeErrors:
     """Tracking errors at N nodes.
 
     values: basis values and second derivatives (N, 4). weight: (N,) s. world, shape: (N, M, 3) m,
-    of markers, absolute and relative to the centre of mass. com: (N, 3) m. acceleration:
-    (N, n_angles) rad/s². com_acceleration: (N, 3) m/s².
+    of markers, absolute and relative to the centre of mass. com: (N, 3) m. angles:
+    (N, n_angles) rad. acceleration: (N, n_angles) rad/s². com_acceleration: (N, 3) m/s². turning:
+    (N, n_angles, n_angles) m²/rad², metric of the joint angles.
     """
 
     values: list[FloatArray]
@@ -90,19 +98,29 @@ class _NodeErrors:
     world: FloatArray
     shape: FloatArray
     com: FloatArray
+    angles: FloatArray
     acceleration: FloatArray
     com_acceleration: FloatArray
+    turning: FloatArray
 
 
 class TrackingCost:
-    """Half the squared distance to a target, with gradient and Gauss-Newton Hessian."""
+    """Half the squared distance to a target, with gradient and Gauss-Newton Hessian.
+
+    price: what turning joints costs beside, None nothing; that of the target's poses throughout.
+    """
 
     def __init__(
-        self, transcription: Transcription, target: TrackingTarget, weights: CostWeights
+        self,
+        transcription: Transcription,
+        target: TrackingTarget,
+        weights: CostWeights,
+        price: JointPrice | None = None,
     ) -> None:
         self.transcription = transcription
         self.target = target
-        self.weights = weights
+        share = 0.0 if price is None else weights.by_range
+        self.weights = replace(weights, shape=(1.0 - share) * weights.shape)
         self.points = marker_points(transcription.character)
         basis = transcription.basis
         times, spans = transcription.node_times, transcription.node_spans
@@ -110,6 +128,11 @@ class TrackingCost:
         self._smooth = weights.acceleration_time**4
         self._load = weights.com_acceleration / STANDARD_GRAVITY**2
         self._force_windows = self._force_metric()
+        n = transcription.character.n_angles
+        self._turning = np.broadcast_to(0.0, (len(times), n, n))
+        if price is not None:
+            posed = forward_kinematics(transcription.character, target.angles)
+            self._turning = share * weights.shape * price.metric(posed)
         time = weights.acceleration_time
         to_go = CostToGo(transcription, target.ends, self.points, time, weights.position)
         self._to_go = to_go if weights.goes_on else None
@@ -136,8 +159,10 @@ class TrackingCost:
             world=relative + com[:, None] - markers,
             shape=relative - (markers - centre[:, None]),
             com=com - centre,
+            angles=motion[:, t.layout.angles] - target.angles[nodes],
             acceleration=second[:, t.layout.angles] - target.accelerations[nodes],
             com_acceleration=second[:, t.layout.com] - target.com_acceleration[nodes],
+            turning=self._turning[nodes],
         )
 
     def value(self, x: FloatArray) -> float:
@@ -151,6 +176,8 @@ class TrackingCost:
             each = mean / len(self.points) + p.com * (at.com**2).sum(axis=1)
             moved = at.posed.point_rates(self.points, at.acceleration)
             each += self._smooth * self._marker_weight * (moved**2).sum(axis=(1, 2))
+            each += _squares(at.turning, at.angles)
+            each += self._smooth * _squares(at.turning, at.acceleration)
             each += self._load * (at.com_acceleration**2).sum(axis=1)
             total += 0.5 * float(at.weight @ each)
         if self._to_go is not None:
@@ -183,7 +210,7 @@ class TrackingCost:
         flat = turn.reshape(len(turn), -1, layout.n_angles)
         n_motion, com, angles = layout.n_motion, layout.com, layout.angles
         metric = np.zeros((len(turn), n_motion, n_motion))
-        angle = self._marker_weight * np.swapaxes(flat, 1, 2) @ flat
+        angle = self._marker_weight * np.swapaxes(flat, 1, 2) @ flat + at.turning
         mean_turn = p.position * turn.mean(axis=1)  # (N, 3, n)
         metric[:, angles, angles] = angle
         metric[:, com, angles] = mean_turn
@@ -193,6 +220,7 @@ class TrackingCost:
         slope = np.zeros((len(turn), n_motion))
         pull = (p.position * at.world + p.shape * at.shape).reshape(len(turn), -1) / count
         slope[:, angles] = np.einsum("nrj,nr->nj", flat, pull)
+        slope[:, angles] += np.einsum("njk,nk->nj", at.turning, at.angles)
         slope[:, com] = p.position * at.world.mean(axis=1) + p.com * at.com
         curvature = self._smooth * np.einsum("njk,nk->nj", angle, at.acceleration)
         first = self.transcription.basis.first_coefficient[spans]
@@ -274,3 +302,8 @@ class TrackingCost:
 def _products(values: FloatArray, weight: FloatArray) -> FloatArray:
     """(N, 4, 4) weighted products of the four basis functions with each other."""
     return np.asarray(weight[:, None, None] * values[:, :, None] * values[:, None, :])
+
+
+def _squares(metric: FloatArray, v: FloatArray) -> FloatArray:
+    """(N,) v' M v of vectors v (N, n) by metrics (N, n, n)."""
+    return np.asarray(np.einsum("nj,njk,nk->n", v, metric, v, optimize=True))

@@ -5,6 +5,7 @@ hardest are given up, by name, and reported.
 """
 
 from collections.abc import Sequence, Set
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -28,6 +29,14 @@ class Guard(Protocol):
     def kind(self) -> RowKind:
         """Of its rows."""
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of its items."""
+
+    @property
+    def hard(self) -> bool:
+        """Whether nothing of it may be given up."""
+
     def rows(self, motion: Motion, given_up: Set[str]) -> GuardRows | None:
         """A motion's rows of this kind, with more where it violates something; else the same.
 
@@ -47,6 +56,13 @@ def guarded(motion: Motion, guards: Sequence[Guard], given_up: Set[str]) -> Tran
             rows[guard.kind] = new
     same = all(new is t.guard(kind) for kind, new in rows.items())
     return t if same else t.guarded(tuple(rows.values()))
+
+
+def with_guards(guards: Sequence[Guard], now: FeasibleSet, x: FloatArray) -> FeasibleSet:
+    """A feasible set with the rows that its guards have at x (K, n_block); the very same where
+    none are new."""
+    t = guarded(now.motion(x), guards, set())
+    return now if t is now.transcription else replace(now, transcription=t)
 
 
 def in_the_way(feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> set[str]:

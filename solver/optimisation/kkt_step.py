@@ -199,13 +199,14 @@ class LinearisedProblem:
         value: FloatArray,
         gradient: FloatArray | None = None,
         multipliers: FloatArray | None = None,
+        sweeps: int = MAX_SWEEPS,
     ) -> tuple[FloatArray, FloatArray]:
         """Step d (K, n_block) and Lagrange multipliers (R,) of the rows in units of ROW_SCALES.
 
         Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
         y += rho (r + J d), until the linearised equalities hold a thousand times better than
         before. value: (R,). gradient: g (K, n_block), None for the minimum-norm step. multipliers:
-        y to begin with (R,), None zero.
+        y to begin with (R,), None zero. sweeps: at most so many.
         """
         windows = self._equalities
         r = np.zeros(windows.J.shape[:2])
@@ -219,7 +220,7 @@ class LinearisedProblem:
         residual = r
         enough = max(1e-9, SWEEP_REDUCTION * float(np.abs(residual).max()))
         z = self._scaled(value, self._free)
-        for sweep in range(MAX_SWEEPS):
+        for sweep in range(sweeps):
             lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
             if sweep:
                 lagrangian_gradient += self._metric.times(d)

@@ -13,7 +13,7 @@ from ..arrays import FloatArray
 from ..body.anatomy import Part, Side
 from ..body.character import Character, Joint
 from ..data.faults import BadDimensions, DependentRows, UnknownReductionBone, WrongWeights
-from ..data.requests import Reduction, ReductionKind
+from ..data.solver_options import Reduction, ReductionKind
 from ..numerics.rotations import axis_rotation, unit
 
 LEG = (Part.THIGH, Part.SHANK, Part.FOOT, Part.TOE)

@@ -10,7 +10,7 @@ step (the implicit solution), which converges quadratically and stays near where
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -62,6 +62,10 @@ class Outcome:
     @property
     def solved(self) -> bool:
         return self.status is Status.SOLVED
+
+    def unguarded(self) -> "Outcome":
+        """The same without the rows that guarded it."""
+        return replace(self, transcription=self.transcription.guarded(()))
 
 
 Progress = Callable[[Step, Motion], None]

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
-from ..data.report import FlightSummary, JumpReport, RecordedFlight
+from ..data.reports.jumps import FlightSummary, JumpReport, RecordedFlight
 from ..numerics.interpolation import interpolate
 from ..stages.fit import Fit
 from ..transcription.motion import Motion

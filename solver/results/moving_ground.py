@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.contacts import Phase, PhaseKind
 from ..data.problem import MotionProblem
-from ..data.report import MovingGroundReport
+from ..data.reports.constraints import MovingGroundReport
 from ..stages.implicit import Adaptation
 from ..stages.platforms import first_footing
 from ..transcription.ride import Ride

@@ -1,4 +1,4 @@
-"""Measures a report (data/report.py): what was found and how well it holds."""
+"""Measures a report (data/reports/report.py): what was found and how well it holds."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -11,31 +11,29 @@ from ..body.passive_joints import evaluate_passive_torques
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase, PhaseKind
 from ..data.problem import MotionProblem, OffsetAxes, Pin
-from ..data.report import (
-    ConstraintReport,
-    ContactReport,
+from ..data.reports.constraints import ConstraintReport, ContactReport, PinReport
+from ..data.reports.dynamics import (
     DenseResiduals,
-    FigureSummary,
-    FitQuality,
     ForcePeak,
     ForcesReport,
-    MotionChange,
-    Origin,
-    PhaseReport,
     PhaseResidual,
-    PinReport,
-    RecordedOverlap,
-    RecordingSummary,
-    ReductionReport,
-    Report,
-    SolveReport,
-    StageReport,
-    TimeMap,
     TorquePeak,
     TorquesReport,
     TorqueUse,
 )
-from ..data.requests import ConeShape, Dynamics, Method, Vector
+from ..data.reports.jumps import PhaseReport, TimeMap
+from ..data.reports.recording import FigureSummary, Origin, RecordingSummary
+from ..data.reports.report import (
+    FitQuality,
+    MotionChange,
+    RecordedOverlap,
+    ReductionReport,
+    Report,
+    SolveReport,
+    StageReport,
+)
+from ..data.requests import ConeShape, Vector
+from ..data.solver_options import Dynamics, Method
 from ..optimisation.sqp import Outcome
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
@@ -102,7 +100,7 @@ def report(
         jumps=tuple(jumps(fit, motion, schedule)),
         durations=adaptation.setup.durations,
         phases=_phases(adaptation),
-        times=_times(adaptation),
+        times=time_map(adaptation),
         stages=None if stages is None else tuple(stages),
     )
 
@@ -342,7 +340,8 @@ def _phases(adaptation: Adaptation) -> tuple[PhaseReport, ...]:
     return tuple(reports)
 
 
-def _times(adaptation: Adaptation) -> TimeMap:
+def time_map(adaptation: Adaptation) -> TimeMap:
+    """Where the recording's frames are in the motion."""
     line = adaptation.setup.context.timeline
     recorded, adapted = (
         tuple(scene_frame(adaptation.fit, t) for t in times.tolist())

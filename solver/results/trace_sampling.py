@@ -15,6 +15,7 @@ from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.recording import Recording
 from ..data.traces import FlightParabola, Traces
+from ..solid.shape_changes import AS_IS, ShapeChanges
 from ..solid.shapes import Capsules, capsules
 from ..transcription.motion import Motion, motion_inverse_dynamics
 
@@ -66,11 +67,12 @@ def motion_traces(
     recording: Recording,
     schedule: ContactSchedule,
     dynamics: InverseDynamics | None,
+    changes: ShapeChanges = AS_IS,
 ) -> Traces:
     """Of a solved motion, at the frames of its track.
 
     dynamics: of the motion's character, which touches at the motion's points; None leaves out
-    torques and momentum, which takes a third of the time.
+    torques and momentum, which takes a third of the time. changes: of the solid shapes.
     """
     character = motion.transcription.character
     frames, times = motion.frames(recording)
@@ -101,7 +103,7 @@ def motion_traces(
             for phase in schedule.phases
             if phase.kind is PhaseKind.FLIGHT
         ),
-        **_solids(character, figure),
+        **_solids(character, figure, changes),
     )
 
 
@@ -133,9 +135,9 @@ def _tails(character: Character, figure: _Figure) -> FloatArray:
     return np.asarray(figure.centres + np.einsum("tbij,bj->tbi", figure.rotations, tips))
 
 
-def _solids(character: Character, figure: _Figure) -> dict[str, Any]:
+def _solids(character: Character, figure: _Figure, changes: ShapeChanges = AS_IS) -> dict[str, Any]:
     """What traces hold of the body's solid shapes."""
-    shapes = Capsules.of(capsules(character))
+    shapes = Capsules.of(capsules(character, changes))
     turns, centres = figure.rotations[:, shapes.bodies], figure.centres[:, shapes.bodies]
     start, end = (
         centres + np.einsum("tsij,sj->tsi", turns, local) for local in (shapes.start, shapes.end)

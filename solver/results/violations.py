@@ -10,7 +10,7 @@ from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import Phase
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
-from ..optimisation.guards import Guard
+from ..optimisation.guards import Guard, in_the_way
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation, dense_violation
@@ -39,7 +39,7 @@ def condition_violations(adaptation: Adaptation) -> list[DenseViolation]:
 
 
 def _of(guard: Guard, adaptation: Adaptation) -> list[DenseViolation]:
-    if not adaptation.solved:  # of a failure what it failed for is told
+    if not adaptation.solved and not guard.hard:  # of a failure what it failed for is told
         return []
     found, rows = (
         guard.violations(adaptation.motion),
@@ -101,7 +101,8 @@ def worst_constraints(
 def most_telling(adaptation: Adaptation, problem: MotionProblem) -> tuple[Violation, ...]:
     """The few worst constraints of a failed solve, the worst that the artist asked for among them.
 
-    What gives way first may be a foot that nobody moved; what it gave way to has to be named too.
+    What gives way first may be a foot that nobody moved; what it gave way to has to be named too,
+    and the hard ranges that stand against it.
     """
     ranked = worst_constraints(adaptation, problem)
     asked = {pin.name for pin in problem.pins} | set(problem.requests.names)
@@ -109,7 +110,19 @@ def most_telling(adaptation: Adaptation, problem: MotionProblem) -> tuple[Violat
     first = ranked[:MOST_LISTED]
     if own and not any(each in first for each in own):
         first = [*first[: MOST_LISTED - 1], own[0]]
-    return tuple(first)
+    named = {each.name for each in first}
+    return (*first, *(each for each in _at_hard_ends(adaptation) if each.name not in named))
+
+
+def _at_hard_ends(adaptation: Adaptation) -> list[Violation]:
+    """The hard guards' items that pull the hardest where a solve got stuck: they hold, by 0."""
+    stuck, setup = adaptation.stuck, adaptation.setup
+    hard = {name: guard.kind for guard in setup.guards if guard.hard for name in guard.names}
+    if not hard or stuck is None or not stuck.transcription.guards:
+        return []
+    feasible = setup.feasible_set(stuck.transcription, stuck.places)
+    pulling = in_the_way(feasible, setup.metric_of(feasible.motion(stuck.x)), stuck.x)
+    return [Violation(name, hard[name], 0.0) for name in sorted(pulling & hard.keys())]
 
 
 def _phase_at(phases: Sequence[Phase], time: float) -> Phase:

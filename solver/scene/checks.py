@@ -8,13 +8,14 @@ from ..data.faults import (
     InsideOut,
     NotFinite,
     NotGround,
+    NoThickness,
     SameObjectName,
     TooManyFaces,
     UnknownObject,
 )
 from ..data.problem import MotionProblem
 from ..data.scene import SceneObject, SceneRole
-from .triangle_mesh import mesh_of
+from .triangle_mesh import MERGED, mesh_of
 
 MOST_TRIANGLES = 2_000_000  # whose tree is built in 7 s
 
@@ -22,7 +23,8 @@ MOST_TRIANGLES = 2_000_000  # whose tree is built in 7 s
 def check_scene(problem: MotionProblem) -> None:
     """Refuses objects that are no solids, and requests for objects that are not there.
 
-    Raises NoFaces, NotFinite, InsideOut, TooManyFaces, SameObjectName, UnknownObject, NotGround.
+    Raises NoFaces, NoThickness, NotFinite, InsideOut, TooManyFaces, SameObjectName, UnknownObject,
+    NotGround.
     """
     names = [thing.name for thing in problem.scene]
     for i, thing in enumerate(problem.scene):
@@ -53,5 +55,7 @@ def _check(thing: SceneObject) -> None:
     if not all(np.isfinite(each).all() for each in values):
         raise NotFinite(thing.name)
     mesh = mesh_of(thing)
+    if mesh.closed and mesh.thickness < MERGED:
+        raise NoThickness(thing.name)
     if mesh.closed and mesh.volume < 0.0:
         raise InsideOut(thing.name)

@@ -10,31 +10,34 @@ from ..body.character import Character
 from ..body.kinematics import BodyPoint
 from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import TriangleMesh
+from .shape_changes import AS_IS, ShapeChanges
 from .shapes import FEET, SOLID_SHARE, Capsule, Capsules, capsules, floor_balls
-from .surfaces import WORLD, Closest, Placed
+from .surfaces import WORLD, Closest, Placed, axes_in
 
 SAMPLING = 0.06  # m along an axis, between the points from which its deepest is sought
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 NARROWINGS = 10  # by the golden section: to 1 mm of an axis
 
 
-def scene_shapes(character: Character, points: Sequence[BodyPoint]) -> list[Capsule]:
+def scene_shapes(
+    character: Character, points: Sequence[BodyPoint], changes: ShapeChanges = AS_IS
+) -> list[Capsule]:
     """What is kept out of objects: the capsules, and of the feet the lines along their soles.
 
     points: the body points that touch. What stands on an object touches it with the soles' ends;
     a foot's ball gives as other flesh does, as a foot on a slope does not lie in its plane.
     """
-    shapes = [c for c in capsules(character) if character.bodies[c.body].part not in FEET]
+    shapes = [c for c in capsules(character, changes) if character.bodies[c.body].part not in FEET]
     shapes += [
         replace(c, radius=SOLID_SHARE * c.radius)
-        for c in floor_balls(character, points)
+        for c in floor_balls(character, points, changes)
         if character.bodies[c.body].part in FEET
     ]
     for point in points:
         body = character.bodies[point.body]
         if body.part in FEET:
             shapes.append(Capsule(point.body, point.place, body.tip, 0.0))
-    return shapes
+    return [shape for shape in shapes if shape.body not in changes.loose]
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class MeshSurface:
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
         """By the mesh's box, and then by the distance of the axes' middles."""
         instants, items = np.indices((len(placed.times), len(self.names))).reshape(2, -1)
-        start, end = self._axes(placed, instants, items)
+        start, end = axes_in(self.motion, self.shapes, placed, instants, items)
         radius = self.shapes.radius[items]
         low = np.minimum(start, end) - radius[:, None]
         high = np.maximum(start, end) + radius[:, None]
@@ -61,11 +64,11 @@ class MeshSurface:
 
     def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
         """Of the deepest point of each axis, less the radius."""
-        start, end = self._axes(placed, instants, items)
+        start, end = axes_in(self.motion, self.shapes, placed, instants, items)
         share = deepest_shares(self.mesh, start, end)[:, None]
         found = self.mesh.distances(start + share * (end - start))
-        _, turns = self._frames(placed, instants)
-        normal = np.einsum("nij,nj->ni", turns, found.normal)
+        _, turns = self.motion.at(placed.times)
+        normal = np.einsum("nij,nj->ni", turns[instants], found.normal)
         first, last = self.shapes.some_ends(placed.pose, instants, items)
         at = first + share * (last - first)
         bodies = self.shapes.bodies[items]
@@ -74,22 +77,6 @@ class MeshSurface:
         return Closest(
             distance, normal, both, np.stack([at, at], axis=1), np.full(len(items), np.inf)
         )
-
-    def _frames(self, placed: Placed, instants: IntArray) -> tuple[FloatArray, FloatArray]:
-        places, turns = self.motion.at(placed.times)
-        return places[instants], turns[instants]
-
-    def _axes(
-        self, placed: Placed, instants: IntArray, items: IntArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Ends (N, 3) m of the shapes' axes in the object's own axes."""
-        places, turns = self._frames(placed, instants)
-        from_object = placed.com[instants] - places
-        start, end = (
-            np.einsum("nji,nj->ni", turns, each + from_object)
-            for each in self.shapes.some_ends(placed.pose, instants, items)
-        )
-        return start, end
 
 
 def deepest_shares(mesh: TriangleMesh, start: FloatArray, end: FloatArray) -> FloatArray:

@@ -15,6 +15,7 @@ from ..body.character import Body, Character
 from ..body.kinematics import BodyPoint, Pose
 from ..numerics.rotations import unit
 from .segments import closest_shares
+from .shape_changes import AS_IS, ShapeChanges
 
 SOLID_SHARE = 0.8  # of a segment's radius; what is further out is flesh, which gives
 LIMBS = (
@@ -80,18 +81,18 @@ class Capsules:
         return start, end
 
 
-def capsules(character: Character) -> list[Capsule]:
+def capsules(character: Character, changes: ShapeChanges = AS_IS) -> list[Capsule]:
     """Each body's capsule from its joint to its tip; two side by side where it is wide."""
     parents = {joint.parent for joint in character.joints}
     return [
         capsule
         for i, body in enumerate(character.bodies)
-        for capsule in _of_body(i, body, leaf=i not in parents)
+        for capsule in _of_body(i, body, changes.factor(i), leaf=i not in parents)
     ]
 
 
-def _of_body(index: int, body: Body, *, leaf: bool) -> list[Capsule]:
-    narrow, wide = np.sort(body.box_size[:2])
+def _of_body(index: int, body: Body, thickness: float, *, leaf: bool) -> list[Capsule]:
+    narrow, wide = thickness * np.sort(body.box_size[:2])
     radius = float(SOLID_SHARE * narrow / np.sqrt(np.pi))  # of the circle of a square's area
     start, end = np.zeros(3), body.tip
     length = float(np.linalg.norm(end))
@@ -104,7 +105,9 @@ def _of_body(index: int, body: Body, *, leaf: bool) -> list[Capsule]:
     return [Capsule(index, start + side, end + side, radius) for side in (aside, -aside)]
 
 
-def floor_balls(character: Character, points: Sequence[BodyPoint]) -> list[Capsule]:
+def floor_balls(
+    character: Character, points: Sequence[BodyPoint], changes: ShapeChanges = AS_IS
+) -> list[Capsule]:
     """What must stay above the floor: the capsules' far ends, and of the feet their soles.
 
     points: the body points that touch; where a sole is, they say (a standing foot is not in the
@@ -113,7 +116,7 @@ def floor_balls(character: Character, points: Sequence[BodyPoint]) -> list[Capsu
     """
     balls = [
         Capsule(c.body, c.end, c.end, c.radius)
-        for c in capsules(character)
+        for c in capsules(character, changes)
         if character.bodies[c.body].part not in FEET
     ]
     for i, body in enumerate(character.bodies):
@@ -121,7 +124,7 @@ def floor_balls(character: Character, points: Sequence[BodyPoint]) -> list[Capsu
             soles = [p.place for p in points if p.body == i]
             balls += [Capsule(i, place, place, 0.0) for place in soles]
             balls.append(Capsule(i, body.tip, body.tip, _thickness(character, points, i)))
-    return balls
+    return [ball for ball in balls if ball.body not in changes.loose]
 
 
 def _thickness(character: Character, points: Sequence[BodyPoint], foot: int) -> float:
@@ -136,7 +139,9 @@ def _thickness(character: Character, points: Sequence[BodyPoint], foot: int) -> 
     return float(np.linalg.norm(ball - sole * (sole @ ball)))
 
 
-def meeting_pairs(character: Character, shapes: Sequence[Capsule]) -> IntArray:
+def meeting_pairs(
+    character: Character, shapes: Sequence[Capsule], changes: ShapeChanges = AS_IS
+) -> IntArray:
     """(P, 2) indices of the capsules that may meet, and must not.
 
     One of the two is of a limb. Neighbours at a joint, and next but one along a limb, are in each
@@ -146,7 +151,7 @@ def meeting_pairs(character: Character, shapes: Sequence[Capsule]) -> IntArray:
         (i, j)
         for i, one in enumerate(shapes)
         for j, other in enumerate(shapes[:i])
-        if may_meet(character, one.body, other.body)
+        if may_meet(character, one.body, other.body) and not changes.may_pass(one.body, other.body)
     ]
     at = np.array(pairs, dtype=int).reshape(-1, 2)
     apart = _rest_distance(character, Capsules.of(shapes), at)

@@ -1,8 +1,8 @@
 """The solid world of one adaptation: what goes into what, and the rows that keep it out.
 
 Never tighter than the recording: what the fit has through each other at the same (warped) instant
-is allowed, and no more. Of the scene the recording knew nothing: of what it has in its floor so
-much is allowed in ground, as soles give there likewise, and in obstacles nothing.
+is allowed, and no more. Of the scene the recording knew only what it stands on. Of other ground as
+much is allowed as of its floor, as soles give there likewise, and of obstacles nothing.
 """
 
 from collections.abc import Callable, Mapping, Sequence, Set
@@ -16,77 +16,29 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..data.contacts import ContactSchedule
 from ..data.row_kinds import RowKind
-from ..data.scene import SceneObject, SceneRole
+from ..data.scene import CLEARANCE, SceneObject, SceneRole
 from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import mesh_of
 from ..transcription.constraint import DenseViolation
-from ..transcription.guard_rows import GuardRows, chosen, named
+from ..transcription.guard_rows import GuardRows, chosen
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
-from .clearance import Clearance
 from .mesh_surface import MeshSurface, scene_shapes
+from .passages import Passable, with_ways
+from .penetrations import MOST_NEW, SPACING, Penetrations, placed_at
+from .shape_changes import AS_IS, ShapeChanges
 from .shapes import Capsule, Capsules, capsules, floor_balls, meeting_pairs
 from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
+from .way_out import WayOut
 
-SPACING = 0.004  # s, of the dense grid
-MOST_NEW = 0.002  # m, by which solids may be deeper in each other than in the fit; no one sees it
 ROW_SPACING = 0.016  # s, between rows of solids that stay in each other for longer
 SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
 
+NONE = np.empty(0, dtype=int)
 OWN = 2  # surfaces of a body without a scene: its limbs, and the floor
 
 TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (N,) s
 Placement = tuple[SceneObject, ObjectMotion]
-
-
-@dataclass(frozen=True)
-class Penetrations:
-    """What is in what: items (M,), times (M,) s, over (M,) m, how much deeper than allowed.
-
-    lower: (M,) m, the allowed distance. side: (M, 3), see Closest.side.
-    """
-
-    names: tuple[str, ...]
-    items: IntArray
-    times: FloatArray
-    over: FloatArray
-    lower: FloatArray
-    side: FloatArray
-
-    def some(self, which: IntArray | BoolArray) -> "Penetrations":
-        """Some of them."""
-        return Penetrations(
-            self.names,
-            self.items[which],
-            self.times[which],
-            self.over[which],
-            self.lower[which],
-            self.side[which],
-        )
-
-    def but(self, given_up: Set[str]) -> "Penetrations":
-        """All but those of these names."""
-        return self.some(~named(self.names, self.items, given_up))
-
-    def with_more(self, more: "Penetrations") -> "Penetrations":
-        """These and more."""
-        return Penetrations(
-            self.names,
-            np.concatenate([self.items, more.items]),
-            np.concatenate([self.times, more.times]),
-            np.concatenate([self.over, more.over]),
-            np.concatenate([self.lower, more.lower]),
-            np.concatenate([self.side, more.side]),
-        )
-
-    def worst(self) -> list[DenseViolation]:
-        """The deepest of each name, deepest first."""
-        found: dict[str, DenseViolation] = {}
-        for i in np.argsort(-self.over).tolist():
-            name = self.names[self.items[i]]
-            amount, time = float(self.over[i]), float(self.times[i])
-            found.setdefault(name, DenseViolation(name, RowKind.SOLID, amount, time))
-        return list(found.values())
 
 
 @dataclass(frozen=True)
@@ -96,6 +48,10 @@ class SolidDistance:
     surface: Surface
     found: Penetrations
     kind: RowKind = RowKind.SOLID
+
+    def some(self, which: BoolArray) -> "SolidDistance":
+        """Of some of the items (U,)."""
+        return SolidDistance(self.surface, self.found.some(which))
 
     def value(self, state: State) -> FloatArray:
         """(U, 1) m."""
@@ -130,13 +86,15 @@ class SolidWorld:
     """Surfaces of a motion, and those of the fit, item by item the same, but that the fit has its
     floor in place of ground, and no obstacles: these come last.
 
-    to_old: the fit's instants (N,) s of the motion's.
+    to_old: the fit's instants (N,) s of the motion's. passables: of the meshes among the surfaces.
     """
 
     surfaces: Surfaces
     fitted_surfaces: Surfaces
     fitted: Motion
     to_old: TimeFunction
+    passables: tuple[Passable, ...] = ()
+    hard: bool = False
     kind: RowKind = RowKind.SOLID
 
     @cached_property
@@ -194,16 +152,10 @@ class SolidWorld:
         found = self.penetrations(motion).but(given_up)
         if not len(found.items):
             return old
-        found = found.some(chosen(found, SPACING, ROW_SPACING))
-        if old is not None:
-            found = _penetrations(old).but(given_up).with_more(found)
-        return self._keep_out(found)
-
-    def only(self, rows: GuardRows, which: BoolArray) -> GuardRows | None:
-        """Some of the rows (U,); None where there are none left."""
-        return self._keep_out(_penetrations(rows).some(which)) if which.any() else None
-
-    def _keep_out(self, found: Penetrations) -> GuardRows:
+        kept = _penetrations(old).but(given_up) if old is not None else found.some(NONE)
+        for each in self.passables:
+            found, kept = each.directed(found, kept, motion)
+        found = kept.with_more(found.some(chosen(found, SPACING, ROW_SPACING)))
         function = SolidDistance(self.surfaces, found)
         return GuardRows(self.names, found.items, found.times, found.lower, function)
 
@@ -211,11 +163,6 @@ class SolidWorld:
 def _penetrations(rows: GuardRows) -> Penetrations:
     assert isinstance(rows.function, SolidDistance)
     return rows.function.found
-
-
-def placed_at(motion: Motion, times: FloatArray) -> Placed:
-    """A motion's poses at instants (N,) s."""
-    return Placed(times, motion.pose(times), motion.com(times))
 
 
 def _grid(duration: float) -> FloatArray:
@@ -232,17 +179,20 @@ def solid_world(
     to_old: TimeFunction,
     scene: Sequence[Placement] = (),
     clears: Mapping[str, Mapping[int, float]] = MappingProxyType({}),
+    changes: ShapeChanges = AS_IS,
+    known: Set[str] = frozenset(),
 ) -> SolidWorld:
     """The world of a motion of `reference`'s body. floors: heights, m, of the motion's and the
     fit's. scene: objects and how they move in the motion's time. clears: by object and body, how
-    far above it what is over it stays, m."""
+    far above it what is over it stays, m. changes: of the shapes of both. known: the still objects
+    that the recording is on."""
     character = fitted.transcription.character
-    pairs = meeting_pairs(character, capsules(character))
+    pairs = meeting_pairs(character, capsules(character, changes), changes)
     ours, theirs = (
-        _surfaces(motion, pairs, floor)
+        _surfaces(motion, pairs, floor, changes)
         for motion, floor in zip((reference, fitted), floors, strict=True)
     )
-    shapes = scene_shapes(character, reference.transcription.points)
+    shapes = scene_shapes(character, reference.transcription.points, changes)
     grounds, soles, obstacles = list[Surface](), list[Surface](), list[Surface]()
     for thing, moves in scene:
         cleared = clears.get(thing.name, {})
@@ -250,22 +200,25 @@ def solid_world(
         surface = _of_object(thing, moves, character, met)
         if thing.role is SceneRole.GROUND:
             grounds.append(surface)
-            soles.append(Floor(surface.shapes, floors[1], surface.names))
+            under = Floor(surface.shapes, floors[1], surface.names)
+            soles.append(surface if thing.name in known else under)
         else:
             obstacles.append(surface)
         over = [shape for shape in shapes if shape.body in cleared]
         if over:
             by = np.array([cleared[shape.body] for shape in over])
-            called = _names(character, over, f"the clearance of {thing.name}")
-            obstacles.append(Clearance.over(thing, moves, Capsules.of(over), by, called))
-    ours = (*ours, *grounds, *obstacles)
-    return SolidWorld(Surfaces(ours), Surfaces((*theirs, *soles)), fitted, to_old)
+            called = _names(character, over, CLEARANCE.format(thing.name))
+            obstacles.append(WayOut.above(moves, Capsules.of(over), by, called))
+    surfaces, passables = with_ways(Surfaces((*ours, *grounds, *obstacles)), character)
+    return SolidWorld(surfaces, Surfaces((*theirs, *soles)), fitted, to_old, passables)
 
 
-def _surfaces(motion: Motion, pairs: IntArray, floor: TimeFunction) -> tuple[Surface, ...]:
+def _surfaces(
+    motion: Motion, pairs: IntArray, floor: TimeFunction, changes: ShapeChanges
+) -> tuple[Surface, ...]:
     character = motion.transcription.character
-    shapes = capsules(character)
-    balls = floor_balls(character, motion.transcription.points)
+    shapes = capsules(character, changes)
+    balls = floor_balls(character, motion.transcription.points, changes)
     names = [body.name for body in character.bodies]
     both = tuple(
         f"{names[shapes[i].body].capitalize()} in {names[shapes[j].body]}" for i, j in pairs

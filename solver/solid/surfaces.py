@@ -6,12 +6,14 @@ them with what their Jacobian needs. A mesh would be one more class of this kind
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Protocol
 
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.kinematics import Pose
+from ..scene.object_motion import ObjectMotion
 from .segments import closest_shares
 from .shapes import Capsules
 
@@ -28,6 +30,19 @@ class Placed:
     times: FloatArray
     pose: Pose
     com: FloatArray
+
+
+def axes_in(
+    motion: ObjectMotion, shapes: Capsules, placed: Placed, instants: IntArray, items: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Ends (N, 3) m of shapes' axes in the own axes of an object that moves."""
+    places, turns = motion.at(placed.times)
+    from_object = (placed.com - places)[instants]
+    start, end = (
+        np.einsum("nji,nj->ni", turns[instants], each + from_object)
+        for each in shapes.some_ends(placed.pose, instants, items)
+    )
+    return start, end
 
 
 @dataclass(frozen=True)
@@ -174,6 +189,8 @@ class Surfaces:
         bodies, at = np.empty((n, 2), dtype=int), np.empty((n, 2, 3))
         for part, first in zip(self.parts, self._first(), strict=True):
             mine = np.flatnonzero((items >= first) & (items < first + len(part.names)))
+            if not len(mine):
+                continue
             found = part.closest(placed, instants[mine], items[mine] - first)
             distance[mine], normal[mine], bodies[mine] = found.distance, found.normal, found.bodies
             at[mine], apart[mine] = found.at, found.apart
@@ -181,7 +198,7 @@ class Surfaces:
 
     def _first(self) -> list[int]:
         counts = [len(part.names) for part in self.parts]
-        return [sum(counts[:i]) for i in range(len(counts))]
+        return list(accumulate(counts[:-1], initial=0))
 
 
 def _directions(vectors: FloatArray) -> FloatArray:

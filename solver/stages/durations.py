@@ -19,9 +19,9 @@ from functools import cached_property
 
 import numpy as np
 
+from ..analysis.timeline import Stretch, TimeWarp
 from ..arrays import FloatArray
 from ..data.contacts import Interval
-from ..data.timeline import Stretch, TimeWarp
 from ..numerics.block_banded import BlockBanded
 from ..objectives.tracking_cost import CostWeights
 from ..optimisation.kkt_step import LinearisedProblem

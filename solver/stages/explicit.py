@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from ..arrays import FloatArray
 from ..constraints.constraint_builder import preferred_poses
-from ..data.requests import ObjectiveKind
+from ..data.solver_options import ObjectiveKind
 from ..numerics.block_banded import BlockBanded
 from ..objectives.least_squares import (
     AngleDerivatives,
@@ -79,7 +79,7 @@ def weighted_objective(
     Without objectives it is the tracking cost to x that the poses have to outweigh.
     """
     start = Motion(t, x, setup.target_places)
-    tracking = TrackingCost(t, motion_target(start), ADAPT_COST_WEIGHTS)
+    tracking = TrackingCost(t, motion_target(start), ADAPT_COST_WEIGHTS, setup.price)
     typical = 0.5 * REFERENCE_DRIFT**2 * start.duration
     terms: list[ObjectiveTerm] = [*preferred_poses(setup.requests, setup.context, t)]
     if not objectives:

@@ -3,33 +3,29 @@
 It is computed once per recording and starts every adaptation.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
-from ..analysis.accelerations import angle_accelerations, com_acceleration, velocities
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
-from ..body.character import Character
-from ..body.dynamics import MomentFunction
-from ..body.kinematics import BodyPoint, forward_kinematics
-from ..data.constants import STANDARD_GRAVITY
+from ..body.kinematics import forward_kinematics
 from ..data.contacts import ContactSchedule
-from ..data.recording import Recording
 from ..data.requests import BodyChange
 from ..data.status import Status
+from ..human.human_guard import HumanGuard, recorded_ranges
+from ..human.range_price import range_price
 from ..numerics.block_banded import BlockBanded
-from ..numerics.interpolation import interpolate
-from ..numerics.splines import SplineBasis, gauss_instants, phase_breaks
+from ..numerics.splines import SplineBasis
 from ..objectives.cost_to_go import EndTarget
+from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
 from ..objectives.tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_points
 from ..optimisation.gauss_newton import minimise
+from ..optimisation.guards import with_guards
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
-from ..transcription.compliant_sole import sole_trajectory
-from ..transcription.contact_pins import PointContact, touching_spans
 from ..transcription.motion import (
     DenseTolerance,
     Motion,
@@ -38,17 +34,15 @@ from ..transcription.motion import (
     split_spans,
 )
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
-from ..transcription.transcription import Transcription
+from .transcribe import initial_guess, recorded_target, transcribe
 
-CANDIDATE_SPANS = (0.04, 0.03, 0.025)  # s, longest knot spans to choose from
-SPLINE_FIT_TOLERANCE = 0.004  # m, rms spline-fit error of a joint centre
-MIN_SPAN = 0.015  # s, between breaks
 # One g of the centre of mass's acceleration weighs like a decimetre: recordings are off by a tenth
-# of g and by a centimetre. A body weight of force across the recorded direction weighs like 3 cm.
+# of g and by a centimetre. One g of a limb's acceleration weighs like 1.6 cm, and a body weight of
+# force across the recorded direction like 3 cm.
 # Set beside force plates (docs/validation.md).
 FIT_COST_WEIGHTS = CostWeights(
     position=1.0,
-    acceleration_time=0.05,
+    acceleration_time=0.04,
     com_acceleration=1e-2,
     force=1e-5,
     force_rate_time=0.15,
@@ -62,10 +56,6 @@ MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
 MAX_PROJECTION_STEPS = 6
 MAX_IMPROVEMENTS = 4  # Gauss-Newton steps on the refined knots
-EDGE_SPAN = 0.02  # s; the span before a landing and after a lift-off, in which feet stop and start
-MIN_LOAD = 0.25  # of the weight, with which the direction of the contact force is known
-MAX_SLOPE = 0.5  # of that direction; runners and jumpers on force plates use 0.25 to 0.6
-THIRD_DERIVATIVE_WEIGHT = 1e-9  # regularises splines through samples that jump between contacts
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
 ADAPT_TOLERANCE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
@@ -99,9 +89,14 @@ class Fit(SolvedMotion):
     schedule: ContactSchedule
 
     @cached_property
+    def price(self) -> JointPrice:
+        """What turning a person's joints costs in its adaptations."""
+        return range_price(self.motion)
+
+    @cached_property
     def metric(self) -> BlockBanded:
-        """Metric W of the minimum-norm steps of its adaptations."""
-        return motion_metric(self.motion, ADAPT_COST_WEIGHTS)
+        """Metric W of the minimum-norm steps of its adaptations, of a person."""
+        return motion_metric(self.motion, ADAPT_COST_WEIGHTS, self.price)
 
     @cached_property
     def other_bodies(self) -> dict[BodyChange, Motion]:
@@ -132,6 +127,8 @@ def fit(
     transcription = transcribe(performance, schedule)
     x = initial_guess(transcription, performance)
     places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
+    recorded = Motion(transcription, x, places)
+    human = HumanGuard(recorded_ranges(recorded), recorded)
     tracking_cost = TrackingCost(
         transcription, recorded_target(transcription, performance, schedule), FIT_COST_WEIGHTS
     )
@@ -146,7 +143,7 @@ def fit(
         outcomes.append(last)
         if last.status is Status.SOLVED:
             outcomes += refine(last, fit_metric, FIT_TOLERANCE, progress=progress)
-            outcomes += _improved(outcomes[-1], performance, schedule, progress)
+            outcomes += _improved(outcomes[-1], performance, schedule, human, progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
         feasible = replace(feasible, places=places)
@@ -154,6 +151,7 @@ def fit(
         replace(contact, place=place)
         for contact, place in zip(schedule.contacts, places, strict=True)
     )
+    outcomes[-1] = outcomes[-1].unguarded()
     return Fit(tuple(outcomes), places, performance, replace(schedule, contacts=settled))
 
 
@@ -161,20 +159,39 @@ def _improved(
     outcome: Outcome,
     performance: Performance,
     schedule: ContactSchedule,
+    human: HumanGuard,
     progress: Progress | None,
 ) -> list[Outcome]:
-    """Nearer to the recording on the refined knots: the steps that refine go the shortest way."""
+    """Nearer to the recording on the refined knots: the steps that refine go the shortest way.
+
+    And in the ranges of joints, where such a motion is found.
+    """
     t = outcome.transcription
-    feasible = FeasibleSet(t, outcome.places)
     cost = TrackingCost(t, recorded_target(t, performance, schedule), FIT_COST_WEIGHTS)
+    feasible = FeasibleSet(t, outcome.places)
     nearer = minimise(
         feasible, cost, outcome.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
     )
     metric = cost.expand(nearer.x)[1]
-    restored = restore(feasible, metric, nearer.x, stage="fit", progress=progress)
+    restored = _restored(feasible, metric, nearer.x, human, progress)
     if not restored.solved:
         return []
     return [nearer, restored, *refine(restored, fit_metric, ADAPT_TOLERANCE, progress=progress)]
+
+
+def _restored(
+    feasible: FeasibleSet,
+    metric: BlockBanded,
+    x: FloatArray,
+    human: HumanGuard,
+    progress: Progress | None,
+) -> Outcome:
+    """Restoration in the ranges of joints, or where no motion is found there, without them."""
+    wider = partial(with_guards, (human,))
+    found = restore(feasible, metric, x, stage="fit", progress=progress, wider=wider)
+    if found.solved or not found.transcription.guards:
+        return found
+    return restore(feasible, metric, x, stage="fit", progress=progress)
 
 
 def reached_places(motion: Motion) -> FloatArray:
@@ -247,9 +264,12 @@ def fit_metric(motion: Motion) -> BlockBanded:
     return motion_metric(motion, FIT_COST_WEIGHTS)
 
 
-def motion_metric(motion: Motion, weights: CostWeights) -> BlockBanded:
+def motion_metric(
+    motion: Motion, weights: CostWeights, price: JointPrice | None = None
+) -> BlockBanded:
     """Metric W at a motion: Gauss-Newton Hessian of the tracking cost to itself."""
-    return TrackingCost(motion.transcription, motion_target(motion), weights).expand(motion.x)[1]
+    cost = TrackingCost(motion.transcription, motion_target(motion), weights, price)
+    return cost.expand(motion.x)[1]
 
 
 def motion_target(motion: Motion) -> TrackingTarget:
@@ -261,7 +281,7 @@ def motion_target(motion: Motion) -> TrackingTarget:
     com_acceleration = t.basis.combine(motion.x[:, t.layout.com], t.node_times, 2)
     level = np.zeros((t.basis.n_coefficients, 2))
     forces = motion.x[:, t.layout.forces]
-    return TrackingTarget(markers, com, a, com_acceleration, forces, level, _ends(motion))
+    return TrackingTarget(markers, com, q, a, com_acceleration, forces, level, _ends(motion))
 
 
 def _ends(motion: Motion) -> EndTarget:
@@ -272,139 +292,3 @@ def _ends(motion: Motion) -> EndTarget:
     relative = forward_kinematics(t.character, value[:, t.layout.angles]).points(points)
     com = t.layout.com
     return EndTarget(relative + value[:, None, com], rate[:, com], rate[:, t.layout.angles])
-
-
-def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcription:
-    """Transcription of a performance with its contacts."""
-    character = performance.character
-    points, which = body_points(character, performance.recording, schedule)
-    contacts, extra = point_contacts(schedule, which)
-    return Transcription(
-        character,
-        _coarsest_basis(performance, schedule.jumps, [*schedule.boundaries, *extra]),
-        points,
-        contacts,
-        MomentFunction(character),
-    )
-
-
-def point_contacts(
-    schedule: ContactSchedule, which: Sequence[int]
-) -> tuple[tuple[PointContact, ...], list[float]]:
-    """Contacts in the equations, and instants, s, shortly before landings and after lift-offs.
-
-    which: each contact's index of a touching point.
-    """
-    contacts = tuple(
-        PointContact(contact, point, sole=sole_trajectory(contact))
-        for contact, point in zip(schedule.contacts, which, strict=True)
-    )
-    edges: list[float] = []
-    for contact in schedule.contacts:
-        for t in (contact.start - EDGE_SPAN, contact.end + EDGE_SPAN):
-            near = min(abs(t - other) for other in (*schedule.boundaries, *edges))
-            if 0.0 < t < schedule.duration and near > MIN_SPAN:
-                edges.append(t)
-    return contacts, edges
-
-
-def _coarsest_basis(
-    performance: Performance, jumps: Sequence[float], extra: Sequence[float]
-) -> SplineBasis:
-    """Basis with the fewest knots that follows the recording; `refine` adds more for physics."""
-    for longest in CANDIDATE_SPANS:
-        basis = SplineBasis(*phase_breaks(jumps, extra, longest))
-        angles = recorded_spline(basis, performance, performance.angles)
-        posed = forward_kinematics(performance.character, basis.combine(angles, performance.times))
-        off = posed.centres - forward_kinematics(performance.character, performance.angles).centres
-        if np.sqrt((off**2).sum(axis=2).mean(axis=0)).max() < SPLINE_FIT_TOLERANCE:
-            break
-    return basis
-
-
-def body_points(
-    character: Character, recording: Recording, schedule: ContactSchedule
-) -> tuple[tuple[BodyPoint, ...], list[int]]:
-    """Distinct touching points, in their bodies' frames, and each contact's index of one."""
-    bodies = {body.bone: i for i, body in enumerate(character.bodies)}
-    names: list[str] = []
-    points: list[BodyPoint] = []
-    which = []
-    for contact in schedule.contacts:
-        if contact.point not in names:
-            bone = recording.bones[recording.index(contact.bone)]
-            names.append(contact.point)
-            points.append(BodyPoint(bodies[contact.bone], bone.rotation @ contact.offset))
-        which.append(names.index(contact.point))
-    return tuple(points), which
-
-
-def initial_guess(transcription: Transcription, performance: Performance) -> FloatArray:
-    """Initial guess x (K, n_block): splines of the recording, forces that explain its load."""
-    basis, layout = transcription.basis, transcription.layout
-    x = np.zeros((basis.n_coefficients, layout.n_block))
-    x[:, layout.com] = recorded_spline(basis, performance, performance.com)
-    x[:, layout.angles] = recorded_spline(basis, performance, performance.angles)
-    spans = np.arange(basis.n_spans)
-    middles = 0.5 * (basis.breaks[:-1] + basis.breaks[1:])
-    load = basis.combine(x[:, layout.com], middles, 2)[:, 2] / STANDARD_GRAVITY + 1.0
-    blocks = layout.force_block(basis.force_nodes(spans))
-    for contact in transcription.contacts:
-        inside = touching_spans(basis, contact.contact)
-        for side in range(2):
-            at = blocks[inside, side]
-            x[at, layout.vertical_force(contact.point)] = np.clip(load[inside], 0.0, 4.0)
-    vertical = layout.vertical_forces
-    together = np.maximum((x[:, vertical] > 0).sum(axis=1, keepdims=True), 1)
-    x[:, vertical] /= together
-    x[~transcription.active] = 0.0
-    return x
-
-
-def recorded_spline(
-    basis: SplineBasis, performance: Performance, samples: FloatArray
-) -> FloatArray:
-    """(n_coefficients, n) least-squares spline of samples (T, n) at the recording's frames.
-
-    Fitted between the frames too: a short span may hold no frame, and a spline that nothing holds
-    there would swing.
-    """
-    times = np.union1d(dense_instants(basis), performance.times)
-    return basis.project(
-        times, interpolate(performance.times, samples, times), THIRD_DERIVATIVE_WEIGHT
-    )
-
-
-def recorded_target(
-    transcription: Transcription, performance: Performance, schedule: ContactSchedule
-) -> TrackingTarget:
-    """The recording as a tracking target; its forces are small and as its acceleration directs."""
-    times, basis = transcription.node_times, transcription.basis
-    instants = np.zeros(basis.n_coefficients)
-    spans = np.arange(basis.n_spans)
-    blocks = transcription.layout.force_block(basis.force_nodes(spans))
-    instants[blocks] = np.stack([basis.breaks[:-1], basis.breaks[1:]], axis=1)
-    load = com_acceleration(performance, schedule, instants) / STANDARD_GRAVITY
-    load[:, 2] += performance.character.gravity / STANDARD_GRAVITY
-    ends = basis.breaks[[0, -1]]
-    markers = marker_points(performance.character)
-    return TrackingTarget(
-        markers=performance.points(markers, times),
-        com=interpolate(performance.times, performance.com, times),
-        accelerations=angle_accelerations(performance, times),
-        com_acceleration=com_acceleration(performance, schedule, times),
-        forces=np.zeros((basis.n_coefficients, 3 * transcription.layout.n_points)),
-        slope=np.clip(load[:, :2] / np.maximum(load[:, 2:], MIN_LOAD), -MAX_SLOPE, MAX_SLOPE),
-        ends=EndTarget(performance.points(markers, ends), *velocities(performance, ends)),
-    )
-
-
-def greville_abscissae(basis: SplineBasis) -> FloatArray:
-    """(n_coefficients,) Greville abscissae, s: the instant that each coefficient stands for."""
-    k = basis.knots
-    return np.asarray((k[1:-3] + k[2:-2] + k[3:-1]) / 3.0)
-
-
-def dense_instants(basis: SplineBasis, per_span: int = 4) -> FloatArray:
-    """Gauss instants, s, that determine a spline on this basis."""
-    return gauss_instants(basis.breaks, per_span)[0]

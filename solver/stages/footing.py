@@ -10,12 +10,15 @@ from ..analysis.pinned_places import pinned_footing
 from ..arrays import FloatArray
 from ..data.constants import UP
 from ..data.contacts import ContactSchedule, Phase
-from ..data.faults import TooSteep
+from ..data.faults import StandsBelow, StandsIn, TooSteep
 from ..data.problem import MotionProblem, Pin
 from ..data.scene import SceneObject
+from ..scene.triangle_mesh import placed_mesh
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
 from .fit import Fit
+
+SUNK = 0.04  # m; as far as a place may be from the floor that it is put upon (grounding.py)
 
 
 def find_footing(
@@ -39,6 +42,29 @@ def find_footing(
                 each[row[contact.name]] for each in (found.places, found.normals)
             )
     return Footing(places, normals, found.pins)
+
+
+def check_sunk(scene: Sequence[SceneObject], schedule: ContactSchedule, footing: Footing) -> None:
+    """No contact that is not on an object is in one that stands still: nothing could keep it out.
+
+    Raises StandsIn, StandsBelow.
+    """
+    loose = [
+        i
+        for i, contact in enumerate(schedule.contacts)
+        if contact.name not in footing.pins and not contact.asked_for
+    ]
+    places = footing.places[loose]
+    for thing in scene if loose else ():
+        if thing.moves:
+            continue
+        mesh = placed_mesh(thing)
+        deep = mesh.heights(places[:, :2]).z - places[:, 2]
+        inside = (mesh.distances(places + SUNK * UP).distance < 0.0) & (deep > SUNK)
+        if inside.all():
+            raise StandsBelow(thing.name, float(deep.max()))
+        for i in np.flatnonzero(inside)[:1].tolist():
+            raise StandsIn(thing.name, schedule.contacts[loose[i]].name, float(deep[i]))
 
 
 def on_faces(motion: Motion, footing: Footing) -> Motion:

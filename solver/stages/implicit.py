@@ -9,15 +9,15 @@ from functools import partial
 from ..arrays import FloatArray
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
-from ..data.requests import Method, ObjectiveKind
 from ..data.row_kinds import RowKind
+from ..data.solver_options import Method, ObjectiveKind
 from ..data.status import Durations, Status
-from ..optimisation.guards import Guard, guarded, in_the_way
+from ..inverse_kinematics.arm_ik import reach_grips
+from ..optimisation.guards import Guard, guarded, in_the_way, with_guards
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
-from .arm_ik import reach_grips
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
 from .setup import Setup, set_up
@@ -104,7 +104,7 @@ def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | 
     if weights or problem.requests.preferred:
         better, gain = explicit(outcomes[-1], setup, weights, progress)
         outcomes += better + (close_between_nodes(better[-1], setup, progress) if better else [])
-    if misses_a_constraint(outcomes[-1]):
+    if misses_a_constraint(outcomes[-1]) or _goes_beyond_hard(outcomes[-1], setup):
         outcomes[-1] = replace(outcomes[-1], status=Status.MISSED)
     stuck = None if outcomes[-1].solved else outcomes[-1]
     return Adaptation(tuple(outcomes), setup.target_places, fit, setup, stuck, gain=gain)
@@ -114,6 +114,14 @@ def misses_a_constraint(outcome: Outcome) -> bool:
     """Whether the dense violation of a constraint exceeds MAX_DENSE_VIOLATION."""
     t = outcome.transcription
     found = (dense_violation(c, t.character, t.basis, t.layout, outcome.x) for c in t.constraints)
+    return any(each.amount > MAX_DENSE_VIOLATION * each.kind.tolerance for each in found)
+
+
+def _goes_beyond_hard(outcome: Outcome, setup: Setup) -> bool:
+    """Whether a motion does by MAX_DENSE_VIOLATION what a hard guard must keep it from."""
+    motion = setup.feasible_set(outcome.transcription).motion(outcome.x)
+    hard = [guard for guard in setup.guards if guard.hard]
+    found = [each for guard in hard for each in guard.violations(motion)]
     return any(each.amount > MAX_DENSE_VIOLATION * each.kind.tolerance for each in found)
 
 
@@ -186,23 +194,28 @@ def _restored(
 
     On the way to the last step these are the ranges of joints alone: there floors and limbs are
     not where they shall be, but a joint that once is far beyond its range finds a long way back.
-    Where not all can be kept, floor and limbs go before ranges.
+    Where not all can be kept, floor and limbs go before ranges, unless these are hard.
     """
     guards = tuple(guard for guard in setup.guards if last or guard is setup.human)
-    solids = tuple(guard for guard in guards if guard is not setup.human)
-    for some in (guards, solids) if len(solids) < len(guards) else (guards,):
-        wider = partial(_with_guards, some)
+    for some in _ways_to_guard(guards):
+        wider = partial(with_guards, some)
         outcome = restore(
             feasible, setup.metric, start, stage="adapt", progress=progress, wider=wider
         )
         if outcome.solved or not outcome.transcription.guards:
-            return outcome
-    return restore(feasible, setup.metric, start, stage="adapt", progress=progress)
+            break
+    return outcome
 
 
-def _with_guards(guards: tuple[Guard, ...], now: FeasibleSet, x: FloatArray) -> FeasibleSet:
-    t = guarded(now.motion(x), guards, set())
-    return now if t is now.transcription else replace(now, transcription=t)
+def _ways_to_guard(guards: tuple[Guard, ...]) -> list[tuple[Guard, ...]]:
+    """By which guards a step is tried in turn: all, some, and none but hard ones."""
+    hard = tuple(guard for guard in guards if guard.hard)
+    solids = tuple(guard for guard in guards if guard.kind is RowKind.SOLID)
+    ways = [guards]
+    for fewer in (hard,) if hard else (solids, ()):
+        if len(fewer) < len(ways[-1]):
+            ways.append(fewer)
+    return ways
 
 
 def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | None) -> list[Outcome]:
@@ -212,6 +225,7 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
     """
     outcomes: list[Outcome] = []
     given_up: set[str] = set()
+    hard = {name for guard in setup.guards if guard.hard for name in guard.names}
     refined: Outcome | None = None
     for _ in range(MAX_GUARD_ROUNDS if setup.guards else MAX_EXCHANGES):
         if outcome is not refined:
@@ -233,10 +247,11 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
             outcomes.append(outcome := tried)
         elif new.guards is old.guards:
             break  # what was solved for stands; what it misses in between is reported
-        elif tried.solved and (ranges := new.guard(RowKind.RANGE)) is not None:
-            given_up |= {ranges.names[item] for item in ranges.items.tolist()}
         else:
-            given_up |= in_the_way(feasible, metric, tried.x)
+            conflicting = in_the_way(feasible, metric, tried.x) - hard
+            if not conflicting - given_up:
+                break  # the artist's hard ranges are missed, and reported
+            given_up |= conflicting
     else:
         outcomes += refine(
             outcome, setup.metric_of, ADAPT_TOLERANCE, basis=setup.basis, progress=progress

@@ -6,21 +6,24 @@ by the smallest change: measured against steps towards the motion nearest to the
 near to what the solve will find and does not jitter. Far moves are made by continuation, one step
 an update; moving ground comes up to its speed likewise. The solve proper, once the pin is let go,
 starts from the fit again. While a pin moves phases last as long as they did; once it rests they
-take the durations that go with its place. What is solid is looked for in the motion before each
-update, and kept out by the update.
+take the durations that go with its place. What is in something, and joints beyond their ranges, are
+looked for in the motion before each update, and mended by the update.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..data.problem import MotionProblem
-from ..data.report import DragSummary
+from ..data.reports.report import DragSummary
 from ..data.status import DragStatus
 from ..data.traces import Traces
+from ..optimisation.guards import Guard, guarded
 from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import restore
+from ..transcription.guard_rows import GuardRows
 from ..transcription.motion import Motion
 from .fit import Fit
 from .implicit import Adaptation
@@ -29,11 +32,13 @@ from .setup import Setup, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 CHORD_STEPS = 2  # an update, on the same factor
+SWEEPS = 2  # a step; the next update goes on with what they leave
 MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
 RESTING_UPDATES = 6  # at one place, after which a pin is no longer on its way
 RETIMING_STEPS = 8  # at most, to a motion with other durations
-FAR_SOLID = 0.02  # m beyond its bound, where a solid needs no row any more
+FAR = 20.0  # tolerances within its bound (2 cm, 2 degrees), where a guard needs no row any more
+ASTRAY = 50.0  # tolerances beyond it (5 cm, 5 degrees), from where no linear step leads out
 MAX_BLOCKED_UPDATES = 4  # in which a solid does not come out, after which it is let be
 SAME_DURATION = 1e-3  # s, by which nobody sees that a phase lasts longer
 HELD_VIOLATION = 100.0  # times the tolerances (1 mm): a motion that serves to go back to
@@ -59,8 +64,8 @@ class Follower:
         self._timed, self._rested = problem, 0  # whose durations these are; updates at one place
         self._linearised: LinearisedProblem | None = None
         self._held = self.motion, self._standing
-        self._given_up: set[str] = set()  # solids that are let be
-        self._blocked = 0  # updates in which a solid is furthest from where it should be
+        self._given_up: set[str] = set()  # solids and ranges that are let be
+        self._blocked = 0  # updates in which one of them is furthest from where it should be
         self.violation = np.inf
 
     def follow(self, problem: MotionProblem) -> DragStatus:
@@ -81,12 +86,12 @@ class Follower:
             places = partial_places(schedule, was.places, target.places, whole, 1.0 / steps)
             target = target.slowed(was.share + (1.0 - was.share) / steps).with_places(places)
         x = warm_start(self.motion, stance_moves(schedule, was, target))
-        self._keep_out()
+        self._guard()
         if not self._step(x, target):
             (self.motion, self._standing), self._linearised = self._held, None
-            self._let_be(np.array(True))
+            self._let_be()
             return DragStatus.DIVERGED
-        self._watch_solids()
+        self._watch_guards()
         if self.violation < HELD_VIOLATION:
             self._held = self.motion, self._standing
         there = steps == 1 and self.violation <= 1.0 and self._timed == problem
@@ -107,7 +112,8 @@ class Follower:
     def _retime(self, problem: MotionProblem) -> None:
         """Begins anew where other durations go with the pins, or where they had changed.
 
-        Where that does not come near a motion the present one stays.
+        Where that does not come near a motion, or limbs end deep in something, the present one
+        stays.
         """
         setup = set_up(self._fit, problem)
         self._timed = problem
@@ -118,8 +124,9 @@ class Follower:
         still = Standing.still(start.places)
         x = warm_start(start, stance_moves(setup.schedule, still, target))
         found = restore(feasible, setup.metric, x, stage="drag", max_steps=RETIMING_STEPS)
-        if found.violation < HELD_VIOLATION:
-            self._begin(setup, feasible.motion(found.x), target, problem)
+        motion = feasible.motion(found.x)
+        if found.violation < HELD_VIOLATION and not _astray(motion, setup.guards):
+            self._begin(setup, motion, target, problem)
 
     def _begin(
         self, setup: Setup, start: Motion, standing: Standing, problem: MotionProblem
@@ -128,23 +135,24 @@ class Follower:
         self._standing, self._linearised, self._timed = standing, None, problem
         self._held = start, standing
 
-    def _keep_out(self) -> None:
-        """Rows for what is in each other now, without those that are far from it by now."""
-        world, t, x = self.setup.solid, self.motion.transcription, self.motion.x
-        if world is None or self.violation > HELD_VIOLATION:
+    def _guard(self) -> None:
+        """Rows for what is in each other, or beyond its range, now; without those that are far
+        from it by now."""
+        x, setup = self.motion.x, self.setup
+        if self.violation > HELD_VIOLATION:
             return
-        solid = world.rows(self.motion, self._given_up)
-        if solid is None:
+        t = guarded(self.motion, setup.guards, self._given_up)
+        if not t.guards:
             return
-        rows = t.guarded((solid,)).guard_rows(x)
-        near = rows.value - rows.lower < FAR_SOLID
-        left = world.only(solid, near)
-        t = t.guarded(() if left is None else (left,))
+        rows = t.guard_rows(x)
+        near = rows.value - rows.lower < FAR * rows.tolerance
+        each = zip(t.guards, _by_guard(t.guards, near), strict=True)
+        t = t.guarded(tuple(guard.some(which) for guard, which in each if which.any()))
         if self._linearised is not None:
             self._linearised = self._linearised.widened(t, rows.some(near))
         self.motion = replace(self.motion, transcription=t)
 
-    def _watch_solids(self) -> None:
+    def _watch_guards(self) -> None:
         """Lets those be that what is asked for has kept from their place for some updates."""
         t = self.motion.transcription
         if not t.guards:
@@ -156,11 +164,13 @@ class Follower:
             self._let_be(off > 1.0)
             self._blocked = 0
 
-    def _let_be(self, which: BoolArray) -> None:
-        """Gives up solids, by flags of their rows (U,)."""
-        for guard in self.motion.transcription.guards:
-            items = np.unique(guard.items[np.broadcast_to(which, guard.items.shape)])
-            self._given_up |= {guard.names[item] for item in items.tolist()}
+    def _let_be(self, which: BoolArray | None = None) -> None:
+        """Gives up guards, by flags of all their rows (U,); None all that have rows."""
+        guards = self.motion.transcription.guards
+        if which is None:
+            which = np.ones(sum(len(guard.items) for guard in guards), dtype=bool)
+        for guard, mine in zip(guards, _by_guard(guards, which), strict=True):
+            self._given_up |= {guard.names[item] for item in set(guard.items[mine].tolist())}
 
     def _step(self, x: FloatArray, standing: Standing) -> bool:
         """A few chord steps from unknowns x; False, having changed nothing, where they diverge."""
@@ -175,7 +185,7 @@ class Follower:
             return False
         for _ in range(CHORD_STEPS):
             before = linearised.violation(value)
-            x = x + linearised.step(value)[0]
+            x = x + linearised.step(value, sweeps=SWEEPS)[0]
             value = feasible.values(x)
             after = linearised.violation(value)
             stale = after > MAX_DRAG_CHORD_RATIO * before
@@ -187,6 +197,21 @@ class Follower:
         self._linearised = None if stale and after > 1.0 else linearised
         self.motion, self._standing = feasible.motion(x), standing
         return True
+
+
+def _astray(motion: Motion, guards: Sequence[Guard]) -> bool:
+    """Whether something is deeper in something, or a joint further off, than an update mends."""
+    t = guarded(motion, guards, set())
+    if not t.guards:
+        return False
+    rows = t.guard_rows(motion.x)
+    return bool((np.abs(rows.violation()) > ASTRAY * rows.tolerance).any())
+
+
+def _by_guard(guards: Sequence[GuardRows], flags: BoolArray) -> list[BoolArray]:
+    """Flags of the rows of all guards, (U,), guard by guard."""
+    ends = np.cumsum([len(guard.items) for guard in guards])
+    return [flags[end - len(guard.items) : end] for guard, end in zip(guards, ends, strict=True)]
 
 
 def change(fit: Fit, setup: Setup, motion: Motion, seen: Traces) -> DragSummary:

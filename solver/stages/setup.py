@@ -5,69 +5,52 @@ changes the transcription, so the fit is resampled on a new one as an initial gu
 of that kind is asked for, the fit's own transcription serves.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
 
 from ..analysis.pinned_places import travel_axes
+from ..analysis.timeline import TimeWarp, timeline
 from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
 from ..body.dynamics import MomentFunction
 from ..body.proportions import changed_recording
 from ..constraints.constraint_builder import build_constraints
-from ..constraints.contact_setup import added_contact, detailed_contact, with_added, without_lifted
+from ..constraints.contact_setup import added_contact, with_added, without_lifted
 from ..constraints.evaluation_context import EvaluationContext
-from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule, Interval, Phase
 from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
-from ..data.requests import (
-    AngleLimit,
-    ConeLimit,
-    Dynamics,
-    Method,
-    ObjectiveKind,
-    PointRequest,
-    Requests,
-    TwistLimit,
-)
+from ..data.requests import AngleLimit, ConeLimit, Requests, TwistLimit
 from ..data.scene import SceneObject
+from ..data.solver_options import Dynamics, HumanRanges, Method, ObjectiveKind
 from ..data.status import Durations
-from ..data.timeline import TimeWarp, timeline
 from ..human.human_guard import HumanGuard, recorded_ranges
+from ..human.range_price import range_price
+from ..inverse_kinematics.reseat import reseat
 from ..numerics.block_banded import BlockBanded
-from ..numerics.splines import SplineBasis, phase_breaks
+from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
 from ..objectives.tracking_cost import CostWeights
 from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
+from ..solid.shape_changes import ShapeChanges
 from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
 from .anticipation import anticipate, changed_jumps
-from .fit import (
-    ADAPT_COST_WEIGHTS,
-    MIN_SPAN,
-    THIRD_DERIVATIVE_WEIGHT,
-    Fit,
-    body_points,
-    dense_instants,
-    motion_metric,
-    point_contacts,
-)
-from .footing import on_faces, pin_turns
+from .fit import ADAPT_COST_WEIGHTS, Fit, motion_metric
+from .footing import check_sunk, on_faces, pin_turns
+from .initial_guess import resampled_fit
 from .platforms import find_standing
-from .reseat import reseat
 from .surroundings import surroundings
 from .warm_start import Standing
 
-MAX_SPAN = 0.08  # s, between knots that are not the fit's
-MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
 TORQUE_OBJECTIVES = (
     ObjectiveKind.TORQUE_SMOOTHNESS.value,
     ObjectiveKind.POWER.value,
@@ -87,7 +70,8 @@ class Setup:
     metric: W at the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the
     changes of a block that a reduction allows, None all. requests: those set up here. recording: of
     the figure as it is asked for. space: the reduced coordinates, None where there are none.
-    durations: where they come from. scene: what is around.
+    durations: where they come from. scene: what is around. price: of turning joints, which is in
+    the metric; None for a figure that is no human.
     """
 
     fit: Fit
@@ -103,6 +87,7 @@ class Setup:
     space: ReducedSpace | None
     durations: Durations
     scene: tuple[SceneObject, ...] = ()
+    price: JointPrice | None = None
 
     def feasible_set(
         self, transcription: Transcription, places: FloatArray | None = None
@@ -113,7 +98,7 @@ class Setup:
 
     def metric_of(self, motion: Motion) -> BlockBanded:
         """Metric W of the minimum-norm steps from a motion of this problem."""
-        metric = motion_metric(motion, _cost_weights(self.requests))
+        metric = motion_metric(motion, _cost_weights(self.requests), self.price)
         if _weighs_torques(self.requests):
             metric.lower += torque_metric(motion, self.torques).lower
         return metric
@@ -132,22 +117,30 @@ class Setup:
         """What is solid; None where limbs and floor may go through each other."""
         if not self.requests.solution.solid:
             return None
-        lowest = self.target.lowest(self.schedule)
-        return surroundings(self.fit, self.context, lowest, self.scene, self.requests.clears)
+        lowest, clears = self.target.lowest(self.schedule), self.requests.clears
+        return surroundings(self.fit, self.context, lowest, self.scene, clears, self.shape_changes)
+
+    @cached_property
+    def shape_changes(self) -> ShapeChanges:
+        """What the artist changes of the solid shapes. Raises StillBone, NotAboveZero."""
+        return ShapeChanges.of(self.requests.shapes, self.context.character)
 
     @cached_property
     def human(self) -> HumanGuard | None:
         """How far joints may go; None for a figure that is no human.
 
-        Joints that the artist limits are the artist's alone.
+        Joints that the artist limits, or says are none of a person's, are the artist's alone.
         """
-        if not self.requests.solution.human:
+        asked, solution = self.requests, self.requests.solution
+        if not solution.human:
             return None
-        asked = self.requests
         limits: tuple[AngleLimit | ConeLimit | TwistLimit, ...]
         limits = (*asked.angles, *asked.cones, *asked.twists)
-        reference, own = self.context.reference, frozenset(limit.bone for limit in limits)
-        return HumanGuard(recorded_ranges(reference), reference, own)
+        own = {limit.bone for limit in limits}
+        own |= {bone for shape in asked.shapes if not shape.human for bone in shape.bones}
+        reference, hard = self.context.reference, solution.human is HumanRanges.HARD
+        ranges = tuple(each.widened(solution.wider) for each in recorded_ranges(reference))
+        return HumanGuard(ranges, reference, frozenset(own), hard)
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:
@@ -188,18 +181,20 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     added = {r.name: r for r in requests.points if r.environment}
     contacts = [added_contact(request, context) for request in added.values()]
     context = replace(context, schedule=with_added(context.schedule, contacts))
-    start = _start(fit, problem, context, added)
+    start = resampled_fit(fit, problem, context, added)
     fitted_places = start.places
     target, footing = find_standing(fit, problem, context)
+    if requests.solution.solid:
+        check_sunk(problem.scene, context.schedule, footing)
     start = on_faces(start, footing)
     durations = Durations.MOVING_GROUND
     if not target.moves:  # the ground's clock is no jumper's to stretch
         context, start, durations = _anticipated(fit, problem, context, start, target.places)
     start = _with_constraints(_riding(start, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
-    weights = _cost_weights(requests)
-    kept = same and weights is ADAPT_COST_WEIGHTS
-    metric = fit.metric if kept else motion_metric(start, weights)
+    weights, price = _cost_weights(requests), _price(fit, reference, requests)
+    kept = same and weights is ADAPT_COST_WEIGHTS and price is not None
+    metric = fit.metric if kept else motion_metric(start, weights, price)
     if _weighs_torques(requests):
         metric = metric.copy()
         metric.lower += _torque_metric(fit, start, same=same).lower
@@ -222,6 +217,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         space,
         durations,
         problem.scene,
+        price,
     )
 
 
@@ -299,6 +295,13 @@ def _cost_weights(requests: Requests) -> CostWeights:
     return replace(ADAPT_COST_WEIGHTS, force=max(matches) * ADAPT_COST_WEIGHTS.force)
 
 
+def _price(fit: Fit, reference: Motion, requests: Requests) -> JointPrice | None:
+    """What turning joints costs; nothing where the figure is no human. reference: see Setup."""
+    if not requests.solution.human:
+        return None
+    return fit.price if reference is fit.motion else range_price(reference)
+
+
 def _torque_metric(fit: Fit, start: Motion, *, same: bool) -> BlockBanded:
     return fit.torque_metric if same else torque_metric(start, joint_torques(start.transcription))
 
@@ -319,97 +322,6 @@ def _with_body(fit: Fit, problem: MotionProblem, changed: Recording) -> Motion:
         fit.other_bodies.clear()  # the last one is asked for again and again, older ones are not
         fit.other_bodies[change] = made
     return fit.other_bodies[change]
-
-
-# ---------------------------------------------------------------- initial guess
-
-
-def _start(
-    fit: Fit, problem: MotionProblem, context: EvaluationContext, added: dict[str, PointRequest]
-) -> Motion:
-    """The reference on the problem's own contacts, timeline and knots, without constraints."""
-    reference, schedule = context.reference, context.schedule
-    t = reference.transcription
-    coarse = problem.requests.solution.longest_span
-    same = context.timeline.unchanged and coarse is None and not added
-    if same and len(schedule.contacts) == len(t.contacts):
-        contacts = tuple(detailed_contact(c, problem, context, None) for c in t.contacts)
-        return replace(reference, transcription=replace(t, contacts=contacts))
-    points, which = body_points(t.character, context.recording, schedule)
-    plain, extra = point_contacts(schedule, which)
-    contacts = tuple(
-        detailed_contact(c, problem, context, added.get(c.contact.name)) for c in plain
-    )
-    if coarse is None:
-        basis = _mapped_basis(t.basis, context, extra)
-    else:
-        basis = SplineBasis(*phase_breaks(schedule.jumps, [*schedule.boundaries, *extra], coarse))
-    new = Transcription(t.character, basis, points, contacts, t.moment)
-    x = _resampled(reference, new, context.timeline.eased)
-    motion = Motion(new, x, np.zeros((len(contacts), 3)))
-    return replace(motion, places=_current_places(motion, fit))
-
-
-def _mapped_basis(
-    old: SplineBasis, context: EvaluationContext, extra: Sequence[float]
-) -> SplineBasis:
-    """The old knots at their new instants, and those that new boundaries and holds need."""
-    retiming, schedule = context.timeline, context.schedule
-    fixed = sorted({*schedule.boundaries, *extra})
-    kept: list[float] = []
-    held = [
-        np.linspace(hold.start, hold.end, 1 + int(np.ceil((hold.end - hold.start) / MAX_HELD_SPAN)))
-        for hold in retiming.holds
-    ]
-    for t in np.unique(np.concatenate([retiming.to_new(old.breaks), *held])).tolist():
-        near = min(abs(t - other) for other in (*fixed, *kept))
-        if 0.0 < t < retiming.duration and near > MIN_SPAN:
-            kept.append(t)
-    return SplineBasis(*phase_breaks(schedule.jumps, [*fixed, *kept], MAX_SPAN))
-
-
-def _resampled(
-    motion: Motion, new: Transcription, to_old: Callable[[FloatArray], FloatArray]
-) -> FloatArray:
-    """Unknowns of a motion on another transcription: splines by least squares, forces at the nodes.
-
-    to_old: instants (T,) s of the motion from those of the new one.
-    """
-    basis, layout, old = new.basis, new.layout, motion.transcription
-    times = dense_instants(basis)
-    x = np.zeros((basis.n_coefficients, layout.n_block))
-    x[:, layout.com] = basis.project(times, motion.com(to_old(times)), THIRD_DERIVATIVE_WEIGHT)
-    x[:, layout.angles] = basis.project(
-        times, motion.angles(to_old(times)), THIRD_DERIVATIVE_WEIGHT
-    )
-    names = {c.point: c.contact.point for c in old.contacts}
-    came_from = {name: point for point, name in names.items()}
-    nodes = basis.force_nodes(np.arange(basis.n_spans))
-    inside = 1e-6 * np.diff(basis.breaks)
-    weight = old.character.mass * STANDARD_GRAVITY
-    for side, at in enumerate((basis.breaks[:-1] + inside, basis.breaks[1:] - inside)):
-        forces = motion.forces(to_old(at)) / weight
-        for contact in new.contacts:
-            point = came_from.get(contact.contact.point)
-            if point is not None:
-                x[layout.force_block(nodes[:, side]), layout.force(contact.point)] = forces[
-                    :, point
-                ]
-    x[~new.active] = 0.0
-    return x
-
-
-def _current_places(motion: Motion, fit: Fit) -> FloatArray:
-    """(n_contacts, 3) m: the fit's place of each contact; where the point is, for a new one."""
-    known = {c.name: place for c, place in zip(fit.schedule.contacts, fit.places, strict=True)}
-    places = []
-    for contact in motion.transcription.contacts:
-        if contact.contact.name in known:
-            places.append(known[contact.contact.name])
-        else:
-            times = np.linspace(contact.contact.start, contact.contact.end, 20)
-            places.append(motion.contact_points(times)[:, contact.point].mean(axis=0))
-    return np.array(places).reshape(-1, 3)
 
 
 def _with_constraints(start: Motion, problem: MotionProblem, context: EvaluationContext) -> Motion:

@@ -7,6 +7,7 @@ from ..constraints.evaluation_context import EvaluationContext
 from ..data.requests import Clear
 from ..data.scene import SceneObject
 from ..scene.object_motion import ObjectMotion
+from ..solid.shape_changes import ShapeChanges
 from ..solid.solid_world import SolidWorld, floor_heights, solid_world
 from .fit import Fit
 
@@ -17,6 +18,7 @@ def surroundings(
     target_places: FloatArray,
     scene: Sequence[SceneObject],
     clears: Sequence[Clear],
+    changes: ShapeChanges,
 ) -> SolidWorld:
     """The solid world of a problem. target_places: (n_contacts, 3) m. Raises StillBone."""
     line = context.timeline
@@ -26,7 +28,10 @@ def surroundings(
     )
     placed = [(thing, ObjectMotion.of(thing, line.first_frame, line.rate)) for thing in scene]
     by = _by_object(clears, context)
-    return solid_world(fit.motion, context.reference, floors, line.to_old, placed, by)
+    known = frozenset(contact.on for contact in fit.schedule.contacts if contact.on is not None)
+    return solid_world(
+        fit.motion, context.reference, floors, line.to_old, placed, by, changes, known
+    )
 
 
 def _by_object(clears: Sequence[Clear], context: EvaluationContext) -> dict[str, dict[int, float]]:

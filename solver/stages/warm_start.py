@@ -15,10 +15,10 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, PhaseKind
 from ..numerics.rotations import axis_rotation
+from ..numerics.splines import dense_instants, greville_abscissae
 from ..transcription.motion import Motion
 from ..transcription.ride import Ride
 from ..transcription.transcription import Transcription
-from .fit import dense_instants, greville_abscissae
 
 MAX_SHIFT_PER_STEP = 0.5  # m, of a continuation step
 MAX_SPEED_PER_STEP = 1.5  # m/s, by which a landing or a stance changes speed

@@ -10,11 +10,18 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
 from ..numerics.splines import SplineBasis
 from .constraint import ConstraintFunction
 from .sampling import Instants
+
+
+class GuardFunction(ConstraintFunction, Protocol):
+    """A constraint function whose items are the rows themselves, each at its own instant."""
+
+    def some(self, which: BoolArray) -> "GuardFunction":
+        """Of some of the rows (U,)."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +35,16 @@ class GuardRows:
     items: IntArray
     times: FloatArray
     lower: FloatArray
-    function: ConstraintFunction
+    function: GuardFunction
 
     @property
     def kind(self) -> RowKind:
         return self.function.kind
+
+    def some(self, which: BoolArray) -> "GuardRows":
+        """Some of the rows, by flags (U,)."""
+        items, times, lower = self.items[which], self.times[which], self.lower[which]
+        return GuardRows(self.names, items, times, lower, self.function.some(which))
 
     def instants(self, basis: SplineBasis) -> Instants:
         """Each row's own."""

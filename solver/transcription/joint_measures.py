@@ -18,6 +18,8 @@ from ..data.row_kinds import RowKind
 from ..numerics.rotations import perpendicular, rotation_vector, unit
 from .sampling import Channel, ChannelJacobian, State
 
+ON_AXIS = 1e-9  # sine of the angle from an axis that has no direction across
+
 
 def joint_frame(joint: Joint, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Rotations (U, 3, 3) child to parent, and each angle's axis (U, dofs, 3) in the parent.
@@ -127,7 +129,9 @@ class ConeAngle(JointMeasure):
         direction, shape = R @ self.along, self._shape
         parts = direction @ shape.T
         across = np.linalg.norm(parts[:, 1:], axis=1)
-        outward = parts[:, 1:] / np.maximum(across, 1e-9)[:, None] @ shape[1:]
+        unit_parts = parts[:, 1:] / np.maximum(across, ON_AXIS)[:, None]
+        unit_parts[across < ON_AXIS] = 1.0, 0.0  # every way leads off the axis; one must do
+        outward = unit_parts @ shape[1:]
         towards = parts[:, :1] * outward - across[:, None] * shape[0]
         return np.asarray(np.cross(direction, towards) / (across**2 + parts[:, 0] ** 2)[:, None])
 

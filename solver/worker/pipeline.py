@@ -20,19 +20,30 @@ from ..analysis.analyse import Analysis, analyse, build_figure
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..data.contacts import ContactSchedule
-from ..data.faults import NoFit, NoSolution
+from ..data.faults import NoFit, NoSolution, UnseenSupport
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
-from ..data.report import Origin, Report, StageReport
-from ..data.scaling import scaled_problem, scaled_recording, scaled_schedule, scaled_track
+from ..data.reports.jumps import TimeMap
+from ..data.reports.recording import Origin
+from ..data.reports.report import Report, StageReport
+from ..data.scaling import (
+    scaled_box,
+    scaled_problem,
+    scaled_recording,
+    scaled_schedule,
+    scaled_track,
+)
 from ..data.scene import SceneObject
+from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
 from ..optimisation.sqp import Step
 from ..results.joint_report import joint_turns
-from ..results.report import report
+from ..results.last_stance import last_stance_move
+from ..results.report import report, time_map
 from ..results.trace_sampling import motion_traces, recorded_traces
 from ..results.violations import most_telling
 from ..scene.checks import check_scene
+from ..solid.shape_changes import ShapeChanges
 from ..stages.fit import Fit, fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..transcription.motion import Motion
@@ -86,6 +97,12 @@ class Subject:
             problem = scaled_problem(problem, self.factor)
         return replace(self, problem=problem)
 
+    @property
+    def stood_on(self) -> frozenset[str]:
+        """Names of the scene's objects that the recording is on."""
+        every = self.analysis.schedule.contacts
+        return frozenset(contact.on for contact in every if contact.on is not None)
+
     def with_objects(self, things: tuple[SceneObject, ...]) -> Subject:
         """The same with more objects in the scene, at the stated stature."""
         problem = replace(self.problem, scene=(*self.problem.scene, *things))
@@ -103,9 +120,14 @@ class Subject:
     def motion_traces(
         self, motion: Motion, schedule: ContactSchedule, *, torques: bool = True
     ) -> Traces:
-        """Of a solved motion, in the recording's own lengths. schedule: of the motion."""
+        """Of a solved motion, in the recording's own lengths. schedule: of the motion.
+
+        Raises StillBone, NotAboveZero for a shape that the problem changes.
+        """
         dynamics = dynamics_of(motion) if torques else None
-        seen = motion_traces(motion, self.recording, schedule, dynamics)
+        character = motion.transcription.character
+        changes = ShapeChanges.of(self.problem.requests.shapes, character)
+        seen = motion_traces(motion, self.recording, schedule, dynamics, changes)
         return scaled_traces(seen, 1.0 / self.factor)
 
 
@@ -132,6 +154,17 @@ class AdaptationResult:
         """The motion's contacts, in the recording's own lengths."""
         return scaled_schedule(self.adaptation.setup.schedule, 1.0 / self.subject.factor)
 
+    @property
+    def times(self) -> TimeMap:
+        """Where the recording's frames are in the motion."""
+        return time_map(self.adaptation)
+
+    @property
+    def moved(self) -> StanceMove | None:
+        """The last stance's move, in the recording's own lengths; None where there is none."""
+        move = last_stance_move(self.adaptation)
+        return None if move is None else move.scaled(1.0 / self.subject.factor)
+
     def traces(self) -> Traces:
         """In the recording's own lengths."""
         motion, schedule = self.adaptation.motion, self.adaptation.setup.schedule
@@ -153,7 +186,11 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
     height = build_figure(recording, problem)[1].height
     factor = problem.height / height
     problem = scaled_problem(problem, factor)
-    analysis = analyse(scaled_recording(recording, factor), problem)
+    try:
+        analysis = analyse(scaled_recording(recording, factor), problem)
+    except UnseenSupport as fault:
+        boxes = tuple(scaled_box(box, 1.0 / factor) for box in fault.boxes)
+        raise replace(fault, boxes=boxes) from None
     return Subject(analysis, problem, height, factor)
 
 

@@ -30,10 +30,11 @@ if TYPE_CHECKING:
     from ..data.faults import Fault, NoSolution
     from ..data.problem import MotionProblem
     from ..data.recording import PoseTrack, Recording
-    from ..data.report import DragSummary, FitQuality, Report
+    from ..data.reports.report import DragSummary, FitQuality, Report
+    from ..data.stance_move import StanceMove
     from ..data.traces import Traces
 
-PROTOCOL = 3
+PROTOCOL = 4
 LARGEST = 1 << 30  # bytes; a longer message is not one
 _HEAD = struct.Struct("<Q")  # length of the pickle
 _NUMPY = {
@@ -158,7 +159,8 @@ class Fitted:
 class Adapted:
     """The adapted motion at the recording's frames, its report and its contacts.
 
-    fault: why it is not what was asked for but the best that was found; None where it is.
+    moved: the last stance's move, with which the rest of the take goes. fault: why it is not what
+    was asked for but the best that was found; None where it is.
     """
 
     id: int
@@ -166,6 +168,7 @@ class Adapted:
     report: Report
     schedule: ContactSchedule
     traces: Traces
+    moved: StanceMove | None
     fault: NoSolution | None
 
 

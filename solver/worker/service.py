@@ -1,7 +1,7 @@
 """Answers requests, and remembers the last fits, from which adaptations of them start."""
 
 from collections import Counter, OrderedDict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -10,8 +10,9 @@ from ..data.contacts import PhaseKind
 from ..data.faults import Fault
 from ..data.problem import MotionProblem
 from ..data.recording import Recording, digest
-from ..data.report import Origin
+from ..data.reports.recording import Origin
 from ..data.requests import Requests
+from ..data.scene import SceneObject
 from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality
 from ..stages.fit import Fit
@@ -37,6 +38,7 @@ from .protocol import (
 MOST_FITS = 3
 
 Tell = Callable[[Progress], None]
+_Key = tuple[str, str, tuple[SceneObject, ...]]  # of an analysis
 
 
 class Cancel(Exception):
@@ -59,9 +61,9 @@ class Service:
 
     def __init__(self, ending: Callable[[int], Ending | None] = lambda _: None) -> None:
         self._ending = ending
-        self._fits: OrderedDict[tuple[str, str], Fit] = OrderedDict()
+        self._fits: OrderedDict[_Key, Fit] = OrderedDict()
         self._recording: Recording | None = None
-        self._subject: tuple[tuple[str, str], Subject] | None = None
+        self._subject: tuple[_Key, Subject] | None = None
         self._last: tuple[Fit, MotionProblem, Adaptation] | None = None
         self._following: _Following | None = None
 
@@ -101,7 +103,9 @@ class Service:
             self._last = (result.adaptation.fit, subject.problem, result.adaptation)
         report = result.report(Origin(subject.recording.name), watch.done)
         traces = result.traces()
-        return Adapted(request, result.track, report, result.schedule, traces, result.fault)
+        return Adapted(
+            request, result.track, report, result.schedule, traces, result.moved, result.fault
+        )
 
     def _followed(self, request: int, subject: Subject, fitted: Fit) -> Followed:
         problem, following = subject.problem, self._following
@@ -127,9 +131,13 @@ class Service:
     def _subject_of(self, request: Request) -> Subject:
         """The analysis, kept for the next request about the same frames and contacts."""
         assert request.recording is not None
-        key = (digest(request.recording), _fit_relevant(request.problem))
+        asked = (digest(request.recording), _fit_relevant(request.problem))
+        stood_on = self._subject[1].stood_on if self._subject is not None else ()
+        key = (*asked, _named(stood_on, request.problem.scene))
         if self._subject is None or self._subject[0] != key:
-            self._subject = (key, measure(request.recording, request.problem))
+            subject = measure(request.recording, request.problem)
+            key = (*asked, _named(subject.stood_on, request.problem.scene))
+            self._subject = (key, subject)
         return self._subject[1].asked(request.problem)
 
     def _fit(self, subject: Subject, clock: StageClock) -> Fit:
@@ -194,6 +202,11 @@ def _analysed(request: int, subject: Subject) -> Analysed:
 
 
 def _fit_relevant(problem: MotionProblem) -> str:
-    """Everything of a problem but its pins and requests, which the fit does not know."""
+    """Everything of a problem but its pins, scene and requests, which the fit does not know."""
     bones = dict(sorted(problem.bones.items()))
-    return repr(replace(problem, pins=(), requests=Requests(), bones=bones))
+    return repr(replace(problem, pins=(), scene=(), requests=Requests(), bones=bones))
+
+
+def _named(names: Collection[str], scene: Sequence[SceneObject]) -> tuple[SceneObject, ...]:
+    """The objects of these names, which the recording is on: of the scene these alone count."""
+    return tuple(thing for thing in scene if thing.name in names)

@@ -10,13 +10,10 @@ import pytest
 if TYPE_CHECKING:
     import bpy
 
-JUMP = "forward_jump_116cm.bvh"
-FIRST, LAST = 73, 325
 
-
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def _enabled() -> Iterator[None]:
-    """Once for a module, so that one worker and its fits serve all of its tests."""
+    """Once, so that one worker and its fits serve all tests, as they do in an artist's session."""
     import hangtime
 
     hangtime.register()
@@ -29,13 +26,13 @@ def jump() -> bpy.types.Object:
     """The recorded jump, active, its frames chosen."""
     from hangtime.bridge.files.import_clip import import_clip
     from hangtime.tests.blender.helpers import rigs
-    from hangtime.tests.helpers.clips import mocap_path
+    from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, mocap_path
 
     rigs.reset()
     armature = import_clip(mocap_path(JUMP)).armature
     settings = armature.hangtime
     settings.use_range = True
-    settings.first_frame, settings.last_frame = FIRST, LAST
+    settings.first_frame, settings.last_frame = JUMP_FRAMES
     return armature
 
 

@@ -68,6 +68,7 @@ def test_it_adapts_again_to_the_same_performance(performer: bpy.types.Object) ->
     settings = performer.hangtime
     settings.keep_times = True  # as that state always did
     settings.keep_out = settings.human_ranges = False
+    settings.result.after = "CUT"
     saved, before = settings.adapted, joint_centres(performer)
     assert performer.animation_data.action == saved
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}

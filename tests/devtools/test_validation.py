@@ -25,11 +25,13 @@ from hangtime.devtools.validation.forces import (
     total_variation,
 )
 from hangtime.devtools.validation.limits import (
+    JERK,
     KNOWN_DEFECTS,
     KNOWN_MISSES,
     KNOWN_REFUSALS,
     LIMITS,
     MANY,
+    OF_RECORDINGS,
     REFUSED,
     figure,
     figures,
@@ -37,6 +39,7 @@ from hangtime.devtools.validation.limits import (
 from hangtime.devtools.validation.main import main, tell
 from hangtime.devtools.validation.motions import (
     Closeness,
+    HandJerk,
     Hold,
     LegTorques,
     MotionMeasures,
@@ -246,11 +249,11 @@ def test_limits_that_hold_end_with_0_and_one_that_is_missed_with_1(tmp_path: Pat
 
 
 def test_a_known_miss_is_let_through_until_it_gets_worse(tmp_path: Path) -> None:
-    name = "recordings: joint centres, rms, worst"
+    name = OF_RECORDINGS + JERK
     must, known = LIMITS[name].must, KNOWN_MISSES[name]
     assert must is not None
     for worst, code in ((0.5 * (must + known), 0), (1.01 * known, 1)):
-        result = TrialResult("jump", moved(closeness=Closeness(worst, 1.0, 1.0)))
+        result = TrialResult("jump", moved(hand_jerk=HandJerk(worst, 1.0)))
         assert code_of(result, out=tmp_path) == code
         (miss,) = [f for f in figures([result]) if not f.ok]
         assert (miss.name, miss.known) == (name, code == 0)

@@ -10,6 +10,9 @@ from hangtime.bridge.formats.motion_clip import MotionClip, to_recording
 from hangtime.devtools.recordings import find
 from hangtime.solver.data.recording import Recording
 
+JUMP = "forward_jump_116cm.bvh"
+JUMP_FRAMES = 73, 325  # from standing to standing
+
 
 def mocap_path(name: str) -> Path:
     """A recording's file, by its name in examples/recordings or that of the hops."""

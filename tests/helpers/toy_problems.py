@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from hangtime.solver.analysis.timeline import Timeline
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
 from hangtime.solver.body.dynamics import MomentFunction
@@ -15,7 +16,6 @@ from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.recording import Bone, Recording
 from hangtime.solver.data.requests import Requests
 from hangtime.solver.data.status import Status
-from hangtime.solver.data.timeline import Timeline
 from hangtime.solver.numerics.block_banded import BlockBanded
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.numerics.splines import ORDER, SplineBasis, phase_breaks

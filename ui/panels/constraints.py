@@ -93,6 +93,12 @@ def _draw_body_change(layout: bpy.types.UILayout, armature: bpy.types.Object) ->
         factors.prop(row, "length", text="Length ×")
         factors.prop(row, "mass_factor", text="Mass ×")
         return
+    if row.kind == BodyKind.SHAPE.name:
+        fields.bones("Select bones and assign them")
+        body.prop(row, "thickness", text="Thickness ×")
+        body.prop(row, "through")
+        body.prop(row, "human")
+        return
     fields.bone()
     body.prop(row, "by_share")
     body.prop(row, "share" if row.by_share else "mass")

@@ -17,6 +17,7 @@ ICONS: dict[str, Icon] = {
     **{kind.name: kind.icon for kind in KINDS.values()},
     BodyKind.LOAD.name: "PACKAGE",
     BodyKind.LIMB.name: "BONE_DATA",
+    BodyKind.SHAPE.name: "MESH_CAPSULE",
 }
 MET_ICONS: dict[str, Icon] = {
     Met.UNKNOWN.name: "INFO",
@@ -28,6 +29,7 @@ MET_ICONS: dict[str, Icon] = {
 ROLE_ICONS: dict[str, Icon] = {
     SurfaceRole.GROUND.name: "SNAP_FACE",
     SurfaceRole.OBSTACLE.name: "CUBE",
+    SurfaceRole.CLEAR.name: "TRIA_UP_BAR",
 }
 
 
@@ -88,6 +90,8 @@ class BodyChangeList(_RowList):
     def told(self, row: Row) -> str:
         if row.kind == BodyKind.LIMB.name:
             return f"× {row.length:.2g}" if row.length != 1.0 else ""
+        if row.kind == BodyKind.SHAPE.name:
+            return f"× {row.thickness:.2g}" if row.thickness != 1.0 else ""
         return f"{100.0 * row.share:.0f} %" if row.by_share else f"{row.mass:.3g} kg"
 
 

@@ -6,6 +6,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.constraint_kinds import KINDS, cone, contact_force, torque_limit
+from ...bridge.constraints.bone_presets import preset_names
 from ...bridge.rows.choices import BodyKind
 from ...bridge.rows.kind import Icon, MenuGroup
 from ...operators.names import OperatorId
@@ -23,7 +24,12 @@ GROUPS = (
         OperatorId.DISCARD,
         OperatorId.SHOW_REPORT,
     ),
-    (OperatorId.EXPORT_FBX, OperatorId.EXPORT_GLTF, OperatorId.SAVE_PLOTS),
+    (
+        OperatorId.EXPORT_FBX,
+        OperatorId.EXPORT_GLTF,
+        OperatorId.EXPORT_RECIPE,
+        OperatorId.SAVE_PLOTS,
+    ),
 )
 
 
@@ -52,6 +58,33 @@ class AddConstraintMenu(bpy.types.Menu):
                 entry.kind = kind.name
             layout.separator()
         layout.menu(PresetsMenu.bl_idname, icon="PRESET")
+
+
+class BonePresetsMenu(bpy.types.Menu):
+    bl_idname = "HANGTIME_MT_bone_presets"
+    bl_label = "Bone Presets"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        names = preset_names()
+        for name in names:
+            layout.operator(OperatorId.APPLY_BONE_PRESET, text=name).name = name
+        if names:
+            layout.separator()
+        layout.operator(OperatorId.SAVE_BONE_PRESET, icon="ADD")
+        layout.operator(OperatorId.IMPORT_BONE_PRESET, icon="IMPORT")
+        layout.operator(OperatorId.EXPORT_BONE_PRESET, icon="EXPORT")
+        if names:
+            layout.menu(RemoveBonePresetMenu.bl_idname, icon="REMOVE")
+
+
+class RemoveBonePresetMenu(bpy.types.Menu):
+    bl_idname = "HANGTIME_MT_remove_bone_preset"
+    bl_label = "Remove Preset"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        for name in preset_names():
+            present(self.layout).operator(OperatorId.REMOVE_BONE_PRESET, text=name).name = name
 
 
 class PresetsMenu(bpy.types.Menu):
@@ -92,7 +125,7 @@ class ConstraintMoreMenu(bpy.types.Menu):
 class AddBodyChangeMenu(bpy.types.Menu):
     bl_idname = "HANGTIME_MT_add_body_change"
     bl_label = "Add Body Change"
-    bl_description = "Add a weight or a limb of the selected pose bones"
+    bl_description = "Add a weight, a limb or a shape of the selected pose bones"
 
     def draw(self, _context: bpy.types.Context) -> None:
         for kind in BodyKind:

@@ -1,13 +1,36 @@
 """Character and Recording: whose motion it is, and which frames of it."""
 
+from dataclasses import dataclass
+
 import bpy
 
 from ...bridge.accessors import armature_data, present
 from ...bridge.armature.actions import recorded_action
+from ...bridge.constraints.bone_mapping import evidence_of
 from ...bridge.properties.settings import scene_settings, settings_of
+from ...bridge.rows.kind import Icon
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
+from ...solver.skeleton.mapping import Evidence
+from .menus import BonePresetsMenu
 from .sidebar import ArmaturePanel, SidebarPanel, lines, optional, settings_in, split
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How it is shown that a bone was found by something."""
+
+    icon: Icon
+    text: str
+
+
+EVIDENCE = {
+    Evidence.NAME_AND_SHAPE: Shown("CHECKMARK", "Name and shape agree"),
+    Evidence.NAME: Shown("SORTALPHA", "By its name"),
+    Evidence.SHAPE: Shown("QUESTION", "By the skeleton's shape alone: check it"),
+    Evidence.DISPUTED: Shown("ERROR", "Its shape speaks against its name: check it"),
+    Evidence.CHOSEN: Shown("USER", "Chosen by you"),
+}
 
 
 class CharacterPanel(SidebarPanel):
@@ -38,18 +61,28 @@ class BonesPanel(ArmaturePanel):
     def draw_header_preset(self, context: bpy.types.Context) -> None:
         parts = settings_in(context).parts
         missing = sum(part.needed and not part.bone for part in parts)
+        layout = present(self.layout)
         if missing:
-            present(self.layout).label(text=f"{missing} missing", icon="ERROR")
+            layout.label(text=f"{missing} missing", icon="ERROR")
+        layout.menu(BonePresetsMenu.bl_idname, text="", icon="PRESET")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = split(self)
         armature = present(chosen_armature(context))
         settings, bones = settings_of(armature), armature_data(armature)
+        if settings.convention:
+            layout.label(text=f"Named as by {settings.convention}")
         column = layout.column(align=True)
         for part in settings.parts:
             row = column.row()
             row.alert = part.needed and not part.bone
             row.prop_search(part, "bone", bones, "bones", text=part.name.capitalize())
+            evidence = evidence_of(part)
+            row.label(text="", icon="BLANK1" if evidence is None else EVIDENCE[evidence].icon)
+        seen = {evidence_of(part) for part in settings.parts}
+        for evidence, shown in EVIDENCE.items():
+            if evidence in seen:
+                layout.label(text=shown.text, icon=shown.icon)
         layout.operator(OperatorId.FIND_BONES, icon="BONE_DATA")
         layout.prop(settings, "mass_table")
 

@@ -3,6 +3,7 @@
 import bpy
 
 from ...bridge.accessors import present
+from ...bridge.properties.result import HangtimeResultOptions
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.rows.kind import Icon, Row
 from ...operators.names import CATEGORY
@@ -39,7 +40,11 @@ def split(panel: bpy.types.Panel) -> bpy.types.UILayout:
 
 
 def optional(
-    layout: bpy.types.UILayout, owner: HangtimeSettings | Row, use: str, heading: str, *values: str
+    layout: bpy.types.UILayout,
+    owner: HangtimeSettings | HangtimeResultOptions | Row,
+    use: str,
+    heading: str,
+    *values: str,
 ) -> None:
     """Values in one line behind the tick `use` that switches them on."""
     line = layout.row(heading=heading)

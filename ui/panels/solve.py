@@ -4,12 +4,18 @@ from textwrap import fill
 
 import bpy
 
-from ...bridge.accessors import present
+from ...bridge.accessors import current_action, present
+from ...bridge.armature.actions import recorded_action
 from ...bridge.properties.settings import action_settings
+from ...bridge.rows.choices import After
+from ...bridge.rows.kind import Icon
+from ...bridge.takes.takes import ListedTake, starts_from_result, takes_of
 from ...operators.names import OperatorId
+from ...operators.solve.common import chosen_armature
+from ...operators.solve.results import performer_of, result_of
 from ...operators.solve.session import session
 from ..drawing.editor import ui_scale
-from .sidebar import ArmaturePanel, lines, settings_in, split
+from .sidebar import ArmaturePanel, lines, optional, settings_in, split
 
 CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
 
@@ -28,6 +34,7 @@ class SolvePanel(ArmaturePanel):
             row.operator(OperatorId.USE_BEST, icon="CHECKMARK")
             row.operator(OperatorId.CANCEL, icon="X")
             return
+        self._draw_start(layout, context)
         row = layout.row(align=True)
         row.scale_y = 1.5
         row.operator(OperatorId.ADAPT, icon="PLAY")
@@ -37,6 +44,20 @@ class SolvePanel(ArmaturePanel):
             lines(layout, fill(session().failure, max(20, int(width))), icon="ERROR")
         if session().best is not None:
             layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
+
+    @staticmethod
+    def _draw_start(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+        """From what the next result is made, once there is a result."""
+        armature = present(chosen_armature(context))
+        if len(takes_of(armature)) < 2:
+            return
+        on_result = starts_from_result(armature)
+        split = layout.split(factor=0.3, align=True)
+        split.label(text="Start From")
+        row = split.row(align=True)
+        for text, result in (("Recording", False), ("This Result", True)):
+            start = row.operator(OperatorId.START_FROM, text=text, depress=result is on_result)
+            start.result = result
 
 
 class AdvancedPanel(ArmaturePanel):
@@ -51,12 +72,34 @@ class AdvancedPanel(ArmaturePanel):
         layout.prop(settings, "method")
         layout.prop(settings, "keep_times")
         layout.prop(settings, "human_ranges")
+        ranges = layout.column()
+        ranges.active = settings.human_ranges
+        ranges.prop(settings, "hard_ranges")
+        ranges.prop(settings, "wider_ranges")
         refine = layout.column(heading="Refine")
         refine.prop(settings, "objective")
         refine.prop(settings, "stay_close")
         recipe = layout.column()
         recipe.label(text="Recipe text, for what the lists do not hold:")
         recipe.template_ID(settings, "requests", new="text.new", open="text.open")
+
+
+class TakePanel(ArmaturePanel):
+    bl_idname = "HANGTIME_PT_take"
+    bl_parent_id = SolvePanel.bl_idname
+    bl_label = "Rest of the Take"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = split(self)
+        options = settings_in(context).result
+        layout.prop(options, "after")
+        if options.after == After.RETURN.name:
+            optional(layout, options, "use_return_frame", "By Frame", "return_frame")
+        column = layout.column()
+        column.active = options.after != After.CUT.name
+        optional(column, options, "use_blend", "Own Blend", "blend_in", "blend_out")
+        column.prop(options, "lock_others")
+        layout.prop(options, "written_as")
 
 
 class ResultPanel(ArmaturePanel):
@@ -67,18 +110,58 @@ class ResultPanel(ArmaturePanel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
         settings = settings_in(context)
-        if settings.adapted is None:
+        armature = present(chosen_armature(context))
+        takes = takes_of(armature)
+        if settings.adapted is None and len(takes) < 2:
             layout.label(text="Nothing has been adapted yet", icon="INFO")
             return
-        accepted = action_settings(settings.adapted).accepted
-        layout.label(text=settings.adapted.name, icon="CHECKMARK" if accepted else "ACTION")
+        self._draw_takes(layout, takes)
         row = layout.row(align=True)
         row.operator(OperatorId.ACCEPT, icon="CHECKMARK")
         row.operator(OperatorId.DISCARD, icon="TRASH")
         row = layout.row(align=True)
-        row.operator(OperatorId.COMPARE, icon="ARROW_LEFTRIGHT")
-        row.operator(OperatorId.SHOW_REPORT, icon="TEXT")
-        lines(layout, settings.status)
+        self._draw_switch(row, armature)
+        row.operator(OperatorId.SHOW_REPORT, text="Report", icon="TEXT")
+        told = layout.column()
+        told.active = current_action(armature) == settings.adapted
+        lines(told, settings.status)
+
+    @staticmethod
+    def _draw_switch(row: bpy.types.UILayout, armature: bpy.types.Object) -> None:
+        """Recording or result, whichever is shown pressed."""
+        result, recorded = result_of(armature), recorded_action(armature)
+        if result is None or recorded is None or performer_of(armature) != armature:
+            return
+        for text, action in (("Recording", recorded), ("Result", result)):
+            pressed = current_action(armature) == action
+            show = row.operator(OperatorId.SHOW_TAKE, text=text, depress=pressed)
+            show.action, show.switch = action.name, True
+
+    @staticmethod
+    def _draw_takes(layout: bpy.types.UILayout, takes: tuple[ListedTake, ...]) -> None:
+        """A line a take, of which the shown one is marked; why a result is not up to date."""
+        column = layout.box().column(align=True)
+        for take in takes:
+            row = column.row(align=True)
+            icon: Icon = "RADIOBUT_ON" if take.shown else "RADIOBUT_OFF"
+            show = row.operator(OperatorId.SHOW_TAKE, text="", icon=icon, emboss=False)
+            show.action = take.action.name
+            for _ in range(take.depth - 1):
+                row.label(text="", icon="BLANK1")
+            row.prop(take.action, "name", text="", emboss=False)
+            end = row.row(align=True)
+            end.alignment = "RIGHT"
+            if take.source is None:
+                end.label(text="Recording")
+            if take.polished:
+                end.label(text="", icon="GREASEPENCIL")
+            if take.stale:
+                end.label(text="Stale", icon="ERROR")
+            if action_settings(take.action).accepted:
+                end.label(text="", icon="CHECKMARK")
+        for take in takes:
+            if take.shown and take.stale:
+                column.label(text=take.stale, icon="ERROR")
 
 
 class ExportPanel(ArmaturePanel):
@@ -91,3 +174,4 @@ class ExportPanel(ArmaturePanel):
         row = present(self.layout).row(align=True)
         row.operator(OperatorId.EXPORT_FBX, text="FBX", icon="EXPORT")
         row.operator(OperatorId.EXPORT_GLTF, text="glTF", icon="EXPORT")
+        row.operator(OperatorId.EXPORT_RECIPE, text="Recipe", icon="TEXT")

@@ -11,12 +11,15 @@ from ...bridge.rows.choices import SurfaceRole
 from ...bridge.rows.kind import Icon
 from ...bridge.scene.members import is_gone
 from ...operators.lists.row_lists import RowList
+from ...operators.lists.support_box import offered, sized
 from ...operators.names import OperatorId
+from ...operators.solve.common import chosen_armature
 from .lists import MET_ICONS, ROLE_ICONS, SurfaceList
 from .sidebar import ArmaturePanel, draw_list, lines, settings_in, split
 
 NARROW = 34  # characters in a line of a sidebar as wide as Blender makes it
 GONE = "Not in the scene any more"
+UNSEEN = "Something unseen carries the body above the floor"
 
 
 class AddSurfaceMenu(bpy.types.Menu):
@@ -47,10 +50,20 @@ class WorldPanel(ArmaturePanel):
         side.operator(OperatorId.REMOVE_SURFACE, text="", icon="REMOVE")
         side.separator()
         side.operator(OperatorId.SELECT_SURFACE, text="", icon="RESTRICT_SELECT_OFF")
+        _draw_offer(layout, context)
         index = RowList.SURFACES.chosen(settings)
         if index >= 0:
             _draw_surface(layout, settings.surfaces[index], present(context.scene))
         _draw_switches(layout, settings, context)
+
+
+def _draw_offer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What would carry the body where the analysis found nothing that does."""
+    boxes = offered(chosen_armature(context))
+    if boxes:
+        lines(layout, fill(UNSEEN, NARROW), icon="QUESTION")
+        text = f"Add Box Here ({', '.join(sized(box) for box in boxes)})"
+        layout.operator(OperatorId.ADD_SUPPORT_BOX, text=text, icon="MESH_CUBE")
 
 
 def _draw_surface(layout: bpy.types.UILayout, row: HangtimeSurface, scene: bpy.types.Scene) -> None:
@@ -60,6 +73,8 @@ def _draw_surface(layout: bpy.types.UILayout, row: HangtimeSurface, scene: bpy.t
         lines(layout, fill(row.status, NARROW), icon=MET_ICONS[row.met])
     layout.prop(row, "collection" if row.collection is not None else "object")
     layout.row().prop(row, "role", expand=True)
+    if row.role == SurfaceRole.CLEAR.name:
+        layout.prop(row, "clearance")
 
 
 def _draw_switches(

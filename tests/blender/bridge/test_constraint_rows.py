@@ -15,7 +15,7 @@ from hangtime.bridge.constraints.status import write_status
 from hangtime.bridge.rows import bone_keys
 from hangtime.bridge.rows.choices import BodyKind
 from hangtime.solver.data import faults, requests
-from hangtime.solver.data.report import ConstraintReport
+from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.requests import When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.tests.blender.helpers import rigs

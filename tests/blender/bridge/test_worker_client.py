@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -77,9 +78,34 @@ def jump() -> Recording:
 
 @pytest.fixture
 def worker() -> Iterator[Worker]:
+    """A fresh one, which has to fit what it shall adapt."""
     worker = Worker()
     yield worker
     worker.close()
+
+
+@dataclass(frozen=True)
+class Warm:
+    """A worker after its first adaptation, of UP, and what it said meanwhile."""
+
+    worker: Worker
+    told: list[Progress]
+    answer: object
+
+
+@pytest.fixture(scope="module")
+def warm(jump: Recording) -> Iterator[Warm]:
+    worker, told = Worker(), list[Progress]()
+    yield Warm(worker, told, worker.ask(RequestKind.ADAPT, jump, UP).wait(told.append))
+    worker.close()
+
+
+@pytest.fixture
+def fitted(warm: Warm) -> Iterator[Worker]:
+    """One that remembers the jump's fit."""
+    yield warm.worker
+    if warm.worker.busy:
+        warm.worker.drop()
 
 
 def gone(pid: int) -> bool:
@@ -92,17 +118,16 @@ def gone(pid: int) -> bool:
     return False
 
 
-def test_the_second_adaptation_starts_from_the_stored_fit(worker: Worker, jump: Recording) -> None:
-    stages: list[set[str]] = []
-    for problem in (UP, AHEAD):
-        told: list[Progress] = []
-        answer = worker.ask(RequestKind.ADAPT, jump, problem).wait(told.append)
+def test_the_second_adaptation_starts_from_the_stored_fit(warm: Warm, jump: Recording) -> None:
+    told: list[Progress] = []
+    second = warm.worker.ask(RequestKind.ADAPT, jump, AHEAD).wait(told.append)
+    for problem, answer in ((UP, warm.answer), (AHEAD, second)):
         assert isinstance(answer, Adapted)
         assert answer.report.pins[0].name == problem.pins[0].name
         frames = answer.track.frames
         np.testing.assert_array_equal(frames, SPAN[0] + np.arange(len(frames)))
         assert len(frames) > SPAN[1] - SPAN[0]  # a jump that goes further or higher takes longer
-        stages.append({progress.stage for progress in told})
+    stages = [{progress.stage for progress in each} for each in (warm.told, told)]
     assert "fit" in stages[0]
     assert "fit" not in stages[1]
     assert "adapt" in stages[1]
@@ -148,25 +173,24 @@ def started(worker: Worker, recording: Recording, problem: MotionProblem) -> Pen
 
 
 def test_a_request_that_is_dropped_costs_neither_worker_nor_fit(
-    worker: Worker, jump: Recording
+    fitted: Worker, jump: Recording
 ) -> None:
-    worker.ask(RequestKind.FIT, jump, UP).wait()
-    pid = worker.pid
-    started(worker, jump, UP)
-    worker.drop()
-    assert not worker.busy
+    pid = fitted.pid
+    started(fitted, jump, UP)
+    fitted.drop()
+    assert not fitted.busy
     told: list[Progress] = []
-    answer = worker.ask(RequestKind.ADAPT, jump, AHEAD).wait(told.append)
+    answer = fitted.ask(RequestKind.ADAPT, jump, AHEAD).wait(told.append)
     assert isinstance(answer, Adapted)
-    assert worker.pid == pid
+    assert fitted.pid == pid
     assert "fit" not in {progress.stage for progress in told}
 
 
 def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
-    worker: Worker, jump: Recording
+    fitted: Worker, jump: Recording
 ) -> None:
-    job = started(worker, jump, AHEAD)
-    worker.as_it_stands()
+    job = started(fitted, jump, AHEAD)
+    fitted.as_it_stands()
     answer = job.wait()
     assert isinstance(answer, Adapted)
     assert answer.fault is not None
@@ -174,15 +198,19 @@ def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
     assert len(answer.track.frames) == len(answer.traces.frames)
 
 
-def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(worker: Worker, jump: Recording) -> None:
-    told: list[Progress] = []
-    answer = worker.ask(RequestKind.FIT, jump, UP).wait(told.append)
+def test_a_fit_tells_how_near_it_is_and_what_it_looks_like(fitted: Worker, jump: Recording) -> None:
+    answer = fitted.ask(RequestKind.FIT, jump, UP).wait()
     assert isinstance(answer, Fitted)
     assert 0.0 < answer.quality.joint_centres_rms_cm < 2.5
-    shares = [progress.share for progress in told]
+    assert len(answer.traces.frames) == SPAN[1] - SPAN[0] + 1
+
+
+def test_how_much_is_done_is_told_from_the_first_step_of_the_fit_on(warm: Warm) -> None:
+    shares = [progress.share for progress in warm.told]
     assert shares == sorted(shares)
-    assert 0.0 < shares[-1] < 1.0
-    assert told[0].worst
+    assert 0.0 <= shares[0] < shares[-1] < 1.0
+    assert warm.told[0].stage == "fit"
+    assert warm.told[0].worst
 
 
 def raised(up: float, name: str = "up") -> MotionProblem:
@@ -217,9 +245,9 @@ def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
 
 
 def test_what_cannot_be_followed_is_said_and_the_drag_goes_on(
-    worker: Worker, jump: Recording
+    fitted: Worker, jump: Recording
 ) -> None:
-    stream = worker.follow(jump)
+    stream = fitted.follow(jump)
     nowhere = MotionProblem(frames=SPAN, pins=(Pin("Nowhere", "ground 9"),))
     stream.want(nowhere)
     failed = None

@@ -75,13 +75,18 @@ def with_root(specs: Iterable[BoneSpec] = BODY, *, connected: bool = False) -> l
     ]
 
 
-def animate(armature: bpy.types.Object, mode: str = "QUATERNION", seed: int = 0) -> None:
+def animate(
+    armature: bpy.types.Object,
+    mode: str = "QUATERNION",
+    seed: int = 0,
+    frames: Iterable[int] = FRAMES,
+) -> None:
     """Key every bone's rotation in `mode`, and the location of bones without a parent."""
     rng = np.random.default_rng(seed)
     swings = {bone.name: rng.uniform(-1.0, 1.0, (2, 3)) for bone in armature.pose.bones}
     for bone in armature.pose.bones:
         bone.rotation_mode = mode
-    for frame in FRAMES:
+    for frame in frames:
         for bone in armature.pose.bones:
             set_rotation(bone, swing(swings[bone.name], frame))
             bone.keyframe_insert(rotation_path(bone), frame=frame)

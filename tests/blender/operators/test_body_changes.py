@@ -8,6 +8,7 @@ from hangtime.bridge.formats.motion_clip import from_recording
 from hangtime.solver.body.proportions import changed_recording
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import LimbChange
+from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import load_recording
 
 LEGS = LimbChange("Short legs", ("LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg"), 0.8)
@@ -19,6 +20,7 @@ def short_legged() -> Recording:
 
 
 def test_a_rig_of_those_proportions_is_built() -> None:
+    rigs.reset()
     made = short_legged()
     bpy.context.scene.render.fps, bpy.context.scene.render.fps_base = 120, 1.0
     read = read_recording(build_armature(from_recording(made), 1.0, "Z"))

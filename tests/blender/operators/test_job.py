@@ -10,20 +10,23 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.files.export import reimport_fbx
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.picture.render import draw_sheet
 from hangtime.bridge.recipe.problem import parse_recipe
-from hangtime.operators.headless import picture
+from hangtime.operators.headless import commands, picture
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.outbox import Outbox
 from hangtime.solver.data.faults import OutputNotWritable
 from hangtime.solver.data.recording import BEYOND
+from hangtime.solver.worker import service
+from hangtime.solver.worker.pipeline import solve
 from hangtime.solver.worker.protocol import Adapted, Request, RequestKind
-from hangtime.solver.worker.service import Service
 from hangtime.tests.helpers.clips import mocap_path
+from hangtime.tests.helpers.kept_fits import KeptFits
 
 CLIP = "forward_jump_116cm.bvh"
 WINDOW = (100.0, 290.0)
@@ -40,6 +43,9 @@ forward = 0.3
 up = 0.2
 """
 
+# Physics and pins alone: quicker, and sooner given up.
+PLAIN = "[solution]\nsolid = false\nhuman = false\nkeep_times = true\n"
+
 
 @pytest.fixture(scope="module")
 def clip() -> Path:
@@ -47,10 +53,14 @@ def clip() -> Path:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _small_pictures():
-    """A picture as large as the artist's takes half a minute on a slow machine."""
+def _quick_jobs():
+    """A picture as large as the artist's takes half a minute on a slow machine, a fit seconds:
+    what is to be fitted is fitted by the first job that needs it, and remembered."""
+    fits = KeptFits()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(picture, "draw_sheet", lambda *a: draw_sheet(*a, width=160))
+        patch.setattr(commands, "solve", lambda *a: solve(*a, fits))
+        patch.setattr(service, "fit_subject", fits)
         yield
 
 
@@ -103,15 +113,28 @@ def test_the_blend_holds_both_side_by_side(done: Path) -> None:
     assert recorded.use_fake_user
     assert tuple(recorded.frame_range) == (1.0, 336.0)  # whole, not cut to the recipe's frames
     scene, last = bpy.context.scene, figure.animation_data.action.frame_range[1]
-    assert (scene.frame_start, scene.frame_end) == (WINDOW[0], pytest.approx(last, abs=1.0))
-    assert last > WINDOW[1]  # further, so longer
+    assert (scene.frame_start, scene.frame_end) == (1.0, pytest.approx(last, abs=1.0))
+    assert last > 336.0  # further, so longer, and the rest of the take later
+
+
+def test_the_report_tells_what_was_done_to_the_take(done: Path) -> None:
+    report = json.loads((done / "report.json").read_text(encoding="utf-8"))
+    take = report["take"]
+    assert take["adapted_frames"][0] == WINDOW[0]
+    assert take["blend_in_frames"] == 30
+    assert take["carried_with"] == "ground 2"
+    assert np.hypot(*take["carried_m"][:2]) == pytest.approx(0.3, abs=1e-6)
+    assert take["take_frames"] == [1.0, 336.0 + take["later_frames"]]
+    text = (done / "report.txt").read_text(encoding="utf-8")
+    assert "  0.300 m along the ground, 0.200 m up\n" in text
 
 
 def test_pinned_points_stay_where_they_were_sent(done: Path) -> None:
     """By the written keys, as Blender evaluates them, in .blend and FBX alike."""
     report = json.loads((done / "report.json").read_text(encoding="utf-8"))
     bpy.ops.wm.open_mainfile(filepath=str(done / "adapted.blend"))
-    written = read_recording(bpy.data.objects["forward_jump_116cm"])
+    first, last = report["take"]["adapted_frames"]
+    written = read_recording(bpy.data.objects["forward_jump_116cm"], first=first, last=last)
     exported = reimport_fbx(done / "adapted.fbx", written.frames)
     with np.load(done / "trajectory.npz") as trajectory:
         names = list(trajectory["contact_names"])
@@ -146,7 +169,7 @@ def test_the_recording_is_untouched(done: Path, clip: Path) -> None:
 
 def test_the_command_line_wins_over_the_recipe(clip: Path, tmp_path: Path) -> None:
     options = ("--mass", "35", "--height", "1.2", "--last", "280")
-    assert run(tmp_path, clip, "mass = 90\n" + EDIT, *options) == 0
+    assert run(tmp_path, clip, "mass = 90\n" + EDIT + PLAIN, *options) == 0
     report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["figure"]["mass_kg"] == pytest.approx(35.0)
     assert report["figure"]["height_m"] == pytest.approx(1.2)
@@ -157,22 +180,38 @@ def test_the_command_line_wins_over_the_recipe(clip: Path, tmp_path: Path) -> No
 
 def _assert_written_as_the_worker_answers(clip: Path, written: Path) -> None:
     """A stated height scales for the solver alone: the recording's armature keeps its lengths."""
-    asked = parse_recipe(EDIT).problem
+    asked = parse_recipe(EDIT + PLAIN).problem
     problem = replace(asked, frames=(WINDOW[0], 280.0), mass=35.0, height=1.2)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     recording = read_recording(
         import_clip(clip).armature, first=WINDOW[0], last=280.0, beyond=BEYOND
     )
     request = Request(1, RequestKind.ADAPT, recording, problem)
-    answer = Service().answer(request, lambda _: None)
+    answer = service.Service().answer(request, lambda _: None)
     assert isinstance(answer, Adapted)
     assert answer.fault is None
     bpy.ops.wm.open_mainfile(filepath=str(written))
-    shown = read_recording(bpy.data.objects[clip.stem])
-    track, bones = answer.track, [shown.index(bone) for bone in answer.track.bones]
+    track = answer.track
+    first, last = track.frames[[0, -1]]
+    shown = read_recording(bpy.data.objects[clip.stem], first=first, last=last)
+    bones = [shown.index(bone) for bone in track.bones]
     np.testing.assert_array_equal(shown.frames, track.frames)
     np.testing.assert_allclose(shown.heads[:, bones[0]], track.root_head, atol=1e-5)
     np.testing.assert_allclose(shown.rotations[:, bones], track.rotations, atol=1e-5)
+
+
+@pytest.mark.slow
+def test_a_result_may_be_a_strip_on_top_of_the_take(clip: Path, tmp_path: Path) -> None:
+    text = EDIT + '[result]\nwritten_as = "strip"\nafter = "return"\nreturn_frame = 330\n'
+    assert run(tmp_path, clip, text, "--no-picture") == 0
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out" / "adapted.blend"))
+    data = bpy.data.objects[clip.stem].animation_data
+    assert data.action is None
+    below, above = (track.strips[0].action.name for track in data.nla_tracks)
+    assert (below, above) == (clip.stem, f"{clip.stem} adapted")
+    copy = bpy.data.objects[f"{clip.stem} recording"].animation_data
+    assert copy.action.name == clip.stem
+    assert not copy.nla_tracks
 
 
 def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Path, capsys) -> None:
@@ -184,6 +223,21 @@ def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Pa
     report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "solved"
     assert max(report["change"].values()) < 1e-3
+
+
+def test_a_recipe_asks_for_few_keys(clip: Path, tmp_path: Path) -> None:
+    keys = '[keys]\non = "reduced"\n'
+    options = ("--first", "140", "--last", "330", "--no-picture")
+    assert run(tmp_path, clip, keys, *options) == 0
+    told = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))["keys"]
+    assert told["largest_error_mm"] <= 2.0
+    assert told["largest_turn_deg"] <= 0.2
+    assert told["keys"] < 0.25 * told["channels"] * 190
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out" / "adapted.blend"))
+    adapted = next(a for a in bpy.data.actions if a.name.endswith("adapted"))
+    owner = next(o for o in bpy.data.objects if current_action(o) == adapted)
+    keys = [k for curve in fcurves.curves_of(owner) for k in curve.keyframe_points]
+    assert sum(key.interpolation == "BEZIER" for key in keys) == told["keys"]
 
 
 def test_a_blend_is_a_clip_too(clip: Path, tmp_path: Path, capsys) -> None:
@@ -270,9 +324,8 @@ def test_a_clip_that_is_no_clip(tmp_path: Path, capsys) -> None:
 
 
 def test_no_solution_leaves_a_report(clip: Path, tmp_path: Path, capsys) -> None:
-    apart = EDIT + 'points = ["Left heel", "Left toe"]\nleft = 3.0\n'
-    assert run(tmp_path, clip, apart) == 3
-    assert "Landing: Left" in one_line(capsys)
+    assert run(tmp_path, clip, EDIT.replace("up = 0.2", "up = 8.0") + PLAIN) == 3
+    assert "“Landing: " in one_line(capsys)
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written - {"best_found.blend"} == {"report.json", "report.txt"}
     report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))

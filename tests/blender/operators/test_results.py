@@ -10,11 +10,16 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
-from hangtime.bridge.armature.actions import read_recorded, write_adapted_incrementally
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.armature.fcurves import curves_of
 from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.files.import_clip import import_clip
+from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.takes.plan import AdaptedMotion
+from hangtime.bridge.takes.write_result import write_adapted_incrementally
 from hangtime.operators.solve.session import session
 from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import mocap_path
 
@@ -33,15 +38,29 @@ def adapted(analysed: bpy.types.Object) -> bpy.types.Object:
 def test_the_parts_of_the_body_are_listed_with_what_is_missing() -> None:
     rigs.reset()
     armature = import_clip(mocap_path(JUMP)).armature
-    armature.data.bones["LeftFoot"].name = "Gubbins"
+    without(armature, "LeftFoot", "LeftToeBase")
     with pytest.raises(RuntimeError, match="left foot"):
         bpy.ops.hangtime.analyze()
     parts = armature.hangtime.parts
     assert [p.name for p in parts if p.needed and not p.bone] == ["left foot"]
     assert parts["right foot"].bone == "RightFoot"
-    parts["left foot"].bone = "Gubbins"
+
+
+def test_a_foot_of_any_name_is_found_by_its_place() -> None:
+    rigs.reset()
+    armature = import_clip(mocap_path(JUMP)).armature
+    armature.data.bones["LeftFoot"].name = "Gubbins"
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    assert {c.bone for c in armature.hangtime.contacts} >= {"Gubbins", "RightFoot"}
+    assert armature.hangtime.parts["left foot"].bone == "Gubbins"
+    assert {c.bone for c in armature.hangtime.contacts} >= {"LeftToeBase", "RightFoot"}
+
+
+def without(armature: bpy.types.Object, *bones: str) -> None:
+    """Deletes bones."""
+    bpy.ops.object.mode_set(mode="EDIT")
+    for bone in bones:
+        armature.data.edit_bones.remove(armature.data.edit_bones[bone])
+    bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def test_the_fit_says_in_words_how_near_it_is(analysed: bpy.types.Object) -> None:
@@ -115,6 +134,18 @@ def test_a_result_is_discarded_and_the_edit_stays(adapted: bpy.types.Object) -> 
     assert not bpy.ops.hangtime.discard.poll()
 
 
+def test_reduced_keys_are_fewer_and_told_with_their_largest_error(
+    analysed: bpy.types.Object,
+) -> None:
+    analysed.hangtime.result_keys.on = "REDUCED"
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    action = analysed.hangtime.adapted
+    assert "a second and channel; joints at most" in analysed.hangtime.status
+    assert "Keys: " in action.hangtime.report
+    counts = [len(curve.keyframe_points) for curve in curves_of(analysed)]
+    assert counts[0] < 0.5 * max(counts)  # of the hips; fingers keep a key on every frame
+
+
 def test_the_report_becomes_a_text(adapted: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.show_report() == {"FINISHED"}
     text = bpy.data.texts[f"{adapted.hangtime.adapted.name} report"].as_string()
@@ -125,6 +156,8 @@ def test_the_report_becomes_a_text(adapted: bpy.types.Object) -> None:
 def test_the_best_of_a_solve_that_failed_can_be_used(analysed: bpy.types.Object) -> None:
     stance = analysed.hangtime.stances["ground 2"]
     stance.forward = 8.0
+    settings = analysed.hangtime  # physics and pins alone are given up sooner
+    settings.keep_times, settings.keep_out, settings.human_ranges = True, False, False
     with pytest.raises(RuntimeError, match="No motion was found"):
         bpy.ops.hangtime.adapt()
     assert len(bpy.data.actions) == 1
@@ -249,7 +282,10 @@ def test_writing_that_is_cancelled_leaves_nothing_behind(analysed: bpy.types.Obj
         recording.rotations[:, bones],
         recording.heads[:, bones[0]],
     )
-    writing = write_adapted_incrementally(analysed, track)
+    times = TimeMap((73.0, 325.0), (73.0, 325.0))
+    writing = write_adapted_incrementally(
+        analysed, AdaptedMotion(track, times, None, ResultOptions())
+    )
     while len(bpy.data.actions) == 1:
         next(writing)
     writing.close()

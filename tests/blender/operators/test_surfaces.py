@@ -19,10 +19,13 @@ from hangtime.operators.drag.rays import Ray
 from hangtime.operators.drag.snapping import Snapping
 from hangtime.operators.solve.adapt import ask_for
 from hangtime.operators.solve.scene import note_surfaces, stale_surfaces
-from hangtime.operators.solve.session import Asked
+from hangtime.operators.solve.session import Asked, session
 from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.data.report import ConstraintReport
+from hangtime.solver.data.reports.constraints import ConstraintReport
 from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.data.scene import SceneRole, SupportBox
+from hangtime.solver.scene.checks import check_scene
+from hangtime.solver.scene.triangle_mesh import placed_mesh
 from hangtime.tests.blender.helpers.rows import make_rig
 from hangtime.tests.blender.helpers.solids import add_row, make_box, read
 
@@ -257,3 +260,53 @@ def test_a_jump_lands_on_a_crate(analysed: bpy.types.Object) -> None:
     traces = kept(settings.adapted).traces
     np.testing.assert_allclose(traces.points[-1, :, 2], 0.2, atol=1e-3)
     assert settings.status.startswith("Solved in")
+
+
+# ---------------------------------------------------------------- what nothing in sight carries
+
+
+def test_a_box_is_added_under_the_feet_in_the_scenes_units(rig: bpy.types.Object) -> None:
+    box = SupportBox((0.4, 0.3, 0.25), (1.0, 2.0, 0.0), np.pi / 2)
+    session().support = (rig.session_uid, (box,))
+    bpy.context.scene.unit_settings.scale_length = 0.01
+    assert bpy.ops.hangtime.add_support_box() == {"FINISHED"}
+    (row,) = rig.hangtime.surfaces
+    assert (row.object.name, row.role) == ("Box", "GROUND")
+    bpy.context.view_layer.update()
+    (read_back,) = read(rig).objects
+    mesh = placed_mesh(read_back)
+    np.testing.assert_allclose(mesh.low, [0.85, 1.8, 0.0], atol=1e-6)  # m; turned by a quarter
+    np.testing.assert_allclose(mesh.high, [1.15, 2.2, 0.25], atol=1e-6)
+    assert mesh.closed
+    assert mesh.volume > 0.0
+    assert not bpy.ops.hangtime.add_support_box.poll()  # what was unseen is there now
+
+
+def test_a_box_is_offered_for_its_own_armature_alone(rig: bpy.types.Object) -> None:
+    session().support = (rig.session_uid + 1, (SupportBox((1, 1, 1), (0, 0, 0), 0.0),))
+    assert not bpy.ops.hangtime.add_support_box.poll()
+    session().support = None
+
+
+def test_a_hurdle_is_an_obstacle_that_is_cleared(rig: bpy.types.Object) -> None:
+    row = add_row(rig, make_box("Hurdle"))
+    row.role, row.clearance = "CLEAR", 5.0
+    bpy.context.scene.unit_settings.scale_length = 0.01
+    recording = read_recorded(rig, FIRST, LAST)
+    (thing,) = read(rig).objects
+    problem = problem_of(rig.hangtime, recording, (thing,))
+    (clear,) = problem.requests.clears
+    assert (thing.role, clear.thing, clear.bones) == (SceneRole.OBSTACLE, "Hurdle", ())
+    assert clear.by == pytest.approx(0.05)
+    check_scene(problem)
+    row.role = "OBSTACLE"
+    assert problem_of(rig.hangtime, recording, (thing,)).requests.clears == ()
+
+
+def test_what_is_not_cleared_is_said_on_its_row(rig: bpy.types.Object) -> None:
+    row = add_row(rig, make_box("Hurdle"))
+    row.role = "CLEAR"
+    name = "Left foot in the clearance of Hurdle"
+    low = ConstraintReport(name, RowKind.SOLID, 12.0, 150.0, met=False)
+    write_surface_status(rig.hangtime, SimpleNamespace(overlaps=(low,)), {})
+    assert (row.met, row.status) == ("MISSED", "Not cleared: Left foot 12 mm at frame 150")

@@ -15,7 +15,7 @@ from hangtime.operators.names import OperatorId
 from hangtime.operators.timeline import contact_edge_operator
 from hangtime.operators.timeline.contact_edge_state import Edge
 from hangtime.operators.timeline.timeline_bars import bars_in
-from hangtime.solver.data.report import TimeMap
+from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import motions, regions, rigs
 from hangtime.ui.timeline import handler
 

@@ -9,8 +9,8 @@ from hangtime.bridge.armature.traces_store import keep
 from hangtime.bridge.constraint_kinds import KINDS
 from hangtime.bridge.plots.charts import plotted
 from hangtime.bridge.rows.times import Clip, when_of
+from hangtime.solver.analysis.timeline import Timeline, active_interval
 from hangtime.solver.data.contacts import Phase, PhaseKind
-from hangtime.solver.data.timeline import Timeline, active_interval
 from hangtime.tests.blender.helpers.overlays import adapted, constrain, seen, traced
 from mathutils import Matrix
 

@@ -4,6 +4,7 @@ import json
 import math
 
 import pytest
+from hangtime.bridge.recipe.keys import KeyOptions
 from hangtime.bridge.recipe.problem import (
     PARTS,
     locate,
@@ -12,6 +13,7 @@ from hangtime.bridge.recipe.problem import (
     write_recipe,
 )
 from hangtime.bridge.recipe_syntax.source_lines import json_lines, toml_lines
+from hangtime.bridge.rows.choices import KeyChoice
 from hangtime.solver.data.faults import (
     BadRecipe,
     ContradictoryPins,
@@ -101,6 +103,15 @@ def test_every_key_is_read() -> None:
     recipe = parse_recipe(FULL)
     assert recipe.problem == PROBLEM
     assert recipe.clip == "hop.bvh"
+
+
+def test_keys_are_read_and_not_asked_for_by_default() -> None:
+    keys = parse_recipe('[keys]\non = "reduced"\ndistance = 0.005\nangle = 0.5\n').keys
+    assert keys == KeyOptions(KeyChoice.REDUCED, 0.005, math.radians(0.5))
+    assert parse_recipe("mass = 70\n").keys is None
+    with pytest.raises(BadRecipe) as fault:
+        parse_recipe('[keys]\non = "fewest"\n')
+    assert fault.value.line == 2
 
 
 def test_json_says_the_same() -> None:

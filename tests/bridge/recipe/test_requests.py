@@ -24,28 +24,33 @@ from hangtime.solver.data.requests import (
     Clear,
     ConeLimit,
     ConeShape,
-    Dynamics,
     ForceRequest,
     Hold,
     Lift,
     LimbChange,
-    Method,
     Moment,
-    ObjectiveKind,
     OrientationRequest,
     Path,
     PhaseTiming,
     PointAxes,
     PointRequest,
     PoseRequest,
-    Reduction,
-    ReductionKind,
     Reference,
     Requests,
-    SolverOptions,
+    Shape,
+    Through,
     TorqueLimit,
     TwistLimit,
     When,
+)
+from hangtime.solver.data.solver_options import (
+    Dynamics,
+    HumanRanges,
+    Method,
+    ObjectiveKind,
+    Reduction,
+    ReductionKind,
+    SolverOptions,
 )
 from hypothesis import given
 from hypothesis import strategies as st
@@ -148,6 +153,12 @@ bones = ["Shin.R"]
 length = 0.8
 mass = 0.9
 
+[[shape]]
+bones = ["Hair", "Cape"]
+thickness = 0.5
+through = "each other"
+human = false
+
 [[timing]]
 phase = "flight 1"
 factor = 1.5
@@ -165,6 +176,8 @@ longest_span = 0.1
 torque_span = 0.2
 keep_times = true
 solid = false
+human = "hard"
+wider = 90
 
 [solution.objectives]
 "torque smoothness" = 2
@@ -248,7 +261,10 @@ REQUESTS = Requests(
         0.2,
         keep_times=True,
         solid=False,
+        human=HumanRanges.HARD,
+        wider=math.pi / 2.0,
     ),
+    shapes=(Shape("Shape 1", ("Hair", "Cape"), 0.5, Through.EACH_OTHER, human=False),),
 )
 
 
@@ -280,6 +296,7 @@ def test_the_recipe_in_the_documentation_is_understood() -> None:
         "keep_times",
         "solid",
         "human",
+        "wider",
         "gravity",
         "kind",
         "dimensions",
@@ -415,6 +432,8 @@ SOLUTIONS = st.builds(
     torque_span=st.none() | POSITIVE,
     keep_times=st.booleans(),
     solid=st.booleans(),
+    human=st.sampled_from(HumanRanges),
+    wider=SLACKS,
 )
 CONES = st.builds(
     ConeLimit,
@@ -441,6 +460,7 @@ KINDS = {
     "timings": TIMINGS,
     "holds": st.builds(Hold, NAMES, NUMBERS, POSITIVE, st.booleans()),
     "clears": st.builds(Clear, NAMES, NAMES, POSITIVE, WORDS),
+    "shapes": st.builds(Shape, NAMES, BONES, POSITIVE, st.sampled_from(Through), st.booleans()),
 }
 LIMBS = st.builds(LimbChange, NAMES, BONES, POSITIVE, POSITIVE)
 
@@ -622,6 +642,11 @@ def test_what_is_wrong_is_named_with_its_line(old: str, new: str) -> None:
         ('[[load]]\nbone = "a"', 1),
         ("[[load]]\nmass = 3", 1),
         ("[[limb]]\nlength = 3", 1),
+        ("[[shape]]\nthickness = 3", 1),
+        ('[[shape]]\nbones = ["a"]\nthrough = "walls"', 3),
+        ('[solution]\nhuman = "soft enough"', 2),
+        ("[solution]\nhuman = 3", 2),
+        ("[solution]\nwider = -3", 2),
         ('[[timing]]\nphase = "a"', 1),
         ("[[timing]]\nfactor = 3", 1),
         ("[[hold]]\nseconds = 3", 1),

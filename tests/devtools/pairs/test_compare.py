@@ -1,13 +1,14 @@
 """Shares, slopes and verdicts of pairs whose changes are known."""
 
 import json
+from dataclasses import replace
 
 import pytest
 from hangtime.devtools.pairs.compare import FailedPair
 from hangtime.devtools.pairs.limits import MEASURES, WithDistance, figures, slope, with_distance
 from hangtime.devtools.pairs.moved import MovedLanding
 from hangtime.devtools.pairs.results import Results
-from hangtime.devtools.pairs.table import page, text
+from hangtime.devtools.pairs.table import page, solution_rows, text
 from hangtime.tests.devtools.pairs.made_up import pair
 
 
@@ -76,3 +77,17 @@ def test_results_are_told_in_json_in_lines_and_on_a_page(tmp_path) -> None:
         assert "no way" in told
         assert "implicit (stalled)" in told
         assert "4.0 / 4.0 / 4.0" in told
+
+
+def test_solutions_are_told_by_their_difference_to_the_first() -> None:
+    first = [pair(0.2, person=2.0, ours=1.0), pair(-0.2, person=2.0, ours=0.0, target="back")]
+    second = [
+        replace(pair(0.2, person=2.0, ours=4.0), solution="power", seconds=3.0),
+        replace(pair(-0.2, person=2.0, ours=1.0, target="back"), solution="power", seconds=5.0),
+    ]
+    results = Results.of(("implicit", "power"), [*first, *second], {}, [])
+    head, implicit, power = solution_rows(results)
+    column = head.index("flight time (ms)")
+    assert (implicit[column], power[column]) == ("+0", "+2")
+    assert power[-1] == "4.0"
+    assert "power" in page(results)

@@ -15,7 +15,7 @@ from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
-from hangtime.solver.data.requests import Method, ObjectiveKind
+from hangtime.solver.data.solver_options import Method, ObjectiveKind
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP_CLIP, fitted_hop

@@ -21,6 +21,7 @@ from hangtime.solver.data.faults import (
     SceneFault,
 )
 from hangtime.solver.data.row_kinds import RowKind, Violation
+from hangtime.solver.data.scene import SupportBox
 from hangtime.solver.data.status import Status
 
 
@@ -46,6 +47,8 @@ def filled(hint: object) -> object:
         return Status.STALLED
     if "Violation" in text:
         return (Violation("Landing: Left heel 2", RowKind.PIN, 12.0),)
+    if "SupportBox" in text:
+        return (SupportBox((0.4, 0.3, 0.31), (0.0, 0.0, 0.0), 0.0),)
     if text.startswith("tuple[float"):
         return (1.0, 2.0, 3.0)
     if text.startswith("tuple[str"):

@@ -10,6 +10,7 @@ from hangtime.solver.analysis.grounding import (
     MIN_STEP_TIME,
     SAME_PLACE,
     SOLE_COMPLIANCE,
+    foot_sized,
     grounded,
     parted,
 )
@@ -126,3 +127,34 @@ def left_toes(schedule: ContactSchedule) -> tuple[Contact, Contact]:
     pairs = [(a, b) for a, b in pairwise(toes) if b.start - a.end < 0.2]
     (only,) = pairs
     return only
+
+
+def heel_and_toe() -> tuple[int, int]:
+    """A heel's contact and its toe's, which lasts longer and meanwhile stands."""
+    contacts = found().contacts
+    return next(
+        (i, j)
+        for i, heel in enumerate(contacts)
+        for j, toe in enumerate(contacts)
+        if (heel.point, toe.point) == ("Left heel", "Left toe")
+        and toe.end - toe.start > heel.end - heel.start
+        and min(heel.end, toe.end) - max(heel.start, toe.start) > 0.05
+    )
+
+
+def test_a_heel_goes_with_the_toe_whose_place_is_of_another_moment() -> None:
+    heel, toe = heel_and_toe()
+    contacts = list(found().contacts)
+    turned_away = contacts[toe].place + np.array([0.1, 0.0, 0.0])
+    contacts[toe] = replace(contacts[toe], place=turned_away)
+    turned = replace(found(), contacts=tuple(contacts))
+    sized = foot_sized(turned, hop().performance).contacts
+    assert sized[toe].place == pytest.approx(turned_away)
+    moved = sized[heel].place - contacts[heel].place
+    assert moved == pytest.approx([0.1, 0.0, 0.0], abs=0.01)
+
+
+def test_places_of_a_foot_that_stands_still_stay() -> None:
+    standing = found()
+    kept = foot_sized(standing, hop().performance).contacts
+    assert all(a.place is b.place for a, b in zip(kept, standing.contacts, strict=True))

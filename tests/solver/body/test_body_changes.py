@@ -25,9 +25,9 @@ from hangtime.solver.data.faults import NotAboveZero, UnknownBone
 from hangtime.solver.data.problem import MassTable
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import AddedMass, BodyChange, LimbChange
+from hangtime.solver.inverse_kinematics.reseat import reseat
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
 from hangtime.solver.results.npz_export import sample
-from hangtime.solver.stages.reseat import reseat
 from hangtime.solver.transcription.motion import Motion, dynamics_residual
 from hangtime.tests.helpers import toy_problems as toys
 from hangtime.tests.helpers.clips import load_recording

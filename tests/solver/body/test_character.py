@@ -188,9 +188,31 @@ def test_a_bone_without_length_is_named() -> None:
 
 
 def test_a_missing_part_is_named() -> None:
+    recording = clip(JUMP)
+    keep = [not b.name.startswith(("LeftFoot", "LeftToe")) for b in recording.bones]
+    index = np.cumsum(keep) - 1
+    bones = tuple(
+        replace(b, parent=int(index[b.parent]) if b.parent >= 0 else -1)
+        for b, kept in zip(recording.bones, keep, strict=True)
+        if kept
+    )
     with pytest.raises(MissingPart) as caught:
-        build_character(without(clip(JUMP), ("LeftFoot",)))
+        build_character(
+            replace(
+                recording,
+                bones=bones,
+                heads=recording.heads[:, keep],
+                rotations=recording.rotations[:, keep],
+            )
+        )
     assert caught.value.part == "left foot"
+
+
+def test_a_bone_of_no_known_name_is_found_by_the_skeleton_s_shape() -> None:
+    figure = build_character(without(clip(JUMP), ("LeftFoot",)))
+    foot = figure.body(Part.FOOT, Side.LEFT)
+    assert foot is not None
+    assert figure.bodies[foot].bone == f"x{clip(JUMP).index('LeftFoot')}"
 
 
 def test_the_centre_of_mass_of_who_stands_lies_where_people_have_it() -> None:

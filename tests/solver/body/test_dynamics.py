@@ -2,14 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 
 import casadi as ca
 import mujoco
 import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
-from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
@@ -23,11 +21,10 @@ from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.numerics.batch_function import BatchFunction
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.results.mjcf import hinge_order, mjcf, state
-from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.transcription.motion import motion_inverse_dynamics
 from hangtime.solver.transcription.transcription import Transcription
-from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 SEEDS = range(8)
 INSTANTS = 6
@@ -222,13 +219,6 @@ def test_point_velocity_and_its_jacobian(seed: int) -> None:
 # -- the whole system of equations on a real jump ------------------------------------------
 
 
-@cache
-def jump() -> Fit:
-    recording = load_recording("forward_jump_116cm.bvh").window(73.0, 325.0)
-    analysis = analyse(recording, MotionProblem())
-    return fit(analysis.performance, analysis.schedule)
-
-
 def random_unknowns(transcription: Transcription, x: FloatArray) -> FloatArray:
     random = np.random.default_rng(5)
     return x + transcription.active * 0.03 * random.normal(size=x.shape)
@@ -246,7 +236,7 @@ PHYSICS = {
 
 def test_rows_jacobian() -> None:
     """Along random directions, every row at once; unknowns near a valid motion but off it."""
-    fitted = jump()
+    fitted = fitted_hop()
     t = fitted.motion.transcription
     x = random_unknowns(t, fitted.motion.x)
     rows = t.rows(x, fitted.places)
@@ -267,7 +257,7 @@ def test_rows_jacobian() -> None:
 
 def test_every_force_row_knows_its_own_unknowns() -> None:
     """A row's Jacobian is complete: single unknowns, not only directions, change what it says."""
-    fitted = jump()
+    fitted = fitted_hop()
     t = fitted.motion.transcription
     x = random_unknowns(t, fitted.motion.x)
     rows = t.rows(x, fitted.places)
@@ -285,7 +275,7 @@ def test_every_force_row_knows_its_own_unknowns() -> None:
 
 
 def test_efforts_of_an_adapted_jump_leave_nothing_at_the_root() -> None:
-    fitted = jump()
+    fitted = fitted_hop()
     adapted = adapt(fitted, MotionProblem(pins=(Pin("landing", "ground 2", offset=(0.2, 0, 0)),)))
     assert adapted.solved
     motion = adapted.motion

@@ -1,17 +1,22 @@
 """Human by default: joints keep to a person's ranges, or the recording's; what cannot is told."""
 
 from dataclasses import replace
+from functools import cache
 from math import radians
 
 import numpy as np
 from hangtime.operators.words.report_text import headline
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.data.report import Origin
-from hangtime.solver.data.requests import AngleLimit, OrientationRequest, Requests, When
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.requests import AngleLimit, OrientationRequest, Requests, Shape, When
 from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.human.human_guard import HumanGuard, recorded_ranges
+from hangtime.solver.human.ranges import joint_ranges
 from hangtime.solver.results.report import report
+from hangtime.solver.results.violations import most_telling
 from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.solver.stages.setup import set_up
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.validity import assert_valid
 
@@ -22,8 +27,14 @@ NEAR = MotionProblem(pins=(Pin("landing", "ground 2", offset=(0.02, 0.0, 0.0)),)
 
 def any_body(problem: MotionProblem) -> MotionProblem:
     """The same of a figure that is no human."""
-    solution = replace(problem.requests.solution, human=False)
+    solution = replace(problem.requests.solution, human=HumanRanges.OFF)
     return replace(problem, requests=replace(problem.requests, solution=solution))
+
+
+@cache
+def unguarded() -> Adaptation:
+    """The far landing by a figure that is no human."""
+    return adapt(fitted_hop(), any_body(FAR))
 
 
 def beyond(adaptation: Adaptation) -> dict[str, float]:
@@ -36,7 +47,7 @@ def beyond(adaptation: Adaptation) -> dict[str, float]:
 
 
 def test_a_far_landing_keeps_joints_in_their_ranges() -> None:
-    before = beyond(adapt(fitted_hop(), any_body(FAR)))
+    before = beyond(unguarded())
     assert max(before.values()) > 5.0
     adaptation = adapt(fitted_hop(), FAR)
     assert adaptation.solved
@@ -51,10 +62,19 @@ def test_the_fit_is_within_its_own_ranges() -> None:
     assert guard.recorded  # the recording itself goes beyond a person's
 
 
+def test_the_fit_bends_no_joint_further_than_a_person_or_the_recording() -> None:
+    performance, fitted = fitted_hop().performance, fitted_hop().motion
+    angles, found = performance.angles, fitted.joint_rotations(performance.times)
+    for limit in joint_ranges(performance.character, angles):
+        axes, dofs = limit.measure.joint.axes, limit.measure.joint.dofs
+        allowed = limit.holding(axes.rotation(angles[:, dofs]))
+        assert allowed.beyond(found[:, limit.body]).max() < radians(MOST), limit.name
+    assert not fitted.transcription.guards
+
+
 def test_what_is_off_has_no_rows() -> None:
-    adaptation = adapt(fitted_hop(), any_body(FAR))
-    assert adaptation.setup.human is None
-    assert adaptation.motion.transcription.guard(RowKind.RANGE) is None
+    assert unguarded().setup.human is None
+    assert unguarded().motion.transcription.guard(RowKind.RANGE) is None
 
 
 def test_a_joint_that_the_artist_limits_is_the_artist_s() -> None:
@@ -67,7 +87,7 @@ def test_a_joint_that_the_artist_limits_is_the_artist_s() -> None:
     assert beyond(adaptation).pop("Left knee bends") > 10.0
 
 
-def test_what_cannot_be_met_is_given_up_and_told_by_name() -> None:
+def nodding(solution: SolverOptions, shapes: tuple[Shape, ...] = ()) -> MotionProblem:
     """The head is asked to tilt by 90 degrees for a moment, with the chest held as it was."""
     frame = float(fitted_hop().performance.recording.frames[0]) + 60.0
     when = When(frames=(frame - 1.0, frame + 1.0))
@@ -75,7 +95,11 @@ def test_what_cannot_be_met_is_given_up_and_told_by_name() -> None:
         OrientationRequest("Nod", "Head", when, tilt=radians(90.0)),
         OrientationRequest("Chest", "Spine1", when),
     )
-    problem = MotionProblem(requests=Requests(orientations=asked))
+    return MotionProblem(requests=Requests(orientations=asked, shapes=shapes, solution=solution))
+
+
+def test_what_cannot_be_met_is_given_up_and_told_by_name() -> None:
+    problem = nodding(SolverOptions())
     adaptation = adapt(fitted_hop(), problem)
     assert adaptation.solved
     left = beyond(adaptation)
@@ -84,3 +108,39 @@ def test_what_cannot_be_met_is_given_up_and_told_by_name() -> None:
     told = report(adaptation, problem, Origin("hop"))
     name = max(left, key=lambda each: left[each])
     assert any(name in line and "°" in line for line in headline(told))
+
+
+def test_hard_ranges_are_not_given_up_and_the_conflict_is_told() -> None:
+    problem = nodding(SolverOptions(human=HumanRanges.HARD))
+    adaptation = adapt(fitted_hop(), problem)
+    assert not adaptation.solved
+    assert max(beyond(adaptation).values(), default=0.0) < MOST
+    told = {each.name for each in most_telling(adaptation, problem)}
+    assert "Nod" in told
+    assert any(name.startswith("Neck") for name in told)
+
+
+def test_hard_ranges_hinder_nothing_that_can_be_met() -> None:
+    hard = Requests(solution=SolverOptions(human=HumanRanges.HARD))
+    assert adapt(fitted_hop(), replace(FAR, requests=hard)).solved
+
+
+def test_wider_ranges_let_joints_go_so_much_further() -> None:
+    wide = SolverOptions(wider=radians(20.0))
+    usual, wider = (
+        set_up(fitted_hop(), nodding(options)).human for options in (SolverOptions(), wide)
+    )
+    assert usual is not None
+    assert wider is not None
+    for one, other in zip(usual.human, wider.human, strict=True):
+        assert np.isclose(other.upper - one.upper, wide.wider)
+        assert np.isinf(one.lower) or np.isclose(one.lower - other.lower, wide.wider)
+
+
+def test_joints_that_are_no_person_s_have_no_ranges() -> None:
+    tail = Shape("Tail", ("Neck", "Neck1", "Head"), human=False)
+    guard = set_up(fitted_hop(), nodding(SolverOptions(), (tail,))).human
+    assert guard is not None
+    free = {each.name for each in guard.ranges if np.isinf(each.upper)}
+    assert free
+    assert all(name.startswith("Neck") for name in free)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hangtime.solver.objectives.joint_price import JointPrice
 from hangtime.solver.objectives.tracking_cost import (
     CostWeights,
     TrackingCost,
@@ -37,6 +38,20 @@ COST_WEIGHTS = {
 }
 
 
+def priced() -> JointPrice:
+    """Joints' turns at any price, of hips and knees."""
+    random = np.random.default_rng(11).normal(size=(len(figure().bodies), 3, 3))
+    turns = 0.1 * random @ np.swapaxes(random, 1, 2)
+    turns[0] = 0.0
+    return JointPrice(turns, np.ones(len(turns)))
+
+
+def cost_of(name: str, target: TrackingTarget) -> TrackingCost:
+    """The cost with weights by name; an adaptation's has a price of turning joints."""
+    price = priced() if name == "adaptation" else None
+    return TrackingCost(standing(), target, COST_WEIGHTS[name], price)
+
+
 def at_itself(x: np.ndarray) -> TrackingTarget:
     return motion_target(Motion(standing(), x, places()))
 
@@ -50,11 +65,10 @@ def direction(seed: int) -> np.ndarray:
 def test_the_gradient_is_the_value_s_slope(name: str) -> None:
     """The metric of accelerations and rates is taken as fixed: the target has no such errors."""
     x, target = random_state(0), at_itself(random_state(1))
-    t = standing()
     own = at_itself(x)
     ends = replace(target.ends, rates=own.ends.rates)
     target = replace(target, accelerations=own.accelerations, ends=ends)
-    tracking_cost = TrackingCost(t, target, COST_WEIGHTS[name])
+    tracking_cost = cost_of(name, target)
     gradient, _ = tracking_cost.expand(x)
     for seed in range(3):
         d = direction(seed)
@@ -68,7 +82,7 @@ def test_the_gradient_is_the_value_s_slope(name: str) -> None:
 @pytest.mark.parametrize("name", COST_WEIGHTS)
 def test_the_metric_is_the_curvature_where_the_error_vanishes(name: str) -> None:
     x = random_state(2)
-    tracking_cost = TrackingCost(standing(), at_itself(x), COST_WEIGHTS[name])
+    tracking_cost = cost_of(name, at_itself(x))
     gradient, metric = tracking_cost.expand(x)
     assert tracking_cost.value(x) == pytest.approx(0.0, abs=1e-20)
     assert np.abs(gradient).max() < 1e-10
@@ -88,7 +102,7 @@ def test_the_metric_is_the_curvature_where_the_error_vanishes(name: str) -> None
 @pytest.mark.parametrize("name", COST_WEIGHTS)
 def test_the_metric_is_positive_definite(name: str) -> None:
     x = random_state(4)
-    _, metric = TrackingCost(standing(), at_itself(x), COST_WEIGHTS[name]).expand(x)
+    _, metric = cost_of(name, at_itself(x)).expand(x)
     count = x.size
     dense = np.stack([metric.times(row.reshape(x.shape)).ravel() for row in np.eye(count)])
     assert dense == pytest.approx(dense.T, abs=1e-12 * np.abs(dense).max())
@@ -105,6 +119,21 @@ def test_a_shift_costs_what_it_moves() -> None:
     assert tracking_cost.value(far) == pytest.approx(0.5 * 0.01 * 0.3)
     shape = TrackingCost(standing(), at_itself(x), CostWeights(shape=1.0))
     assert shape.value(far) == pytest.approx(0.0, abs=1e-20)
+
+
+def test_half_of_a_change_is_measured_by_what_it_takes_of_ranges() -> None:
+    """A knee that is turned by 0.2 rad: half of what that moves, and half of its price."""
+    x = random_state(5)
+    weights, t = CostWeights(shape=1.0, by_range=0.5), standing()
+    knee, further = 2, x.copy()
+    angle = 3 + figure().joints[knee].dofs.start
+    assert t.layout.motion.start == 0
+    further[:, angle] += 0.2
+    axis = figure().joints[knee].axes.after.T[:, 0]  # in the shank's own frame
+    turned = 0.04 * float(axis @ priced().turns[knee] @ axis)
+    plain = TrackingCost(t, at_itself(x), weights).value(further)
+    both = TrackingCost(t, at_itself(x), weights, priced()).value(further)
+    assert both == pytest.approx(0.5 * plain + 0.5 * 0.5 * turned * 0.3)
 
 
 def test_forces_along_the_target_s_slope_cost_no_friction() -> None:

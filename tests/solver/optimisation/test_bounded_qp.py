@@ -2,16 +2,15 @@
 
 from collections.abc import Callable
 
-import casadi as ca
 import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray, IntArray
 from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
 from hangtime.solver.optimisation.bounded_qp import BoundedStep, solve_dual_qp
 from hangtime.solver.transcription.rows import violation
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from scipy.optimize import lsq_linear
+from scipy.optimize import lsq_linear, nnls
 
 SEED = st.integers(0, 2**31)
 SIZE = 3
@@ -112,14 +111,18 @@ class Problem:
         )
 
     def reference(self) -> np.ndarray:
-        """d by CasADi's own dense active-set solver."""
+        """d by non-negative least squares: least distance programming (Lawson & Hanson 23.4)."""
         G = self.G.reshape(len(self.z), -1)
-        form = {"h": ca.DM(self.A).sparsity(), "a": ca.DM(G).sparsity()}
-        options = {"print_iter": False, "print_header": False, "print_info": False}
-        solver = ca.conic("reference", "qrqp", form, options)
-        found = solver(h=self.A, a=G, lba=self.lower - self.z, uba=self.upper - self.z)
-        assert solver.stats()["success"]
-        return np.asarray(found["x"]).reshape(self.G.shape[1:])
+        lower, upper = self.lower - self.z, self.upper - self.z
+        above, below = np.isfinite(lower), np.isfinite(upper)
+        least = np.concatenate([lower[above], -upper[below]])
+        root = np.linalg.cholesky(self.A)
+        rows = np.linalg.solve(root, np.concatenate([G[above], -G[below]]).T)
+        both = np.vstack([rows, least])
+        last = np.eye(len(both))[-1]
+        residual = both @ nnls(both, last)[0] - last
+        assert abs(residual[-1]) > 1e-9, "the rows contradict each other"
+        return np.linalg.solve(root.T, -residual[:-1] / residual[-1]).reshape(self.G.shape[1:])
 
 
 def settled(problem: Problem, bounded: BoundedStep) -> np.ndarray:
@@ -130,6 +133,7 @@ def settled(problem: Problem, bounded: BoundedStep) -> np.ndarray:
 
 
 @settings(max_examples=40, deadline=None)
+@example(5971459, 4, 9)  # on which CasADi's qrqp ends outside the bounds and says success
 @given(SEED, st.integers(WINDOW, 9), st.integers(1, 10))
 def test_the_corrected_step_is_the_dense_program_s(seed: int, blocks: int, rows: int) -> None:
     problem = Problem(seed, blocks, rows)

@@ -16,7 +16,7 @@ from hangtime.solver.data.faults import (
     UnknownReductionBone,
     WrongWeights,
 )
-from hangtime.solver.data.requests import Reduction, ReductionKind
+from hangtime.solver.data.solver_options import Reduction, ReductionKind
 from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.optimisation.reduction import (
     LEG,

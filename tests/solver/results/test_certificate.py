@@ -8,8 +8,10 @@ import pytest
 from hangtime.operators.words.report_text import as_text, certificate_lines
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.data.report import CertificateItem as Item
-from hangtime.solver.data.report import CertificateLine, Origin, Report
+from hangtime.solver.data.reports.certificate import CertificateItem as Item
+from hangtime.solver.data.reports.certificate import CertificateLine
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.reports.report import Report
 from hangtime.solver.results.certificate import friction_used, loaded_drifts
 from hangtime.solver.results.report import report
 from hangtime.solver.results.torque_curve import exact_torques

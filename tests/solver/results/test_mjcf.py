@@ -1,41 +1,29 @@
 """The exported MJCF and states: what MuJoCo makes of them is what our own kinematics says."""
 
-from functools import cache
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import check_motion, check_npz
-from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.constants import STANDARD_GRAVITY
-from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.results.mjcf import hinge_order, mjcf, qacc, qpos, qvel
 from hangtime.solver.results.npz_export import sample
-from hangtime.solver.stages.fit import fit
-from hangtime.solver.transcription.motion import Motion
-from hangtime.tests.helpers.clips import load_recording
-
-
-@cache
-def jump() -> Motion:
-    recording = load_recording("forward_jump_116cm.bvh").window(73.0, 325.0)
-    analysis = analyse(recording, MotionProblem())
-    return fit(analysis.performance, analysis.schedule).motion
+from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 
 def model() -> mujoco.MjModel:
-    t = jump().transcription
+    t = fitted_hop().motion.transcription
     return mujoco.MjModel.from_xml_string(mjcf(t.character, t.points))
 
 
 def instants() -> np.ndarray:
     """Some instants, none on a knot."""
-    return np.linspace(0.0123, jump().duration - 0.0123, 40)
+    return np.linspace(0.0123, fitted_hop().motion.duration - 0.0123, 40)
 
 
 def test_the_model_is_the_character() -> None:
-    character, made = jump().transcription.character, model()
+    character, made = fitted_hop().motion.transcription.character, model()
     assert made.nv == character.n_dofs
     assert made.nq == character.n_dofs + 1
     assert made.nbody == len(character.bodies) + 1
@@ -47,7 +35,7 @@ def test_the_model_is_the_character() -> None:
 
 
 def test_bodies_and_points_are_where_ours_are() -> None:
-    motion, times = jump(), instants()
+    motion, times = fitted_hop().motion, instants()
     made = model()
     data = mujoco.MjData(made)
     posed, com = motion.pose(times), motion.com(times)
@@ -67,7 +55,7 @@ def test_bodies_and_points_are_where_ours_are() -> None:
 
 def test_velocities_and_accelerations_are_those_of_the_positions() -> None:
     """By MuJoCo's own difference of positions, which knows the free joint's conventions."""
-    motion, times, step = jump(), instants(), 1e-6
+    motion, times, step = fitted_hop().motion, instants(), 1e-6
     made = model()
     before, after = (qpos(motion, times + sign * step) for sign in (-1, 1))
     speeds, rates = qvel(motion, times), qacc(motion, times)
@@ -80,7 +68,7 @@ def test_velocities_and_accelerations_are_those_of_the_positions() -> None:
 
 
 def test_a_fit_is_physical_by_both_checks(tmp_path: Path) -> None:
-    motion = jump()
+    motion = fitted_hop().motion
     arrays = sample(motion)
     np.savez(tmp_path / "trajectory.npz", **arrays)
     by_mujoco, _ = check_motion(motion)
@@ -97,7 +85,7 @@ def test_a_fit_is_physical_by_both_checks(tmp_path: Path) -> None:
     [("gravity", 1.01), ("contact_force", 1.05), ("inertia", 2.0)],
 )
 def test_the_npz_check_notices(tmp_path: Path, array: str, factor: float) -> None:
-    arrays = sample(jump())
+    arrays = sample(fitted_hop().motion)
     np.savez(tmp_path / "right.npz", **arrays)
     np.savez(tmp_path / "wrong.npz", **{**arrays, array: factor * arrays[array]})
     right, wrong = (check_npz(tmp_path / f"{name}.npz") for name in ("right", "wrong"))

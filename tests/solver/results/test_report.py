@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from hangtime.operators.words.report_text import as_text
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.data.report import Origin, Report, StageReport, as_json
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.reports.report import Report, StageReport, as_json
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Durations, Status
 from hangtime.solver.results.npz_export import instants, sample, save

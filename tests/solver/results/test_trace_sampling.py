@@ -5,8 +5,7 @@ import pytest
 from hangtime.solver.body.inverse_dynamics import InverseDynamics
 from hangtime.solver.data.traces import Traces, scaled_traces
 from hangtime.solver.results.trace_sampling import motion_traces, recorded_traces
-
-from ...helpers.fitted_hop import fitted_hop
+from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,9 @@ from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.scene.object_motion import ObjectMotion
 from hangtime.solver.scene.triangle_mesh import mesh_of
 from hangtime.solver.solid.mesh_surface import MeshSurface, scene_shapes
+from hangtime.solver.solid.penetrations import Penetrations, placed_at
 from hangtime.solver.solid.shapes import Capsules
-from hangtime.solver.solid.solid_world import Penetrations, SolidDistance, placed_at
+from hangtime.solver.solid.solid_world import SolidDistance
 from hangtime.solver.solid.surfaces import Placed
 from hangtime.solver.transcription.sampling import Instants, State
 from hangtime.tests.helpers.fitted_hop import fitted_hop

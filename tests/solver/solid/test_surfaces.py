@@ -1,5 +1,6 @@
 """Distances between solids: against MuJoCo's, their Jacobians, and which solids may meet."""
 
+from dataclasses import replace
 from functools import cache
 
 import mujoco
@@ -7,9 +8,14 @@ import numpy as np
 import pytest
 from hangtime.solver.arrays import IntArray
 from hangtime.solver.body.anatomy import Part
+from hangtime.solver.data.faults import NotAboveZero, StillBone
+from hangtime.solver.data.requests import Shape, Through
+from hangtime.solver.solid.mesh_surface import scene_shapes
+from hangtime.solver.solid.penetrations import Penetrations, placed_at
 from hangtime.solver.solid.segments import closest_shares
+from hangtime.solver.solid.shape_changes import ShapeChanges
 from hangtime.solver.solid.shapes import Capsules, capsules, floor_balls, meeting_pairs
-from hangtime.solver.solid.solid_world import Penetrations, SolidDistance, placed_at
+from hangtime.solver.solid.solid_world import SolidDistance
 from hangtime.solver.solid.surfaces import Floor, OwnLimbs, Placed, Surfaces
 from hangtime.solver.transcription.motion import Motion
 from hangtime.solver.transcription.sampling import Instants, State
@@ -166,6 +172,53 @@ def test_neighbours_may_touch_and_both_legs_may_not() -> None:
         assert frozenset((one, other)) in pairs
     for one, other in (("left thigh", "left shank"), ("left forearm", "left upper arm")):
         assert frozenset((one, other)) not in pairs
+
+
+def meeting(shape: Shape) -> set[frozenset[str]]:
+    """Names of the bodies that meet, with a shape's changes."""
+    character = fitted_hop().motion.transcription.character
+    changes = ShapeChanges.of((shape,), character)
+    shapes = capsules(character, changes)
+    names = [character.bodies[each.body].name for each in shapes]
+    pairs = meeting_pairs(character, shapes, changes)
+    return {frozenset((names[i], names[j])) for i, j in pairs}
+
+
+def test_what_goes_through_each_other_still_meets_all_else() -> None:
+    pairs = meeting(Shape("Bag", ("LeftHand", "LeftLeg"), through=Through.EACH_OTHER))
+    assert frozenset(("left hand", "left shank")) not in pairs
+    assert frozenset(("left hand", "left thigh")) in pairs
+    assert frozenset(("right hand", "left shank")) in pairs
+
+
+def test_what_goes_through_all_meets_nothing() -> None:
+    shape = Shape("Hair", ("LeftHand",), through=Through.ALL)
+    assert not any("left hand" in pair for pair in meeting(shape))
+    t = fitted_hop().motion.transcription
+    changes = ShapeChanges.of((shape,), t.character)
+    for find in (floor_balls, scene_shapes):
+        bodies = {
+            t.character.bodies[each.body].name for each in find(t.character, t.points, changes)
+        }
+        assert "left hand" not in bodies
+        assert "right hand" in bodies
+
+
+def test_thickness_is_a_factor_on_the_radius() -> None:
+    character = fitted_hop().motion.transcription.character
+    twice = Shape("Sleeve", ("LeftForeArm",), thickness=2.0)
+    changes = ShapeChanges.of((twice, replace(twice, name="Again", thickness=1.5)), character)
+    for before, after in zip(capsules(character), capsules(character, changes), strict=True):
+        thick = 3.0 if character.bodies[before.body].name == "left forearm" else 1.0
+        assert after.radius == pytest.approx(thick * before.radius)
+
+
+def test_a_shape_of_no_thickness_or_of_no_body_is_refused() -> None:
+    character = fitted_hop().motion.transcription.character
+    with pytest.raises(NotAboveZero):
+        ShapeChanges.of((Shape("Ghost", ("Head",), thickness=0.0),), character)
+    with pytest.raises(StillBone):
+        ShapeChanges.of((Shape("Tail", ("Tail",)),), character)
 
 
 def test_a_standing_foot_is_not_in_the_floor() -> None:

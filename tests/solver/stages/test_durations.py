@@ -7,14 +7,14 @@ import pytest
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
-from hangtime.solver.data.requests import PhaseTiming, Requests, SolverOptions
+from hangtime.solver.data.requests import PhaseTiming, Requests
+from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.data.status import Durations
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
-
-from ...helpers.clips import load_recording
-from ...helpers.fitted_hop import HOP_CLIP
+from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.fitted_hop import HOP_CLIP
 
 FLIGHT, LANDING = "flight 1", "ground 2"
 DISTANCE = 0.77  # m, of the feet from take-off to landing

@@ -6,16 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.data.requests import (
+from hangtime.solver.data.requests import Moment, PoseRequest, Requests, When
+from hangtime.solver.data.solver_options import (
     Method,
-    Moment,
     ObjectiveKind,
-    PoseRequest,
     Reduction,
     ReductionKind,
-    Requests,
     SolverOptions,
-    When,
 )
 from hangtime.solver.objectives.least_squares import (
     AngleDerivatives,

@@ -10,7 +10,8 @@ from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Bone, Recording
 from hangtime.solver.data.status import Status
 from hangtime.solver.numerics.rotations import axis_rotation
-from hangtime.solver.stages.fit import Fit, fit, on_finer_basis, transcribe
+from hangtime.solver.stages.fit import Fit, fit, on_finer_basis
+from hangtime.solver.stages.transcribe import transcribe
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of
 from hangtime.tests.helpers.validity import assert_valid, joint_error

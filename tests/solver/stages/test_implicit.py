@@ -1,5 +1,7 @@
 """Adaptations of a real hop: pins are met, physics holds, and the impossible ends."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
@@ -29,6 +31,11 @@ def adapted(*pins: Pin) -> Adaptation:
     return adapt(fitted_hop(), MotionProblem(pins=pins))
 
 
+@cache
+def edited(name: str) -> Adaptation:
+    return adapted(EDITS[name])
+
+
 def landed() -> np.ndarray:
     schedule = fitted_hop().schedule
     phase = next(p for p in schedule.phases if p.name == LANDING)
@@ -46,7 +53,7 @@ def contact_places(adaptation: Adaptation) -> np.ndarray:
 
 @pytest.mark.parametrize("name", EDITS)
 def test_the_landing_goes_exactly_where_it_is_asked_to(name: str) -> None:
-    adaptation = adapted(EDITS[name])
+    adaptation = edited(name)
     fitted = fitted_hop()
     assert adaptation.outcome.status is Status.SOLVED
     assert_valid(adaptation.motion, adaptation.setup.schedule)
@@ -79,7 +86,7 @@ def test_a_pin_on_both_phases_carries_the_whole_hop() -> None:
 
 def test_a_longer_jump_rises_or_lasts_as_physics_asks() -> None:
     """In flight the centre of mass is a parabola from take-off to the new landing."""
-    adaptation = adapted(EDITS["both"])
+    adaptation = edited("both")
     flight = adaptation.setup.schedule.flights[0]
     times = np.linspace(flight.start, flight.end, 30)
     com = adaptation.motion.com(times)

@@ -5,16 +5,8 @@ import pytest
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.data.faults import NeedsTorques
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.data.requests import (
-    Dynamics,
-    ForceRequest,
-    Method,
-    ObjectiveKind,
-    Requests,
-    SolverOptions,
-    TorqueLimit,
-    When,
-)
+from hangtime.solver.data.requests import ForceRequest, Requests, TorqueLimit, When
+from hangtime.solver.data.solver_options import Dynamics, Method, ObjectiveKind, SolverOptions
 from hangtime.solver.data.status import Durations
 from hangtime.solver.results.violations import condition_violations, most_telling, worst_constraints
 from hangtime.solver.stages.implicit import Adaptation, adapt

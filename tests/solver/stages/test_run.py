@@ -130,7 +130,7 @@ def test_no_knee_bends_backwards_and_no_foot_sinks(name: str) -> None:
         if body.part is Part.SHANK:
             bend = np.degrees(bend_function(found.setup.context, i).value(state))
             assert bend.min() > 0.0
-            assert bend.max() < 125.0
+            assert bend.max() < 135.0  # AAOS 1965
     floor = min(float(c.place[2]) for c in found.setup.schedule.contacts)
     assert motion.contact_points(times)[..., 2].min() > floor - 0.005
 

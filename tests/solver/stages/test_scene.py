@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hangtime.solver.analysis.landing import Footing
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.faults import (
     Fault,
@@ -9,7 +10,10 @@ from hangtime.solver.data.faults import (
     NoFaces,
     NotFinite,
     NotGround,
+    NoThickness,
     SameObjectName,
+    StandsBelow,
+    StandsIn,
     TooSteep,
     UnknownObject,
 )
@@ -20,7 +24,7 @@ from hangtime.solver.data.scene import SceneObject, SceneRole
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.results.violations import condition_violations
 from hangtime.solver.scene.checks import check_scene
-from hangtime.solver.stages.footing import find_footing
+from hangtime.solver.stages.footing import check_sunk, find_footing
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.meshes import box, thing
@@ -78,6 +82,7 @@ BROKEN = np.full((3, 3), np.nan), np.array([[0, 1, 2]])
     [
         (NoFaces, (thing("A", (np.zeros((3, 3)), np.zeros((0, 3), int))),), None),
         (NoFaces, (thing("A", (np.zeros((3, 3)), np.array([[0, 1, 2]]))),), None),
+        (NoThickness, (thing("A", box((1.0, 1.0, 0.0))),), None),
         (NotFinite, (thing("A", BROKEN),), None),
         (InsideOut, (obstacle(flip=True),), None),
         (SameObjectName, (obstacle(), obstacle()), None),
@@ -96,3 +101,36 @@ def test_faulty_scenes_are_refused(
 def test_a_stated_stature_scales_the_scene() -> None:
     scaled = scaled_problem(MotionProblem(scene=(obstacle(),)), 2.0).scene[0]
     np.testing.assert_allclose(scaled.vertices, 2.0 * obstacle().vertices)
+
+
+def stood(height: float, size: tuple[float, float, float], *, at: str = "ground 2") -> SceneObject:
+    """A slab with its top at a height above the floor, about the contacts of a phase."""
+    schedule = fitted_hop().schedule
+    (phase,) = (each for each in schedule.phases if each.name == at)
+    middle = np.mean([c.place for c in schedule.of_phase(phase)], axis=0)
+    top = schedule.floor_m + height - 0.5 * size[2]
+    return thing("Slab", box(size), (float(middle[0]), float(middle[1]), top))
+
+
+def test_a_recording_below_the_floor_that_it_is_given_is_told() -> None:
+    with pytest.raises(StandsBelow) as caught:
+        adapt(fitted_hop(), MotionProblem(scene=(stood(0.1, (9.0, 9.0, 1.0)),)))
+    assert caught.value.metres == pytest.approx(0.1, abs=0.01)
+
+
+def test_a_stance_in_a_crate_is_told_by_its_contact() -> None:
+    crate = stood(0.3, (0.9, 0.9, 0.3))
+    with pytest.raises(StandsIn) as caught:
+        adapt(fitted_hop(), MotionProblem(scene=(crate,)))
+    landing = [c.name for c in fitted_hop().schedule.contacts if c.start > 0.6]
+    assert caught.value.contact in landing
+    assert caught.value.metres == pytest.approx(0.3, abs=0.01)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.02])
+def test_a_floor_a_little_off_is_none_to_stand_in(height: float) -> None:
+    check_sunk((stood(height, (9.0, 9.0, 1.0)),), fitted_hop().schedule, recorded_footing())
+
+
+def recorded_footing() -> Footing:
+    return find_footing(fitted_hop(), MotionProblem(), fitted_hop().schedule)

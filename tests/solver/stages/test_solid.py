@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hangtime.operators.words.report_text import headline
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.data.report import Origin
-from hangtime.solver.data.requests import PointRequest, Requests, SolverOptions, When
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.requests import PointRequest, Requests, When
 from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.results.report import report
 from hangtime.solver.solid.solid_world import floor_heights
 from hangtime.solver.stages.implicit import Adaptation, adapt
@@ -25,9 +26,9 @@ def soft(problem: MotionProblem) -> MotionProblem:
     return replace(problem, requests=replace(problem.requests, solution=solution))
 
 
-def new_depths(adaptation: Adaptation, problem: MotionProblem) -> dict[str, float]:
-    """m, by the names of what is in what."""
-    world = adaptation.setup.solid or adapt(fitted_hop(), problem).setup.solid
+def new_depths(adaptation: Adaptation, solid: Adaptation) -> dict[str, float]:
+    """m, by the names of what is in what. solid: the same with floor and limbs solid."""
+    world = solid.setup.solid
     assert world is not None
     return {each.name: each.amount for each in world.penetrations(adaptation.motion).worst()}
 
@@ -52,21 +53,21 @@ def test_a_foot_stays_above_the_floor() -> None:
     height = np.array([0.0, 0.0, fitted_hop().schedule.floor_m + 0.1])
     free = (None, None)
     problem = at_bone("LeftFoot", 0.6, height, bounds=(free, free, (0.0, 0.0)))
-    before = new_depths(adapt(fitted_hop(), soft(problem)), problem)
-    assert before["Left foot in the floor"] > 0.01
     adaptation = adapt(fitted_hop(), problem)
+    before = new_depths(adapt(fitted_hop(), soft(problem)), adaptation)
+    assert before["Left foot in the floor"] > 0.01
     assert adaptation.solved
     assert_valid(adaptation.motion, adaptation.setup.schedule)
-    assert max(new_depths(adaptation, problem).values(), default=0.0) < NEW
+    assert max(new_depths(adaptation, adaptation).values(), default=0.0) < NEW
 
 
 def test_a_hand_stays_out_of_the_thigh() -> None:
-    before = new_depths(adapt(fitted_hop(), soft(in_thigh())), in_thigh())
-    assert before["Left hand in left thigh"] > 0.05
     adaptation = adapt(fitted_hop(), in_thigh())
+    before = new_depths(adapt(fitted_hop(), soft(in_thigh())), adaptation)
+    assert before["Left hand in left thigh"] > 0.05
     assert adaptation.solved
     assert_valid(adaptation.motion, adaptation.setup.schedule)
-    assert max(new_depths(adaptation, in_thigh()).values(), default=0.0) < NEW
+    assert max(new_depths(adaptation, adaptation).values(), default=0.0) < NEW
     rows = report(adaptation, in_thigh(), Origin("hop")).conditions
     kept = {row.name: row for row in rows if row.kind is RowKind.SOLID}
     assert kept["Left hand in left thigh"].met
@@ -94,7 +95,7 @@ def test_what_is_asked_for_under_the_floor_is_reached_and_told() -> None:
     height = np.array([0.0, 0.0, fitted_hop().schedule.floor_m + 0.02])
     free = (None, None)
     problem = at_bone("LeftToeBase", 0.6, height, bounds=(free, free, (0.0, 0.0)))
-    solution = replace(problem.requests.solution, human=False)
+    solution = replace(problem.requests.solution, human=HumanRanges.OFF)
     problem = replace(problem, requests=replace(problem.requests, solution=solution))
     adaptation = adapt(fitted_hop(), problem)
     assert adaptation.solved

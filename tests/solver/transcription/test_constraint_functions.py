@@ -105,6 +105,15 @@ def test_a_cone_s_angle_is_that_between_bone_and_axis(x: float, y: float, spin: 
     assert cone.value(turned(R))[0, 0] == pytest.approx(angle, abs=1e-7)
 
 
+def test_a_bone_half_a_turn_from_its_cone_s_axis_has_a_way_back() -> None:
+    cone = ConeAngle(arm(3).joints[1], DOWN, ACROSS, np.ones(2))
+    opposite = axis_rotation(0, np.pi)[None]
+    (way,) = cone.gradient(opposite)
+    assert np.linalg.norm(way) == pytest.approx(1.0)
+    back = rotation_matrix(-0.1 * way) @ opposite
+    assert cone.of(back)[0] == pytest.approx(np.pi - 0.1)
+
+
 @pytest.mark.parametrize(("axis", "tangent"), [(0, 0.5), (1, 2.0)])
 def test_a_cone_s_stretch_widens_it(axis: int, tangent: float) -> None:
     """At 45 degrees sideways (about y) or forwards (about x), with sideways halved."""

@@ -23,7 +23,8 @@ from hangtime.solver.data.status import Status
 from hangtime.solver.human.human_guard import RangeLeft, recorded_ranges
 from hangtime.solver.numerics.rotations import unit
 from hangtime.solver.numerics.splines import ORDER
-from hangtime.solver.solid.solid_world import Penetrations, SolidDistance, solid_world
+from hangtime.solver.solid.penetrations import Penetrations
+from hangtime.solver.solid.solid_world import SolidDistance, solid_world
 from hangtime.solver.transcription.contact_pins import PlaceTrajectory, PointContact
 from hangtime.solver.transcription.guard_rows import GuardRows
 from hangtime.solver.transcription.motion import Motion, dynamics_residual

@@ -11,37 +11,36 @@ from hangtime.solver.data import faults
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.problem import MassTable, MotionProblem, Pin
 from hangtime.solver.data.recording import Bone, PoseTrack, Recording
-from hangtime.solver.data.report import (
-    CertificateItem,
-    CertificateLine,
-    ConstraintReport,
+from hangtime.solver.data.reports.certificate import CertificateItem, CertificateLine
+from hangtime.solver.data.reports.constraints import ConstraintReport, MovingGroundReport, PinReport
+from hangtime.solver.data.reports.dynamics import (
     DenseResiduals,
-    DragSummary,
-    FigureSummary,
-    FitQuality,
-    FlightSummary,
     ForcePeak,
     ForcesReport,
-    JumpReport,
-    MotionChange,
-    MovingGroundReport,
-    PhaseReport,
     PhaseResidual,
-    PinReport,
-    RecordedFlight,
-    RecordedOverlap,
-    RecordingSummary,
-    ReductionReport,
-    Report,
-    SolveReport,
-    StageReport,
-    TimeMap,
     TorquePeak,
     TorquesReport,
     TorqueUse,
 )
 from hangtime.solver.data.reports.joints import JointChange, RecordedRange
-from hangtime.solver.data.requests import ReductionKind
+from hangtime.solver.data.reports.jumps import (
+    FlightSummary,
+    JumpReport,
+    PhaseReport,
+    RecordedFlight,
+    TimeMap,
+)
+from hangtime.solver.data.reports.recording import FigureSummary, RecordingSummary
+from hangtime.solver.data.reports.report import (
+    DragSummary,
+    FitQuality,
+    MotionChange,
+    RecordedOverlap,
+    ReductionReport,
+    Report,
+    SolveReport,
+    StageReport,
+)
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scaling import (
     scaled_problem,
@@ -49,6 +48,8 @@ from hangtime.solver.data.scaling import (
     scaled_schedule,
     scaled_track,
 )
+from hangtime.solver.data.solver_options import ReductionKind
+from hangtime.solver.data.stance_move import StanceMove
 from hangtime.solver.data.status import DragStatus, Durations, Status
 from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.solver.worker.protocol import (
@@ -142,6 +143,7 @@ REPORT = Report(
     times=TimeMap((0.0, 4.0), (0.0, 5.0)),
     stages=(StageReport("Adapting", 1.5),),
 )
+MOVED = StanceMove("ground 2", (1.0, 0.0, 0.0), 0.5, (0.3, 0.0, 0.0))
 MESSAGES: tuple[Message, ...] = (
     Hello(PROTOCOL, ("somewhere",)),
     Ready(PROTOCOL),
@@ -151,8 +153,8 @@ MESSAGES: tuple[Message, ...] = (
     Progress(1, "fit", 2, 3.5, "Left toe 1", 0.25),
     Analysed(1, SCHEDULE, 1.7, {"ground 1": np.eye(3)}, {"pelvis": "hips"}, TRACES),
     Fitted(1, REPORT.fit_to_recording, 2.0, TRACES),
-    Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, None),
-    Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, FAULT),
+    Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, MOVED, None),
+    Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, None, FAULT),
     Followed(1, TRACES, DragStatus.CONVERGED, DragSummary(3.0, 1.0, 2.0, 4.5)),
     Cancelled(1),
     Failed(1, faults.UnseenSupport(1.0, 5.0)),

@@ -1,0 +1,109 @@
+"""Keys for a result, as the artist asks for them, and what they leave of it in the world."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.data.reports.keys import KeysReport
+from ..recipe.keys import KeyOptions
+from ..rows.choices import KeyChoice
+from .events import KeyEvents
+from .hermite import HermiteKeys, fitted
+from .pose_figure import PosedBones
+from .reduction import reduced
+
+TIGHTENINGS = 4  # where errors to first order promise too much, as with bones that inherit in part
+SAFETY = 0.99
+
+
+@dataclass(frozen=True)
+class ChosenKeys:
+    """Keys by bone with channels; None for each where every frame has one, linear in between."""
+
+    keys: list[HermiteKeys] | None
+    report: KeysReport
+
+
+def chosen_keys(
+    posed: PosedBones,
+    options: KeyOptions,
+    events: KeyEvents,
+    taken: dict[str, FloatArray],
+    rate: float,
+) -> Generator[None, None, ChosenKeys]:
+    """Keys for bones whose channels are known at every frame, in slices of some 20 ms.
+
+    taken: frames of the take's own keys by bone, within the range. rate: frames a second.
+    """
+    match options.on:
+        case KeyChoice.EVERY_FRAME:
+            keys = None
+        case KeyChoice.TAKE:
+            keys = _as_taken(posed, taken)
+        case KeyChoice.REDUCED:
+            keys = yield from _within(posed, options, events)
+    yield
+    return ChosenKeys(keys, _report(posed, options.on, keys, rate))
+
+
+def _within(
+    posed: PosedBones, error: KeyOptions, events: KeyEvents
+) -> Generator[None, None, list[HermiteKeys] | None]:
+    """The fewest keys that keep an error."""
+    asked = _times(error, SAFETY)
+    for _ in range(TIGHTENINGS):
+        keys = yield from reduced(posed.keyed_figure(events, asked))
+        apart, turned = posed.errors([own.at(posed.frames) for own in keys])
+        yield
+        beyond = max(apart.max() / error.distance, turned.max() / error.angle)
+        if beyond <= 1.0:
+            return keys
+        asked = _times(asked, SAFETY / beyond)
+    return None
+
+
+def _times(error: KeyOptions, share: float) -> KeyOptions:
+    return replace(error, distance=share * error.distance, angle=share * error.angle)
+
+
+def _as_taken(posed: PosedBones, taken: dict[str, FloatArray]) -> list[HermiteKeys]:
+    """Keys where the take has them, and at the ends; for bones without any, where others have."""
+    ends = posed.frames[[0, -1]]
+    everywhere = np.concatenate([ends, *taken.values()])
+    return [
+        fitted(
+            own.values,
+            posed.frames,
+            np.unique(np.concatenate([ends, taken.get(own.bone, everywhere)])),
+        )
+        for own in posed.channels
+    ]
+
+
+def _report(
+    posed: PosedBones, choice: KeyChoice, keys: list[HermiteKeys] | None, rate: float
+) -> KeysReport:
+    channels = [own.values.shape[1] for own in posed.channels]
+    if keys is None:
+        values, counts = [own.values for own in posed.channels], [len(posed.frames)] * len(channels)
+    else:
+        values, counts = [own.at(posed.frames) for own in keys], [len(own.frames) for own in keys]
+    apart, turned = posed.errors(values)
+    (at, moved), (when, turning) = (np.unravel_index(e.argmax(), e.shape) for e in (apart, turned))
+    names = [own.bone for own in posed.channels]
+    return KeysReport(
+        choice=choice.value,
+        keys=int(np.dot(counts, channels)),
+        channels=sum(channels),
+        seconds=float(posed.frames[-1] - posed.frames[0]) / rate,
+        largest_error_mm=1000.0 * float(apart.max()),
+        error_bone=names[moved],
+        error_frame=float(posed.frames[at]),
+        largest_turn_deg=float(np.degrees(turned.max())),
+        turn_bone=names[turning],
+        turn_frame=float(posed.frames[when]),
+    )

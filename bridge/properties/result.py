@@ -1,0 +1,79 @@
+"""What a result holds beside the adapted frames, as the artist chooses it; with the armature."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..rows.choices import After, WrittenAs
+from ..rows.row import OVERRIDABLE, chosen
+from ..rows.stored import boolean, whole
+
+
+class HangtimeResultOptions(bpy.types.PropertyGroup):
+    """Of the rest of the take, and the form in which a result is written."""
+
+    after: bpy.props.EnumProperty(
+        name="After",
+        description="What becomes of the take after the adapted frames",
+        items=[
+            (
+                After.CARRY.name,
+                "Carry Along",
+                "What follows goes on from where the last stance has been moved and turned to",
+            ),
+            (
+                After.RETURN.name,
+                "Return",
+                "What follows comes back to where the take was, by a chosen frame",
+            ),
+            (
+                After.CUT.name,
+                "Cut",
+                "The result holds the adapted frames alone; the rest of the take is left out",
+            ),
+        ],
+        override=OVERRIDABLE,
+    )
+    use_return_frame: chosen(
+        boolean("By Frame", "Choose by when it is back; else a second after the adapted frames")
+    )
+    return_frame: chosen(
+        whole("By", "Frame of the recording by which the take is back where it was", default=250)
+    )
+    use_blend: chosen(
+        boolean(
+            "Own Blend",
+            "Choose how many frames before and after the adapted ones are blended; "
+            "else those of a quarter of a second",
+        )
+    )
+    blend_in: chosen(
+        whole("In", "Frames before the adapted ones that are blended", default=10, min=0)
+    )
+    blend_out: chosen(
+        whole("Out", "Frames after the adapted ones that are blended", default=10, min=0)
+    )
+    lock_others: chosen(
+        boolean(
+            "Lock Other Channels",
+            "Face, fingers, properties and whatever else physics does not own keep their times "
+            "where durations changed; else they go with the body",
+        )
+    )
+    written_as: bpy.props.EnumProperty(
+        name="Written As",
+        description="Form in which the next result is written",
+        items=[
+            (WrittenAs.ACTION.name, "New Action", "The armature performs a new action"),
+            (
+                WrittenAs.STRIP.name,
+                "NLA Strip",
+                "The take goes down into a strip of its own, and the result into one above; "
+                "mute its track and the take is there, untouched",
+            ),
+        ],
+        override=OVERRIDABLE,
+    )
+
+
+CLASSES = (HangtimeResultOptions,)

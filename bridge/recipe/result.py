@@ -1,0 +1,48 @@
+"""Result options of a recipe: what becomes of the rest of the take. Keys: see problem.py."""
+
+from dataclasses import dataclass
+
+from ...solver.data.faults import ReturnTooEarly
+from ..recipe_syntax.items import Kind, choice, flag, number
+from ..recipe_syntax.table import NOT_NEGATIVE
+from ..rows.choices import After, WrittenAs
+
+
+@dataclass(frozen=True)
+class ResultOptions:
+    """What a result holds beside the adapted frames.
+
+    return_frame: of the recording, by which it is back; None is a second after the adapted frames.
+    blend_in, blend_out: frames before and after the adapted ones; None is a quarter of a second.
+    lock_others: channels that physics does not own keep their times where durations changed.
+    """
+
+    after: After = After.CARRY
+    return_frame: float | None = None
+    blend_in: float | None = None
+    blend_out: float | None = None
+    lock_others: bool = False
+    written_as: WrittenAs = WrittenAs.ACTION
+
+
+def require_return_after(options: ResultOptions, last: float) -> None:
+    """Raises ReturnTooEarly where the take is to be back before it was away. last: frame of the
+    recording, the last that is adapted."""
+    frame = options.return_frame
+    if options.after is After.RETURN and frame is not None and frame <= last:
+        raise ReturnTooEarly(frame, last)
+
+
+RESULT = Kind(
+    "result",
+    ResultOptions,
+    (
+        choice("after", After),
+        number("return_frame"),
+        number("blend_in", NOT_NEGATIVE),
+        number("blend_out", NOT_NEGATIVE),
+        flag("lock_others"),
+        choice("written_as", WrittenAs),
+    ),
+    named=False,
+)

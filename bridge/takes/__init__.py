@@ -1,0 +1,1 @@
+"""Whole takes: a result within the take it comes from, and the takes of an armature."""

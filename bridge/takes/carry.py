@@ -1,0 +1,43 @@
+"""A take moved and turned with a stance, for good or until it is back where it was."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.data.recording import PoseTrack
+from ...solver.data.stance_move import StanceMove
+from ...solver.numerics.rotations import axis_rotation
+
+_STANDING = 0.02  # of the mean speed, which the way back also has while the take stands still
+
+
+def carried(take: PoseTrack, move: StanceMove, shares: FloatArray) -> PoseTrack:
+    """The take with shares (T,) of a stance's move, rigidly."""
+    turns = axis_rotation(2, move.turn * shares)
+    pivot, shift = np.array(move.pivot), np.array(move.shift)
+    place = np.einsum("tij,tj->ti", turns, take.root_head - pivot) + pivot
+    return replace(
+        take,
+        rotations=turns[:, None] @ take.rotations,
+        root_head=place + shares[:, None] * shift,
+    )
+
+
+def shares_of_return(take: PoseTrack, first: float, last: float) -> FloatArray:
+    """Shares (T,) of a move at the take's frames: all at `first`, none from `last` on.
+
+    The way back is made where the take itself travels, so that feet which stand slide little. Its
+    speed is zero at both ends.
+    """
+    frames = take.frames
+    within = (frames >= first) & (frames <= last)
+    speeds = np.linalg.norm(np.gradient(take.root_head[:, :2], frames, axis=0), axis=1)
+    window = np.sin(np.pi * np.clip((frames - first) / (last - first), 0.0, 1.0)) ** 2
+    pace = window * (speeds + _STANDING * speeds[within].mean() + 1e-9)
+    steps = 0.5 * (pace[1:] + pace[:-1]) * np.diff(frames)
+    way = np.concatenate([[0.0], np.cumsum(steps)])
+    shares = 1.0 - way / way[-1]
+    return np.where(frames <= first, 1.0, np.where(frames >= last, 0.0, shares))

@@ -1,0 +1,69 @@
+"""Offsets of a motion from the take around it, which fade without a bend.
+
+Outside of the adapted frames the take is shown with what its pose and speed lack at the seam, and
+this fades ("inertialization", Bollo, GDC 2018). The adapted frames stay as they were solved, with
+every pin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.data.recording import PoseTrack
+from ...solver.numerics.rotations import rotation_matrix, rotation_vector
+
+
+@dataclass(frozen=True)
+class SeamOffset:
+    """Offset of a motion from a take at a seam, and its change a frame away from the seam.
+
+    place, place_rate: (3,) m of the pelvis, world. turns, turn_rates: (B, 3) rad by bone, world.
+    """
+
+    place: FloatArray
+    place_rate: FloatArray
+    turns: FloatArray
+    turn_rates: FloatArray
+
+
+def seam_offset(motion: PoseTrack, take: PoseTrack) -> SeamOffset:
+    """Offset at the first of some frames (T,), T >= 1, the seam's; the next ones lead away from it
+    into the motion. Rates are those that lead out of it."""
+    places = motion.root_head - take.root_head
+    turns = rotation_vector(motion.rotations @ np.swapaxes(take.rotations, -1, -2))
+    return SeamOffset(places[0], -_rate(places), turns[0], -_rate(turns))
+
+
+def _rate(values: FloatArray) -> FloatArray:
+    """Change a frame at the first of values (T, ...), to second order where there are three."""
+    if len(values) == 1:
+        return np.zeros_like(values[0])
+    if len(values) == 2:
+        return np.asarray(values[1] - values[0])
+    return np.asarray(-1.5 * values[0] + 2.0 * values[1] - 0.5 * values[2])
+
+
+def faded(take: PoseTrack, seam: SeamOffset, away: FloatArray, length: float) -> PoseTrack:
+    """The take at frames (T,) that are `away` (T,) frames from the seam, with what is left of the
+    offset there; nothing after `length` frames."""
+    keep, rate = _fading(away, length)
+    place = keep[:, None] * seam.place + rate[:, None] * seam.place_rate
+    turn = keep[:, None, None] * seam.turns + rate[:, None, None] * seam.turn_rates
+    return PoseTrack(
+        take.frames,
+        take.bones,
+        rotation_matrix(turn) @ take.rotations,
+        take.root_head + place,
+    )
+
+
+def _fading(away: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
+    """Shares (T,) of an offset and frames (T,) of its rate that are left: the quintic polynomials
+    with value and slope 1 at the seam and neither value, slope nor bend at the end."""
+    s = np.clip(away / length, 0.0, 1.0)
+    keep = 1.0 - s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+    rate = length * (s - 6.0 * s**3 + 8.0 * s**4 - 3.0 * s**5)
+    return keep, rate

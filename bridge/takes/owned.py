@@ -1,0 +1,79 @@
+"""Channels that a result owns: rotations of bodies' bones, and where the figure is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ..accessors import armature_data, pose_of
+from ..armature.channels import channels, proper
+from ..armature.fcurves import CurveHolder
+from ..armature.pose_basis import carrier_of
+from ..armature.write import rotation_channel
+from .key_splice import FullTurns
+
+_WHOLE = 0.5  # rad, by which angles may miss whole turns to count as such
+
+
+@dataclass(frozen=True)
+class OwnedChannel:
+    """A property of a bone whose curves a result owns. carries: whether it moves the figure."""
+
+    bone: str
+    path: str
+    attribute: str
+    carries: bool
+
+    def at_rest(self, armature: bpy.types.Object) -> FloatArray:
+        """(n,) the values that the property has where nothing animates it."""
+        return np.array(getattr(pose_of(armature).bones[self.bone], self.attribute))
+
+    def recorded(
+        self, armature: bpy.types.Object, curves: CurveHolder, frames: FloatArray
+    ) -> FloatArray:
+        """(T, n) the values that the take's curves have at frames (T,)."""
+        values = np.tile(self.at_rest(armature), (len(frames), 1)).astype(float)
+        for index in range(values.shape[1]):
+            curve = curves.fcurves.find(self.path, index=index)
+            if curve is not None:
+                values[:, index] = [curve.evaluate(frame) for frame in frames]
+        return values
+
+    def values(
+        self, armature: bpy.types.Object, bases: FloatArray, recorded: FloatArray
+    ) -> FloatArray:
+        """(T, n) channels of bases (T, 4, 4), beginning on the branch of the recorded ones."""
+        if self.attribute == "location":
+            return np.asarray(bases[:, :3, 3])
+        mode = pose_of(armature).bones[self.bone].rotation_mode
+        return channels(proper(bases[:, :3, :3]), mode, recorded[0])
+
+    def turns(self, values: FloatArray, recorded: FloatArray) -> list[FullTurns]:
+        """Full turns, by channel, that new values (T, n) have more than the recorded ones."""
+        count = values.shape[1]
+        if self.attribute == "rotation_quaternion":
+            flips = np.sign(np.einsum("ti,ti->t", recorded[1:], recorded[:-1]))
+            same = np.prod(flips) * (values[-1] @ recorded[-1])
+            return [FullTurns(factor=-1.0 if same < 0.0 else 1.0)] * count
+        if self.attribute == "rotation_euler":
+            more = values[-1] - np.unwrap(recorded, axis=0)[-1]
+            whole = 2.0 * np.pi * np.round(more / (2.0 * np.pi))
+            if np.abs(more - whole).max() < _WHOLE:
+                return [FullTurns(summand=float(each)) for each in whole]
+        return [FullTurns()] * count
+
+
+def owned_channels(armature: bpy.types.Object, bones: tuple[str, ...]) -> Iterator[OwnedChannel]:
+    """The channels of a track's bones, of which the first is the pelvis."""
+    carrier = carrier_of(armature_data(armature).bones[bones[0]]).name
+    posed = pose_of(armature).bones
+    for bone in bones:
+        attribute = rotation_channel(posed[bone])
+        path = posed[bone].path_from_id(attribute)
+        yield OwnedChannel(bone, path, attribute, carries=bone == bones[0])
+    path = posed[carrier].path_from_id("location")
+    yield OwnedChannel(carrier, path, "location", carries=True)

@@ -1,0 +1,80 @@
+"""Poses of the bones that carry a figure from their curves alone, where nothing else moves them.
+
+Evaluating the scene at a thousand frames takes seconds; what follows a jump needs but the pelvis.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from mathutils import Euler, Matrix, Quaternion
+
+from ...solver.arrays import FloatArray
+from ..accessors import armature_data, pose_of, present, take_strips
+from ..armature import fcurves
+from ..armature.pose_basis import place
+from ..armature.poses import Poses
+
+_TRANSFORM = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+
+
+def plain_poses(
+    armature: bpy.types.Object, curves: fcurves.CurveHolder, bone: str, frames: FloatArray
+) -> Poses | None:
+    """Poses of a bone and its ancestors at frames (T,), as these curves animate them; None where
+    more than these curves moves them or the object."""
+    rest = armature_data(armature).bones[bone]
+    chain = [each.name for each in (*reversed(rest.parent_recursive), rest)]
+    if not _plain(armature, curves, chain):
+        return None
+    posed: list[FloatArray] = []
+    for name in chain:
+        basis = _bases(pose_of(armature).bones[name], curves, frames)
+        above = posed[-1] if posed else None
+        posed.append(place(armature_data(armature).bones[name], above, basis))
+    world = np.tile(np.array(armature.matrix_world), (len(frames), 1, 1))
+    parents = tuple(range(-1, len(chain) - 1))
+    return Poses(tuple(chain), parents, world, np.stack(posed, axis=1))
+
+
+def _plain(armature: bpy.types.Object, curves: fcurves.CurveHolder, chain: list[str]) -> bool:
+    data = present(armature.animation_data)
+    ours = {track.name for track, _ in take_strips(armature)}
+    others = data.use_nla and any(track.name not in ours for track in data.nla_tracks)
+    whole = data.action_blend_type == "REPLACE" and data.action_influence == 1.0
+    moved = armature.parent is not None or len(armature.constraints) > 0
+    moved |= any(not curve.data_path.startswith("pose.") for curve in curves.fcurves)
+    held = any(len(pose_of(armature).bones[name].constraints) for name in chain)
+    return whole and not (others or moved or held or len(data.drivers))
+
+
+def _bases(bone: bpy.types.PoseBone, curves: fcurves.CurveHolder, frames: FloatArray) -> FloatArray:
+    """(T, 4, 4) bases as Blender makes them of a bone's channels."""
+    values = {name: _values(bone, curves, name, frames) for name in _TRANSFORM}
+    bases = np.empty((len(frames), 4, 4))
+    for t in range(len(frames)):
+        at = {name: column[t] for name, column in values.items()}
+        bases[t] = Matrix.LocRotScale(at["location"], _turn(bone.rotation_mode, at), at["scale"])
+    return bases
+
+
+def _turn(mode: str, at: dict[str, FloatArray]) -> Quaternion | Euler:
+    if mode == "QUATERNION":
+        return Quaternion(at["rotation_quaternion"].tolist()).normalized()
+    if mode == "AXIS_ANGLE":
+        angle, *axis = at["rotation_axis_angle"].tolist()
+        return Quaternion(axis, angle)
+    return Euler(at["rotation_euler"].tolist(), mode)
+
+
+def _values(
+    bone: bpy.types.PoseBone, curves: fcurves.CurveHolder, name: str, frames: FloatArray
+) -> FloatArray:
+    """(T, n) values of a bone's property; as it is where no curve animates it."""
+    values = np.tile(np.array(getattr(bone, name), dtype=float), (len(frames), 1))
+    path = bone.path_from_id(name)
+    for index in range(values.shape[1]):
+        curve = curves.fcurves.find(path, index=index)
+        if curve is not None and not curve.mute:
+            values[:, index] = [curve.evaluate(frame) for frame in frames]
+    return values

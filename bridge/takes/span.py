@@ -1,0 +1,71 @@
+"""Frames of a result: adapted, blended, and what follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.data.stance_move import StanceMove
+
+BLEND = 0.25  # s, the usual blend
+RETURN = 1.0  # s after the adapted frames, by which a take is usually back
+BESIDE = 0.01  # frames from a frame that is replaced to the keys before it that stay
+
+
+@dataclass(frozen=True)
+class ResultSpan:
+    """Frames of a result, on its own clock.
+
+    first, last: the adapted ones. begin, end: the whole take's. blend_in, blend_out: frames over
+    which offsets fade; they may be cut off by the ends of the take.
+    """
+
+    first: float
+    last: float
+    begin: float
+    end: float
+    blend_in: float
+    blend_out: float
+
+    @property
+    def between(self) -> tuple[float, float]:
+        """Frames strictly between which keys of bodies are replaced."""
+        left, right = self.first - self.blend_in, self.last + self.blend_out
+        if self.blend_in == 0.0 or left < self.begin:
+            left = max(self.begin, np.floor(left)) - BESIDE
+        if self.blend_out == 0.0 or right > self.end:
+            right = max(self.last, min(self.end, np.ceil(right))) + BESIDE
+        return float(left), float(right)
+
+    @property
+    def before(self) -> FloatArray:
+        """Whole frames that are blended in, (T,)."""
+        return np.arange(np.ceil(self.between[0]), self.first)
+
+    @property
+    def after(self) -> FloatArray:
+        """Whole frames that are blended out, (T,)."""
+        return np.arange(self.last + 1.0, np.floor(self.between[1]) + 1.0)
+
+    @property
+    def rest(self) -> FloatArray:
+        """Whole frames after these, (T,), the take's last one included."""
+        start = max(np.floor(self.between[1]), self.last) + 1.0
+        return np.arange(start, np.ceil(max(self.end, self.last)) + 1.0)
+
+
+@dataclass(frozen=True)
+class WrittenTake:
+    """What was done to a take. back: the frame by which it is where it was; None where it is not.
+
+    later: frames by which what follows comes later. applied: bones whose curves had modifiers, or
+    were muted, and are keys now.
+    """
+
+    span: ResultSpan
+    moved: StanceMove | None
+    back: float | None
+    later: int
+    applied: tuple[str, ...] = ()

@@ -1,0 +1,223 @@
+"""The takes of an armature: its recording, and the results that were made from it, or from each
+other; each with its own edit.
+
+An edit is what the artist asks of a take: the armature's settings. The one at work is the
+armature's; the others wait with their actions.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import bpy
+
+from ..accessors import current_action
+from ..armature.actions import recorded_action, show
+from ..armature.traces_store import forget, put_by, take_up
+from ..properties.copying import copy_settings, settings_digest
+from ..properties.settings import HangtimeSettings, action_settings, settings_of
+from ..properties.stances import move_empties
+from ..rows.choices import Span
+from .keys_digest import keys_digest
+from .span import ResultSpan
+
+_NOT_ASKED = (  # of the next result
+    *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
+    *("whole_stance", "active_contact", "active_constraint", "active_surface"),
+    "active_body_change",
+)
+_NOT_KEPT = ("marks", "adapted", "source")
+
+
+@dataclass(frozen=True)
+class ListedTake:
+    """A take of an armature. source: what it was made from; None of the recording. depth: how many
+    results it was made from, one after the other."""
+
+    action: bpy.types.Action
+    source: bpy.types.Action | None
+    depth: int
+    shown: bool
+    stale: str
+    polished: bool
+
+
+def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
+    """The take that a result was made from; None of an action that is no result."""
+    source: bpy.types.Action | None = action_settings(action).recording
+    return source
+
+
+def root_of(action: bpy.types.Action) -> bpy.types.Action:
+    """The recording that a take goes back to."""
+    source = source_of(action)
+    while source is not None:
+        action, source = source, source_of(source)
+    return action
+
+
+def takes_of(armature: bpy.types.Object) -> tuple[ListedTake, ...]:
+    """The recording that an armature shows a take of, and all of its results."""
+    shown = current_action(armature)
+    if shown is None:
+        return ()
+    return tuple(_branch(root_of(shown), shown, 0))
+
+
+def _branch(action: bpy.types.Action, shown: bpy.types.Action, depth: int) -> list[ListedTake]:
+    kept = action_settings(action)
+    found = [
+        ListedTake(action, source_of(action), depth, action == shown, kept.stale, kept.polished)
+    ]
+    for other in results_from(action):
+        found += _branch(other, shown, depth + 1)
+    return found
+
+
+def results_from(action: bpy.types.Action) -> list[bpy.types.Action]:
+    """The results that were made from a take."""
+    return [other for other in bpy.data.actions if source_of(other) == action]
+
+
+def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:
+    """Let an armature perform one of its takes, with the edit that belongs to it at work.
+
+    The recording and the last result made from it share an edit: between these nothing changes.
+    """
+    about_recording = source_of(action) is None and action == recorded_action(armature)
+    if action != settings_of(armature).adapted and not about_recording:
+        keep_edit(armature)
+        _take_up(armature, action)
+    show(armature, action)
+
+
+def keep_edit(armature: bpy.types.Object) -> None:
+    """Put the edit at work down with the result that it led to, or with the take it is about."""
+    settings, source = settings_of(armature), recorded_action(armature)
+    if settings.adapted is not None:
+        copy_settings(settings, action_settings(settings.adapted).edit, _NOT_KEPT)
+    elif source is not None:
+        copy_settings(settings, action_settings(source).next_edit, _NOT_KEPT)
+    owner = settings.adapted or source
+    if owner is not None:
+        put_by(armature, owner)
+
+
+def _take_up(armature: bpy.types.Object, action: bpy.types.Action) -> None:
+    """Make the edit of a take the one at work."""
+    settings, source = settings_of(armature), source_of(action)
+    made = results_from(action)
+    if source is None and made:  # the recording: with what was last made from it
+        action, source = made[-1], action
+    take_up(armature, action)
+    if source is None:
+        settings.adapted, settings.source = None, None
+        _restore(settings, action_settings(action).next_edit)
+        return
+    settings.adapted = action
+    settings.source = source if source_of(source) is not None else None
+    _restore(settings, action_settings(action).edit)
+
+
+def _restore(settings: HangtimeSettings, edit: HangtimeSettings) -> None:
+    copy_settings(edit, settings, _NOT_KEPT)
+    move_empties(settings)
+
+
+def starts_from_result(armature: bpy.types.Object) -> bool:
+    """Whether the next result is made from a result, and not from the recording."""
+    source = recorded_action(armature)
+    return source is not None and source_of(source) is not None
+
+
+def start_from_result(armature: bpy.types.Object, result: bpy.types.Action) -> None:
+    """Make the next results from a result: a second jump builds on the first, and hand polish
+    stays. Contacts are to be found anew; limits that always hold stay."""
+    keep_edit(armature)
+    settings = settings_of(armature)
+    settings.source, settings.adapted = result, None
+    settings.contacts.clear()
+    settings.stances.clear()
+    for index in reversed(range(len(settings.constraints))):
+        if settings.constraints[index].span != Span.ALWAYS.name:
+            settings.constraints.remove(index)
+    forget(armature)
+    settings.analysed = settings.fit_quality = settings.status = ""
+    result.use_fake_user = True
+    show(armature, result)
+
+
+def start_from_recording(armature: bpy.types.Object) -> None:
+    """Make the next results from the recording again, with the edit that belongs to it."""
+    source = recorded_action(armature)
+    if source is not None:
+        show_take(armature, root_of(source))
+
+
+# ---------------------------------------------------------------- what became of them
+
+
+def note_made(
+    armature: bpy.types.Object, action: bpy.types.Action, span: ResultSpan | None, later: int
+) -> None:
+    """Keep with a new result its edit, and what it and its take are now."""
+    made, source = action_settings(action), source_of(action)
+    assert source is not None
+    copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
+    made.asked_key = settings_digest(settings_of(armature), _NOT_ASKED)
+    made.take_key, made.own_key = keys_digest(source), keys_digest(action)
+    made.stale, made.polished = "", False
+    spans = []
+    if span is not None:
+        for first, last in adapted_spans(source):
+            if last <= span.first:
+                spans.append((first, last))
+            elif first + later >= span.last:
+                spans.append((first + later, last + later))
+        spans.append((span.first, span.last))
+    made.spans = json.dumps(spans)
+
+
+def adapted_spans(action: bpy.types.Action) -> tuple[tuple[float, float], ...]:
+    """First and last frame of each adaptation that a take holds."""
+    stored = action_settings(action).spans
+    return tuple((first, last) for first, last in json.loads(stored)) if stored else ()
+
+
+TAKE_CHANGED = "The take below has changed"
+EDIT_CHANGED = "The settings have changed"
+
+
+def look_again(armature: bpy.types.Object) -> bool:
+    """Note which results are not what would be made now, and which were edited by hand.
+
+    Returns whether anything is new.
+    """
+    settings, new = settings_of(armature), False
+    keys: dict[bpy.types.Action, str] = {}
+    for take in takes_of(armature):
+        kept = action_settings(take.action)
+        if take.source is None or not kept.own_key:
+            continue
+        for action in (take.action, take.source):
+            keys.setdefault(action, keys_digest(action))
+        edit = settings if take.action == settings.adapted else kept.edit
+        stale = ""
+        if keys[take.source] != kept.take_key:
+            stale = TAKE_CHANGED
+        elif settings_digest(edit, _NOT_ASKED) != kept.asked_key:
+            stale = EDIT_CHANGED
+        polished = keys[take.action] != kept.own_key
+        if (kept.stale, kept.polished) != (stale, polished):
+            kept.stale, kept.polished = stale, polished
+            new = True
+    return new
+
+
+def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:
+    """The last result, where it was edited by hand since it was made."""
+    result: bpy.types.Action | None = settings_of(armature).adapted
+    if result is None or not action_settings(result).own_key:
+        return None
+    return result if keys_digest(result) != action_settings(result).own_key else None

@@ -1,0 +1,226 @@
+"""A take with an adapted motion in it: as it was before, blended in and out, and what follows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+
+import bpy
+import numpy as np
+
+from ...solver.arrays import BoolArray, FloatArray
+from ...solver.data.recording import PoseTrack
+from ...solver.data.stance_move import StanceMove
+from ..accessors import current_scene
+from ..armature import fcurves
+from ..armature.actions import showing_action
+from ..armature.channels import proper
+from ..armature.incremental import Incremental, sample_incrementally
+from ..armature.pose_basis import pose_bases
+from ..armature.poses import Poses, metres_per_unit
+from .carry import carried, shares_of_return
+from .key_splice import FullTurns, applied, retime, splice
+from .offsets import faded, seam_offset
+from .owned import OwnedChannel, owned_channels
+from .plain_root import plain_poses
+from .plan import AdaptedMotion, Plan, planned
+from .span import ResultSpan, WrittenTake
+from .take_time import TakeTime
+
+_SEAM_FRAMES = 3  # of which the speed at a seam is taken
+_RETIMED_A_SLICE = 10  # curves
+
+
+def write_take(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    slot: str | None,
+    motion: AdaptedMotion,
+) -> Incremental[WrittenTake]:
+    """Put a motion into an action, which is a copy of the take's; in slices.
+
+    Keys outside of the adapted and blended frames stay as they are, bit by bit, but for their time
+    where durations changed, and for those of the pelvis where what follows is carried.
+    """
+    curves = fcurves.holder_in(action, slot)
+    assert curves is not None
+    owned = tuple(owned_channels(armature, motion.track.bones))
+    plan = planned(curves, motion)
+    yield from _retime(action, curves, owned, plan.time, alone=motion.options.lock_others)
+    done = _apply_modifiers(armature, curves, owned, plan.span)
+    action.update_tag()
+    showing = partial(showing_action, armature, action)
+    poses = yield from sample_incrementally(armature, plan.body_frames, showing)
+    later = None
+    if len(plan.rest_frames):
+        later = plain_poses(armature, curves, motion.track.bones[0], plan.rest_frames)
+        if later is None:
+            later = yield from sample_incrementally(armature, plan.rest_frames, showing)
+    body, rest = _tracks(poses, later, plan, motion)
+    bases = pose_bases(armature, poses, body)
+    yield
+    if later is not None and rest is not None:
+        more = pose_bases(armature, later, rest)
+        bases |= {c.bone: np.concatenate([bases[c.bone], more[c.bone]]) for c in owned if c.carries}
+    for channel in owned:
+        _write_channel(armature, curves, channel, bases[channel.bone], plan)
+        yield
+    if motion.ends:
+        for curve in fcurves.all_curves(action):
+            fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
+    action.update_tag()
+    moved = None if plan.moved is None or motion.ends else plan.moved
+    return WrittenTake(plan.span, moved, plan.back, plan.time.later, done)
+
+
+def _retime(
+    action: bpy.types.Action,
+    curves: fcurves.CurveHolder,
+    owned: Iterable[OwnedChannel],
+    time: TakeTime,
+    *,
+    alone: bool,
+) -> Incremental[None]:
+    """Move keys to where their frames are in the result; alone: only those of owned channels."""
+    if time.unchanged:
+        return
+    mine = {channel.path for channel in owned}
+    every = list(curves.fcurves) if alone else fcurves.all_curves(action)
+    for count, curve in enumerate(every):
+        if not alone or curve.data_path in mine:
+            retime(curve, time)
+        if count % _RETIMED_A_SLICE == 0:
+            yield
+    if alone:
+        return
+    for marker in action.pose_markers:
+        marker.frame = round(float(time.to_result(np.array([marker.frame]))[0]))
+    if action.use_frame_range:
+        ends = time.to_result(np.array([action.frame_start, action.frame_end]))
+        action.frame_start, action.frame_end = ends.tolist()
+
+
+def _apply_modifiers(
+    armature: bpy.types.Object,
+    curves: fcurves.CurveHolder,
+    owned: Iterable[OwnedChannel],
+    span: ResultSpan,
+) -> tuple[str, ...]:
+    """Make keys of owned curves that have modifiers or are muted, which would act on new keys."""
+    frames = np.arange(np.floor(span.begin), np.ceil(span.end) + 1.0)
+    bones = []
+    for channel in owned:
+        for curve in (c for c in curves.fcurves if c.data_path == channel.path):
+            if len(curve.modifiers) or curve.mute:
+                rest = channel.at_rest(armature)[curve.array_index] if curve.mute else None
+                applied(curve, frames, rest)
+                bones.append(channel.bone)
+    return tuple(dict.fromkeys(bones))
+
+
+def _tracks(
+    poses: Poses, later: Poses | None, plan: Plan, motion: AdaptedMotion
+) -> tuple[PoseTrack, PoseTrack | None]:
+    """Poses of all bodies at the body's frames, and of the pelvis at the frames that follow."""
+    span = plan.span
+    take = _take_of(poses, motion.track.bones, plan.body_frames)
+    rest = None
+    if later is not None:
+        rest = _take_of(later, motion.track.bones[:1], plan.rest_frames)
+    shares = _shares(take, rest, plan)
+    following = _frames_from(take, span.last)
+    count = len(following.frames)
+    after = _rows(_carried(following, plan.moved, shares[:count]), slice(1, None))
+    if len(span.after):
+        before = _frames_until(take, span.last)
+        before = _carried(before, plan.moved, np.ones(len(before.frames)))
+        offset = seam_offset(_backwards(motion.track), _backwards(before))
+        after = faded(after, offset, after.frames - span.last, span.blend_out)
+    whole = _concatenated([*_blended_in(take, span, motion.track), motion.track, after])
+    if rest is not None:
+        rest = _carried(rest, plan.moved, shares[count:])
+    return whole, rest
+
+
+def _shares(take: PoseTrack, rest: PoseTrack | None, plan: Plan) -> FloatArray:
+    """Shares of the stance's move from the last adapted frame on, (T,)."""
+    parts = [_frames_from(take, plan.span.last), *([rest] if rest is not None else [])]
+    pelvis = _concatenated(
+        [replace(part, bones=part.bones[:1], rotations=part.rotations[:, :1]) for part in parts]
+    )
+    if plan.back is None:
+        return np.ones(len(pelvis.frames))
+    return shares_of_return(pelvis, plan.span.last, plan.back)
+
+
+def _carried(track: PoseTrack, move: StanceMove | None, shares: FloatArray) -> PoseTrack:
+    return track if move is None else carried(track, move, shares)
+
+
+def _blended_in(take: PoseTrack, span: ResultSpan, motion: PoseTrack) -> Iterator[PoseTrack]:
+    before = _rows(take, take.frames < span.first)
+    if len(before.frames):
+        offset = seam_offset(_start(motion), _start(_frames_from(take, span.first)))
+        yield faded(before, offset, span.first - before.frames, span.blend_in)
+
+
+def _take_of(poses: Poses, bones: tuple[str, ...], frames: FloatArray) -> PoseTrack:
+    """The take's poses as a track: world, m."""
+    world = poses.object_to_world[:, None] @ poses.matrices
+    columns = [poses.bones.index(bone) for bone in bones]
+    heads = world[:, columns[0], :3, 3] * metres_per_unit(current_scene())
+    return PoseTrack(frames, bones, proper(world[:, columns, :3, :3]), heads)
+
+
+def _rows(track: PoseTrack, keep: BoolArray | slice) -> PoseTrack:
+    return replace(
+        track,
+        frames=track.frames[keep],
+        rotations=track.rotations[keep],
+        root_head=track.root_head[keep],
+    )
+
+
+def _frames_from(track: PoseTrack, frame: float) -> PoseTrack:
+    return _rows(track, track.frames >= frame)
+
+
+def _frames_until(track: PoseTrack, frame: float) -> PoseTrack:
+    return _rows(track, track.frames <= frame)
+
+
+def _start(track: PoseTrack) -> PoseTrack:
+    return _rows(track, slice(_SEAM_FRAMES))
+
+
+def _backwards(track: PoseTrack) -> PoseTrack:
+    """The last frames, the last one first."""
+    return _start(_rows(track, slice(None, None, -1)))
+
+
+def _concatenated(tracks: list[PoseTrack]) -> PoseTrack:
+    return PoseTrack(
+        np.concatenate([track.frames for track in tracks]),
+        tracks[0].bones,
+        np.concatenate([track.rotations for track in tracks]),
+        np.concatenate([track.root_head for track in tracks]),
+    )
+
+
+def _write_channel(
+    armature: bpy.types.Object,
+    curves: fcurves.CurveHolder,
+    channel: OwnedChannel,
+    bases: FloatArray,
+    plan: Plan,
+) -> None:
+    """Put a bone's bases (T, 4, 4) at the body's frames, and those that follow, into its curves."""
+    frames = np.concatenate([plan.body_frames, plan.rest_frames])[: len(bases)]
+    recorded = channel.recorded(armature, curves, frames)
+    values = channel.values(armature, bases, recorded)
+    goes_on = plan.span.blend_out > 0.0 or len(frames) > len(plan.body_frames)
+    turns = channel.turns(values, recorded) if goes_on else [FullTurns()] * values.shape[1]
+    for index, column in enumerate(values.T):
+        curve = fcurves.ensured(curves, channel.path, index, channel.bone)
+        splice(curve, frames, column, plan.between(channel), turns[index])

@@ -1,0 +1,91 @@
+"""Results as actions: the whole take with the adapted motion in it, or that motion alone."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import bpy
+
+from ..accessors import ATTRIBUTE, current_action, present
+from ..armature import fcurves
+from ..armature.actions import recorded_action, show, showing_action
+from ..armature.incremental import Incremental, complete
+from ..armature.strips import lay_strips
+from ..armature.write import write_incrementally
+from ..properties.settings import action_settings, settings_of
+from ..rows.choices import After, WrittenAs
+from .plan import AdaptedMotion
+from .span import WrittenTake
+from .takes import root_of
+from .whole_take import write_take
+
+
+def write_result(
+    armature: bpy.types.Object, motion: AdaptedMotion, *, name: str
+) -> tuple[bpy.types.Action, WrittenTake | None]:
+    """Write a motion that was made from the armature's action, and assign the result.
+
+    Returns what was done to the take, None where the adapted frames are alone.
+    """
+    recorded, slot = present(current_action(armature)), fcurves.slot_identifier(armature)
+    action, written = complete(_write(armature, motion, recorded, slot, name))
+    fcurves.assign(armature, action, slot)
+    return action, written
+
+
+def write_adapted_incrementally(
+    armature: bpy.types.Object, motion: AdaptedMotion
+) -> Incremental[tuple[bpy.types.Action, WrittenTake | None]]:
+    """Write an adapted performance as a new action, which is assigned and knows its recording.
+
+    Before the last slice the armature is as it was. Returns as `write_result`.
+    """
+    original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
+    name = f"{root_of(original).name} adapted"
+    action, written = yield from _write(armature, motion, original, slot, name)
+    action_settings(action).recording = original
+    if motion.options.written_as is WrittenAs.STRIP:
+        lay_strips(armature, original, action, slot)
+    show(armature, action, slot)
+    settings_of(armature).adapted = action
+    return action, written
+
+
+def _write(
+    armature: bpy.types.Object,
+    motion: AdaptedMotion,
+    recorded: bpy.types.Action,
+    slot: str | None,
+    name: str,
+) -> Incremental[tuple[bpy.types.Action, WrittenTake | None]]:
+    if motion.options.after is After.CUT:
+        showing = partial(showing_action, armature, recorded)
+        cut = yield from write_incrementally(
+            armature, motion.track, recorded, slot, name=name, showing=showing
+        )
+        _forget_copied(cut)
+        return cut, None
+    action = recorded.copy()
+    action.name = name
+    action.use_fake_user = False
+    _forget_copied(action)
+    whole = False
+    try:
+        written = yield from write_take(armature, action, slot, motion)
+        whole = True
+    finally:
+        if not whole:  # cancelled in between: half an action is of no use to anybody
+            bpy.data.actions.remove(action)
+    recorded.use_fake_user = True
+    return action, written
+
+
+def _forget_copied(action: bpy.types.Action) -> None:
+    """Remove what a copy has of the take's own history, where that is a result itself."""
+    for name in tuple(action.keys()):
+        if name.startswith(ATTRIBUTE):
+            del action[name]
+    settings = getattr(action, ATTRIBUTE, None)  # none without registration
+    if settings is not None:
+        for each in settings.bl_rna.properties:
+            settings.property_unset(each.identifier)

@@ -1,0 +1,1 @@
+"""What reduced keys leave of adapted jumps, as Blender shows them."""

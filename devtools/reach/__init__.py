@@ -1,0 +1,1 @@
+"""How the body shares a reach, joint by joint."""

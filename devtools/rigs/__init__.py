@@ -1,0 +1,1 @@
+"""One recorded jump on the skeletons of many conventions: are they mapped, and adapted alike?"""

@@ -1,0 +1,103 @@
+"""Measures rigs: python3 dev.py rigs [NAMES...] [--out DIR] [--quick].
+
+One recorded jump on the skeleton of each convention: is it mapped with no hand work, and does the
+same edit give the same motion? A run of all writes docs/rigs.md anew. Ends with 1 where a limit is
+missed that is not known to be.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+
+from ..environment.virtual_environment import ROOT
+from ..processes import run_module, undump
+from .actor import JOINTS
+from .layout import layouts
+from .limits import RigFigure, figures
+from .measure import EDITED, RESULT
+from .result import Edited, RigResult, compared
+from .table import line, page, text
+
+PAGE = ROOT / "docs" / "rigs.md"
+MEASURE = "devtools.rigs.measure"
+REFERENCE = "cmu"  # the rig that has the recording's own skeleton
+QUICK = (REFERENCE, "unreal")  # whose edits are compared; all are mapped
+LONGEST = 300.0  # s, that one rig may take, on a busy machine too
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="dev.py rigs", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="rigs to edit; default: all")
+    parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
+    parser.add_argument("--quick", action="store_true", help="the edit on two rigs only")
+    options = parser.parse_args(argv)
+    keys = [layout.key for layout in layouts()]
+    unknown = [name for name in options.names if name not in keys]
+    if unknown:
+        print(f"No rig '{unknown[0]}'; there are: {', '.join(keys)}.")
+        return 2
+    wanted = {REFERENCE, *(options.names or (QUICK if options.quick else keys))}
+    began = time.perf_counter()
+    results = []
+    for result in measured(keys, wanted):
+        print(line(result), flush=True)
+        results.append(result)
+    minutes = (time.perf_counter() - began) / 60.0
+    found = figures(results)
+    whole = not options.names and not options.quick
+    return tell(results, found, options.out, minutes, write_page=whole)
+
+
+def measured(keys: Sequence[str], wanted: set[str]) -> Iterator[RigResult]:
+    """Each rig in a process of its own, the reference first. wanted: those to edit."""
+    reference: Edited | None = None
+    for key in sorted(keys, key=lambda key: key != REFERENCE):
+        with tempfile.TemporaryDirectory() as folder:
+            words = [folder, key, *([] if key in wanted else ["--map"])]
+            said = run_module(MEASURE, words, LONGEST)
+            path = Path(folder) / RESULT
+            if not path.is_file():
+                yield RigResult(key, key, False, 0, failed=said or "no result")
+                continue
+            result: RigResult = undump(path)
+            edited = Path(folder) / EDITED
+            if edited.is_file():
+                mine: Edited = undump(edited)
+                reference = reference or mine
+                worst, joint, frame = compared(mine, reference, JOINTS)
+                result = replace(
+                    result, difference_mm=worst, joint=joint, frame=frame, solved=mine.solved
+                )
+            yield replace(result, failed=result.failed or said or "")
+
+
+def tell(
+    results: Sequence[RigResult],
+    found: Sequence[RigFigure],
+    out: Path,
+    minutes: float,
+    *,
+    write_page: bool,
+) -> int:
+    """Prints the figures; writes figures.json and, where asked, the page.
+
+    1 where one is missed that is not known to be.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    content = {
+        "figures": [{**asdict(f), "ok": f.ok} for f in found],
+        "rigs": [*map(asdict, results)],
+    }
+    words = json.dumps(content, indent=1, ensure_ascii=False)
+    (out / "figures.json").write_text(words + "\n", encoding="utf-8")
+    if write_page:
+        PAGE.write_text(page(results, found, minutes), encoding="utf-8")
+    print(text(found))
+    print(f"{len(results)} rigs in {minutes:.1f} minutes; all in {out / 'figures.json'}")
+    return 1 if any(f.missed for f in found) else 0

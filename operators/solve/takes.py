@@ -1,0 +1,121 @@
+"""Operators on the takes: which is shown, what the next result starts from, edits left behind."""
+
+import bpy
+
+from ...bridge.accessors import current_action
+from ...bridge.armature.actions import recorded_action, show
+from ...bridge.properties.settings import action_settings
+from ...bridge.takes.takes import (
+    look_again,
+    show_take,
+    source_of,
+    start_from_recording,
+    start_from_result,
+)
+from ..names import OperatorId
+from ..operator_types import OperatorResult, PolledOperator
+from .common import hindrance, required_armature
+
+NO_RESULT_SHOWN = "The recording is shown; show the result to start from"
+BESIDE = "The armature {} performs {}, as its limbs are others"
+GONE = "The action {} is not there any more"
+LEFT_BEHIND = (
+    "Keys of {} were edited by hand. The next result starts from {} again, without these edits; "
+    "{} is kept. To build on them, choose Start From: This Result"
+)
+
+
+class ShowTakeOperator(PolledOperator, bpy.types.Operator):
+    bl_idname = OperatorId.SHOW_TAKE
+    bl_label = "Show Take"
+    bl_description = "Show this take, with the settings it was made with"
+    bl_options = {"UNDO"}
+
+    action: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    # Between a result and what it was made from nothing else changes.
+    switch: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return hindrance(context)
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        action = bpy.data.actions.get(self.action)
+        if action is None:
+            return self.refuse(GONE.format(self.action))
+        armature = required_armature(context)
+        performer = action_settings(action).performer
+        if performer not in (None, armature):
+            return self.refuse(BESIDE.format(performer.name, action.name))
+        if self.switch:
+            show(armature, action)
+        else:
+            show_take(armature, action)
+        look_again(armature)
+        return {"FINISHED"}
+
+
+class StartFromOperator(PolledOperator, bpy.types.Operator):
+    bl_idname = OperatorId.START_FROM
+    bl_label = "Start From"
+    bl_options = {"UNDO"}
+
+    result: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return hindrance(context)
+
+    @classmethod
+    def description(
+        cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties
+    ) -> str:
+        if properties.result:
+            return (
+                "Make the next results from the result that is shown: another jump builds on it, "
+                "and what you edited by hand stays. Analyze it next"
+            )
+        return "Make the next results from the recording, with the settings that belong to it"
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        shown = current_action(armature)
+        if not self.result:
+            start_from_recording(armature)
+        elif shown is None or source_of(shown) is None:
+            return self.refuse(NO_RESULT_SHOWN)
+        elif shown != recorded_action(armature):
+            start_from_result(armature, shown)
+        look_again(armature)
+        return {"FINISHED"}
+
+
+class LeaveEditsOperator(PolledOperator, bpy.types.Operator):
+    bl_idname = OperatorId.LEAVE_EDITS
+    bl_label = "Adapt without the edits made by hand?"
+    bl_description = "Adapt, though the last result was edited by hand; that result is kept"
+    bl_options = {"INTERNAL"}
+
+    then: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    text: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return hindrance(context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        manager = context.window_manager
+        assert manager is not None
+        return manager.invoke_confirm(
+            self,
+            event,
+            title=self.bl_label,
+            message=self.text,
+            confirm_text="Adapt Anyway",
+            icon="WARNING",
+        )
+
+    def execute(self, _context: bpy.types.Context) -> OperatorResult:
+        category, _, name = self.then.partition(".")
+        getattr(getattr(bpy.ops, category), name)("INVOKE_DEFAULT", leave_edits=True)
+        return {"FINISHED"}

@@ -1,0 +1,37 @@
+"""Looks whether results are up to date, some moments after something changed."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ...bridge.accessors import current_action
+from ...bridge.takes.takes import look_again
+from .common import chosen_armature
+from .live import editors
+from .session import session
+
+DELAY = 0.4  # s after the first change; keys that are dragged change with every move of the mouse
+
+
+@persistent  # type: ignore[untyped-decorator]  # any, in the stubs
+def follow_takes(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Notes that an action or an armature changed."""
+    if bpy.app.background or bpy.app.timers.is_registered(_look):
+        return
+    ids = (update.id for update in depsgraph.updates)
+    if any(isinstance(each, bpy.types.Action | bpy.types.Object) for each in ids):
+        bpy.app.timers.register(_look, first_interval=DELAY)
+
+
+def forget() -> None:
+    """Takes back a look that is still to come."""
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
+
+
+def _look() -> None:
+    armature = chosen_armature(bpy.context)
+    if session().running or armature is None or current_action(armature) is None:
+        return
+    if look_again(armature):
+        for area in editors("VIEW_3D"):
+            area.tag_redraw()

@@ -1,0 +1,68 @@
+"""Wording of what was done to the take around the adapted frames."""
+
+from collections.abc import Iterator
+from math import degrees, hypot
+
+from ...bridge.takes.span import WrittenTake
+
+_LEVEL = 0.0005  # m
+_STRAIGHT = 0.05  # degrees
+
+
+def take_lines(written: WrittenTake | None) -> list[str]:
+    """Lines for sidebar and report; none where the adapted frames are alone."""
+    return [] if written is None else list(_lines(written))
+
+
+def take_record(written: WrittenTake) -> dict[str, object]:
+    """What report.json holds of it. Frames are the result's, lengths m, angles degrees."""
+    span, move = written.span, written.moved
+    record: dict[str, object] = {
+        "adapted_frames": [span.first, span.last],
+        "take_frames": [min(span.begin, span.first), max(span.end, span.last)],
+        "blend_in_frames": len(span.before),
+        "blend_out_frames": len(span.after),
+        "later_frames": written.later,
+        "curves_applied": list(written.applied),
+    }
+    if move is not None:
+        record["carried_with"] = move.phase
+        record["carried_m"] = list(move.shift)
+        record["carried_turn_deg"] = degrees(move.turn)
+        record["back_frame"] = written.back
+    return record
+
+
+def _lines(written: WrittenTake) -> Iterator[str]:
+    span = written.span
+    yield f"Take: frames {span.first:g} to {span.last:g} are adapted"
+    ways = (("in", span.before), ("out", span.after))
+    blends = [f"{way} over {_frames(len(frames))}" for way, frames in ways if len(frames)]
+    if blends:
+        yield f"Blended {' and '.join(blends)}"
+    if written.later:
+        way = "later" if written.later > 0 else "earlier"
+        yield f"What follows comes {_frames(abs(written.later))} {way}"
+    if written.moved is not None:
+        yield from _carried(written)
+    if written.applied:
+        yield f"Curves with modifiers, or muted, are plain keys now: {', '.join(written.applied)}"
+
+
+def _carried(written: WrittenTake) -> Iterator[str]:
+    move = written.moved
+    assert move is not None
+    parts = [f"{hypot(*move.shift[:2]):.3f} m along the ground"]
+    if abs(move.shift[2]) > _LEVEL:
+        parts.append(f"{abs(move.shift[2]):.3f} m {'up' if move.shift[2] > 0.0 else 'down'}")
+    if abs(degrees(move.turn)) > _STRAIGHT:
+        side = "left" if move.turn > 0.0 else "right"
+        parts.append(f"{abs(degrees(move.turn)):.1f}° to the {side}")
+    yield f"What follows is carried along with {move.phase}:"
+    yield f"  {', '.join(parts)}"
+    if written.back is not None:
+        yield f"  It is back where it was at frame {written.back:g}"
+
+
+def _frames(count: int) -> str:
+    return "1 frame" if count == 1 else f"{count} frames"

@@ -1,0 +1,146 @@
+"""Faults of a recording: the armature, its action, its keys, and what cannot be a person's."""
+
+from dataclasses import dataclass
+
+from ..scene import SupportBox
+from .base import Fault
+
+
+@dataclass
+class NoArmature(Fault):
+    """Nothing to adapt: the object chosen is not an armature (or there is none)."""
+
+    object_name: str | None = None
+
+
+@dataclass
+class NoAction(Fault):
+    """The armature carries no action."""
+
+    armature: str
+
+
+@dataclass
+class NoBones(Fault):
+    """The armature has no bones."""
+
+    armature: str
+
+
+@dataclass
+class ClipTooShort(Fault):
+    """The clip is shorter than the shortest that can hold a jump."""
+
+    seconds: float
+    minimum_s: float
+
+
+@dataclass
+class ZeroLengthBone(Fault):
+    """A bone that must carry mass has no length."""
+
+    bone: str
+
+
+@dataclass
+class MissingPart(Fault):
+    """A body part that the physics needs has no bone."""
+
+    part: str
+    tried: tuple[str, ...] = ()
+
+
+@dataclass
+class NotJoined(Fault):
+    """Legs and head hang on no common bone. bones: both thighs and the head."""
+
+    bones: tuple[str, ...]
+
+
+@dataclass
+class NoSpine(Fault):
+    """No bone between pelvis and head carries the arms."""
+
+    pelvis: str
+    head: str
+
+
+@dataclass
+class NonFiniteKey(Fault):
+    """A key is NaN or infinite."""
+
+    bone: str
+    frame: float
+
+
+@dataclass
+class BadScale(Fault):
+    """The object's scale is not uniform and positive."""
+
+    object_name: str
+    scale: tuple[float, float, float]
+
+
+@dataclass
+class UnreadableClip(Fault):
+    """A motion file that cannot be read; line is 1-based, None where the format has no lines."""
+
+    path: str
+    line: int | None
+    problem: str
+
+
+@dataclass
+class UnseenSupport(Fault):
+    """Nothing touches, yet the body does not fall: something unrecorded carries it (frames).
+
+    boxes: what would, where feet rest above the floor.
+    """
+
+    first: float
+    last: float
+    boxes: tuple[SupportBox, ...] = ()
+
+
+@dataclass
+class Treadmill(Fault):
+    """The feet slide along the floor at one steady speed, m/s, so no place holds them."""
+
+    speed: float
+
+
+@dataclass
+class OddHeight(Fault):
+    """The figure is too tall or too short for a person, so that nothing it does obeys gravity."""
+
+    armature: str
+    metres: float
+    factor: float  # that makes a person of it
+
+
+@dataclass
+class OutsideKeys(Fault):
+    """The chosen frames lie beside the recording's, where nothing moves."""
+
+    armature: str
+    first: float  # frame with keys
+    last: float
+
+
+@dataclass
+class UnknownContactName(Fault):
+    """A correction names a contact that was not found."""
+
+    name: str
+    known: tuple[str, ...]
+
+
+@dataclass
+class ChangedMeanwhile(Fault):
+    """The armature, its action or its keys are no longer what was analysed or sent to be solved.
+
+    while_solving: whether a result had to be thrown away for it.
+    """
+
+    armature: str
+    while_solving: bool

@@ -1,0 +1,57 @@
+"""Faults of a run: its recipe, its output, its pins together, and solves that failed."""
+
+from dataclasses import dataclass
+
+from ..row_kinds import Violation
+from ..status import Status
+from .base import Fault
+
+
+@dataclass
+class BadRecipe(Fault):
+    """A recipe with an unknown key, bone or phase, or a value of the wrong kind."""
+
+    path: str
+    line: int | None
+    problem: str
+
+
+@dataclass
+class OutputNotWritable(Fault):
+    """The output folder cannot be made or written."""
+
+    path: str
+    problem: str
+
+
+@dataclass
+class ContradictoryPins(Fault):
+    """Two pins that no pose can hold at once."""
+
+    first: str
+    second: str
+    metres: float
+
+
+@dataclass
+class NoSolution(Fault):
+    """The solver ended without meeting every constraint; worst first.
+
+    reached: the share of the way that the best motion found goes.
+    """
+
+    reason: Status
+    worst: tuple[Violation, ...] = ()
+    reached: float = 0.0
+
+
+@dataclass
+class NoFit(NoSolution):
+    """The same for the recording's own motion, before any pin has moved."""
+
+
+@dataclass
+class WorkerDied(Fault):
+    """The process that solves ended without an answer; detail: what it last said, or its code."""
+
+    detail: str

@@ -1,0 +1,77 @@
+"""Records of the report on what was asked for: pins, contacts, requests."""
+
+from dataclasses import dataclass, field
+
+from ..requests import Vector
+from ..row_kinds import RowKind
+from .omission import OMIT_NONE
+
+
+@dataclass(frozen=True)
+class PinReport:
+    """A pin as it was asked for; its offset in the axes that it was given in."""
+
+    name: str
+    phase: str
+    points: tuple[str, ...]
+    offset_world_m: Vector | None = field(metadata=OMIT_NONE)
+    offset_forward_left_up_m: Vector | None = field(metadata=OMIT_NONE)
+    place_m: Vector | None
+    turn_deg: float
+
+
+@dataclass(frozen=True)
+class ConstraintReport:
+    """Worst violation of one request over its whole time, in its kind's `reported_unit`."""
+
+    name: str
+    kind: RowKind
+    worst_violation: float
+    worst_violation_frame: float
+    met: bool
+
+
+@dataclass(frozen=True)
+class ContactReport:
+    """One contact: its pin, friction, interval, place and drift.
+
+    friction_cone: the cone's shape in words. worst_violation_mm: while pinned. loaded_slide_mm,
+    loaded_under_mm, loaded_above_mm: worst along, under and above its surface while its force is
+    above 5 % of the body's weight, over the whole contact.
+    """
+
+    name: str
+    pin: str | None
+    point: str
+    bone: str
+    friction_coefficient: float | None
+    friction_cone: str
+    start_s: float
+    end_s: float
+    start_frame: float
+    end_frame: float
+    fitted_place_m: Vector
+    place_m: Vector
+    worst_violation_mm: float
+    worst_violation_frame: float
+    loaded_slide_mm: float
+    loaded_under_mm: float
+    loaded_above_mm: float
+
+
+@dataclass(frozen=True)
+class MovingGroundReport:
+    """A stance that rides on an object that moves, or that a take-off from one carries on.
+
+    object, pin: what it stands on, and by which pin; None for one that is carried on. moved_m:
+    world, its contacts' centre at its first instant, by the ground's motion alone.
+    ground_speed_m_s: where it stands, at its start and end. kept_speed_share: of the ground's
+    velocity at the take-off, what the centre of mass has on top of the fit's; None without one.
+    """
+
+    phase: str
+    object: str | None
+    pin: str | None
+    moved_m: Vector
+    ground_speed_m_s: tuple[float, float]
+    kept_speed_share: float | None

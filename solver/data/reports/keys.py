@@ -1,0 +1,28 @@
+"""Record of the report on the keys that a result was written with."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class KeysReport:
+    """Keys of the channels that a result has of its own, and what they leave.
+
+    choice: such as "reduced". keys: all channels' together. largest_error_mm: of a joint centre in
+    the world, over every frame, and where; largest_turn_deg: of a bone in the world.
+    """
+
+    choice: str
+    keys: int
+    channels: int
+    seconds: float
+    largest_error_mm: float
+    error_bone: str
+    error_frame: float
+    largest_turn_deg: float
+    turn_bone: str
+    turn_frame: float
+
+    @property
+    def rate(self) -> float:
+        """Keys a second and channel."""
+        return self.keys / (self.channels * self.seconds)

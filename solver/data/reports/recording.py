@@ -1,0 +1,48 @@
+"""Records of the report on what was adapted: recording and figure."""
+
+from dataclasses import dataclass
+
+from ..problem import MassTable
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Source file of a recording and how it was read; None where nothing had to be settled.
+
+    unit_m: m per unit of length in the file. up: its axis that points up.
+    """
+
+    clip: str
+    unit_m: float | None = None
+    unit_guessed: bool = False
+    up: str | None = None
+    up_guessed: bool = False
+
+
+@dataclass(frozen=True)
+class RecordingSummary:
+    """The recording's source, frames and duration."""
+
+    clip: str
+    action: str
+    first_frame: float
+    last_frame: float
+    seconds: float
+    frames_per_second: float
+    unit_m: float | None
+    unit_guessed: bool
+    up_axis: str | None
+    up_axis_guessed: bool
+
+
+@dataclass(frozen=True)
+class FigureSummary:
+    """The adapted figure, with what it carries."""
+
+    mass_kg: float
+    mass_table: MassTable
+    height_m: float
+    gravity_m_s2: float
+    bodies: int
+    degrees_of_freedom: int
+    floor_m: float

@@ -1,0 +1,192 @@
+"""The report on an adaptation as records, and as JSON (report.json): data alone, without CasADi.
+
+Fields are named as report.json's keys, units at their ends; bw is the body's weight. Frames are the
+scene's. results/report.py measures them.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from enum import Enum
+from typing import Any
+
+from ..row_kinds import RowKind, Violation
+from ..solver_options import ReductionKind
+from ..status import Durations, Status
+from .certificate import CertificateLine
+from .constraints import ConstraintReport, ContactReport, MovingGroundReport, PinReport
+from .dynamics import DenseResiduals, ForcesReport, TorquesReport, TorqueUse
+from .joints import JointChange, RecordedRange
+from .jumps import JumpReport, PhaseReport, TimeMap
+from .keys import KeysReport
+from .omission import OMIT_NONE
+from .recording import FigureSummary, RecordingSummary
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class SolveReport:
+    """One run of the optimiser."""
+
+    name: str
+    status: Status
+    iterations: int
+    violation_over_tolerance: float
+
+
+@dataclass(frozen=True)
+class ReductionReport:
+    """The reduced figure (thesis 5), with the spectrum that its size is chosen by."""
+
+    kind: ReductionKind
+    degrees_of_freedom: int
+    eigenvalues_rad2: tuple[float, ...]
+    explained_share: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class FitQuality:
+    """Distance of the fit from the recording, at the recording's frames.
+
+    worst_frame: the one whose joint centres are furthest off, worst_frame_rms_cm of rms.
+    """
+
+    joint_centres_rms_cm: float
+    pelvis_apex_difference_cm: float
+    worst_frame_rms_cm: float
+    worst_frame: float
+
+
+@dataclass(frozen=True)
+class RecordedOverlap:
+    """How deep the recording (its fit) has two solids in each other, and when; it may stay so."""
+
+    name: str
+    deepest_mm: float
+    frame: float
+
+
+@dataclass(frozen=True)
+class MotionChange:
+    """Distance of the adapted motion from the fit, at corresponding instants."""
+
+    joint_centres_rms_cm: float
+    joint_angles_rms_deg: float
+
+
+@dataclass(frozen=True)
+class DragSummary:
+    """Change of the motion that follows a drag, against the fit.
+
+    moved_cm: of the contact that is furthest from where it was recorded; deeper_cm, higher_cm: of
+    the pelvis at its lowest and highest; peak_bw: the largest contact force.
+    """
+
+    moved_cm: float
+    deeper_cm: float
+    higher_cm: float
+    peak_bw: float
+
+
+@dataclass(frozen=True)
+class StageReport:
+    """Time that a stage of the pipeline took; iterations: of the optimiser, where it ran."""
+
+    name: str
+    seconds: float
+    iterations: int | None = field(default=None, metadata=OMIT_NONE)
+
+
+@dataclass(frozen=True)
+class Report:
+    """Everything about an adaptation.
+
+    certificate: what a laboratory asks of a motion, line by line, with its limits.
+    equations: every constraint, worst first. rows: constraint rows. torques: None where the problem
+    does not involve them. recorded_overlaps: deepest first; none where nothing is solid.
+    recorded_ranges: worst first; none where the figure is no human. joint_changes: the joints that
+    changed most. stages: None where nobody timed them. keys: None where none were left out.
+    """
+
+    status: Status
+    certificate: tuple[CertificateLine, ...]
+    recording: RecordingSummary
+    figure: FigureSummary
+    pins: tuple[PinReport, ...]
+    solves: tuple[SolveReport, ...]
+    unknowns: int
+    rows: int
+    equations: tuple[Violation, ...]
+    conditions: tuple[ConstraintReport, ...]
+    contacts: tuple[ContactReport, ...]
+    moving_ground: tuple[MovingGroundReport, ...]
+    between_nodes: DenseResiduals
+    forces: ForcesReport
+    objective_end_over_start: float | None
+    reduction: ReductionReport | None
+    torques: TorquesReport | None
+    torque_limits: tuple[TorqueUse, ...]
+    fit_to_recording: FitQuality
+    recorded_overlaps: tuple[RecordedOverlap, ...]
+    recorded_ranges: tuple[RecordedRange, ...]
+    change: MotionChange
+    joint_changes: tuple[JointChange, ...]
+    jumps: tuple[JumpReport, ...]
+    durations: Durations
+    phases: tuple[PhaseReport, ...]
+    times: TimeMap
+    stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
+    keys: KeysReport | None = field(default=None, metadata=OMIT_NONE)
+
+    @property
+    def given_up(self) -> tuple[ConstraintReport, ...]:
+        """What the motion could not be guarded from: solids in each other, joints beyond ranges."""
+        return tuple(c for c in self.conditions if c.kind.guards and not c.met)
+
+    @property
+    def overlaps(self) -> tuple[ConstraintReport, ...]:
+        """The solids that could not be kept out of each other."""
+        return tuple(c for c in self.given_up if c.kind is RowKind.SOLID)
+
+    @property
+    def failed(self) -> tuple[CertificateLine, ...]:
+        """The certificate's lines that do not hold."""
+        return tuple(line for line in self.certificate if not line.holds)
+
+
+def as_json(report: Report) -> Json:
+    """A report as report.json holds it; what is not finite is None."""
+    return {key: _plain(value) for key, value in _items(report).items()}
+
+
+def _items(record: object) -> Mapping[str, object]:
+    """Keys and values of a record."""
+    match record:
+        case Violation(name, kind, amount):
+            return {"name": name, "violation": amount, "unit": kind.reported_unit}
+        case ConstraintReport():
+            return {
+                "name": record.name,
+                "kind": record.kind.label,
+                "worst_violation": record.worst_violation,
+                "unit": record.kind.reported_unit,
+                "worst_violation_frame": record.worst_violation_frame,
+                "met": record.met,
+            }
+    assert is_dataclass(record)
+    values = ((each, getattr(record, each.name)) for each in fields(record))
+    return {f.name: v for f, v in values if v is not None or f.metadata != OMIT_NONE}
+
+
+def _plain(value: object) -> object:
+    match value:
+        case Enum():
+            return value.value
+        case tuple():
+            return [_plain(each) for each in value]
+        case float():
+            return float(value) if math.isfinite(value) else None
+        case None | bool() | int() | str():
+            return value
+    return {key: _plain(each) for key, each in _items(value).items()}

@@ -1,0 +1,1 @@
+"""Poses that reach: gripping arms, and roots under which contacts stay where they are."""

@@ -1,0 +1,26 @@
+"""Move of a motion's last stance, with which the rest of the take goes."""
+
+import numpy as np
+
+from ..data.stance_move import StanceMove
+from ..stages.implicit import Adaptation
+from ..stages.warm_start import Standing, stance_moves
+
+
+def last_stance_move(adaptation: Adaptation) -> StanceMove | None:
+    """The least-squares rigid move of the last ground phase's contacts, at its end; None where
+    no phase has contacts that were found.
+
+    From where the fit has them, so that what nobody moves stays to the last bit.
+    """
+    setup = adaptation.setup
+    schedule = setup.schedule
+    before, after = Standing.still(setup.fitted_places), Standing.of(adaptation.motion)
+    moves = stance_moves(schedule, before, after, setup.turns)
+    if not moves:
+        return None
+    last = moves[-1]
+    phase = next(p for p in schedule.phases if p.start == last.start and p.end == last.end)
+    px, py, pz = last.pivots[-1].tolist()
+    x, y, z = np.asarray(last.shifts[-1]).tolist()
+    return StanceMove(phase.name, (px, py, pz), float(last.turns[-1]), (x, y, z))

@@ -1,0 +1,142 @@
+"""What carries a recording beside its floor: still ground of the scene, and boxes that would.
+
+A recording that steps down from a box shows feet that rest in mid-air. Ground of the scene beneath
+them explains it; where there is none, a box from the floor to the resting soles is what would.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..data.contacts import Contact, ContactPoint, ContactSchedule, Interval, PointKind
+from ..data.scene import SceneObject, SceneRole, SupportBox
+from ..scene.triangle_mesh import placed_mesh
+
+REACH = 0.04  # m; feet this far above or below a face may be on it, and levels this near are one
+LEAST_REST = 0.1  # s, for which feet stay where they are carried
+LEAST_HEIGHT = 0.04  # m of a box; less is a floor that is not level
+SOLE_MARGIN = 0.05  # m around the soles' lines, which run through the middle of feet 0.1 m broad
+
+Heights = Callable[[FloatArray], FloatArray]  # m, of the ground beneath points (N, 3) m
+
+
+def level(floor_m: float) -> Heights:
+    """The ground of a level floor."""
+    return lambda points: np.full(len(points), floor_m)
+
+
+@dataclass(frozen=True)
+class StandingGround:
+    """A level floor and still objects upon it, as feet find them from above."""
+
+    floor_m: float
+    things: tuple[SceneObject, ...]
+
+    @staticmethod
+    def of(floor_m: float, scene: Sequence[SceneObject]) -> "StandingGround":
+        """Of all ground in the scene that does not move."""
+        still = (each for each in scene if each.role is SceneRole.GROUND and not each.moves)
+        return StandingGround(floor_m, tuple(still))
+
+    def heights(self, points: FloatArray) -> FloatArray:
+        """(N,) m, of the highest ground that points (N, 3) m may be on."""
+        return self._below(points)[0]
+
+    def named(self, schedule: ContactSchedule) -> ContactSchedule:
+        """The schedule, each contact with the name of the object that it is on."""
+        places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
+        contacts = (
+            replace(contact, on=self.things[owner].name if owner >= 0 else None)
+            for contact, owner in zip(schedule.contacts, self._below(places)[1], strict=True)
+        )
+        return replace(schedule, contacts=tuple(contacts))
+
+    def _below(self, points: FloatArray) -> tuple[FloatArray, IntArray]:
+        """The ground beneath points (N, 3): heights (N,) m, and which thing it is of, else -1."""
+        height = np.full(len(points), self.floor_m)
+        owner = np.full(len(points), -1)
+        for i, thing in enumerate(self.things):
+            top = placed_mesh(thing).heights(points[:, :2]).z
+            on = (top > height) & (top < points[:, 2] + REACH)
+            height[on], owner[on] = top[on], i
+        return height, owner
+
+
+def ground_beneath(contact: Contact, floor_m: float, scene: Sequence[SceneObject]) -> float:
+    """Height, m, of what a contact is on: the floor, or the object that it names."""
+    things = tuple(thing for thing in scene if thing.name == contact.on)
+    return float(StandingGround(floor_m, things).heights(contact.place[None])[0])
+
+
+# ---------------------------------------------------------------- boxes that would carry
+
+
+@dataclass(frozen=True)
+class _Rests:
+    """Of feet at rest, N samples: places (N, 3) m, and which way the foot points (N, 2) m."""
+
+    places: FloatArray
+    ahead: FloatArray
+
+
+def boxes_beneath(
+    times: FloatArray, points: Mapping[str, ContactPoint], gap: Interval, floor_m: float
+) -> tuple[SupportBox, ...]:
+    """Boxes that would carry the feet that rest during `gap`, one for each height, lowest first.
+
+    times: (T,) s. points: by name ("Left heel"). None where no foot rests above the floor.
+    """
+    during = (times >= gap.start) & (times <= gap.end)
+    rests = _rests(times, points, during)
+    order = np.argsort(rests.places[:, 2])
+    steps = np.flatnonzero(np.diff(rests.places[order, 2]) > REACH) + 1
+    found = []
+    for there in np.split(order, steps) if len(order) else ():
+        top = float(np.median(rests.places[there, 2]))
+        if top - floor_m > LEAST_HEIGHT:
+            found.append(_box(_Rests(rests.places[there], rests.ahead[there]), floor_m, top))
+    return tuple(found)
+
+
+def _rests(times: FloatArray, points: Mapping[str, ContactPoint], during: BoolArray) -> _Rests:
+    """Where points of the feet rest: of those that do at an instant, the lowest carry."""
+    feet = {name: point for name, point in points.items() if point.kind is not PointKind.HAND}
+    resting = np.array([_resting(times, point, during) for point in feet.values()])
+    tracks = np.array([point.track for point in feet.values()])
+    height = np.where(resting, tracks[..., 2], np.inf)
+    carrying = resting & (height < height.min(axis=0) + REACH)
+    ahead = np.array([_ahead(feet, name) for name in feet])
+    return _Rests(tracks[carrying], ahead[carrying])
+
+
+def _resting(times: FloatArray, point: ContactPoint, during: BoolArray) -> BoolArray:
+    """(T,) when a point stays where it is for long enough."""
+    speed = np.linalg.norm(np.gradient(point.track, times, axis=0), axis=1)
+    slow = np.asarray(during & (speed < point.kind.value.max_speed))
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], slow, [False]])))
+    for first, last in edges.reshape(-1, 2):
+        if times[last - 1] - times[first] < LEAST_REST:
+            slow[first:last] = False
+    return slow
+
+
+def _ahead(feet: Mapping[str, ContactPoint], name: str) -> FloatArray:
+    """(T, 2) m, level, from the heel to the toe of a point's foot."""
+    side = name.rpartition(" ")[0]
+    heel, toe = (feet[f"{side} {end}"].track[:, :2] for end in ("heel", "toe"))
+    return np.asarray(toe - heel)
+
+
+def _box(rests: _Rests, floor_m: float, top: float) -> SupportBox:
+    """The box along the feet, from the floor to the soles."""
+    ahead = rests.ahead.sum(axis=0)
+    turn = float(np.arctan2(ahead[1], ahead[0]))
+    c, s = np.cos(turn), np.sin(turn)
+    axes = np.array([[c, -s], [s, c]])
+    along = rests.places[:, :2] @ axes
+    low, high = along.min(axis=0) - SOLE_MARGIN, along.max(axis=0) + SOLE_MARGIN
+    x, y = (axes @ (0.5 * (low + high))).tolist()
+    length, width = (high - low).tolist()
+    return SupportBox((length, width, top - floor_m), (x, y, floor_m), turn)

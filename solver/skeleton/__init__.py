@@ -1,0 +1,1 @@
+"""Which bone of a skeleton moves which part of the body: by names, by topology, by shape."""

@@ -1,0 +1,41 @@
+"""A bind pose before the motion: exporters put the T pose, or rest pose, on the first frames."""
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.recording import Recording
+
+AT_REST = np.radians(2.0)  # a joint that is nearer to its rest than this is at rest
+SHARE = 0.95  # of the joints that are at rest in a bind pose
+JUMP = np.radians(20.0)  # from a frame to the next; no joint turns by as much at 24 frames a second
+
+
+def bind_frames(recording: Recording) -> int:
+    """How many frames at the beginning hold the rest pose, from which the motion then jumps.
+
+    0 where there are none, and where a performer who stands like this moves on smoothly.
+    """
+    pairs = [(i, bone.parent) for i, bone in enumerate(recording.bones) if bone.parent >= 0]
+    if not pairs:
+        return 0
+    bones, parents = map(list, zip(*pairs, strict=True))
+    rest = np.stack([bone.rotation for bone in recording.bones])
+    local = _between(recording.rotations[:, parents], recording.rotations[:, bones])
+    resting = _angles(_between(rest[parents], rest[bones])[None], local) < AT_REST
+    held = resting.mean(axis=1) >= SHARE
+    count = int(np.argmin(held)) if not held.all() else 0
+    if count == 0 or count >= len(local):
+        return 0
+    jump = _angles(local[count - 1], local[count]).max()
+    return count if jump > JUMP else 0
+
+
+def _between(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Rotations (..., 3, 3) of the second in the first's frame."""
+    return np.asarray(np.swapaxes(first, -1, -2) @ second)
+
+
+def _angles(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Angles (...), rad, from one rotation (..., 3, 3) to another."""
+    trace = np.einsum("...ij,...ij->...", first, second)
+    return np.asarray(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))

@@ -1,0 +1,109 @@
+"""Initial guess: the fit on the problem's own contacts, timeline and knots (thesis 6.2 to 6.4)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..constraints.contact_setup import detailed_contact
+from ..constraints.evaluation_context import EvaluationContext
+from ..data.constants import STANDARD_GRAVITY
+from ..data.problem import MotionProblem
+from ..data.requests import PointRequest
+from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, SplineBasis, dense_instants, phase_breaks
+from ..transcription.motion import Motion
+from ..transcription.transcription import Transcription
+from .fit import Fit
+from .transcribe import MIN_SPAN, body_points, point_contacts
+
+MAX_SPAN = 0.08  # s, between knots that are not the fit's
+MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it
+
+
+def resampled_fit(
+    fit: Fit, problem: MotionProblem, context: EvaluationContext, added: dict[str, PointRequest]
+) -> Motion:
+    """The reference on the problem's own contacts, timeline and knots, without constraints."""
+    reference, schedule = context.reference, context.schedule
+    t = reference.transcription
+    coarse = problem.requests.solution.longest_span
+    same = context.timeline.unchanged and coarse is None and not added
+    if same and len(schedule.contacts) == len(t.contacts):
+        contacts = tuple(detailed_contact(c, problem, context, None) for c in t.contacts)
+        return replace(reference, transcription=replace(t, contacts=contacts))
+    points, which = body_points(t.character, context.recording, schedule)
+    plain, extra = point_contacts(schedule, which)
+    contacts = tuple(
+        detailed_contact(c, problem, context, added.get(c.contact.name)) for c in plain
+    )
+    if coarse is None:
+        basis = _mapped_basis(t.basis, context, extra)
+    else:
+        basis = SplineBasis(*phase_breaks(schedule.jumps, [*schedule.boundaries, *extra], coarse))
+    new = Transcription(t.character, basis, points, contacts, t.moment)
+    x = _resampled(reference, new, context.timeline.eased)
+    motion = Motion(new, x, np.zeros((len(contacts), 3)))
+    return replace(motion, places=_current_places(motion, fit))
+
+
+def _mapped_basis(
+    old: SplineBasis, context: EvaluationContext, extra: Sequence[float]
+) -> SplineBasis:
+    """The old knots at their new instants, and those that new boundaries and holds need."""
+    retiming, schedule = context.timeline, context.schedule
+    fixed = sorted({*schedule.boundaries, *extra})
+    kept: list[float] = []
+    held = [
+        np.linspace(hold.start, hold.end, 1 + int(np.ceil((hold.end - hold.start) / MAX_HELD_SPAN)))
+        for hold in retiming.holds
+    ]
+    for t in np.unique(np.concatenate([retiming.to_new(old.breaks), *held])).tolist():
+        near = min(abs(t - other) for other in (*fixed, *kept))
+        if 0.0 < t < retiming.duration and near > MIN_SPAN:
+            kept.append(t)
+    return SplineBasis(*phase_breaks(schedule.jumps, [*fixed, *kept], MAX_SPAN))
+
+
+def _resampled(
+    motion: Motion, new: Transcription, to_old: Callable[[FloatArray], FloatArray]
+) -> FloatArray:
+    """Unknowns of a motion on another transcription: splines by least squares, forces at the nodes.
+
+    to_old: instants (T,) s of the motion from those of the new one.
+    """
+    basis, layout, old = new.basis, new.layout, motion.transcription
+    times = dense_instants(basis)
+    x = np.zeros((basis.n_coefficients, layout.n_block))
+    x[:, layout.com] = basis.project(times, motion.com(to_old(times)), THIRD_DERIVATIVE_WEIGHT)
+    x[:, layout.angles] = basis.project(
+        times, motion.angles(to_old(times)), THIRD_DERIVATIVE_WEIGHT
+    )
+    names = {c.point: c.contact.point for c in old.contacts}
+    came_from = {name: point for point, name in names.items()}
+    nodes = basis.force_nodes(np.arange(basis.n_spans))
+    inside = 1e-6 * np.diff(basis.breaks)
+    weight = old.character.mass * STANDARD_GRAVITY
+    for side, at in enumerate((basis.breaks[:-1] + inside, basis.breaks[1:] - inside)):
+        forces = motion.forces(to_old(at)) / weight
+        for contact in new.contacts:
+            point = came_from.get(contact.contact.point)
+            if point is not None:
+                x[layout.force_block(nodes[:, side]), layout.force(contact.point)] = forces[
+                    :, point
+                ]
+    x[~new.active] = 0.0
+    return x
+
+
+def _current_places(motion: Motion, fit: Fit) -> FloatArray:
+    """(n_contacts, 3) m: the fit's place of each contact; where the point is, for a new one."""
+    known = {c.name: place for c, place in zip(fit.schedule.contacts, fit.places, strict=True)}
+    places = []
+    for contact in motion.transcription.contacts:
+        if contact.contact.name in known:
+            places.append(known[contact.contact.name])
+        else:
+            times = np.linspace(contact.contact.start, contact.contact.end, 20)
+            places.append(motion.contact_points(times)[:, contact.point].mean(axis=0))
+    return np.array(places).reshape(-1, 3)

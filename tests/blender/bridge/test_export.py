@@ -1,0 +1,118 @@
+"""Recording and result side by side in a scene, and as FBX, in the bpy module."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.armature.write import side_by_side, write_action
+from hangtime.bridge.files.export import export_fbx, reimport_fbx
+from hangtime.devtools.recordings import JUMP, find
+from hangtime.solver.data.faults import (
+    OutputNotWritable,
+)
+from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.blender.helpers.actions import (
+    altered,
+    animated_rig,
+    assert_follows,
+    place_object,
+)
+
+
+@pytest.fixture(autouse=True)
+def _empty_scene() -> None:
+    rigs.reset()
+
+
+def test_side_by_side_shows_the_recording_on_a_copy() -> None:
+    armature = animated_rig()
+    place_object(armature)
+    driver = armature.driver_add('pose.bones["finger"].location', 0).driver
+    driver.variables.new().targets[0].id = armature
+    constraint = armature.pose.bones["finger"].constraints.new("COPY_ROTATION")
+    constraint.target, constraint.subtarget = armature, "hips"
+    recording = read_recording(armature)
+    recorded = armature.animation_data.action
+    track = altered(recording)
+    action = write_action(armature, track, name="Adapted")
+    copy = side_by_side(armature, recorded, action)
+    assert copy.name == "Rig recording"
+    assert copy.animation_data.drivers[0].driver.variables[0].targets[0].id == copy
+    assert copy.pose.bones["finger"].constraints[0].target == copy
+    shown = read_recording(copy)
+    np.testing.assert_allclose(shown.heads, recording.heads + np.array([1.5, 0.0, 0.0]), atol=1e-5)
+    assert_follows(armature, track)
+
+
+def test_fbx_holds_that_action_alone_and_leaves_the_scene(tmp_path: Path) -> None:
+    armature = animated_rig("XZY")
+    place_object(armature)
+    other = rigs.make_armature(name="Other")
+    recorded = armature.animation_data.action
+    track = altered(read_recording(armature, first=5, last=20))
+    action = write_action(armature, track, name="Adapted")
+    adapted = read_recording(armature)
+    slot = fcurves.slot_identifier(armature)
+    fcurves.assign(armature, recorded, slot)
+    armature.animation_data.nla_tracks.new().strips.new("Strip", 1, recorded)
+    armature.animation_data.action_blend_type = "ADD"
+    other.select_set(True)
+    bpy.context.view_layer.objects.active = other
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 100, 200
+    scene.render.fps, scene.render.fps_base = 30, 1.001
+    scene.frame_set(3)
+    blocks = [set(kind) for kind in (bpy.data.objects, bpy.data.actions, bpy.data.armatures)]
+
+    path = tmp_path / "new" / "adapted.fbx"
+    export_fbx(armature, action, path)
+    again = reimport_fbx(path, adapted.frames)
+
+    columns = [again.index(bone.name) for bone in adapted.bones]
+    np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=5e-5)
+    assert path.read_bytes().count(b"\x00\x01AnimStack") == 1
+    assert b"Other" not in path.read_bytes()
+    assert armature.animation_data.action == recorded
+    assert armature.animation_data.use_nla
+    assert fcurves.slot_identifier(armature) == slot
+    assert list(bpy.context.selected_objects) == [other]
+    assert bpy.context.view_layer.objects.active == other
+    assert (scene.frame_start, scene.frame_end, scene.frame_current) == (100, 200, 3)
+    assert blocks == [set(k) for k in (bpy.data.objects, bpy.data.actions, bpy.data.armatures)]
+
+
+def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
+    armature = animated_rig()
+    (tmp_path / "file").write_text("no folder")
+    path = tmp_path / "file" / "adapted.fbx"
+    with pytest.raises(OutputNotWritable) as fault:
+        export_fbx(armature, armature.animation_data.action, path)
+    assert fault.value.path == str(path)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Blender's importer
+def test_a_real_jump_survives_writing_and_fbx(tmp_path: Path) -> None:
+    bpy.ops.import_anim.bvh(
+        filepath=str(find(JUMP)),
+        global_scale=0.05644,
+        update_scene_fps=True,
+        update_scene_duration=True,
+    )
+    armature = bpy.context.object
+    recording = read_recording(armature)
+    moving = tuple(bone.name for bone in recording.bones)
+    track = altered(recording, moving)
+    action = write_action(armature, track, name="Adapted")
+    adapted = assert_follows(armature, track)
+    export_fbx(armature, action, tmp_path / "adapted.fbx")
+    again = reimport_fbx(tmp_path / "adapted.fbx", adapted.frames)
+    columns = [again.index(bone) for bone in moving]
+    np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=5e-5)
+    np.testing.assert_allclose(again.rotations[:, columns], adapted.rotations, atol=2e-4)

@@ -1,0 +1,179 @@
+"""What cannot be analysed or adapted is said, and changes nothing."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge import worker_client
+from hangtime.bridge.rows.phases import phases_of
+from hangtime.tests.blender.helpers.actions import curves_of
+from hangtime.tests.blender.helpers.jump_scene import FIRST, SceneState, ask_by_text, landing
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def no_armature(_armature: bpy.types.Object) -> None:
+    bpy.context.view_layer.objects.active = None
+
+
+def another_object(_armature: bpy.types.Object) -> None:
+    empty = bpy.data.objects.new("Cube", None)
+    bpy.context.scene.collection.objects.link(empty)
+    bpy.context.view_layer.objects.active = empty
+
+
+def no_action(armature: bpy.types.Object) -> None:
+    armature.animation_data.action = None
+
+
+def empty_action(armature: bpy.types.Object) -> None:
+    armature.animation_data.action = bpy.data.actions.new("Nothing")
+
+
+def edit_mode(_armature: bpy.types.Object) -> None:
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def too_short(armature: bpy.types.Object) -> None:
+    armature.hangtime.last_frame = FIRST + 10
+
+
+def bad_scale(armature: bpy.types.Object) -> None:
+    armature.scale = (1.0, 1.0, -1.0)
+
+
+def infinite_key(armature: bpy.types.Object) -> None:
+    snapshot_curve(armature).keyframe_points[90].co.y = float("nan")
+
+
+def snapshot_curve(armature: bpy.types.Object) -> bpy.types.FCurve:
+    return next(c for c in curves_of(armature) if "LeftUpLeg" in c.data_path)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (no_armature, "No armature is chosen"),
+        (another_object, "“Cube” is or holds no armature"),
+        (no_action, "has no keyframes"),
+        (empty_action, "has no keyframes"),
+        (edit_mode, "Leave edit mode first"),
+        (too_short, "Only 0.08 s of the recording"),
+        (bad_scale, "must be the same, and above zero"),
+        (infinite_key, "LeftUpLeg” has a value at frame"),
+    ],
+)
+def test_what_cannot_be_analysed_is_said_and_changes_nothing(
+    jump: bpy.types.Object, spoil: Callable[[bpy.types.Object], None], says: str
+) -> None:
+    spoil(jump)
+    before = SceneState.of(jump)
+    with pytest.raises(RuntimeError) as caught:
+        bpy.ops.hangtime.analyze()
+    assert says in str(caught.value)
+    assert "Traceback" not in str(caught.value)
+    assert SceneState.of(jump) == before
+
+
+def test_a_clip_without_a_flight_is_analysed(jump: bpy.types.Object) -> None:
+    jump.hangtime.last_frame = 150
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert [phase.name for phase in phases_of(jump.hangtime)] == ["ground 1"]
+
+
+def contradiction(armature: bpy.types.Object) -> None:
+    armature.hangtime.whole_stance = False
+    row = landing(armature.hangtime)[0]
+    row.place = np.add(row.place, (0.0, 0.0, 0.2))
+
+
+def moved_armature(armature: bpy.types.Object) -> None:
+    armature.location.x += 1.0
+
+
+def other_range(armature: bpy.types.Object) -> None:
+    armature.hangtime.last_frame += 5
+
+
+def no_contacts(armature: bpy.types.Object) -> None:
+    armature.hangtime.contacts.clear()
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (edit_mode, "Leave edit mode first"),
+        (no_contacts, "Press Analyze first"),
+        (contradiction, "contradict each other by"),
+        (moved_armature, "press Analyze again"),
+        (other_range, "press Analyze again"),
+    ],
+)
+def test_what_cannot_be_adapted_is_said_and_changes_nothing(
+    analysed: bpy.types.Object, spoil: Callable[[bpy.types.Object], None], says: str
+) -> None:
+    spoil(analysed)
+    before = SceneState.of(analysed)
+    with pytest.raises(RuntimeError) as caught:
+        bpy.ops.hangtime.adapt()
+    assert says in str(caught.value)
+    assert "Traceback" not in str(caught.value)
+    assert SceneState.of(analysed) == before
+
+
+def test_a_worker_killed_in_the_middle_is_told(analysed: bpy.types.Object) -> None:
+    before = SceneState.of(analysed)
+
+    def kill() -> None:
+        while not worker_client.shared().busy:
+            time.sleep(0.01)
+        os.kill(worker_client.shared().pid, 9)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    with pytest.raises(RuntimeError, match="solver stopped without an answer"):
+        bpy.ops.hangtime.adapt()
+    killer.join()
+    assert SceneState.of(analysed) == before
+
+
+def test_a_result_for_keys_that_changed_meanwhile_is_thrown_away(
+    analysed: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def edited_while_waiting(job: worker_client.PendingRequest) -> object:
+        answer = wait(job)
+        snapshot_curve(analysed).keyframe_points[120].co.y += 0.1
+        return answer
+
+    wait = worker_client.PendingRequest.wait
+    monkeypatch.setattr(worker_client.PendingRequest, "wait", edited_while_waiting)
+    before = SceneState.of(analysed)
+    with pytest.raises(RuntimeError, match="The result was thrown away"):
+        bpy.ops.hangtime.adapt()
+    assert SceneState.of(analysed) == before
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('[[torque]]\nname = "Weak"\nbones = ["Tail"]\nbound = 5\n', "Weak.*Tail"),
+        ('[[cone]]\nbone = "LeftArm"\n', "line 1"),
+        ('[[pose]]\nname = "Tuck"\nphase = "flight 7"\n', "Tuck.*flight 7"),
+    ],
+)
+def test_a_wrong_request_is_said_and_changes_nothing(
+    analysed: bpy.types.Object, text: str, words: str
+) -> None:
+    ask_by_text(analysed, text)
+    before = SceneState.of(analysed)
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.hangtime.adapt()
+    assert SceneState.of(analysed) == before

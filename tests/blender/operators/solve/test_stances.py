@@ -1,0 +1,115 @@
+"""Contacts are moved one by one, with their stance, or by an empty; and become pins."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, drift, landing, pins
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def test_a_contact_takes_its_stance_along(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    moved = landing(settings)[0]
+    moved.place = np.add(moved.found_at, (0.1, -0.2, 0.3))
+    for row in settings.contacts:
+        shift = np.subtract(row.place, row.found_at)
+        wanted = (0.1, -0.2, 0.3) if row.phase == "ground 2" else (0.0, 0.0, 0.0)
+        np.testing.assert_allclose(shift, wanted, atol=1e-6)
+    stance = settings.stances["ground 2"]
+    forward = np.array(stance.forward_axis)
+    assert stance.forward == pytest.approx(forward @ [0.1, -0.2, 0.3], abs=1e-6)
+    assert stance.left == pytest.approx(np.cross([0, 0, 1], forward) @ [0.1, -0.2, 0.3], abs=1e-6)
+    assert stance.up == pytest.approx(0.3, abs=1e-6)
+    assert stance.turn == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_contact_moves_alone_where_that_is_wished(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    settings.whole_stance = False
+    moved, *others = landing(settings)
+    moved.place = np.add(moved.found_at, (0.0, 0.0, 0.1))
+    assert all(tuple(row.place) == tuple(row.found_at) for row in others)
+
+
+def test_a_stance_turns_about_its_middle(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    stance, rows = settings.stances["ground 2"], landing(settings)
+    stance.turn = np.pi / 2
+    was = np.array([row.found_at for row in rows])
+    now = np.array([row.place for row in rows])
+    x, y, z = (was - was.mean(axis=0)).T
+    np.testing.assert_allclose(now - now.mean(axis=0), np.stack([-y, x, z], axis=1), atol=1e-6)
+    np.testing.assert_allclose(now.mean(axis=0), was.mean(axis=0), atol=1e-6)
+    assert bpy.ops.hangtime.put_back.poll()
+    settings.active_contact = settings.contacts.find(rows[0].name)
+    assert bpy.ops.hangtime.put_back() == {"FINISHED"}
+    assert stance.turn == 0.0
+    assert all(tuple(row.place) == tuple(row.found_at) for row in rows)
+
+
+def test_an_empty_carries_its_stance(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    first, second = landing(settings)[:2]
+    for row in (first, second):
+        settings.active_contact = settings.contacts.find(row.name)
+        assert bpy.ops.hangtime.place_by_empty() == {"FINISHED"}
+    np.testing.assert_allclose(first.empty.location, first.place, atol=1e-6)
+    first.empty.location.x += 0.25
+    bpy.context.view_layer.update()
+    for row in landing(settings):
+        np.testing.assert_allclose(np.subtract(row.place, row.found_at), (0.25, 0, 0), atol=1e-6)
+    np.testing.assert_allclose(second.empty.location, second.place, atol=1e-6)
+    second.place = second.found_at
+    np.testing.assert_allclose(first.empty.location, first.found_at, atol=1e-6)
+    first.empty.location.x += 0.25  # which the operator has to look at itself
+    settings.keep_times = True
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    for row in landing(settings):
+        np.testing.assert_allclose(np.subtract(row.place, row.found_at), (0.25, 0, 0), atol=1e-6)
+        assert drift(analysed, row) < 0.002
+
+
+def test_an_empty_that_was_deleted_is_replaced(analysed: bpy.types.Object) -> None:
+    row = landing(analysed.hangtime)[0]
+    analysed.hangtime.active_contact = analysed.hangtime.contacts.find(row.name)
+    bpy.ops.hangtime.place_by_empty()
+    for collection in row.empty.users_collection:
+        collection.objects.unlink(row.empty)
+    bpy.ops.hangtime.place_by_empty()
+    assert row.empty.name in bpy.context.view_layer.objects
+    np.testing.assert_allclose(row.empty.location, row.place, atol=1e-6)
+
+
+def test_pins_call_contacts_what_they_are_called_after_the_corrections(
+    analysed: bpy.types.Object,
+) -> None:
+    settings = analysed.hangtime
+    settings.stances["ground 2"].up = 0.1
+    assert pins(analysed)["Left heel 2"].touching == ("Left heel 2",)
+    settings.contacts["Left heel 1"].used = False
+    settings.contacts["Right toe 2"].start_frame = 236.0
+    problem = problem_of(settings, read_recorded(analysed, FIRST, LAST))
+    removed, later = problem.contacts
+    assert (removed.name, removed.remove) == ("Left heel 1", True)
+    assert (later.name, later.start_frame, later.end_frame) == ("Right toe 2", 236.0, None)
+    pin = pins(analysed)["Left heel 2"]
+    assert pin.touching == ("Left heel 1",)
+    schedule = analyse(read_recorded(analysed, FIRST, LAST), problem).schedule
+    assert "Left heel 1" in {c.name for c in schedule.contacts if c.start > 1.0}
+    np.testing.assert_allclose(pin.place, settings.contacts["Left heel 2"].at, atol=1e-6)
+
+
+def test_a_scene_of_other_units_is_read_in_metres(analysed: bpy.types.Object) -> None:
+    bpy.context.scene.unit_settings.scale_length = 0.5
+    settings = analysed.hangtime
+    settings.stances["ground 2"].up = 0.1
+    place = pins(analysed)["Left heel 2"].place
+    np.testing.assert_allclose(place, 0.5 * np.array(settings.contacts["Left heel 2"].at))

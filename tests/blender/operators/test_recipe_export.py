@@ -1,0 +1,69 @@
+"""Recipes that are exported: what they are read as again is what Adapt would solve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.operators.solve.adapt import ask_for
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.scene.triangle_mesh import placed_mesh
+from hangtime.tests.blender.helpers.solids import add_row, make_box
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def exported(folder: Path) -> MotionProblem:
+    path = folder / "edit.toml"
+    assert bpy.ops.hangtime.export_recipe(filepath=str(path)) == {"FINISHED"}
+    return parse_recipe(path.read_text(encoding="utf-8"), str(path)).problem
+
+
+def test_the_world_s_objects_come_along(analysed: bpy.types.Object, tmp_path: Path) -> None:
+    landing = next(row for row in analysed.hangtime.contacts if row.phase == "ground 2")
+    crate = make_box("Crate", at=(landing.at[0], landing.at[1], 0.1), size=0.2)
+    crate.scale, crate.rotation_euler = (8.0, 5.0, 1.0), (0.0, 0.0, 0.3)
+    bpy.ops.mesh.primitive_ico_sphere_add(radius=0.2, location=(3.0, 0.0, 0.5))
+    ball = bpy.context.object
+    ball.name = "Ball / 1"
+    add_row(analysed, crate)
+    row = add_row(analysed, ball)
+    row.role, row.clearance = "CLEAR", 0.05
+    for contact in analysed.hangtime.contacts:
+        contact.on = crate if contact.phase == "ground 2" else None
+    asked = complete(ask_for(bpy.context)).problem
+    found = exported(tmp_path)
+    assert replace(found, scene=()) == replace(asked, scene=())
+    assert {pin.on for pin in found.pins} == {"Crate"}
+    (clear,) = found.requests.clears
+    assert (clear.thing, clear.by) == ("Ball / 1", pytest.approx(0.05))
+    assert {path.name for path in tmp_path.iterdir()} == {"edit.toml", "Ball _ 1.obj"}
+    text = (tmp_path / "edit.toml").read_text(encoding="utf-8")
+    assert "box = [1.6" in text
+    places = np.random.default_rng(1).uniform(-0.5, 3.5, (200, 3))
+    for mine, theirs in zip(found.scene, asked.scene, strict=True):
+        assert (mine.name, mine.role) == (theirs.name, theirs.role)
+        np.testing.assert_allclose(
+            placed_mesh(mine).distances(places).distance,
+            placed_mesh(theirs).distances(places).distance,
+            atol=1e-5,
+        )
+
+
+def test_contacts_and_times_that_the_artist_changed_come_along(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    contact = analysed.hangtime.contacts[0]
+    contact.end_frame -= 2.0
+    added = analysed.hangtime.contacts.add()
+    added.name, added.point, added.added, added.used = "Left toe", "Left toe", True, True
+    added.bone, added.start_frame, added.end_frame = contact.bone, 200.0, 210.0
+    analysed.hangtime.keep_times = True
+    assert exported(tmp_path) == complete(ask_for(bpy.context)).problem

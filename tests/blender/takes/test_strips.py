@@ -1,0 +1,90 @@
+"""A result as a strip on top of the untouched take."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature.actions import recorded_action, show, showing_action
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.poses import Poses, sample
+from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.rows.choices import WrittenAs
+from hangtime.bridge.takes.plan import AdaptedMotion
+from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.data.reports.jumps import TimeMap
+from hangtime.tests.blender.helpers import rigs
+
+FRAMES = np.arange(1.0, 25.0, 0.5)
+OPTIONS = ResultOptions(blend_in=4.0, blend_out=4.0, written_as=WrittenAs.STRIP)
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def armature() -> bpy.types.Object:
+    rigs.reset()
+    made = rigs.make_armature()
+    rigs.animate(made)
+    return made
+
+
+def lifted(armature: bpy.types.Object, by: float) -> bpy.types.Action:
+    """Write the middle of the take anew, so much higher, into a strip."""
+    with showing_action(armature, recorded_action(armature)):
+        part = read_recording(armature).window(10, 14)
+    bones = [part.index(bone) for bone in rigs.MOVING]
+    heads = part.heads[:, bones[0]] + [0.0, 0.0, by]
+    track = PoseTrack(part.frames, rigs.MOVING, part.rotations[:, bones], heads)
+    motion = AdaptedMotion(track, TimeMap((10.0, 14.0), (10.0, 14.0)), None, OPTIONS)
+    action, _ = complete(write_adapted_incrementally(armature, motion))
+    return action
+
+
+def same(one: Poses, other: Poses) -> bool:
+    return one.matrices.tobytes() == other.matrices.tobytes()
+
+
+def test_with_its_strip_muted_the_take_is_there_to_the_bit(armature: bpy.types.Object) -> None:
+    take, before = current_action(armature), sample(armature, FRAMES)
+    result = lifted(armature, 0.1)
+    assert current_action(armature) == result
+    assert armature.animation_data.action is None
+    assert not same(sample(armature, FRAMES), before)
+    track = armature.animation_data.nla_tracks[-1]
+    track.mute = True
+    assert same(sample(armature, FRAMES), before)
+    assert current_action(armature) == take
+    track.mute = False
+    assert current_action(armature) == result
+    show(armature, take)
+    assert same(sample(armature, FRAMES), before)
+    assert recorded_action(armature) == take
+
+
+def test_the_strip_shows_the_result_as_its_action_does(armature: bpy.types.Object) -> None:
+    result = lifted(armature, 0.1)
+    in_strip = sample(armature, FRAMES)
+    with showing_action(armature, result):
+        alone = sample(armature, FRAMES)
+    np.testing.assert_allclose(in_strip.matrices, alone.matrices, atol=1e-6)
+
+
+def test_a_second_result_is_made_from_the_take_and_the_first_is_muted(
+    armature: bpy.types.Object,
+) -> None:
+    before = sample(armature, FRAMES)
+    first, second = lifted(armature, 0.1), lifted(armature, 0.2)
+    tracks = armature.animation_data.nla_tracks
+    assert [track.mute for track in tracks] == [False, True, False]
+    assert current_action(armature) == second
+    hips = sample(armature, np.array([12.0])).matrices[0, 0, :3, 3]
+    was = before.matrices[np.flatnonzero(FRAMES == 12.0)[0], 0, :3, 3]
+    np.testing.assert_allclose(hips - was, (0.0, 0.0, 0.2), atol=1e-6)
+    show(armature, first)
+    assert [track.mute for track in tracks] == [False, False, True]

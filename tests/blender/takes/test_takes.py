@@ -1,0 +1,166 @@
+"""The takes of an armature: their edits, what they are made from, and what became of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.actions import read_recorded, recorded_action, show
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.takes.plan import AdaptedMotion
+from hangtime.bridge.takes.takes import (
+    EDIT_CHANGED,
+    TAKE_CHANGED,
+    adapted_spans,
+    look_again,
+    note_made,
+    polished_result,
+    show_take,
+    start_from_recording,
+    start_from_result,
+    starts_from_result,
+    takes_of,
+)
+from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.data.reports.jumps import TimeMap
+from hangtime.tests.blender.helpers import rigs
+
+OPTIONS = ResultOptions(blend_in=3.0, blend_out=3.0)
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def armature() -> bpy.types.Object:
+    rigs.reset()
+    made = rigs.make_armature()
+    rigs.animate(made, frames=range(1, 61))
+    bpy.context.scene.hangtime.armature = made
+    return made
+
+
+def adapt(armature: bpy.types.Object, first: float, last: float, up: float) -> bpy.types.Action:
+    """A result in which these frames are so much higher; with the contact that asks for it."""
+    settings = armature.hangtime
+    settings.contacts.clear()
+    row = settings.contacts.add()
+    row.name, row.at = "Left heel 1", (0.0, 0.0, up)
+    part = read_recorded(armature, first, last)
+    bones = [part.index(bone) for bone in rigs.MOVING]
+    heads = part.heads[:, bones[0]] + [0.0, 0.0, up]
+    track = PoseTrack(part.frames, rigs.MOVING, part.rotations[:, bones], heads)
+    kept = adapted_spans(recorded_action(armature))
+    motion = AdaptedMotion(track, TimeMap((first, last), (first, last)), None, OPTIONS, kept=kept)
+    action, written = complete(write_adapted_incrementally(armature, motion))
+    note_made(armature, action, written.span, written.later)
+    return action
+
+
+def heights(armature: bpy.types.Object, action: bpy.types.Action) -> np.ndarray:
+    show(armature, action)
+    return np.array([rigs.world_of(armature, "hips", f).translation.z for f in range(1, 61)])
+
+
+def test_a_second_result_builds_on_the_first(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    was = heights(armature, recording)
+    first = adapt(armature, 10, 20, 0.1)
+    first.hangtime.accepted, first["hangtime_traces_key"] = True, "1"
+    start_from_result(armature, first)
+    assert starts_from_result(armature)
+    assert recorded_action(armature) == first
+    assert len(armature.hangtime.contacts) == 0
+    second = adapt(armature, 24, 40, 0.2)
+    assert first.hangtime.accepted
+    assert not second.hangtime.accepted
+    assert "hangtime_traces_key" not in second
+    assert second.hangtime.recording == first
+    assert recorded_action(armature) == first
+    more = heights(armature, second) - was
+    np.testing.assert_allclose(more[9:20], 0.1, atol=1e-5)
+    np.testing.assert_allclose(more[23:40], 0.2, atol=1e-5)
+    assert adapted_spans(second) == ((10.0, 20.0), (24.0, 40.0))
+    again = adapt(armature, 24, 40, 0.3)  # from the first still
+    np.testing.assert_allclose((heights(armature, again) - was)[23:40], 0.3, atol=1e-5)
+    listed = [(take.action, take.source, take.depth) for take in takes_of(armature)]
+    assert listed == [
+        (recording, None, 0),
+        (first, recording, 1),
+        (second, first, 2),
+        (again, first, 2),
+    ]
+
+
+def test_each_take_has_the_settings_it_was_made_with(armature: bpy.types.Object) -> None:
+    recording, settings = current_action(armature), armature.hangtime
+    first = adapt(armature, 10, 20, 0.1)
+    start_from_result(armature, first)
+    second = adapt(armature, 30, 40, 0.2)
+    show_take(armature, first)
+    assert settings.contacts[0].at[2] == pytest.approx(0.1)
+    assert settings.adapted == first
+    assert recorded_action(armature) == recording
+    settings.contacts[0].at = (0.0, 0.0, 0.15)  # not solved yet
+    show_take(armature, recording)  # belongs to the same edit
+    assert settings.contacts[0].at[2] == pytest.approx(0.15)
+    show_take(armature, second)
+    assert settings.contacts[0].at[2] == pytest.approx(0.2)
+    assert recorded_action(armature) == first
+    start_from_recording(armature)
+    assert settings.contacts[0].at[2] == pytest.approx(0.15)
+    assert current_action(armature) == recording
+
+
+def test_results_that_are_out_of_date_say_so(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    first = adapt(armature, 10, 20, 0.1)
+    look_again(armature)
+    assert (first.hangtime.stale, first.hangtime.polished) == ("", False)
+    armature.hangtime.contacts[0].at = (0.0, 0.0, 0.3)
+    look_again(armature)
+    assert first.hangtime.stale == EDIT_CHANGED
+    armature.hangtime.contacts[0].at = (0.0, 0.0, 0.1)
+    look_again(armature)
+    assert first.hangtime.stale == ""
+    holder = fcurves.holder_in(recording, fcurves.slot_identifier(armature))
+    holder.fcurves[0].keyframe_points[5].co.y += 0.1
+    look_again(armature)
+    assert first.hangtime.stale == TAKE_CHANGED
+
+
+def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
+    armature: bpy.types.Object,
+) -> None:
+    first = adapt(armature, 10, 20, 0.1)
+    assert polished_result(armature) is None
+    holder = fcurves.holder_in(first, fcurves.slot_identifier(armature))
+    holder.fcurves[0].keyframe_points[5].co.y += 0.1
+    assert polished_result(armature) == first
+    look_again(armature)
+    assert first.hangtime.polished
+
+
+def test_what_is_discarded_is_what_is_shown(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    first, second = adapt(armature, 10, 20, 0.1), adapt(armature, 10, 20, 0.2)
+    show_take(armature, recording)
+    assert not bpy.ops.hangtime.discard.poll()
+    assert bpy.ops.hangtime.show_take(action=first.name) == {"FINISHED"}
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(armature) == recording
+    assert [take.action for take in takes_of(armature)] == [recording, second]
+    assert armature.hangtime.adapted == second
+
+
+def test_a_result_that_others_build_on_is_not_discarded(armature: bpy.types.Object) -> None:
+    first = adapt(armature, 10, 20, 0.1)
+    assert bpy.ops.hangtime.start_from(result=True) == {"FINISHED"}
+    adapt(armature, 30, 40, 0.2)
+    show_take(armature, first)
+    assert not bpy.ops.hangtime.discard.poll()

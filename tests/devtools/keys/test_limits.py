@@ -1,0 +1,23 @@
+"""What ends `dev.py keys` with 1."""
+
+from hangtime.devtools.figures.limits import Figure, figure
+from hangtime.devtools.keys.limits import KNOWN_MISSES, LIMITS, RATE, missed
+
+TURNED = "bones turned, every frame"
+
+
+def found(name: str, value: float) -> Figure:
+    return figure(name, value, "clip", "edit", LIMITS)
+
+
+def test_a_known_miss_may_not_get_worse() -> None:
+    most = KNOWN_MISSES[RATE]
+    good, bad = found(RATE, most - 0.1), found(RATE, most + 0.1)
+    assert not good.ok
+    assert missed([good, bad]) == [bad]
+
+
+def test_single_precision_is_no_miss_and_more_is() -> None:
+    assert not missed([found(TURNED, 0.20001)])
+    assert missed([found(TURNED, 0.21)])
+    assert not missed([found("time", 1000.0)])

@@ -1,0 +1,37 @@
+"""What is said of the take around the adapted frames."""
+
+from math import pi
+
+from hangtime.bridge.takes.span import ResultSpan, WrittenTake
+from hangtime.operators.words.take_text import take_lines, take_record
+from hangtime.solver.data.stance_move import StanceMove
+
+SPAN = ResultSpan(140.0, 333.0, 1.0, 900.0, 30.0, 30.0)
+MOVED = StanceMove("ground 2", (0.0, 0.0, 0.0), -0.5 * pi, (0.3, 0.4, 0.2))
+
+
+def test_adapted_frames_alone_need_no_words() -> None:
+    assert take_lines(None) == []
+
+
+def test_a_take_that_goes_on_as_it_was_says_so_in_a_line() -> None:
+    written = WrittenTake(SPAN, None, None, 0)
+    assert take_lines(written) == [
+        "Take: frames 140 to 333 are adapted",
+        "Blended in over 30 frames and out over 30 frames",
+    ]
+
+
+def test_what_follows_is_told() -> None:
+    written = WrittenTake(SPAN, MOVED, 450.0, 1, ("LeftArm",))
+    assert take_lines(written)[2:] == [
+        "What follows comes 1 frame later",
+        "What follows is carried along with ground 2:",
+        "  0.500 m along the ground, 0.200 m up, 90.0° to the right",
+        "  It is back where it was at frame 450",
+        "Curves with modifiers, or muted, are plain keys now: LeftArm",
+    ]
+    record = take_record(written)
+    assert record["take_frames"] == [1.0, 900.0]
+    assert record["carried_turn_deg"] == -90.0
+    assert record["later_frames"] == 1

@@ -1,0 +1,127 @@
+"""Support that the floor does not explain: boxes that would, and ground of the scene that does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.bridge.recipe.object_texts import support_texts
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.solver.analysis.analyse import Analysis, analyse
+from hangtime.solver.analysis.grounding import PLACE_BAND
+from hangtime.solver.data.contacts import PhaseKind
+from hangtime.solver.data.faults import UnseenSupport
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.scene import SceneObject, SceneRole, SupportBox
+from hangtime.solver.worker.pipeline import measure
+from hangtime.solver.worker.protocol import Analysed, Failed, Request, RequestKind
+from hangtime.solver.worker.service import Service
+from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
+
+DROP = 0.3  # m
+
+
+def drop() -> Recording:
+    """The hop as a jump down: raised until it leaves, and in the flight no more bit by bit."""
+    recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
+    (flight,) = (p for p in hop().schedule.phases if p.kind is PhaseKind.FLIGHT)
+    share = np.clip((recording.times - flight.start) / (flight.end - flight.start), 0.0, 1.0)
+    heads = recording.heads.copy()
+    heads[..., 2] += DROP * (1.0 - share[:, None])
+    return replace(recording, heads=heads)
+
+
+def offered(problem: MotionProblem | None = None) -> tuple[SupportBox, ...]:
+    with pytest.raises(UnseenSupport) as caught:
+        measure(drop(), problem or MotionProblem())
+    return caught.value.boxes
+
+
+def boxes(**changed: object) -> tuple[SceneObject, ...]:
+    """The boxes that are offered, as their recipe's lines say."""
+    scene = parse_recipe("\n".join(support_texts(offered()))).problem.scene
+    return tuple(replace(thing, **changed) for thing in scene)  # type: ignore[arg-type]
+
+
+def standing(analysis: Analysis) -> set[str]:
+    """The contacts of the first stance."""
+    first = analysis.schedule.phases[0]
+    return {contact.point for contact in analysis.schedule.of_phase(first)}
+
+
+def test_a_box_is_offered_whose_top_is_at_the_soles() -> None:
+    (box,) = offered()
+    first = hop().schedule.phases[0]
+    places = np.array([c.place for c in hop().schedule.of_phase(first)])
+    assert box.size[2] == pytest.approx(DROP, abs=0.015)
+    np.testing.assert_allclose(box.place, [*places.mean(axis=0)[:2], 0.0], atol=0.05)
+    assert 0.3 < box.size[0] < 0.45  # a foot's length, and its edge
+    assert 0.2 < box.size[1] < 0.6
+
+
+def test_the_box_explains_what_carried_the_body() -> None:
+    (box,) = boxes()
+    found = analyse(drop(), MotionProblem(scene=(box,)))
+    assert [p.name for p in found.schedule.phases] == ["ground 1", "flight 1", "ground 2"]
+    first = found.schedule.of_phase(found.schedule.phases[0])
+    assert {contact.on for contact in first} == {box.name}
+    assert standing(found) == standing(hop())
+    top = float(box.vertices[:, 2].max())
+    low, high = PLACE_BAND
+    assert all(top + low <= contact.place[2] <= top + high for contact in first)
+    landing = found.schedule.of_phase(found.schedule.phases[2])
+    assert {contact.on for contact in landing} == {None}
+
+
+def test_only_still_ground_beneath_the_feet_explains_anything() -> None:
+    for changed in (
+        {"role": SceneRole.OBSTACLE},
+        {"positions": np.array([[5.0, 0.0, 0.0]])},
+        {"frames": np.array([1.0, 2.0]), "positions": np.zeros((2, 3))},
+    ):
+        with pytest.raises(UnseenSupport):
+            analyse(drop(), MotionProblem(scene=boxes(**changed)))
+
+
+def test_a_scene_changes_nothing_where_the_floor_explains_all() -> None:
+    under = np.array([[*hop().schedule.contacts[0].place[:2], -0.01]])
+    crate = replace(boxes()[0], positions=under)
+    recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
+    found = analyse(recording, MotionProblem(scene=(crate,)))
+    assert {contact.on for contact in found.schedule.contacts} == {None}
+
+
+def test_at_another_stature_the_box_is_still_in_the_recordings_lengths() -> None:
+    tall = 1.2 * hop().performance.character.height
+    plain, scaled = offered(), offered(MotionProblem(height=tall))
+    np.testing.assert_allclose(scaled[0].size, plain[0].size, atol=0.02)
+    np.testing.assert_allclose(scaled[0].place, plain[0].place, atol=0.02)
+
+
+def test_a_body_that_hangs_has_no_box() -> None:
+    recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
+    recording = replace(recording, heads=recording.heads.copy())
+    recording.heads[..., 2] += 1.0 + 0.5 * np.sin(6.0 * recording.times)[:, None]
+    recording.heads[:8, :, 2] -= recording.heads[:8, :, 2].min()  # the floor is told
+    with pytest.raises(UnseenSupport) as caught:
+        analyse(recording, MotionProblem())
+    assert caught.value.boxes == ()
+
+
+def test_a_worker_looks_again_where_what_was_stood_on_is_another() -> None:
+    service, recording = Service(), drop()
+
+    def kind(*scene: SceneObject) -> type:
+        request = Request(1, RequestKind.ANALYSE, recording, MotionProblem(scene=scene))
+        return type(service.answer(request, lambda _: None))
+
+    (box,) = boxes()
+    aside = replace(box, name="Crate", positions=np.array([[5.0, 0.0, 0.0]]))
+    assert [kind(), kind(box), kind(box, aside), kind(aside)] == [
+        Failed,
+        Analysed,
+        Analysed,
+        Failed,
+    ]
+    assert kind(replace(box, positions=box.positions - [0.0, 0.0, 0.1])) is Failed

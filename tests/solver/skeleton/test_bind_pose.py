@@ -1,0 +1,44 @@
+"""A T pose before the motion is found, and what only resembles one is let be."""
+
+from dataclasses import replace
+
+import numpy as np
+from hangtime.devtools.recordings import JUMP
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.skeleton.bind_pose import bind_frames
+from hangtime.tests.helpers.clips import load_recording
+
+
+def begun_at_rest(recording: Recording, frames: int) -> Recording:
+    """The same with the rest pose on its first frames."""
+    rotations, heads = recording.rotations.copy(), recording.heads.copy()
+    rotations[:frames] = np.stack([bone.rotation for bone in recording.bones])
+    heads[:frames] = np.stack([bone.head for bone in recording.bones])
+    return replace(recording, rotations=rotations, heads=heads)
+
+
+def clip() -> Recording:
+    return load_recording(JUMP).window(100, 200)
+
+
+def test_a_bind_pose_is_found_on_one_frame_and_on_several() -> None:
+    assert [bind_frames(begun_at_rest(clip(), n)) for n in (1, 5)] == [1, 5]
+
+
+def test_a_recording_has_none() -> None:
+    assert bind_frames(clip()) == 0
+
+
+def test_a_recording_that_is_all_at_rest_has_none() -> None:
+    recording = clip()
+    assert bind_frames(begun_at_rest(recording, len(recording.frames))) == 0
+
+
+def test_who_begins_in_a_rest_pose_and_moves_on_smoothly_is_let_be() -> None:
+    """The rest skeleton is the first frame's own."""
+    recording = clip()
+    bones = tuple(
+        replace(bone, rotation=recording.rotations[0, i], head=recording.heads[0, i])
+        for i, bone in enumerate(recording.bones)
+    )
+    assert bind_frames(replace(recording, bones=bones)) == 0
