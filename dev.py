@@ -34,8 +34,6 @@ from devtools.environment.problem import SetUpError
 from solver.one_thread import ONE_THREAD
 
 PEERS = "benchmark"  # has an environment of its own
-# with one thread of linear algebra
-MEASURED = ("figures", "gallery", "keys", "pairs", "reach", "rigs", "solid", "validate", PEERS)
 # command: module of the package, arguments before the user's, whether it needs dev.txt
 COMMANDS = {
     "demo": ("devtools.demo", [], False),
@@ -86,7 +84,8 @@ def main(argv: list[str]) -> int:
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2
-    variables = env.variables() | (ONE_THREAD if command in MEASURED else {})
+    # Several threads of linear algebra add up in another order, which ends in another motion.
+    variables = env.variables() | ONE_THREAD
     launcher = os.path.join(virtual_environment.ROOT, "devtools", "package.py")
     code = subprocess.call([env.python, launcher, module, *leading, *rest], env=variables)
     return code if code >= 0 else 128 - code  # a signal, the way shells count it

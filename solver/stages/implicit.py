@@ -3,8 +3,11 @@
 Far edits are made by continuation (Allgower & Georg 1990): pins and bounds move in several steps.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+
+import numpy as np
 
 from ..arrays import FloatArray
 from ..data.problem import MotionProblem
@@ -24,6 +27,7 @@ from .setup import Setup, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
+MAX_ARRIVALS = 2  # where guards were given up, which in smaller steps need not be
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
 MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
@@ -86,17 +90,19 @@ def _stopped(motion: Motion, fit: Fit, setup: Setup) -> Adaptation:
 
 
 def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | None) -> Adaptation:
-    outcomes: list[Outcome] = []
     attempts: list[ContinuationAttempt] = []
     for harder in range(MAX_ATTEMPTS):
-        attempts.append(_continuation(setup, 2**harder, progress))
-        outcomes += attempts[-1].outcomes
-        iterations = sum(len(outcome.steps) for outcome in outcomes)
-        if attempts[-1].arrived or iterations > MAX_SQP_ITERATIONS:
+        attempts.append(_attempt(setup, 2**harder, progress))
+        arrived = [attempt for attempt in attempts if attempt.arrived]
+        enough = len(arrived) == MAX_ARRIVALS or (arrived and arrived[-1].over == 0.0)
+        iterations = sum(len(outcome.steps) for each in attempts for outcome in each.outcomes)
+        if enough or iterations > MAX_SQP_ITERATIONS:
             break
-    if not attempts[-1].arrived:
+    best = min(arrived, key=lambda each: each.over, default=None)
+    outcomes = [o for each in attempts if each is not best for o in each.outcomes]
+    if best is None:
         return _best_feasible(max(attempts, key=lambda each: each.reached), outcomes, fit, setup)
-    outcomes += close_between_nodes(outcomes[-1], setup, progress)
+    outcomes += best.outcomes
     gain = None
     method, weights = problem.requests.solution.method, dict[ObjectiveKind, float]()
     if method is Method.EXPLICIT:
@@ -119,10 +125,15 @@ def misses_a_constraint(outcome: Outcome) -> bool:
 
 def _goes_beyond_hard(outcome: Outcome, setup: Setup) -> bool:
     """Whether a motion does by MAX_DENSE_VIOLATION what a hard guard must keep it from."""
+    return _beyond(outcome, setup, [guard for guard in setup.guards if guard.hard]) > 0.0
+
+
+def _beyond(outcome: Outcome, setup: Setup, guards: Sequence[Guard]) -> float:
+    """By how many tolerances, summed, a motion does by MAX_DENSE_VIOLATION what guards are for."""
     motion = setup.feasible_set(outcome.transcription).motion(outcome.x)
-    hard = [guard for guard in setup.guards if guard.hard]
-    found = [each for guard in hard for each in guard.violations(motion)]
-    return any(each.amount > MAX_DENSE_VIOLATION * each.kind.tolerance for each in found)
+    found = [each for guard in guards for each in guard.violations(motion)]
+    over = np.array([each.amount / each.kind.tolerance for each in found])
+    return float(over[over > MAX_DENSE_VIOLATION].sum())
 
 
 # ---------------------------------------------------------------- continuation
@@ -130,19 +141,39 @@ def _goes_beyond_hard(outcome: Outcome, setup: Setup) -> bool:
 
 @dataclass(frozen=True)
 class ContinuationAttempt:
-    """Outcomes of one continuation attempt, and the number of steps that it was to have."""
+    """Outcomes of one continuation attempt, and the number of steps that it was to have.
 
-    outcomes: tuple[Outcome, ...]
+    closed: outcomes after the last step, that hold between the nodes too. over: by how many
+    tolerances the last goes beyond its guards, which are given up where they hold it back.
+    """
+
+    steps_taken: tuple[Outcome, ...]
     steps: int
+    closed: tuple[Outcome, ...] = ()
+    over: float = 0.0
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        return (*self.steps_taken, *self.closed)
 
     @property
     def reached(self) -> float:
         """The share of the steps that were solved."""
-        return sum(outcome.solved for outcome in self.outcomes) / self.steps
+        return sum(outcome.solved for outcome in self.steps_taken) / self.steps
 
     @property
     def arrived(self) -> bool:
-        return len(self.outcomes) == self.steps and self.outcomes[-1].solved
+        return len(self.steps_taken) == self.steps and self.steps_taken[-1].solved
+
+
+def _attempt(setup: Setup, times: int, progress: Progress | None) -> ContinuationAttempt:
+    """A continuation, and where it arrives, what closes it between the nodes."""
+    attempt = _continuation(setup, times, progress)
+    if not attempt.arrived:
+        return attempt
+    closed = close_between_nodes(attempt.outcomes[-1], setup, progress)
+    attempt = replace(attempt, closed=tuple(closed))
+    return replace(attempt, over=_beyond(attempt.outcomes[-1], setup, setup.guards))
 
 
 def _best_feasible(
