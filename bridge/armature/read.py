@@ -77,7 +77,7 @@ def recording_of(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -
     _require_finite_poses(poses, frames, world)
     return Recording(
         name=present(current_action(armature)).name,
-        bones=_rest(armature, poses, metres),
+        bones=rest_bones(armature, poses),
         frames=frames,
         times=(frames - frames[0]) / frames_per_second(current_scene()),
         heads=world[..., :3, 3] * metres,
@@ -85,9 +85,9 @@ def recording_of(armature: bpy.types.Object, frames: FloatArray, poses: Poses) -
     )
 
 
-def _rest(armature: bpy.types.Object, poses: Poses, metres: float) -> tuple[Bone, ...]:
+def rest_bones(armature: bpy.types.Object, poses: Poses) -> tuple[Bone, ...]:
     """The rest skeleton where the object stands at the first frame."""
-    world = poses.object_to_world[0]
+    world, metres = poses.object_to_world[0], metres_per_unit(current_scene())
 
     def place(point: Vector) -> FloatArray:
         return np.asarray((world[:3, :3] @ np.array(point) + world[:3, 3]) * metres)

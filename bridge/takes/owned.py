@@ -14,6 +14,8 @@ from ..armature.channels import channels, proper
 from ..armature.fcurves import CurveHolder
 from ..armature.pose_basis import carrier_of
 from ..armature.write import rotation_channel
+from ..controls.control_rig import ControlRig
+from ..controls.responses import Freedom
 from .key_splice import FullTurns
 
 _WHOLE = 0.5  # rad, by which angles may miss whole turns to count as such
@@ -77,3 +79,14 @@ def owned_channels(armature: bpy.types.Object, bones: tuple[str, ...]) -> Iterat
         yield OwnedChannel(bone, path, attribute, carries=bone == bones[0])
     path = posed[carrier].path_from_id("location")
     yield OwnedChannel(carrier, path, "location", carries=True)
+
+
+def owned_by(rig: ControlRig) -> Iterator[OwnedChannel]:
+    """The channels of the controls that pose a rig's bodies."""
+    for name, freedoms in rig.used.items():
+        bone, carries = pose_of(rig.armature).bones[name], name in rig.carriers
+        if Freedom.TURN in freedoms or carries:
+            attribute = rotation_channel(bone)
+            yield OwnedChannel(name, bone.path_from_id(attribute), attribute, carries)
+        if Freedom.SHIFT in freedoms:
+            yield OwnedChannel(name, bone.path_from_id("location"), "location", carries)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.stance_move import StanceMove
+from ..controls.control_rig import KeptByControls
 
 BLEND = 0.25  # s, the usual blend
 RETURN = 1.0  # s after the adapted frames, by which a take is usually back
@@ -61,7 +62,8 @@ class WrittenTake:
     """What was done to a take. back: the frame by which it is where it was; None where it is not.
 
     later: frames by which what follows comes later. applied: bones whose curves had modifiers, or
-    were muted, and are keys now.
+    were muted, and are keys now. controls: how near the bodies are that controls pose; None where
+    bodies have keys of their own.
     """
 
     span: ResultSpan
@@ -69,3 +71,4 @@ class WrittenTake:
     back: float | None
     later: int
     applied: tuple[str, ...] = ()
+    controls: KeptByControls | None = None

@@ -19,10 +19,18 @@ from ..armature.channels import proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
 from ..armature.poses import Poses, metres_per_unit
+from ..controls.control_rig import (
+    ControlRig,
+    carried_controls,
+    control_poses,
+    found_controls,
+    kept_by,
+)
+from ..controls.driven import is_driven
 from .carry import carried, shares_of_return
 from .key_splice import FullTurns, applied, retime, splice
 from .offsets import faded, seam_offset
-from .owned import OwnedChannel, owned_channels
+from .owned import OwnedChannel, owned_by, owned_channels
 from .plain_root import plain_poses
 from .plan import AdaptedMotion, Plan, planned
 from .span import ResultSpan, WrittenTake
@@ -45,7 +53,8 @@ def write_take(
     """
     curves = fcurves.holder_in(action, slot)
     assert curves is not None
-    owned = tuple(owned_channels(armature, motion.track.bones))
+    rig = yield from _controls(armature, action, motion)
+    owned = tuple(owned_channels(armature, motion.track.bones) if rig is None else owned_by(rig))
     plan = planned(curves, motion)
     yield from _retime(action, curves, owned, plan.time, alone=motion.options.lock_others)
     done = _apply_modifiers(armature, curves, owned, plan.span)
@@ -54,14 +63,23 @@ def write_take(
     poses = yield from sample_incrementally(armature, plan.body_frames, showing)
     later = None
     if len(plan.rest_frames):
-        later = plain_poses(armature, curves, motion.track.bones[0], plan.rest_frames)
+        if rig is None:
+            later = plain_poses(armature, curves, motion.track.bones[0], plan.rest_frames)
         if later is None:
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
     body, rest = _tracks(poses, later, plan, motion)
-    bases = pose_bases(armature, poses, body)
-    yield
+    posed = None
+    if rig is None:
+        bases = pose_bases(armature, poses, body)
+        yield
+    else:
+        posed = yield from control_poses(rig, poses, body, showing)
+        bases = posed.bases
     if later is not None and rest is not None:
-        more = pose_bases(armature, later, rest)
+        if rig is None:
+            more = pose_bases(armature, later, rest)
+        else:
+            more = yield from carried_controls(rig, later, rest, showing)
         bases |= {c.bone: np.concatenate([bases[c.bone], more[c.bone]]) for c in owned if c.carries}
     for channel in owned:
         _write_channel(armature, curves, channel, bases[channel.bone], plan)
@@ -71,7 +89,20 @@ def write_take(
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
     moved = None if plan.moved is None or motion.ends else plan.moved
-    return WrittenTake(plan.span, moved, plan.back, plan.time.later, done)
+    kept = None if posed is None else kept_by(posed, plan.body_frames)
+    return WrittenTake(plan.span, moved, plan.back, plan.time.later, done, kept)
+
+
+def _controls(
+    armature: bpy.types.Object, action: bpy.types.Action, motion: AdaptedMotion
+) -> Incremental[ControlRig | None]:
+    """The controls of a rig whose bodies follow such, as they are in the take's copy."""
+    if not is_driven(armature, motion.track.bones):
+        return None
+    recorded = motion.times.recorded_frame
+    frames = np.arange(np.ceil(recorded[0]), np.floor(recorded[-1]) + 1.0)
+    showing = partial(showing_action, armature, action)
+    return (yield from found_controls(armature, motion.track.bones, frames, showing))
 
 
 def _retime(

@@ -12,6 +12,7 @@ from ..armature.actions import recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
 from ..armature.strips import lay_strips
 from ..armature.write import write_incrementally
+from ..controls.driven import is_driven
 from ..properties.settings import action_settings, settings_of
 from ..rows.choices import After, WrittenAs
 from .plan import AdaptedMotion
@@ -58,7 +59,8 @@ def _write(
     slot: str | None,
     name: str,
 ) -> Incremental[tuple[bpy.types.Action, WrittenTake | None]]:
-    if motion.options.after is After.CUT:
+    cut_off = motion.options.after is After.CUT
+    if cut_off and not is_driven(armature, motion.track.bones):
         showing = partial(showing_action, armature, recorded)
         cut = yield from write_incrementally(
             armature, motion.track, recorded, slot, name=name, showing=showing
@@ -72,6 +74,9 @@ def _write(
     whole = False
     try:
         written = yield from write_take(armature, action, slot, motion)
+        if cut_off:
+            for curve in fcurves.all_curves(action):
+                fcurves.crop(curve, float(motion.track.frames[0]), float(motion.track.frames[-1]))
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody

@@ -6,6 +6,7 @@ from ...bridge.accessors import present
 from ...bridge.armature import fcurves
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
+from ...bridge.controls.driven import is_driven
 from ...bridge.keys.events import events_of
 from ...bridge.keys.written import KeyedAction, choose_keys
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
@@ -46,7 +47,10 @@ def write_keys(
     slot = fcurves.slot_identifier(performer)
     keyed = KeyedAction(action, slot, track.bones, track.frames, take)
     events = events_of(answer.schedule, float(track.frames[0]), rate)
-    line = f"Keys: {keys_line((yield from choose_keys(performer, keyed, options, events)))}"
+    if is_driven(performer, track.bones):
+        line = "Keys: on every frame, as on all rigs that are posed through controls"
+    else:
+        line = f"Keys: {keys_line((yield from choose_keys(performer, keyed, options, events)))}"
     settings.status = f"{settings.status}\n{line}"
     stored = action_settings(action)
     stored.report = f"{stored.report}\n{line}\n"

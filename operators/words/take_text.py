@@ -1,8 +1,10 @@
 """Wording of what was done to the take around the adapted frames."""
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from math import degrees, hypot
 
+from ...bridge.controls.control_rig import KeptByControls
 from ...bridge.takes.span import WrittenTake
 
 _LEVEL = 0.0005  # m
@@ -25,6 +27,8 @@ def take_record(written: WrittenTake) -> dict[str, object]:
         "later_frames": written.later,
         "curves_applied": list(written.applied),
     }
+    if written.controls is not None:
+        record["controls"] = asdict(written.controls)
     if move is not None:
         record["carried_with"] = move.phase
         record["carried_m"] = list(move.shift)
@@ -45,6 +49,8 @@ def _lines(written: WrittenTake) -> Iterator[str]:
         yield f"What follows comes {_frames(abs(written.later))} {way}"
     if written.moved is not None:
         yield from _carried(written)
+    if written.controls is not None:
+        yield _controls(written.controls)
     if written.applied:
         yield f"Curves with modifiers, or muted, are plain keys now: {', '.join(written.applied)}"
 
@@ -62,6 +68,17 @@ def _carried(written: WrittenTake) -> Iterator[str]:
     yield f"  {', '.join(parts)}"
     if written.back is not None:
         yield f"  It is back where it was at frame {written.back:g}"
+
+
+def _controls(kept: KeptByControls) -> str:
+    said = f"{kept.controls} controls have keys; bones are within {kept.mm:.2f} mm"
+    if kept.kept:
+        return f"{said} and {kept.degrees:.2f}°"
+    return (
+        f"The controls miss the solution: {kept.far_bone} by {kept.mm:.1f} mm (frame "
+        f"{kept.far_frame:g}), {kept.turned_bone} by {kept.degrees:.1f}° (frame "
+        f"{kept.turned_frame:g})"
+    )
 
 
 def _frames(count: int) -> str:

@@ -100,6 +100,7 @@ def settled(tree: Tree, chosen: Mapping[str, str]) -> Found:
 def trunk(tree: Tree, found: Found) -> tuple[list[int], list[int]]:
     """Spine and neck, from below: what lies between pelvis and head, parted where the arms branch.
 
+    Of a generated rig's neck the first bone stands for all: one control turns them.
     Raises NoSpine.
     """
     pelvis, head = found[Part.PELVIS, Side.MIDDLE], found[Part.HEAD, Side.MIDDLE]
@@ -112,7 +113,8 @@ def trunk(tree: Tree, found: Found) -> tuple[list[int], list[int]]:
     spine = [bone for bone in middle if bone in arms]
     if not spine:
         raise NoSpine(tree.bones[pelvis].name, tree.bones[head].name)
-    return spine, [bone for bone in middle if bone not in arms]
+    neck = [bone for bone in middle if bone not in arms]
+    return spine, neck[:1] if tree.generated else neck
 
 
 _JOINED = ((Part.THIGH, Side.LEFT), (Part.THIGH, Side.RIGHT), (Part.HEAD, Side.MIDDLE))

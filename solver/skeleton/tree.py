@@ -1,5 +1,6 @@
 """The skeleton as a tree, within one family of bones where a rig has several."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +10,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.recording import Bone
 
-FAMILIES = ("DEF-", "ORG-")  # Rigify's deform bones and, where there are none, what they follow
+FAMILIES = ("DEF-", "ORG-")  # Rigify's deform bones, and the bones that these follow
+SEGMENT = re.compile(r"\.\d+$")
 FEWEST = 10  # bones that make a family
 
 
@@ -18,13 +20,18 @@ class Tree:
     """Bones by index, with the parents that they have in their family.
 
     parents: (B,) indices, -1 for a root. inside: the bones that may be parts of the body.
-    prefix: of the family's names; "" where there is none.
+    prefixes: of the family's names; none where there is no family.
     """
 
     bones: tuple[Bone, ...]
     parents: tuple[int, ...]
     inside: tuple[int, ...]
-    prefix: str = ""
+    prefixes: tuple[str, ...] = ()
+
+    @property
+    def generated(self) -> bool:
+        """Whether the bones that a generator's deform bones follow are there, and its controls."""
+        return any(bone.name.startswith(FAMILIES[1]) for bone in self.bones)
 
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
@@ -53,7 +60,7 @@ class Tree:
 
     def name(self, bone: int) -> str:
         """A bone's name without its family's prefix."""
-        return self.bones[bone].name.removeprefix(self.prefix)
+        return bare(self.bones[bone].name) if self.prefixes else self.bones[bone].name
 
     def ancestors(self, bone: int) -> list[int]:
         """The bone and its ancestors, nearest first."""
@@ -83,20 +90,33 @@ class Tree:
         return line
 
 
-def tree_of(bones: Sequence[Bone]) -> Tree:
-    """The tree of the bones, parents first; of one family's alone where names tell families.
+def bare(name: str) -> str:
+    """A name without a family's prefix."""
+    return next((name.removeprefix(p) for p in FAMILIES if name.startswith(p)), name)
 
-    A bone whose parent is of another family hangs on the bone that stands for this parent in its
-    own: Rigify's DEF-thigh.L, below ORG-spine, on DEF-spine.
+
+def tree_of(bones: Sequence[Bone]) -> Tree:
+    """The tree of the bones, parents first; of a generated rig's family alone where there is one.
+
+    Deform bones, but for a limb that has several in a row, which share out its twist: of these the
+    one that they follow. A bone whose parent is of another family hangs on the bone that stands for
+    this parent in its own: Rigify's ORG-thigh.L, below ORG-spine, on DEF-spine.
     """
     names = [bone.name for bone in bones]
+    index: dict[str, int] = {}
     for prefix in FAMILIES:
-        inside = tuple(i for i, name in enumerate(names) if name.startswith(prefix))
-        if len(inside) >= FEWEST:
-            index = {names[i].removeprefix(prefix): i for i in inside}
-            parents = [_above(bones, i, index) for i in range(len(bones))]
-            return Tree(tuple(bones), tuple(parents), inside, prefix)
-    return Tree(tuple(bones), tuple(bone.parent for bone in bones), tuple(range(len(bones))))
+        family = {bare(n): i for i, n in enumerate(names) if n.startswith(prefix)}
+        index = {**family, **index}
+    if len(index) < FEWEST:
+        return Tree(tuple(bones), tuple(bone.parent for bone in bones), tuple(range(len(bones))))
+    followed = {bare(n): i for i, n in enumerate(names) if n.startswith(FAMILIES[1])}
+    for name in tuple(index):
+        whole = SEGMENT.sub("", name)
+        if followed and name not in followed and whole in followed:
+            index[whole] = followed[whole]
+            del index[name]
+    parents = [_above(bones, i, index) for i in range(len(bones))]
+    return Tree(tuple(bones), tuple(parents), tuple(sorted(index.values())), FAMILIES)
 
 
 def _above(bones: Sequence[Bone], bone: int, index: dict[str, int]) -> int:
@@ -106,9 +126,8 @@ def _above(bones: Sequence[Bone], bone: int, index: dict[str, int]) -> int:
     """
     above = bones[bone].parent
     while above >= 0:
-        name = bones[above].name
-        bare = next((name.removeprefix(p) for p in FAMILIES if name.startswith(p)), name)
-        if index.get(bare, bone) != bone:
-            return index[bare]
+        name = bare(bones[above].name)
+        if index.get(name, bone) != bone:
+            return index[name]
         above = bones[above].parent
     return -1

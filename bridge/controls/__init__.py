@@ -1,0 +1,1 @@
+"""Control rigs: bodies that follow other bones, posed through the controls that move them."""

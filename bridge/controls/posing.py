@@ -1,0 +1,106 @@
+"""Controls posed and bodies looked at, at the scene's frame, without a key."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ...solver.arrays import FloatArray
+from ..accessors import armature_data, current_scene, pose_of, present
+from ..armature.poses import evaluated
+from .driven import constrained
+
+_CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+
+
+@dataclass(frozen=True)
+class Posed:
+    """Poses in the armature's space and units.
+
+    controls: (C, 4, 4). frames: (C, 4, 4), in which a control's channels count. bodies: (B, 4, 4).
+    """
+
+    controls: FloatArray
+    frames: FloatArray
+    bodies: FloatArray
+
+
+class Posing:
+    """An armature whose controls are posed by matrices, to see what its bodies do."""
+
+    def __init__(
+        self, armature: bpy.types.Object, controls: Sequence[str], bodies: Sequence[str]
+    ) -> None:
+        self.armature = armature
+        self.controls = tuple(controls)
+        self.bodies = tuple(bodies)
+        bones, rest = pose_of(armature).bones, armature_data(armature).bones
+        self._columns = [bones.find(name) for name in (*controls, *bodies)]
+        self._flat = np.empty(16 * len(bones), np.float32)
+        self._stored: list[list[tuple[float, ...]]] = []
+        moved = constrained(armature)
+        # What a constraint moves is not where its channels put it, but its parent is.
+        self._parents: dict[int, tuple[int, FloatArray]] = {}
+        for index, name in enumerate(controls):
+            above = rest[name].parent
+            if name in moved and above is not None:
+                offset = np.linalg.solve(
+                    np.array(above.matrix_local), np.array(rest[name].matrix_local)
+                )
+                self._parents[index] = bones.find(above.name), offset
+
+    @contextmanager
+    def kept(self) -> Iterator[None]:
+        """Context after which the controls' channels and the scene's frame are what they were."""
+        bones = [pose_of(self.armature).bones[name] for name in self.controls]
+        self._stored = [[tuple(getattr(bone, name)) for name in _CHANNELS] for bone in bones]
+        with evaluated([self.armature]):
+            try:
+                yield
+            finally:
+                self._restore()
+
+    def _restore(self) -> None:
+        for control, values in zip(self.controls, self._stored, strict=True):
+            bone = pose_of(self.armature).bones[control]
+            for name, value in zip(_CHANNELS, values, strict=True):
+                setattr(bone, name, value)
+        self.armature.update_tag()
+
+    def go_to(self, frame: float) -> None:
+        """Show a frame, whole or not, as it is animated; channels without keys as they were."""
+        self._restore()
+        whole = int(np.floor(frame))
+        current_scene().frame_set(whole, subframe=frame - whole)
+
+    def bases(self) -> FloatArray:
+        """(C, 4, 4) pose bases of the controls now."""
+        bones = pose_of(self.armature).bones
+        return np.array([bones[name].matrix_basis for name in self.controls])
+
+    def pose(self, control: int, basis: FloatArray) -> None:
+        """Give a control a pose basis (4, 4)."""
+        bone = pose_of(self.armature).bones[self.controls[control]]
+        bone.matrix_basis = Matrix(basis.tolist())
+
+    def look(self) -> Posed:
+        """Evaluate what was posed."""
+        present(bpy.context.view_layer).update()
+        posed = self.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        pose_of(posed).bones.foreach_get("matrix", self._flat)
+        every = self._flat.reshape(-1, 4, 4).transpose(0, 2, 1).astype(float)
+        matrices, count = every[self._columns], len(self.controls)
+        frames = matrices[:count] @ np.linalg.inv(self.bases())
+        for index, (parent, offset) in self._parents.items():
+            frames[index] = every[parent] @ offset
+        return Posed(matrices[:count], frames, matrices[count:])
+
+    def object_to_world(self) -> FloatArray:
+        """(4, 4) of the armature now."""
+        posed = self.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        return np.array(posed.matrix_world)

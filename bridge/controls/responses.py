@@ -1,0 +1,172 @@
+"""What each degree of freedom of the controls does to the bodies, measured by small changes.
+
+A response is kept in the control's own axes, and as what is different from a rigid follower: so it
+holds at other frames too for whatever follows in that way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import bpy
+import numpy as np
+
+from ...solver.arrays import BoolArray, FloatArray
+from ...solver.numerics.rotations import rotation_matrix, rotation_vector
+from ..accessors import pose_of
+from ..armature.channels import proper
+from .posing import Posed, Posing
+
+TURN_STEP = 0.01  # rad
+SHIFT_STEP = 0.005  # Blender units
+FELT = 2e-3  # of a step; what answers by less does not follow
+
+
+class Freedom(Enum):
+    """What a degree of freedom changes."""
+
+    TURN = "turn"
+    SHIFT = "shift"
+
+
+@dataclass(frozen=True)
+class Dof:
+    """Degree of freedom of a control, by index: a turn about one of its own axes, or a shift along
+    one of those in which its channels count."""
+
+    control: int
+    freedom: Freedom
+    axis: int
+
+    @property
+    def step(self) -> float:
+        """The change by which it is tried."""
+        return TURN_STEP if self.freedom is Freedom.TURN else SHIFT_STEP
+
+    def applied(self, basis: FloatArray, amount: float) -> FloatArray:
+        """A pose basis (4, 4), changed by that much."""
+        changed = basis.copy()
+        if self.freedom is Freedom.SHIFT:
+            changed[self.axis, 3] += amount
+        else:
+            changed[:3, :3] = basis[:3, :3] @ rotation_matrix(amount * np.eye(3)[self.axis])
+        return changed
+
+    def axes(self, posed: Posed, bases: FloatArray) -> FloatArray:
+        """(3, 3) axes of the response, in the armature's space. bases: (C, 4, 4)."""
+        frame = proper(posed.frames[self.control, :3, :3])
+        if self.freedom is Freedom.SHIFT:
+            return frame
+        return np.asarray(frame @ proper(bases[self.control, :3, :3]))
+
+
+@dataclass(frozen=True)
+class Responses:
+    """Of dofs D on bodies B and controls C.
+
+    turns: (D, B, 3), in the control's axes. shifts: (D, B, 3) of the heads, likewise, without those
+    of a rigid turn about the control. follow: (D, B). moved: (D, C), other controls that move.
+    """
+
+    dofs: tuple[Dof, ...]
+    turns: FloatArray
+    shifts: FloatArray
+    follow: BoolArray
+    moved: BoolArray
+
+    def columns(self, posed: Posed, bases: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Turns and shifts (D, B, 3) in the armature's space, at another pose."""
+        turns, shifts = np.empty_like(self.turns), np.empty_like(self.shifts)
+        for d, dof in enumerate(self.dofs):
+            axes = dof.axes(posed, bases)
+            turns[d] = self.turns[d] @ axes.T
+            shifts[d] = self.shifts[d] @ axes.T + _rigid(dof, turns[d], posed)
+        return turns, shifts
+
+    def part(self, chosen: Sequence[int]) -> Responses:
+        """Those of some dofs."""
+        rows = list(chosen)
+        dofs = tuple(self.dofs[d] for d in rows)
+        return Responses(
+            dofs, self.turns[rows], self.shifts[rows], self.follow[rows], self.moved[rows]
+        )
+
+
+def _rigid(dof: Dof, turns: FloatArray, posed: Posed) -> FloatArray:
+    """(B, 3) shifts of heads that turn rigidly about a control."""
+    if dof.freedom is Freedom.SHIFT:
+        return np.zeros_like(turns)
+    arms = posed.bodies[:, :3, 3] - posed.controls[dof.control, :3, 3]
+    return np.cross(turns, arms)
+
+
+def free_dofs(armature: bpy.types.Object, controls: Sequence[str]) -> Iterator[Dof]:
+    """The degrees of freedom that are not locked."""
+    for index, name in enumerate(controls):
+        bone = pose_of(armature).bones[name]
+        for freedom, locked in (
+            (Freedom.TURN, bone.lock_rotation),
+            (Freedom.SHIFT, bone.lock_location),
+        ):
+            yield from (Dof(index, freedom, axis) for axis in range(3) if not locked[axis])
+
+
+def measured(
+    posing: Posing, bases: FloatArray, groups: Iterable[Sequence[tuple[Dof, BoolArray]]]
+) -> Responses:
+    """Responses at the scene's frame with pose bases (C, 4, 4).
+
+    groups: dofs that may be tried at once, each with the bodies (B,) that can be its followers.
+    """
+    for index, basis in enumerate(bases):
+        posing.pose(index, basis)
+    before = posing.look()
+    dofs, turns, shifts, follow, moved = [], [], [], [], []
+    for group in groups:
+        for dof, _ in group:
+            posing.pose(dof.control, dof.applied(bases[dof.control], dof.step))
+        after = posing.look()
+        for dof, of in group:
+            posing.pose(dof.control, bases[dof.control])
+            turn = rotation_vector(_turned(before.bodies, after.bodies)) / dof.step
+            shift = (after.bodies[:, :3, 3] - before.bodies[:, :3, 3]) / dof.step
+            felt = np.maximum(np.abs(turn).max(1), np.abs(shift).max(1)) > FELT
+            keep, axes = (felt & of)[:, None], dof.axes(before, bases)
+            dofs.append(dof)
+            turns.append(np.where(keep, turn @ axes, 0.0))
+            shifts.append(np.where(keep, (shift - _rigid(dof, turn, before)) @ axes, 0.0))
+            follow.append(keep[:, 0])
+            change = np.abs(after.controls - before.controls).max((1, 2)) / dof.step
+            moved.append((change > FELT) & (np.arange(len(change)) != dof.control))
+    return Responses(
+        tuple(dofs), np.stack(turns), np.stack(shifts), np.stack(follow), np.stack(moved)
+    )
+
+
+def _turned(before: FloatArray, after: FloatArray) -> FloatArray:
+    """(B, 3, 3) turns between poses."""
+    return proper(after[:, :3, :3]) @ np.swapaxes(proper(before[:, :3, :3]), 1, 2)
+
+
+def apart(responses: Responses) -> list[list[tuple[Dof, BoolArray]]]:
+    """The dofs in as few groups as come by themselves of which no two share a follower."""
+    groups: list[tuple[list[tuple[Dof, BoolArray]], BoolArray]] = []
+    order = np.argsort(-responses.follow.sum(1), kind="stable")
+    for d in order:
+        dof, of = responses.dofs[d], responses.follow[d]
+        free = next(
+            (
+                g
+                for g in groups
+                if not (g[1] & of).any() and all(dof.control != o.control for o, _ in g[0])
+            ),
+            None,
+        )
+        if free is None:
+            groups.append(([(dof, of)], of.copy()))
+        else:
+            free[0].append((dof, of))
+            free[1][:] |= of
+    return [group for group, _ in groups]
