@@ -153,6 +153,7 @@ def test_the_report_becomes_a_text(adapted: bpy.types.Object) -> None:
     assert "the pelvis rises to" in text
 
 
+@pytest.mark.slow
 def test_the_best_of_a_solve_that_failed_can_be_used(analysed: bpy.types.Object) -> None:
     stance = analysed.hangtime.stances["ground 2"]
     stance.forward = 8.0
@@ -175,6 +176,7 @@ def test_refining_lessens_what_is_chosen(adapted: bpy.types.Object) -> None:
     assert "objective" in adapted.hangtime.adapted.hangtime.report.lower()
 
 
+@pytest.mark.slow
 def test_a_contact_that_was_not_seen_is_added(analysed: bpy.types.Object) -> None:
     settings = analysed.hangtime
     gone = settings.contacts["Left heel 2"]

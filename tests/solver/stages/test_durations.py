@@ -68,6 +68,7 @@ def arm_swing(adaptation: Adaptation) -> float:
     return float(between.max(axis=(0, 1)).mean())
 
 
+@pytest.mark.slow
 def test_a_longer_jump_flies_longer_and_a_shorter_one_shorter() -> None:
     """Near the square root of the distance, as where the take-off's angle stays."""
     was = recorded()[FLIGHT]
@@ -145,6 +146,7 @@ def test_contacts_phases_and_timeline_agree() -> None:
     assert len(found.track.frames) > len(whole_hop().performance.recording.frames)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("forward", "up"), [(1.8, 0.0), (0.0, 1.2)])
 def test_far_landings_have_durations_too(forward: float, up: float) -> None:
     setup = set_up(whole_hop(), to(forward, up=up))

@@ -103,6 +103,7 @@ def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
     assert [load.share for load in problem.requests.body.added] == [0.1]
 
 
+@pytest.mark.slow
 def test_a_longer_jump_has_more_frames(analysed: bpy.types.Object) -> None:
     analysed.hangtime.stances["ground 2"].forward = 0.2
     recorded = analysed.animation_data.action
