@@ -154,7 +154,7 @@ class SolidWorld:
             return old
         kept = _penetrations(old).but(given_up) if old is not None else found.some(NONE)
         for each in self.passables:
-            found, kept = each.directed(found, kept, motion)
+            found, kept = each.directed(found, kept, motion, given_up)
         found = kept.with_more(found.some(chosen(found, SPACING, ROW_SPACING)))
         function = SolidDistance(self.surfaces, found)
         return GuardRows(self.names, found.items, found.times, found.lower, function)
