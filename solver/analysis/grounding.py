@@ -64,11 +64,11 @@ def foot_sized(schedule: ContactSchedule, performance: Performance) -> ContactSc
     """The schedule with heel and toe of a foot as far apart as the foot is long.
 
     A foot that turns while it stands leaves its heel and toe places of different moments. The point
-    that stands for longer keeps its place.
+    that stands for longer keeps its place, or takes along what stands for less than it.
     """
     contacts = list(schedule.contacts)
-    for i, j in combinations(range(len(contacts)), 2):
-        longer, shorter = sorted((i, j), key=lambda k: contacts[k].start - contacts[k].end)
+    longest_first = sorted(range(len(contacts)), key=lambda k: contacts[k].start - contacts[k].end)
+    for longer, shorter in combinations(longest_first, 2):
         apart = _recorded_apart(contacts[shorter], contacts[longer], performance)
         if apart is None:
             continue
