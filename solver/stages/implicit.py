@@ -279,7 +279,8 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
         elif new.guards is old.guards:
             break  # what was solved for stands; what it misses in between is reported
         else:
-            conflicting = in_the_way(feasible, metric, tried.x) - hard
+            stuck = outcome.x if tried.solved else tried.x  # where all rows hold none pulls
+            conflicting = in_the_way(feasible, metric, stuck) - hard
             if not conflicting - given_up:
                 break  # the artist's hard ranges are missed, and reported
             given_up |= conflicting
