@@ -87,6 +87,8 @@ class BoundedStep:
         # The rows give a little (SOFT); their last multipliers make up for it.
         base = z[rows] + self._soft * self.multipliers[rows]
         u = solve_dual_qp(self._root, self.lower[rows] - base, self.upper[rows] - base)
+        if not np.isfinite(u).all():  # DAQP lost its way; the line search judges the step without
+            u = np.zeros(len(rows))
         self.multipliers[rows] = u
         return u
 
