@@ -220,10 +220,12 @@ def solve(
 ) -> AdaptationResult:
     """The whole way from an analysis. fitted_by: may remember fits.
 
-    Raises what `adapt` and `check_scene` do; wrong names in pins before the fit takes its seconds.
+    Raises what `adapt` and `check_scene` do; wrong names in pins and shapes before the fit takes
+    its seconds.
     """
     check_scene(subject.problem)
-    schedule = subject.analysis.schedule
+    performance, schedule = subject.analysis.performance, subject.analysis.schedule
+    ShapeChanges.of(subject.problem.requests.shapes, performance.character)
     for pin in subject.problem.pins:
         chosen_contacts(pin, phase_of(pin, schedule), schedule)
     return adapt_fit(subject, fitted_by(subject, clock), clock)
