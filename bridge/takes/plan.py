@@ -40,7 +40,8 @@ class AdaptedMotion:
 
 @dataclass(frozen=True)
 class Plan:
-    """What goes where. back: frame by which the take is where it was, where it is to come back."""
+    """What goes where. moved: with which stance what follows is carried; None where nothing is.
+    back: frame by which the take is where it was, where it is to come back."""
 
     span: ResultSpan
     time: TakeTime
@@ -87,7 +88,8 @@ def planned(curves: CurveHolder, motion: AdaptedMotion) -> Plan:
         blend_out = 0.0
     time = TakeTime.of(motion.times, max(blend_out, 1.0))
     begin, end = time.to_result(np.array(key_span(list(curves.fcurves)))).tolist()
-    moved = None if motion.moved is None or motion.moved.stays else motion.moved
+    follows = not motion.ends and np.floor(end) > last
+    moved = motion.moved if follows and motion.moved is not None and not motion.moved.stays else None
     back = None
     if moved is not None and options.after is After.RETURN:
         by = options.return_frame

@@ -70,8 +70,7 @@ def write_take(
         for curve in fcurves.all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
-    moved = None if plan.moved is None or motion.ends else plan.moved
-    return WrittenTake(plan.span, moved, plan.back, plan.time.later, done)
+    return WrittenTake(plan.span, plan.moved, plan.back, plan.time.later, done)
 
 
 def _retime(

@@ -176,6 +176,22 @@ def test_a_take_returns_by_a_frame() -> None:
     assert left[85:].max() == 0.0
 
 
+@pytest.mark.parametrize("ends", [False, True])
+def test_where_nothing_follows_nothing_is_carried_or_comes_back(ends: bool) -> None:
+    armature = take()
+    recording = read_recording(armature)
+    asked = motion(recording, MOVED, after=After.RETURN)
+    if not ends:
+        for curve in fcurves.curves_of(armature):
+            fcurves.crop(curve, 1.0, LAST)
+    _, written = write_result(armature, replace(asked, ends=ends), name="Result")
+    assert written is not None
+    assert (written.moved, written.back) == (None, None)
+    now = read_recording(armature)
+    assert now.frames[[0, -1]].tolist() == [1.0, LAST]
+    np.testing.assert_allclose(now.heads[-1, 0], asked.track.root_head[-1], atol=2e-6)
+
+
 def later(recording: Recording, **options: object) -> AdaptedMotion:
     """A motion of the frames that takes 3.4 frames more."""
     track = adapted(recording, LAST - FIRST + 4)
