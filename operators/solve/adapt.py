@@ -284,7 +284,8 @@ def _note(
     action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)
     store_overlaps(action, answer.report)
-    action_settings(action).performer = performer
+    if performer != armature:
+        action_settings(action).performer = performer
 
 
 def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:

@@ -155,7 +155,20 @@ def test_what_is_discarded_is_what_is_shown(armature: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.discard() == {"FINISHED"}
     assert current_action(armature) == recording
     assert [take.action for take in takes_of(armature)] == [recording, second]
-    assert armature.hangtime.adapted == second
+    assert armature.hangtime.contacts[0].at[2] == pytest.approx(0.1)  # what was asked for stays
+    look_again(armature)
+    assert second.hangtime.stale == ""
+    assert bpy.ops.hangtime.show_take(action=second.name) == {"FINISHED"}
+    assert armature.hangtime.contacts[0].at[2] == pytest.approx(0.2)
+
+
+def test_a_result_without_its_recording_is_discarded(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    adapt(armature, 10, 20, 0.1)
+    bpy.data.actions.remove(recording)
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(armature) is None
+    assert len(bpy.data.actions) == 0
 
 
 def test_a_result_that_others_build_on_is_not_discarded(armature: bpy.types.Object) -> None:
