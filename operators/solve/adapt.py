@@ -82,7 +82,8 @@ class _Adapting(TaskOperator):
         told = left_behind(required_armature(context))
         if told and not (self.leave_edits or bpy.app.background):
             leave = bpy.ops.hangtime.leave_edits  # type: ignore[attr-defined]  # our own
-            leave("INVOKE_DEFAULT", then=self.bl_idname, text=told)
+            # Of an instance Blender tells its own name, "HANGTIME_OT_adapt".
+            leave("INVOKE_DEFAULT", then=type(self).bl_idname, text=told)
             return {"CANCELLED"}
         return super().invoke(context, event)
 

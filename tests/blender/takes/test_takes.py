@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import ClassVar
+
 import numpy as np
 import pytest
 
@@ -27,6 +30,7 @@ from hangtime.bridge.takes.takes import (
     takes_of,
 )
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.operators.solve import adapt as adapt_operators
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
@@ -144,6 +148,36 @@ def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
     assert polished_result(armature) == first
     look_again(armature)
     assert first.hangtime.polished
+
+
+class Probe(adapt_operators.AdaptOperator, bpy.types.Operator):
+    """Adapt as a window calls it, which only tells how."""
+
+    bl_idname = "hangtime.probe"
+    bl_label = "Probe"
+    left: ClassVar[list[bool]] = []
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.left.append(self.leave_edits)
+        return {"FINISHED"} if self.leave_edits else self.invoke(context, None)
+
+
+def test_adapt_anyway_goes_on_to_adapt(
+    armature: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, asked = adapt(armature, 10, 20, 0.1), {}
+    fcurves.holder_in(first, fcurves.slot_identifier(armature)).fcurves[0].mute = True
+    ops = SimpleNamespace(leave_edits=lambda _how, **told: asked.update(told))
+    window = SimpleNamespace(app=SimpleNamespace(background=False), ops=SimpleNamespace(hangtime=ops))
+    monkeypatch.setattr(adapt_operators, "bpy", window)
+    bpy.utils.register_class(Probe)
+    try:
+        assert bpy.ops.hangtime.probe() == {"CANCELLED"}
+        assert f"Keys of {first.name} were edited by hand" in asked["text"]
+        assert bpy.ops.hangtime.leave_edits(**asked) == {"FINISHED"}
+        assert Probe.left == [False, True]
+    finally:
+        bpy.utils.unregister_class(Probe)
 
 
 def test_what_is_discarded_is_what_is_shown(armature: bpy.types.Object) -> None:
