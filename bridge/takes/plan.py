@@ -89,7 +89,7 @@ def planned(curves: CurveHolder, motion: AdaptedMotion) -> Plan:
     time = TakeTime.of(motion.times, max(blend_out, 1.0))
     begin, end = time.to_result(np.array(key_span(list(curves.fcurves)))).tolist()
     follows = not motion.ends and np.floor(end) > last
-    moved = motion.moved if follows and motion.moved is not None and not motion.moved.stays else None
+    moved = None if motion.moved is None or motion.moved.stays or not follows else motion.moved
     back = None
     if moved is not None and options.after is After.RETURN:
         by = options.return_frame

@@ -132,10 +132,24 @@ def test_results_that_are_out_of_date_say_so(armature: bpy.types.Object) -> None
     armature.hangtime.contacts[0].at = (0.0, 0.0, 0.1)
     look_again(armature)
     assert first.hangtime.stale == ""
+    for asked in (True, False):
+        armature.hangtime.keep_times = asked
+        look_again(armature)
+        assert first.hangtime.stale == (EDIT_CHANGED if asked else "")
     holder = fcurves.holder_in(recording, fcurves.slot_identifier(armature))
     holder.fcurves[0].keyframe_points[5].co.y += 0.1
     look_again(armature)
     assert first.hangtime.stale == TAKE_CHANGED
+
+
+def test_a_recipe_text_that_is_edited_makes_results_stale(armature: bpy.types.Object) -> None:
+    armature.hangtime.requests = text = bpy.data.texts.new("Requests")
+    first = adapt(armature, 10, 20, 0.1)
+    look_again(armature)
+    assert first.hangtime.stale == ""
+    text.write("[solution]\nkeep_times = true\n")
+    look_again(armature)
+    assert first.hangtime.stale == EDIT_CHANGED
 
 
 def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
@@ -167,9 +181,9 @@ def test_adapt_anyway_goes_on_to_adapt(
 ) -> None:
     first, asked = adapt(armature, 10, 20, 0.1), {}
     fcurves.holder_in(first, fcurves.slot_identifier(armature)).fcurves[0].mute = True
-    ops = SimpleNamespace(leave_edits=lambda _how, **told: asked.update(told))
-    window = SimpleNamespace(app=SimpleNamespace(background=False), ops=SimpleNamespace(hangtime=ops))
-    monkeypatch.setattr(adapt_operators, "bpy", window)
+    ours = SimpleNamespace(leave_edits=lambda _how, **told: asked.update(told))
+    ops, app = SimpleNamespace(hangtime=ours), SimpleNamespace(background=False)
+    monkeypatch.setattr(adapt_operators, "bpy", SimpleNamespace(app=app, ops=ops))
     bpy.utils.register_class(Probe)
     try:
         assert bpy.ops.hangtime.probe() == {"CANCELLED"}
