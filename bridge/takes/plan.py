@@ -70,6 +70,15 @@ class Plan:
             right = float(self.rest_frames[-1]) + (BESIDE if self.back is None else 0.0)
         return left, right
 
+    def beside(self, channel: OwnedChannel) -> tuple[float | None, float | None]:
+        """Whole frames next to those that are replaced; None where the take does not reach them."""
+        left, right = self.between(channel)
+        before, after = float(np.floor(left)), float(np.ceil(right))
+        return (
+            before if before >= self.span.begin else None,
+            after if after <= self.span.end else None,
+        )
+
 
 def planned(curves: CurveHolder, motion: AdaptedMotion) -> Plan:
     """What is to be done to a take that these curves animate."""
