@@ -9,7 +9,7 @@ from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.takes.takes import results_from, source_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import chosen_armature, required_armature
+from .common import TWEAK_MODE, chosen_armature, required_armature, tweaked
 from .session import session
 from .task import CANCELLED
 
@@ -52,7 +52,10 @@ class _OfResult(PolledOperator):
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return NOTHING_ADAPTED if result_of(chosen_armature(context)) is None else None
+        armature = chosen_armature(context)
+        if armature is None or result_of(armature) is None:
+            return NOTHING_ADAPTED
+        return TWEAK_MODE if tweaked(armature) else None
 
 
 class CompareOperator(_OfResult, bpy.types.Operator):
@@ -88,7 +91,7 @@ class ShowRecordingOperator(PolledOperator, bpy.types.Operator):
         armature = chosen_armature(context)
         if armature is None or current_action(armature) == recorded_action(armature):
             return "The recording is what is shown"
-        return None
+        return TWEAK_MODE if tweaked(armature) else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
