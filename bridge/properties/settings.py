@@ -354,7 +354,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     spans: declared(text(), options=HIDDEN)
     stale: declared(text(), options=HIDDEN)  # why it is not what would be made now
     polished: declared(boolean(), options=HIDDEN)  # edited by hand since
-    performer: declared(target(), options=HIDDEN)
+    performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames

@@ -20,7 +20,7 @@ from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
 from ..armature.poses import Poses, metres_per_unit
 from .carry import carried, shares_of_return
-from .key_splice import FullTurns, applied, retime, splice
+from .key_splice import FullTurns, anchor, applied, retime, splice
 from .offsets import faded, seam_offset
 from .owned import OwnedChannel, owned_channels
 from .plain_root import plain_poses
@@ -70,8 +70,7 @@ def write_take(
         for curve in fcurves.all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
-    moved = None if plan.moved is None or motion.ends else plan.moved
-    return WrittenTake(plan.span, moved, plan.back, plan.time.later, done)
+    return WrittenTake(plan.span, plan.moved, plan.back, plan.time.later, done)
 
 
 def _retime(
@@ -221,6 +220,8 @@ def _write_channel(
     values = channel.values(armature, bases, recorded)
     goes_on = plan.span.blend_out > 0.0 or len(frames) > len(plan.body_frames)
     turns = channel.turns(values, recorded) if goes_on else [FullTurns()] * values.shape[1]
+    rest = channel.at_rest(armature)
     for index, column in enumerate(values.T):
         curve = fcurves.ensured(curves, channel.path, index, channel.bone)
+        anchor(curve, plan.between(channel), plan.beside(channel), rest[index])
         splice(curve, frames, column, plan.between(channel), turns[index])

@@ -82,7 +82,8 @@ class _Adapting(TaskOperator):
         told = left_behind(required_armature(context))
         if told and not (self.leave_edits or bpy.app.background):
             leave = bpy.ops.hangtime.leave_edits  # type: ignore[attr-defined]  # our own
-            leave("INVOKE_DEFAULT", then=self.bl_idname, text=told)
+            # Of an instance Blender tells its own name, "HANGTIME_OT_adapt".
+            leave("INVOKE_DEFAULT", then=type(self).bl_idname, text=told)
             return {"CANCELLED"}
         return super().invoke(context, event)
 
@@ -284,7 +285,8 @@ def _note(
     action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)
     store_overlaps(action, answer.report)
-    action_settings(action).performer = performer
+    if performer != armature:
+        action_settings(action).performer = performer
 
 
 def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:

@@ -12,6 +12,7 @@ from .session import session
 
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
 EDIT_MODE = "Leave edit mode first"
+TWEAK_MODE = "Leave tweak mode first (Tab in the Nonlinear Animation editor)"
 
 
 def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -42,9 +43,16 @@ def hindrance(context: bpy.types.Context) -> str | None:
         return said(NoArmature(active.name if active is not None else None))
     if armature.mode == "EDIT":
         return EDIT_MODE
+    if tweaked(armature):
+        return TWEAK_MODE
     if current_action(armature) is None:
         return said(NoAction(armature.name))
     return None
+
+
+def tweaked(armature: bpy.types.Object) -> bool:
+    """Whether a strip's keys are being edited, while Blender lets no other action be assigned."""
+    return armature.animation_data is not None and armature.animation_data.use_tweak_mode
 
 
 def said(fault: Fault) -> str:

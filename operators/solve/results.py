@@ -9,7 +9,7 @@ from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.takes.takes import results_from, source_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import chosen_armature, required_armature
+from .common import TWEAK_MODE, chosen_armature, required_armature, tweaked
 from .session import session
 from .task import CANCELLED
 
@@ -21,7 +21,8 @@ ACCEPTED = "The result is accepted already"
 
 
 def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
-    """The result that is shown, else the one that was adapted last."""
+    """The result that is shown, else the one that was adapted last, else of those that are left of
+    the same take the last."""
     if armature is None:
         return None
     shown = current_action(armature)
@@ -29,7 +30,10 @@ def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
     beside = adapted is not None and action_settings(adapted).performer not in (None, armature)
     if shown is not None and source_of(shown) is not None and not beside:
         return shown
-    return adapted
+    if adapted is not None or shown is None:
+        return adapted
+    left = results_from(shown)
+    return left[-1] if left else None
 
 
 def required_result(context: bpy.types.Context) -> bpy.types.Action:
@@ -48,7 +52,10 @@ class _OfResult(PolledOperator):
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return NOTHING_ADAPTED if result_of(chosen_armature(context)) is None else None
+        armature = chosen_armature(context)
+        if armature is None or result_of(armature) is None:
+            return NOTHING_ADAPTED
+        return TWEAK_MODE if tweaked(armature) else None
 
 
 class CompareOperator(_OfResult, bpy.types.Operator):
@@ -84,7 +91,7 @@ class ShowRecordingOperator(PolledOperator, bpy.types.Operator):
         armature = chosen_armature(context)
         if armature is None or current_action(armature) == recorded_action(armature):
             return "The recording is what is shown"
-        return None
+        return TWEAK_MODE if tweaked(armature) else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
@@ -160,14 +167,14 @@ class DiscardOperator(_OfResult, bpy.types.Operator):
         performer = performer_of(armature)
         if settings.source == result:
             settings.source = None
-        if current_action(armature) == result:
-            show(armature, recorded)
         if performer != armature:
             bpy.data.objects.remove(performer)
-        remove_strips(armature, result)
+        for each in bpy.data.objects:  # a linked copy may perform it, too
+            if current_action(each) == result:
+                show(each, recorded)
+            remove_strips(each, result)
         bpy.data.actions.remove(result)
-        left = results_from(present(recorded))
-        settings.adapted = left[-1] if left else None
+        settings.adapted = None  # the edit at work is no other result's
         settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from math import hypot
 
+from ...bridge.rows.choices import KeyChoice
 from ...solver.data.contacts import PhaseKind
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import ConstraintReport
@@ -306,8 +307,10 @@ def _objective(report: Report) -> Iterator[str]:
 
 
 def keys_line(keys: KeysReport) -> str:
-    """How many keys a result has, and what they leave."""
+    """How many keys a result has, and what they leave; and that they are no fewer than frames."""
+    every = "a key on every frame, as fewer do not keep the error: "
     return (
+        f"{every if keys.choice == KeyChoice.EVERY_FRAME.value else ''}"
         f"{keys.keys} keys, {keys.rate:.1f} a second and channel; joints at most "
         f"{keys.largest_error_mm:.2f} mm off ({keys.error_bone}, frame {keys.error_frame:.0f}), "
         f"bones {keys.largest_turn_deg:.2f}° ({keys.turn_bone}, frame {keys.turn_frame:.0f})"

@@ -17,6 +17,7 @@ from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.operators.solve.results import result_of
 from hangtime.operators.solve.session import session
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
@@ -134,6 +135,19 @@ def test_a_result_is_discarded_and_the_edit_stays(adapted: bpy.types.Object) -> 
     assert not bpy.ops.hangtime.discard.poll()
 
 
+def test_a_linked_copy_that_discards_leaves_the_figure(adapted: bpy.types.Object) -> None:
+    result = current_action(adapted)
+    recording = result.hangtime.recording
+    adapted.select_set(True)
+    assert bpy.ops.object.duplicate(linked=True) == {"FINISHED"}
+    copy = bpy.context.view_layer.objects.active
+    bpy.context.scene.hangtime.armature = copy
+    assert current_action(copy) == result
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(copy) == recording
+    assert current_action(adapted) == recording
+
+
 def test_reduced_keys_are_fewer_and_told_with_their_largest_error(
     analysed: bpy.types.Object,
 ) -> None:
@@ -243,7 +257,7 @@ def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     assert other.name.encode() in fbx.read_bytes()
     assert bpy.ops.hangtime.discard() == {"FINISHED"}
     assert "changed" not in "".join(o.name for o in bpy.data.objects)
-    assert analysed.hangtime.adapted == first
+    assert result_of(analysed) == first
 
 
 def test_a_stated_height_mends_a_wrong_scale() -> None:

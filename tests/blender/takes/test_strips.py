@@ -88,3 +88,18 @@ def test_a_second_result_is_made_from_the_take_and_the_first_is_muted(
     np.testing.assert_allclose(hips - was, (0.0, 0.0, 0.2), atol=1e-6)
     show(armature, first)
     assert [track.mute for track in tracks] == [False, False, True]
+
+
+def test_while_a_strip_is_tweaked_what_assigns_actions_waits(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.armature = armature
+    lifted(armature, 0.1)
+    tracks = armature.animation_data.nla_tracks
+    tracks.active = tracks[-1]
+    for track in tracks:
+        for strip in track.strips:
+            track.select = strip.select = track == tracks[-1]
+    ours = bpy.ops.hangtime
+    waiting = (ours.analyze, ours.show_take, ours.compare, ours.show_recording, ours.discard)
+    for tweaking in (True, False):
+        armature.animation_data.use_tweak_mode = tweaking
+        assert {each.poll() for each in waiting} == {not tweaking}
