@@ -16,13 +16,14 @@ from ..operators.export import exports, recipe_export
 from ..operators.lists import (
     body_changes,
     bone_presets,
+    choose_named,
     constraints,
     contacts,
     presets,
     support_box,
     surfaces,
 )
-from ..operators.solve import adapt, analyze, results, session, takes, watch
+from ..operators.solve import adapt, analyze, remedies, results, session, takes, watch
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
@@ -36,7 +37,7 @@ from .timeline import handler as timeline
 # A panel comes after the one that it is part of.
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, surfaces, support_box, presets),
-    *(bone_presets, results, takes, exports, recipe_export),
+    *(bone_presets, choose_named, remedies, results, takes, exports, recipe_export),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
     *(lists, menus, setup, contact_panels, constraint_panels, world, solve, keys, display),
     *(pin_handles, limit_handles),

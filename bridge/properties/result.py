@@ -42,7 +42,7 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
     )
     use_blend: chosen(
         boolean(
-            "Own Blend",
+            "Custom Blend",
             "Choose how many frames before and after the adapted ones are blended; "
             "else those of a quarter of a second",
         )

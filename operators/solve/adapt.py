@@ -40,6 +40,7 @@ from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import (
+    amount,
     as_text,
     certificate_lines,
     durations_lines,
@@ -48,6 +49,7 @@ from ..words.report_text import (
     retimed,
 )
 from ..words.take_text import take_lines
+from ..words.warning_text import warnings_of
 from .common import hindrance, required_armature
 from .keys import write_keys
 from .live import live
@@ -284,6 +286,7 @@ def _note(
     action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)
     store_overlaps(action, answer.report)
+    action_settings(action).warning = "\n".join(warnings_of(answer.report))
     action_settings(action).performer = performer
 
 
@@ -318,7 +321,8 @@ def summary(answer: Adapted) -> str:
                 for p in retimed(report)
             ),
             *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
-            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
+            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f}), "
+            f"in the recording {report.forces.recorded_peak_bw:.1f}",
             *given_up_lines(report),
             *joint_lines(report),
             *certificate_lines(report),
@@ -329,4 +333,4 @@ def summary(answer: Adapted) -> str:
 def _held(constraint: ConstraintReport) -> str:
     if constraint.met:
         return "held"
-    return f"missed by {constraint.worst_violation:.0f} {constraint.kind.reported_unit}"
+    return f"missed by {amount(constraint)}"

@@ -7,6 +7,7 @@ from ...bridge.properties.settings import scene_settings
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
 from ..operator_types import OperatorResult, PolledOperator
+from ..words.failure_text import Failure, failure_of
 from ..words.messages import sentence
 from .session import session
 
@@ -15,13 +16,16 @@ EDIT_MODE = "Leave edit mode first"
 
 
 def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The target armature: the one chosen in the sidebar, else the active object if that is one."""
+    """The target armature: the one pinned in the sidebar, else the active object if that is one,
+    else, while something else is active, the one that was worked on last."""
     scene = present(context.scene)
-    chosen: bpy.types.Object | None = scene_settings(scene).armature
-    if chosen is not None and chosen.name in scene.objects:
-        return chosen
+    own = scene_settings(scene)
+    chosen: bpy.types.Object | None = own.armature
+    if chosen is not None and chosen.name not in scene.objects:
+        chosen = None
     active = present(context.view_layer).objects.active
-    return active if active is not None and active.type == "ARMATURE" else None
+    is_armature = active is not None and active.type == "ARMATURE"
+    return active if is_armature and not (own.pinned and chosen is not None) else chosen
 
 
 def required_armature(context: bpy.types.Context) -> bpy.types.Object:
@@ -51,6 +55,11 @@ def said(fault: Fault) -> str:
     """The fault's sentence, in the language of Blender's reports."""
     # The stubs do not know what it returns.
     return sentence(fault, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
+
+
+def failed(fault: Fault, uid: int, of: str) -> Failure:
+    """The fault for the sidebar. uid: the armature's number; of: the operator's bl_idname."""
+    return failure_of(fault, uid, of, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
 
 
 class FaultyOperator(PolledOperator):

@@ -168,6 +168,7 @@ class Counted:
 
 @pytest.fixture
 def constrained(armature: bpy.types.Object) -> bpy.types.Object:
+    bpy.context.scene.hangtime.view.all_limits = True
     constrain(armature, KINDS["CONE"], "thigh")
     constrain(armature, KINDS["ANGLE"], "shin")
     constrain(armature, KINDS["TWIST"], "head")
@@ -280,6 +281,7 @@ def test_a_chosen_limit_that_is_off_is_still_seen(armature: bpy.types.Object) ->
     assert [x.standing for x in limits.layer(seen(armature), FigureCache()).content[0]] == [
         Standing.OFF
     ]
+    bpy.context.scene.hangtime.view.all_limits = True
     armature.hangtime.active_constraint = -1
     assert not limits.layer(seen(armature), FigureCache()).content[0]
     row.used = True
