@@ -79,7 +79,7 @@ from ..recipe_syntax.items import (
 )
 from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
 from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
-from ..recipe_syntax.toml_text import entries
+from ..recipe_syntax.toml_text import entries, sections
 from .keys import KEYS, KeyOptions
 from .object_texts import object_text
 from .objects import HEADER as OBJECT
@@ -340,10 +340,13 @@ def write_recipe(
     *,
     clip: str | None = None,
     files: Mapping[str, str] = MappingProxyType({}),
+    result: ResultOptions | None = None,
+    keys: KeyOptions | None = None,
 ) -> str:
     """The TOML text that `parse_recipe` reads as this problem.
 
-    files: of objects' meshes, by the objects' names; what has none is written out.
+    files: of objects' meshes, by the objects' names; what has none is written out. result, keys:
+    left out where they are the usual ones, which a recipe that says nothing means.
     """
     top = {
         "clip": clip,
@@ -355,6 +358,8 @@ def write_recipe(
     parts = [entries(top)]
     if problem.bones:
         parts.append("[bones]\n" + entries(problem.bones))
+    parts += sections(RESULT.header, RESULT.write(result)) if result is not None else []
+    parts += sections(KEYS.header, KEYS.write(keys)) if keys is not None else []
     parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)
     parts += ADDED.text(problem.added)
     parts += [object_text(thing, files.get(thing.name)) for thing in problem.scene]
