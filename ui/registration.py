@@ -8,8 +8,9 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bridge import worker_client
-from ..bridge.accessors import ATTRIBUTE, present
+from ..bridge.accessors import present
 from ..bridge.properties import settings, stances
+from ..bridge.properties.attached_groups import attach_groups
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
 from ..operators.export import exports, recipe_export
@@ -64,13 +65,7 @@ def register() -> Callable[[], None]:
         for cls in classes():
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
-        for carrier, group in settings.CARRIERS.items():
-            # a property until it is assigned; the stubs say nothing
-            group_of = bpy.props.PointerProperty(  # type: ignore[func-returns-value]
-                type=group, override={"LIBRARY_OVERRIDABLE"}
-            )
-            setattr(carrier, ATTRIBUTE, group_of)
-            undo.callback(delattr, carrier, ATTRIBUTE)
+        attach_groups(undo)
         for follow in (_follow_empties, watch.follow_takes):
             bpy.app.handlers.depsgraph_update_post.append(follow)
             undo.callback(bpy.app.handlers.depsgraph_update_post.remove, follow)

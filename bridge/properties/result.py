@@ -67,9 +67,15 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
             (WrittenAs.ACTION.name, "New Action", "The armature performs a new action"),
             (
                 WrittenAs.STRIP.name,
-                "NLA Strip",
+                "NLA Strip, Replace",
                 "The take goes down into a strip of its own, and the result into one above; "
                 "mute its track and the take is there, untouched",
+            ),
+            (
+                WrittenAs.COMBINE.name,
+                "NLA Strip, Combine",
+                "The strip above holds only the difference, so that the take below can still be "
+                "edited. Channels that physics does not own keep their times",
             ),
         ],
         override=OVERRIDABLE,

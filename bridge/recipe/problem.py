@@ -28,7 +28,8 @@ return_frame = 400              # of the recording, by which it is back; default
 blend_in = 30                   # frames before the adapted ones, and
 blend_out = 30                  # after them, that are blended; default: a quarter of a second
 lock_others = true              # channels that physics does not own keep their times
-written_as = "strip"            # on top of the take, in the NLA; default: "action"
+written_as = "strip"            # on top of the take, in the NLA; "combine": as the difference from
+                                # the take; default: "action"
 
 [keys]                          # of the adapted frames
 on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has

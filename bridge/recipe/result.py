@@ -24,6 +24,11 @@ class ResultOptions:
     lock_others: bool = False
     written_as: WrittenAs = WrittenAs.ACTION
 
+    @property
+    def others_stay(self) -> bool:
+        """Whether channels that physics does not own keep their times: a difference has none."""
+        return self.lock_others or self.written_as is WrittenAs.COMBINE
+
 
 def require_return_after(options: ResultOptions, last: float) -> None:
     """Raises ReturnTooEarly where the take is to be back before it was away. last: frame of the

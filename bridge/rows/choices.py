@@ -80,6 +80,7 @@ class WrittenAs(Enum):
 
     ACTION = "action"
     STRIP = "strip"  # on top of the take
+    COMBINE = "combine"  # only the difference, on top of the take
 
 
 class KeyChoice(Enum):

@@ -25,10 +25,11 @@ from ...bridge.properties.settings import HangtimeSettings, action_settings, set
 from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.recipe.result import require_return_after
+from ...bridge.rows.choices import WrittenAs
 from ...bridge.takes.options import result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.takes import adapted_spans, note_made, polished_result
-from ...bridge.takes.write_result import write_adapted_incrementally
+from ...bridge.takes.write_result import combine, write_adapted_incrementally
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault
@@ -250,6 +251,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     try:
         yield from write_keys(armature, armature, action, answer)
     finally:  # cancelled it has a key on every frame
+        if motion.options.written_as is WrittenAs.COMBINE:
+            combine(armature, action, motion.options.after)
         note_made(armature, action, span, later)
     return f"Wrote the action {action.name}"
 

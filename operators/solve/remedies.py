@@ -4,7 +4,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.actions import recorded_action
-from ...bridge.armature.object_scale import scale_object
+from ...bridge.files.object_scale import scale_object
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import hindrance, required_armature

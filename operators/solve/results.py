@@ -6,7 +6,7 @@ from ...bridge.accessors import current_action, present
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
-from ...bridge.takes.takes import results_from, source_of
+from ...bridge.takes.takes import bake_shown, results_from, source_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import chosen_armature, required_armature
@@ -143,6 +143,7 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, result = required_armature(context), required_result(context)
+        bake_shown(performer_of(armature), result)
         action_settings(result).accepted = result.use_fake_user = True
         if performer_of(armature) == armature and current_action(armature) != result:
             show(armature, result)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import bpy
 
 from ..accessors import current_scene
-from . import fcurves
-from .fcurves import put, table
+from ..armature import fcurves
+from ..armature.fcurves import put, table
 
 _LENGTHS = ("scale", "location")
 _COLUMNS = ("co", "handle_left", "handle_right")
