@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..rows.choices import After, WrittenAs
+from ..rows.choices import After, ContactMarkers, WrittenAs
 from ..rows.row import OVERRIDABLE, chosen
 from ..rows.stored import boolean, whole
 
@@ -79,6 +79,23 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
             ),
         ],
         override=OVERRIDABLE,
+    )
+    markers: bpy.props.EnumProperty(
+        name="Contact Markers",
+        description="Mark where each foot or hand comes down and goes up",
+        items=[
+            (ContactMarkers.NONE.name, "None", "No markers"),
+            (ContactMarkers.ACTION.name, "Pose Markers", "Markers of the result's action"),
+            (ContactMarkers.TIMELINE.name, "Timeline", "Markers of the scene"),
+        ],
+        override=OVERRIDABLE,
+    )
+    contact_channels: chosen(
+        boolean(
+            "Contact Channels",
+            "Key a custom property of the armature for each foot or hand, such as "
+            "contact_left_foot: 1 while it touches and else 0",
+        )
     )
 
 

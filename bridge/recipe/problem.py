@@ -30,6 +30,8 @@ blend_out = 30                  # after them, that are blended; default: a quart
 lock_others = true              # channels that physics does not own keep their times
 written_as = "strip"            # on top of the take, in the NLA; "combine": as the difference from
                                 # the take; default: "action"
+markers = "action"              # where limbs come down and go up; or "timeline"; default: "none"
+contact_channels = true         # a property of the armature for each limb, 1 while it touches
 
 [keys]                          # of the adapted frames
 on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has

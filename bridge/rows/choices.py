@@ -83,6 +83,14 @@ class WrittenAs(Enum):
     COMBINE = "combine"  # only the difference, on top of the take
 
 
+class ContactMarkers(Enum):
+    """Where contacts of a result are marked."""
+
+    NONE = "none"
+    ACTION = "action"  # pose markers
+    TIMELINE = "timeline"  # the scene's
+
+
 class KeyChoice(Enum):
     """Frames that get keys."""
 

@@ -35,8 +35,8 @@ def difference_of(
 ) -> bpy.types.Action:
     """A new action that, combined with a take, shows a result on whole frames.
 
-    Of bones' locations and rotations; other channels are the take's. slot: identifier of the slot
-    that both have for the armature, which the new action's gets, too.
+    Of bones' locations and rotations, and channels that the take lacks; others are the take's.
+    slot: identifier of the slot that both have for the armature, and the new action gets.
     """
     below, above = fcurves.holder_in(take, slot), fcurves.holder_in(result, slot)
     assert below is not None
@@ -49,6 +49,12 @@ def difference_of(
         for attribute in ("location", rotation_channel(bone)):
             path = bone.path_from_id(attribute)
             _write_difference(made, (below, above), path, attribute, bone.name, frames)
+    there = {(curve.data_path, curve.array_index) for curve in below.fcurves}
+    mine = {(curve.data_path, curve.array_index) for curve in made.fcurves}
+    for curve in above.fcurves:
+        if (curve.data_path, curve.array_index) not in there | mine:  # such as contact channels
+            group = curve.group.name if curve.group is not None else ""
+            put(ensured(made, curve.data_path, curve.array_index, group), table(curve))
     return action
 
 
@@ -88,7 +94,11 @@ def bake_combined(result: bpy.types.Action, slot: str | None) -> None:
     assert made is not None
     first, last = key_span([*below.fcurves, *above.fcurves])
     frames = np.arange(np.floor(first), np.ceil(last) + 1.0)
-    combined = {curve.data_path for curve in above.fcurves}
+    combined = {
+        curve.data_path
+        for curve in above.fcurves
+        if curve.data_path.rpartition(".")[2] in _DEFAULTS
+    }
     for curve in below.fcurves:
         if curve.data_path not in combined:
             group = curve.group.name if curve.group is not None else ""

@@ -60,6 +60,7 @@ class Outputs:
             take, recorded = self._recorded_curves(), current_action(self.clip.armature)
             performer, adapted, written = self._write_actions("adapted")
             keys = self._choose_keys(performer, adapted, take)
+            self._mark_contacts(performer, adapted)
             self._lay_strips(performer, present(recorded), adapted)
             self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
@@ -137,6 +138,23 @@ class Outputs:
         first, last = adapted.frame_range.to_tuple()
         _show_frames(round(first), round(last))
         return armature, adapted, written
+
+    def _mark_contacts(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
+        """By markers and channels, as is asked for."""
+        from ...bridge.armature import fcurves
+        from ...bridge.keys.contact_marks import (
+            limb_contacts,
+            write_contact_channels,
+            write_markers,
+        )
+
+        frames, rate = self.result.track.frames, self.result.recording.rate
+        found = limb_contacts(self.result.schedule, float(frames[0]), rate)
+        between = round(frames[0]), round(frames[-1])
+        write_markers(adapted, found, between, self.options.markers)
+        curves = fcurves.holder_in(adapted, fcurves.slot_identifier(performer))
+        if self.options.contact_channels and curves is not None:
+            write_contact_channels(performer, curves, found, between)
 
     def _lay_strips(
         self, performer: bpy.types.Object, take: bpy.types.Action, adapted: bpy.types.Action

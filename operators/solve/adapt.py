@@ -52,7 +52,7 @@ from ..words.report_text import (
 from ..words.take_text import take_lines
 from ..words.warning_text import warnings_of
 from .common import hindrance, required_armature
-from .keys import write_keys
+from .keys import mark_contacts, write_keys
 from .live import live
 from .scene import note_surfaces, read_surfaces, stale_surfaces
 from .session import Asked, session
@@ -251,6 +251,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     try:
         yield from write_keys(armature, armature, action, answer)
     finally:  # cancelled it has a key on every frame
+        mark_contacts(armature, action, answer, motion.options)
         if motion.options.written_as is WrittenAs.COMBINE:
             combine(armature, action, motion.options.after)
         note_made(armature, action, span, later)

@@ -201,6 +201,7 @@ class ShowReportOperator(_OfResult, bpy.types.Operator):
         name = REPORT.format(result.name)
         text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
         text.from_string(action_settings(result).report)
+        text.current_line_index = 0  # else it is shown from its end
         self.report({"INFO"}, f"The report is the text {name}")
         return {"FINISHED"}
 
@@ -213,6 +214,7 @@ class ShowReportOperator(_OfResult, bpy.types.Operator):
         editor = area.spaces.active
         assert isinstance(editor, bpy.types.SpaceTextEditor)
         editor.text = bpy.data.texts[REPORT.format(required_result(context).name)]
+        editor.top = 0
         editor.show_line_numbers = editor.show_syntax_highlight = False
         return {"FINISHED"}
 

@@ -12,7 +12,7 @@ from ...solver.data.faults import Fault
 from ...solver.worker.protocol import Failed, Progress
 from ..operator_types import OperatorResult
 from .common import FaultyOperator, chosen_armature, failed, hindrance
-from .live import editors
+from .live import editors, redraw_viewports
 from .session import session
 from .solving import SolveState, Solving
 
@@ -146,8 +146,9 @@ class TaskOperator(FaultyOperator):
         present(bpy.context.window_manager).event_timer_remove(self._timer)
         self._workspace.status_text_set(None)
         _redraw()
-        # What is drawn now still is what was before: buttons change their kind a redraw later.
-        bpy.app.timers.register(_redraw, first_interval=LOOK_AGAIN)
+        # What is drawn now still is what was before: buttons change their kind a redraw later, and
+        # what was found shows in the viewport.
+        bpy.app.timers.register(redraw_viewports, first_interval=LOOK_AGAIN)
 
     def _show(self) -> None:
         """Only what is new: drawing the sidebar again costs more than a look."""
