@@ -8,6 +8,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.properties.stances import active_stance
+from hangtime.bridge.rows.phases import roles
 from hangtime.operators.solve.common import chosen_armature
 from hangtime.operators.words.failure_text import failure_of
 from hangtime.solver.data.faults import NoSolution, UnseenSupport
@@ -26,6 +27,14 @@ def test_a_wrong_frame_rate_is_told_and_mended(jump: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.set_frame_rate(rate=120) == {"FINISHED"}
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert active_stance(jump.hangtime).name == "ground 2"  # the landing is chosen
+
+
+def test_stances_are_called_by_their_roles(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    assert roles(settings) == {"ground 1": "Take-Off", "ground 2": "Landing"}
+    settings.active_stance = 0
+    assert settings.contacts[settings.active_contact].phase == "ground 1"
+    assert settings.active_stance == 0
 
 
 def test_a_keyed_scale_is_scaled_with_its_object(jump: bpy.types.Object) -> None:
