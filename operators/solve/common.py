@@ -3,7 +3,7 @@
 import bpy
 
 from ...bridge.accessors import current_action, present
-from ...bridge.properties.settings import scene_settings
+from ...bridge.properties.settings import action_settings, scene_settings, settings_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
 from ..operator_types import OperatorResult, PolledOperator
@@ -24,8 +24,19 @@ def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
     if chosen is not None and chosen.name not in scene.objects:
         chosen = None
     active = present(context.view_layer).objects.active
-    is_armature = active is not None and active.type == "ARMATURE"
-    return active if is_armature and not (own.pinned and chosen is not None) else chosen
+    if active is None or active.type != "ARMATURE":
+        return chosen
+    stays = chosen is not None and (own.pinned or active == _beside(chosen))
+    return chosen if stays else active
+
+
+def _beside(armature: bpy.types.Object) -> bpy.types.Object | None:
+    """Who performs an armature's last result in its stead, with other limbs; it has no settings."""
+    result = settings_of(armature).adapted
+    performer: bpy.types.Object | None = (
+        action_settings(result).performer if result is not None else None
+    )
+    return performer
 
 
 def required_armature(context: bpy.types.Context) -> bpy.types.Object:
