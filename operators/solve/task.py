@@ -86,7 +86,7 @@ class TaskOperator(FaultyOperator):
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+    def modal(self, _context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         if self not in session().running:  # ended from outside
             return {"CANCELLED"}
         if event.value == "PRESS" and event.type == "ESC":
@@ -95,10 +95,7 @@ class TaskOperator(FaultyOperator):
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"} if self._solving.passes(event.type) else {"RUNNING_MODAL"}
-        result = self._work()
-        if result != {"RUNNING_MODAL"}:
-            _wake_buttons(present(context.window), event)
-        return result
+        return self._work()
 
     def _work(self) -> OperatorResult:
         """As many parts as fit into a look."""
@@ -170,15 +167,6 @@ def take_best() -> bool:
     solving.stop()
     shared().as_it_stands()
     return True
-
-
-def _wake_buttons(window: bpy.types.Window, event: bpy.types.Event) -> None:
-    """Moves a pointer that rests on the sidebar by a pixel: until it moves, Blender draws the
-    button under it as the one that was there before, greyed or as a bar of progress."""
-    x, y = event.mouse_x, event.mouse_y
-    sidebars = (r for a in editors("VIEW_3D") for r in a.regions if r.type == "UI")
-    if any(r.x <= x < r.x + r.width and r.y <= y < r.y + r.height for r in sidebars):
-        window.cursor_warp(x + 1, y)
 
 
 def _redraw() -> None:
