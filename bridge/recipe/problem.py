@@ -28,7 +28,10 @@ return_frame = 400              # of the recording, by which it is back; default
 blend_in = 30                   # frames before the adapted ones, and
 blend_out = 30                  # after them, that are blended; default: a quarter of a second
 lock_others = true              # channels that physics does not own keep their times
-written_as = "strip"            # on top of the take, in the NLA; default: "action"
+written_as = "strip"            # on top of the take, in the NLA; "combine": as the difference from
+                                # the take; default: "action"
+markers = "action"              # where limbs come down and go up; or "timeline"; default: "none"
+contact_channels = true         # a property of the armature for each limb, 1 while it touches
 
 [keys]                          # of the adapted frames
 on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has
@@ -79,7 +82,7 @@ from ..recipe_syntax.items import (
 )
 from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
 from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
-from ..recipe_syntax.toml_text import entries
+from ..recipe_syntax.toml_text import entries, sections
 from .keys import KEYS, KeyOptions
 from .object_texts import object_text
 from .objects import HEADER as OBJECT
@@ -340,10 +343,13 @@ def write_recipe(
     *,
     clip: str | None = None,
     files: Mapping[str, str] = MappingProxyType({}),
+    result: ResultOptions | None = None,
+    keys: KeyOptions | None = None,
 ) -> str:
     """The TOML text that `parse_recipe` reads as this problem.
 
-    files: of objects' meshes, by the objects' names; what has none is written out.
+    files: of objects' meshes, by the objects' names; what has none is written out. result, keys:
+    left out where they are the usual ones, which a recipe that says nothing means.
     """
     top = {
         "clip": clip,
@@ -355,6 +361,8 @@ def write_recipe(
     parts = [entries(top)]
     if problem.bones:
         parts.append("[bones]\n" + entries(problem.bones))
+    parts += sections(RESULT.header, RESULT.write(result)) if result is not None else []
+    parts += sections(KEYS.header, KEYS.write(keys)) if keys is not None else []
     parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)
     parts += ADDED.text(problem.added)
     parts += [object_text(thing, files.get(thing.name)) for thing in problem.scene]

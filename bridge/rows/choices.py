@@ -80,6 +80,15 @@ class WrittenAs(Enum):
 
     ACTION = "action"
     STRIP = "strip"  # on top of the take
+    COMBINE = "combine"  # only the difference, on top of the take
+
+
+class ContactMarkers(Enum):
+    """Where contacts of a result are marked."""
+
+    NONE = "none"
+    ACTION = "action"  # pose markers
+    TIMELINE = "timeline"  # the scene's
 
 
 class KeyChoice(Enum):

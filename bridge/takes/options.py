@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..properties.settings import HangtimeSettings
 from ..recipe.problem import parse_recipe
 from ..recipe.result import ResultOptions
-from ..rows.choices import After, WrittenAs
+from ..rows.choices import After, ContactMarkers, WrittenAs
 
 
 def result_options(settings: HangtimeSettings) -> ResultOptions:
@@ -23,4 +23,6 @@ def result_options(settings: HangtimeSettings) -> ResultOptions:
         blend_out=float(chosen.blend_out) if chosen.use_blend else None,
         lock_others=chosen.lock_others,
         written_as=WrittenAs[chosen.written_as],
+        markers=ContactMarkers[chosen.markers],
+        contact_channels=chosen.contact_channels,
     )

@@ -47,7 +47,7 @@ def write_take(
     assert curves is not None
     owned = tuple(owned_channels(armature, motion.track.bones))
     plan = planned(curves, motion)
-    yield from _retime(action, curves, owned, plan.time, alone=motion.options.lock_others)
+    yield from _retime(action, curves, owned, plan.time, alone=motion.options.others_stay)
     done = _apply_modifiers(armature, curves, owned, plan.span)
     action.update_tag()
     showing = partial(showing_action, armature, action)

@@ -10,10 +10,11 @@ from ..accessors import ATTRIBUTE, current_action, present
 from ..armature import fcurves
 from ..armature.actions import recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
-from ..armature.strips import lay_strips
+from ..armature.strips import lay_strips, strips_of
 from ..armature.write import write_incrementally
 from ..properties.settings import action_settings, settings_of
 from ..rows.choices import After, WrittenAs
+from .difference import difference_of
 from .plan import AdaptedMotion
 from .span import WrittenTake
 from .takes import root_of
@@ -49,6 +50,18 @@ def write_adapted_incrementally(
     show(armature, action, slot)
     settings_of(armature).adapted = action
     return action, written
+
+
+def combine(armature: bpy.types.Object, action: bpy.types.Action, after: After) -> None:
+    """Lay a result that is shown, with the keys that it is to have, as its difference from what it
+    was made from into a strip on top of that."""
+    take, slot = action_settings(action).recording, fcurves.slot_identifier(armature)
+    more = difference_of(armature, present(take), action, slot)
+    lay_strips(armature, present(take), action, slot, more)
+    if after is After.CUT:  # nothing of it is left beside the adapted frames
+        for _, strip in strips_of(armature, action):
+            strip.extrapolation = "NOTHING"
+    show(armature, action, slot)
 
 
 def _write(

@@ -54,10 +54,14 @@ class Outputs:
 
     def write(self, *, picture: bool = True) -> Report:
         """All files of a result that is what was asked for; the picture where wanted."""
+        from ...bridge.accessors import current_action, present
+
         with self.stages.stage("Writing keyframes"):
-            take = self._recorded_curves()
+            take, recorded = self._recorded_curves(), current_action(self.clip.armature)
             performer, adapted, written = self._write_actions("adapted")
             keys = self._choose_keys(performer, adapted, take)
+            self._mark_contacts(performer, adapted)
+            self._lay_strips(performer, present(recorded), adapted)
             self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
         with self.stages.stage("Exporting FBX"), quiet():
@@ -117,9 +121,7 @@ class Outputs:
         from mathutils import Vector
 
         from ...bridge.accessors import current_action, present
-        from ...bridge.armature.fcurves import slot_identifier
         from ...bridge.armature.reproportioned import build_reproportioned
-        from ...bridge.armature.strips import lay_strips
         from ...bridge.armature.write import side_by_side, write_action
         from ...bridge.takes.write_result import write_result
 
@@ -133,11 +135,41 @@ class Outputs:
         else:
             adapted, written = write_result(armature, self._motion(), name=name)
             side_by_side(armature, recorded, adapted, offset=self._beside())
-            if self.options.written_as is WrittenAs.STRIP:
-                lay_strips(armature, recorded, adapted, slot_identifier(armature))
         first, last = adapted.frame_range.to_tuple()
         _show_frames(round(first), round(last))
         return armature, adapted, written
+
+    def _mark_contacts(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
+        """By markers and channels, as is asked for."""
+        from ...bridge.armature import fcurves
+        from ...bridge.keys.contact_marks import (
+            limb_contacts,
+            write_contact_channels,
+            write_markers,
+        )
+
+        frames, rate = self.result.track.frames, self.result.recording.rate
+        found = limb_contacts(self.result.schedule, float(frames[0]), rate)
+        between = round(frames[0]), round(frames[-1])
+        write_markers(adapted, found, between, self.options.markers)
+        curves = fcurves.holder_in(adapted, fcurves.slot_identifier(performer))
+        if self.options.contact_channels and curves is not None:
+            write_contact_channels(performer, curves, found, between)
+
+    def _lay_strips(
+        self, performer: bpy.types.Object, take: bpy.types.Action, adapted: bpy.types.Action
+    ) -> None:
+        """Result and take as strips, where that is asked for and one armature performs both."""
+        written_as = self.options.written_as
+        if written_as is WrittenAs.ACTION or performer != self.clip.armature:
+            return
+        from ...bridge.armature.fcurves import slot_identifier
+        from ...bridge.armature.strips import lay_strips
+        from ...bridge.takes.difference import difference_of
+
+        slot, combined = slot_identifier(performer), written_as is WrittenAs.COMBINE
+        more = difference_of(performer, take, adapted, slot) if combined else None
+        lay_strips(performer, take, adapted, slot, more)
 
     def _motion(self) -> AdaptedMotion:
         """The motion, to be put into the take."""

@@ -25,10 +25,11 @@ from ...bridge.properties.settings import HangtimeSettings, action_settings, set
 from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.recipe.result import require_return_after
+from ...bridge.rows.choices import WrittenAs
 from ...bridge.takes.options import result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.takes import adapted_spans, note_made, polished_result
-from ...bridge.takes.write_result import write_adapted_incrementally
+from ...bridge.takes.write_result import combine, write_adapted_incrementally
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault
@@ -40,6 +41,7 @@ from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import (
+    amount,
     as_text,
     certificate_lines,
     durations_lines,
@@ -48,8 +50,9 @@ from ..words.report_text import (
     retimed,
 )
 from ..words.take_text import take_lines
+from ..words.warning_text import warnings_of
 from .common import hindrance, required_armature
-from .keys import write_keys
+from .keys import mark_contacts, write_keys
 from .live import live
 from .scene import note_surfaces, read_surfaces, stale_surfaces
 from .session import Asked, session
@@ -249,6 +252,9 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     try:
         yield from write_keys(armature, armature, action, answer)
     finally:  # cancelled it has a key on every frame
+        mark_contacts(armature, action, answer, motion.options)
+        if motion.options.written_as is WrittenAs.COMBINE:
+            combine(armature, action, motion.options.after)
         note_made(armature, action, span, later)
     return f"Wrote the action {action.name}"
 
@@ -285,6 +291,7 @@ def _note(
     action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)
     store_overlaps(action, answer.report)
+    action_settings(action).warning = "\n".join(warnings_of(answer.report))
     if performer != armature:
         action_settings(action).performer = performer
 
@@ -320,7 +327,8 @@ def summary(answer: Adapted) -> str:
                 for p in retimed(report)
             ),
             *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
-            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
+            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f}), "
+            f"in the recording {report.forces.recorded_peak_bw:.1f}",
             *given_up_lines(report),
             *joint_lines(report),
             *certificate_lines(report),
@@ -331,4 +339,4 @@ def summary(answer: Adapted) -> str:
 def _held(constraint: ConstraintReport) -> str:
     if constraint.met:
         return "held"
-    return f"missed by {constraint.worst_violation:.0f} {constraint.kind.reported_unit}"
+    return f"missed by {amount(constraint)}"

@@ -29,6 +29,7 @@ from ...solver.skeleton.mapping import UNSURE
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
+from ..words.report_text import higher
 from .adapt import ask_for, read_wanted
 from .common import FaultyOperator, chosen_armature, required_armature, said
 from .scene import read_surfaces
@@ -206,6 +207,6 @@ def quality(fit: FitQuality) -> str:
     return (
         f"{words[0].upper()}{words[1:]}\n"
         f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
-        f"apex {fit.pelvis_apex_difference_cm:+.1f} cm\n"
+        f"apex {higher(fit.pelvis_apex_difference_cm)}\n"
         f"At worst {fit.worst_frame_rms_cm:.1f} cm (frame {fit.worst_frame:.0f})"
     )

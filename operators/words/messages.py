@@ -91,6 +91,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box. Add it (Add "
         "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
+        "The body falls as gravity has it at {rate} frames a second, but the scene has "
+        "{scene_rate:.4g} (frames {first:g} to {last:g}); set the scene's frame rate to {rate}.",
     ),
     faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
     "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
@@ -208,7 +210,7 @@ AWAY = "“{name}” stays {amount:millimetres} from its place"
 AT_ITS_END = "{name} as far as its range goes"
 MISSED = {  # of a constraint, by its type
     RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
-    RowKind.MOMENT: "in {name}, the body turns without cause ({amount:.3g} BW·m)",
+    RowKind.MOMENT: "in {name}, the body would have to push off thin air ({amount:.3g} BW·m)",
     RowKind.PIN: AWAY,
     RowKind.PIN_SPEED: "“{name}” still slides at {amount:.3g} m/s",
     RowKind.POINT: AWAY,
@@ -238,6 +240,11 @@ def sentence(fault: Fault, translate: Translate = str) -> str:
     return _Formatter(translate).format(translate(template), fault)
 
 
+def missed(violation: Violation, translate: Translate = str) -> str:
+    """What is left of a violation, without a full stop."""
+    return _Formatter(translate).missed(violation)
+
+
 def outcome(status: Status, translate: Translate = str) -> str:
     """The solver's termination status in words, and what to do about it."""
     return translate(OUTCOMES[status])
@@ -262,7 +269,7 @@ def _variant(fault: Fault) -> int:
         case faults.NothingTouches():
             return bool(fault.touching)
         case faults.UnseenSupport():
-            return bool(fault.boxes)
+            return 2 if fault.rate is not None else bool(fault.boxes)
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile():
@@ -290,24 +297,26 @@ class _Formatter(Formatter):
             case "percent":
                 return f"{100.0 * value:.0f} %"
             case "length":
-                return _length(value)
+                return length(value)
             case "millimetres":
-                return _length(value / 1000.0)
+                return length(value / 1000.0)
             case "ended":
                 return value if value.endswith("?") else f"{value}."
             case "outcome":
                 return outcome(value, self._translate)
             case "missed":
-                return "; ".join(self._missed(each) for each in value)
+                return "; ".join(self.missed(each) for each in value)
         return super().format_field(value, format_spec)
 
-    def _missed(self, violation: Violation) -> str:
+    def missed(self, violation: Violation) -> str:
+        """A violation in words."""
         at_end = violation.kind is RowKind.RANGE and violation.amount == 0.0
         template = AT_ITS_END if at_end else MISSED[violation.kind]
         return self.format(self._translate(template), violation)
 
 
-def _length(metres: float) -> str:
+def length(metres: float) -> str:
+    """A length in the unit that suits it: "3.2 mm", "42.0 cm", "1.25 m"."""
     if metres < 0.02:
         return f"{1000 * metres:.3g} mm"
     return f"{100 * metres:.1f} cm" if metres < 1.0 else f"{metres:.2f} m"

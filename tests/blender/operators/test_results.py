@@ -19,6 +19,7 @@ from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
 from hangtime.operators.solve.results import result_of
 from hangtime.operators.solve.session import session
+from hangtime.operators.words.warning_text import NOT_MET
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
@@ -180,6 +181,7 @@ def test_the_best_of_a_solve_that_failed_can_be_used(analysed: bpy.types.Object)
     assert bpy.ops.hangtime.use_best() == {"FINISHED"}
     assert current_action(analysed).hangtime.recording is not None
     assert "not all is met" in analysed.hangtime.status
+    assert NOT_MET in current_action(analysed).hangtime.warning
     assert not bpy.ops.hangtime.use_best.poll()
 
 
