@@ -102,6 +102,9 @@ class RecordingPanel(ArmaturePanel):
         else:
             layout.label(text="No action is assigned", icon="ERROR")
         optional(layout, settings, "use_range", "Frame Range", "first_frame", "last_frame")
+        layout.prop(settings.loop, "use")
+        if settings.loop.use:
+            layout.prop(settings.loop, "root")
         buttons = layout.row(align=True)
         buttons.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
         buttons.operator(OperatorId.FIT, icon="CON_FOLLOWPATH")
