@@ -16,7 +16,7 @@ from ..armature import fcurves
 from ..armature.actions import recorded_action, show, showing_action
 from ..armature.channels import channels, proper
 from ..armature.incremental import Incremental, sample_incrementally
-from ..armature.pose_basis import carrier_of, pose_bases
+from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.write import remove, remove_other_rotations, rotation_channel
 from ..keys.bezier_keys import splice_bezier
@@ -80,8 +80,9 @@ def write_loop(
 ) -> Incremental[bpy.types.Action]:
     """Write a loop as a copy of the recording's action, in slices; it is not assigned.
 
-    What carries the pelvis holds still as in the cycle's first frame. Other channels keep their
-    shape within the cycle, and repeat.
+    What carries the body without being of it holds still as in the cycle's first frame. Other
+    channels keep their shape within the cycle, and repeat; bones among them, such as fingers, give
+    up evenly what they end away from their start.
     """
     showing = partial(showing_action, armature, recorded)
     frames = loop.track.frames
@@ -143,10 +144,11 @@ def _held(first: Poses, count: int) -> Poses:
 
 
 def _settle_others(armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop) -> None:
-    """Hold the object and what carries the pelvis as at the cycle's first frame; cut all else."""
+    """Hold the object, and bones that carry some of the body without being of it, as at the cycle's
+    first frame; cut all else, and close what other bones do."""
     first, last = (float(loop.track.frames[k]) for k in (0, -1))
-    pelvis = armature_data(armature).bones[loop.track.bones[0]]
-    held = tuple(pose_of(armature).bones[b.name].path_from_id() for b in pelvis.parent_recursive)
+    carriers = set(with_ancestors(armature, loop.track.bones)) - set(loop.track.bones)
+    held = tuple(pose_of(armature).bones[name].path_from_id() for name in carriers)
     for curve in list(curves.fcurves):
         if not len(curve.keyframe_points):
             continue
@@ -158,6 +160,17 @@ def _settle_others(armature: bpy.types.Object, curves: fcurves.CurveHolder, loop
             fcurves.put(curve, fcurves.linear_keys(like, np.array([first]), values))
         else:
             fcurves.crop(curve, first, last)
+            if curve.data_path.startswith("pose.bones"):
+                _close(curve, first, last)
+
+
+def _close(curve: bpy.types.FCurve, first: float, last: float) -> None:
+    """Let a curve end where it begins, by an even slope on top of what it does."""
+    slope = (curve.evaluate(last) - curve.evaluate(first)) / (last - first)
+    keys = fcurves.table(curve)
+    for name in ("co", "handle_left", "handle_right"):
+        keys[name][:, 1] -= slope * (keys[name][:, 0] - first)
+    fcurves.put(curve, keys)
 
 
 def _is_of(curve: bpy.types.FCurve, paths: tuple[str, ...]) -> bool:
