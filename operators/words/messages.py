@@ -52,7 +52,7 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.SeamStanceMoved: "The pin moves “{name}”, which the loop's seam cuts in two, so the two "
     "parts would not meet; begin the loop where that foot is in the air.",
     faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
-    "motion; choose In Place or With the Hips, or parent the pelvis to a root bone.",
+    "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (
