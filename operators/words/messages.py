@@ -50,7 +50,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "and only a cycle on level ground can repeat; choose frames on one level.",
     faults.NotInLoop: "A loop cannot have {what}; take that away, or switch the loop off.",
     faults.SeamStanceMoved: "The pin moves “{name}”, which the loop's seam cuts in two, so the two "
-    "parts would not meet; begin the loop where that foot is in the air.",
+    "parts would not meet; move all of that stance, or begin the loop where that foot is in the "
+    "air.",
     faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
     "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "

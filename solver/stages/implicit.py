@@ -75,8 +75,6 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     that fails is returned with the best motion found and a status that says so; one that
     `progress` ends by raising Stopped, with the motion as it stood.
     """
-    if fit.motion.transcription.periodic:
-        problem = problem.keeping_times()
     setup = set_up(fit, problem)
     _require_closed(setup)
     try:

@@ -1,11 +1,16 @@
 """A run cycle that is solved as periodic: cut in a flight, and while a foot stands."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.constants import STANDARD_GRAVITY
-from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.contacts import PhaseKind
+from hangtime.solver.data.faults import SeamStanceMoved
+from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.stages.fit import Fit, fit
+from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.clips import load_recording
 
@@ -13,6 +18,7 @@ RUN = "run_2.bvh"
 CUTS = {"in flight": (28, 122), "in a stance": (45, 139)}  # frames of one cycle
 
 
+@cache
 def looped(cut: str) -> Fit:
     analysis = analyse(load_recording(RUN), MotionProblem(frames=CUTS[cut]))
     return fit(analysis.performance, analysis.schedule, periodic=True)
@@ -56,3 +62,24 @@ def test_steady_speed_needs_no_force_in_the_mean(cycle: Fit) -> None:
     mean = motion.forces(times).sum(axis=1).mean(axis=0)
     weight = motion.transcription.character.mass * motion.transcription.character.gravity
     np.testing.assert_allclose(mean / weight, [0.0, 0.0, 1.0], atol=2e-3)
+
+
+def test_a_moved_stance_leaves_it_a_loop(cycle: Fit) -> None:
+    phase = next(
+        p.name for p in cycle.schedule.phases if p.kind is PhaseKind.GROUND and p.start > 0
+    )
+    pin = Pin("Further out", phase, offset=(0.05, 0.1, 0.0))
+    adapted = adapt(cycle, MotionProblem(pins=(pin,), loop=True))
+    assert adapted.solved
+    motion = adapted.motion
+    assert motion.duration == cycle.motion.duration
+    ends = np.array([0.0, motion.duration])
+    np.testing.assert_allclose(*motion.angles(ends), atol=1e-6)
+    np.testing.assert_allclose(*motion.com(ends, 1), atol=1e-6)
+
+
+def test_a_torn_stance_is_refused() -> None:
+    cycle = looped("in a stance")
+    pin = Pin("Torn", "ground 1", touching=("Right heel",), offset=(0.0, 0.05, 0.0))
+    with pytest.raises(SeamStanceMoved):
+        adapt(cycle, MotionProblem(pins=(pin,), loop=True))
