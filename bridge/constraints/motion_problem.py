@@ -28,6 +28,7 @@ from ..properties.stances import place
 from ..recipe.problem import parse_recipe
 from ..rows.phases import phases_of
 from ..scene.members import ground_members, present_members
+from ..takes.options import loop_options
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
@@ -57,10 +58,12 @@ def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, fl
 
 
 def analysis_key(settings: HangtimeSettings, recording: Recording) -> str:
-    """What an analysis is of: the recording, and the range where there are frames beyond it."""
+    """What an analysis is of: the recording, the range where there are frames beyond it, and
+    whether it is a loop's. Raises BadRecipe."""
     span, key = span_of(settings, recording), digest(recording)
     whole = span == (recording.frames[0], recording.frames[-1])
-    return key if whole else f"{key} {span[0]:g} {span[1]:g}"
+    key = key if whole else f"{key} {span[0]:g} {span[1]:g}"
+    return key if loop_options(settings) is None else f"{key} loop"
 
 
 def problem_of(
@@ -90,6 +93,7 @@ def problem_of(
         pins=_pins(settings, span) if with_contacts else (),
         scene=scene if with_contacts else (),
         requests=_requests(settings, span, scene) if with_contacts else Requests(),
+        loop=loop_options(settings) is not None,
     )
 
 

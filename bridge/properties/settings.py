@@ -32,6 +32,8 @@ from .contact import CLASSES as CONTACT_CLASSES
 from .contact import HangtimeContact, HangtimeStance
 from .keys import CLASSES as KEYS_CLASSES
 from .keys import HangtimeKeys
+from .loop import CLASSES as LOOP_CLASSES
+from .loop import HangtimeLoop
 from .result import CLASSES as RESULT_CLASSES
 from .result import HangtimeResultOptions
 from .surface import CLASSES as SURFACE_CLASSES
@@ -228,6 +230,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
 
     result: bpy.props.PointerProperty(type=HangtimeResultOptions, override=OVERRIDABLE)
     result_keys: bpy.props.PointerProperty(type=HangtimeKeys, override=OVERRIDABLE)
+    loop: bpy.props.PointerProperty(type=HangtimeLoop, override=OVERRIDABLE)
     adapted: hidden(target(type=bpy.types.Action))
     source: hidden(target(type=bpy.types.Action))  # a result to start from; none: the recording
     status: hidden(text())
@@ -323,6 +326,7 @@ CLASSES = (
     *VIEW_CLASSES,
     *RESULT_CLASSES,
     *KEYS_CLASSES,
+    *LOOP_CLASSES,
     HangtimePart,
     *CONTACT_CLASSES,
     HangtimeSettings,

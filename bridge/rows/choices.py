@@ -75,6 +75,14 @@ class After(Enum):
     CUT = "cut"  # left out, and what is before them, too
 
 
+class LoopRoot(Enum):
+    """What carries a loop's travel."""
+
+    HIPS = "hips"
+    IN_PLACE = "in place"  # nothing: what is left of it is the sway about a steady speed
+    ROOT_BONE = "root bone"  # the topmost above the pelvis, at a steady speed
+
+
 class WrittenAs(Enum):
     """Form in which a result is written."""
 

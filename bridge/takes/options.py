@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from ..properties.settings import HangtimeSettings
+from ..recipe.loop import LoopOptions
 from ..recipe.problem import parse_recipe
 from ..recipe.result import ResultOptions
-from ..rows.choices import After, ContactMarkers, WrittenAs
+from ..rows.choices import After, ContactMarkers, LoopRoot, WrittenAs
+
+
+def loop_options(settings: HangtimeSettings) -> LoopOptions | None:
+    """How a loop is to be written, None where none is; a [loop] in the armature's text goes before
+    the panel. Raises BadRecipe."""
+    text = settings.requests
+    stated = None if text is None else parse_recipe(text.as_string(), text.name).loop
+    if stated is not None:
+        return stated
+    return LoopOptions(LoopRoot[settings.loop.root]) if settings.loop.use else None
 
 
 def result_options(settings: HangtimeSettings) -> ResultOptions:

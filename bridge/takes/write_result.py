@@ -76,12 +76,12 @@ def _write(
         cut = yield from write_incrementally(
             armature, motion.track, recorded, slot, name=name, showing=showing
         )
-        _forget_copied(cut)
+        forget_copied(cut)
         return cut, None
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False
-    _forget_copied(action)
+    forget_copied(action)
     whole = False
     try:
         written = yield from write_take(armature, action, slot, motion)
@@ -93,7 +93,7 @@ def _write(
     return action, written
 
 
-def _forget_copied(action: bpy.types.Action) -> None:
+def forget_copied(action: bpy.types.Action) -> None:
     """Remove what a copy has of the take's own history, where that is a result itself."""
     for name in tuple(action.keys()):
         if name.startswith(ATTRIBUTE):

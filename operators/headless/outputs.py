@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...bridge.recipe.keys import KeyOptions
+from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import KeyChoice, WrittenAs
 from ...solver.data.faults import OutputNotWritable
@@ -41,7 +42,7 @@ class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
 
     problem: as it was asked for, in the recording's own lengths. options: of the rest of the take.
-    keys: of the adapted frames.
+    keys: of the adapted frames. loop: where the motion repeats.
     """
 
     clip: LoadedClip
@@ -51,6 +52,7 @@ class Outputs:
     result: AdaptationResult
     outbox: Outbox
     stages: Stages
+    loop: LoopOptions | None = None
 
     def write(self, *, picture: bool = True) -> Report:
         """All files of a result that is what was asked for; the picture where wanted."""
@@ -61,7 +63,8 @@ class Outputs:
             performer, adapted, written = self._write_actions("adapted")
             keys = self._choose_keys(performer, adapted, take)
             self._mark_contacts(performer, adapted)
-            self._lay_strips(performer, present(recorded), adapted)
+            if self.loop is None:  # which is an action of its own
+                self._lay_strips(performer, present(recorded), adapted)
             self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
         with self.stages.stage("Exporting FBX"), quiet():
@@ -121,8 +124,11 @@ class Outputs:
         from mathutils import Vector
 
         from ...bridge.accessors import current_action, present
+        from ...bridge.armature.fcurves import slot_identifier
+        from ...bridge.armature.incremental import complete
         from ...bridge.armature.reproportioned import build_reproportioned
         from ...bridge.armature.write import side_by_side, write_action
+        from ...bridge.loops.write_loop import Loop, write_loop
         from ...bridge.takes.write_result import write_result
 
         recorded = present(current_action(self.clip.armature))
@@ -132,6 +138,11 @@ class Outputs:
             armature, track, _ = build_reproportioned(self.result.recording, track)
             adapted = write_action(armature, track, name=name)
             self.clip.armature.location += Vector(self._beside())  # it performs the recording
+        elif self.loop is not None:
+            loop = Loop.of(armature, track, self.loop.root)
+            slot = slot_identifier(armature)
+            adapted = complete(write_loop(armature, loop, recorded, slot, name=name))
+            side_by_side(armature, recorded, adapted, offset=self._beside())
         else:
             adapted, written = write_result(armature, self._motion(), name=name)
             side_by_side(armature, recorded, adapted, offset=self._beside())

@@ -37,6 +37,23 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",
+    faults.NothingRecurs: "Nothing repeats from frame {first:g} to {last:g}: no heel or toe lands "
+    "or leaves, and does so again that many frames later. Choose frames from one landing of a foot "
+    "to its next.",
+    faults.EndsTouchOtherwise: "The motion repeats after {period:g} frames, but near frames "
+    "{first:g} and {last:g} nowhere with the same points on the ground at both ends (at the first: "
+    "{at_first:names}; at the last: {at_last:names}). Choose frames that begin elsewhere, with "
+    "keys for a whole cycle.",
+    faults.CycleTurns: "From the cycle's first to its last frame the body turns by {degrees:.0f}°, "
+    "and only a straight cycle can repeat; choose frames in which it goes straight.",
+    faults.CycleClimbs: "The body is {metres:+.2f} m higher at the cycle's end than at its start, "
+    "and only a cycle on level ground can repeat; choose frames on one level.",
+    faults.NotInLoop: "A loop cannot have {what}; take that away, or switch the loop off.",
+    faults.SeamStanceMoved: "The pin moves “{name}”, which the loop's seam cuts in two, so the two "
+    "parts would not meet; move all of that stance, or begin the loop where that foot is in the "
+    "air.",
+    faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
+    "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (

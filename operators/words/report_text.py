@@ -62,6 +62,8 @@ def as_text(report: Report) -> str:
     """A report in plain words, some forty lines."""
     lines = [*headline(report), ""]
     lines += [*_input(report), ""]
+    if report.loop is not None:
+        lines += [*loop_lines(report), ""]
     lines += [*_changes(report), ""]
     lines += [*_quality(report), ""]
     lines += [*_contacts(report), ""]
@@ -110,6 +112,25 @@ def joint_lines(report: Report) -> list[str]:
         if each.change_deg >= LEAST_TURN
     ]
     return [f"Joints changed most: {', '.join(told)}"] if told else []
+
+
+def loop_lines(report: Report) -> list[str]:
+    """A loop's frames, way and seam; none of other motions."""
+    loop = report.loop
+    if loop is None:
+        return []
+    frames = f"{loop.first_frame:g} to {loop.last_frame:g}"
+    if (loop.first_frame, loop.last_frame) != (loop.asked_first, loop.asked_last):
+        frames += f" (asked for {loop.asked_first:g} to {loop.asked_last:g})"
+    seam = (
+        _amount(loop.seam_pose_mm, "mm"),
+        _amount(loop.seam_velocity_mm_s, "mm/s"),
+        _amount(loop.seam_force_bw, "BW"),
+    )
+    return [
+        f"Loop: frames {frames}, {loop.travel_m:.2f} m a cycle at {loop.speed_m_s:.2f} m/s",
+        f"At the seam pose, speed and force differ by {', '.join(seam)}",
+    ]
 
 
 def certificate_lines(report: Report) -> list[str]:

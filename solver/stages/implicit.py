@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.faults import NotInLoop, SeamStanceMoved
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.row_kinds import RowKind
@@ -19,6 +20,7 @@ from ..inverse_kinematics.arm_ik import reach_grips
 from ..optimisation.guards import Guard, guarded, in_the_way, with_guards
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
+from ..transcription.contact_pins import tied_places
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from .explicit import explicit
@@ -33,6 +35,7 @@ MAX_EXCHANGES = 4
 MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
 MAX_GUARD_STEPS = 10  # after which what is in the way is given up
 MOST_FURTHER = 0.1  # rad, by which rows may take another joint further beyond its range
+SAME_PLACE = 1e-4  # m
 MAX_DENSE_VIOLATION = 3.0  # times a constraint's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
 
@@ -67,11 +70,13 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     """Adapts a fitted performance to a problem (thesis 4.3, 4.4).
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults. What cannot
-    be reached with the durations that go with the pins is tried with the recorded ones. A solve
+    be reached with the durations that go with the pins is tried with the recorded ones; a loop
+    keeps these, for it lasts whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve
     that fails is returned with the best motion found and a status that says so; one that
     `progress` ends by raising Stopped, with the motion as it stood.
     """
     setup = set_up(fit, problem)
+    _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)
         if found.reached == 1.0 or setup.durations is not Durations.FOUND:
@@ -81,6 +86,18 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
         return replace(again, outcomes=(*found.outcomes, *again.outcomes))
     except Stopped as stop:
         return _stopped(stop.motion, fit, setup)
+
+
+def _require_closed(setup: Setup) -> None:
+    """What is asked of a loop leaves it one. Raises SeamStanceMoved, NotInLoop."""
+    t, places = setup.start.transcription, setup.target_places
+    if not t.periodic:
+        return
+    if setup.target.moves:
+        raise NotInLoop("ground that moves")
+    torn = np.linalg.norm(tied_places(places, t.contacts, setup.start.duration) - places, axis=1)
+    if torn.max(initial=0.0) > SAME_PLACE:
+        raise SeamStanceMoved(t.contacts[int(torn.argmax())].contact.name)
 
 
 def _stopped(motion: Motion, fit: Fit, setup: Setup) -> Adaptation:
@@ -204,6 +221,8 @@ def _continuation(setup: Setup, times: int, progress: Progress | None) -> Contin
         if step < steps and standing.moves:
             transcription = transcription.riding(standing.rides)
         start = warm_start(motion, stance_moves(schedule, last, standing))
+        if transcription.seam is not None:
+            start = transcription.seam.closed(start, setup.metric)
         if step == 1:  # where nothing is gripped this changes nothing
             start = reach_grips(Motion(transcription, start, places), setup.target_places).x
         if step < steps:

@@ -240,7 +240,7 @@ def _anticipated(
     timed = {timing.phase for timing in requests.timings}
     kept = tuple(Interval(p.start, p.end) for p in context.phases if p.name in timed)
     kept += tuple(Interval(hold.start, hold.end) for hold in context.timeline.holds)
-    if requests.solution.keep_times:
+    if requests.solution.keep_times or start.transcription.periodic:  # a loop lasts whole frames
         return context, start, Durations.RECORDED
     jumps = changed_jumps(start, context.schedule, target, kept)
     if not jumps:

@@ -198,6 +198,7 @@ def _analysed(request: int, subject: Subject) -> Analysed:
         {p.name: travel_axes(performance, schedule, p) for p in ground},
         {body.name: body.bone for body in performance.character.bodies},
         subject.recorded_traces(),
+        subject.cycle,
     )
 
 

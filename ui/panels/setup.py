@@ -112,5 +112,8 @@ class RecordingPanel(ArmaturePanel):
         else:
             layout.label(text="No action is assigned", icon="ERROR")
         optional(layout, settings, "use_range", "Frame Range", "first_frame", "last_frame")
+        layout.prop(settings.loop, "use")
+        if settings.loop.use:
+            layout.prop(settings.loop, "root")
         layout.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
         draw_failure(layout, context, armature, OperatorId.ANALYZE)
