@@ -17,10 +17,10 @@ from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
 from ..armature.traces_store import forget, put_by, take_up
-from ..properties.copying import copy_settings, settings_digest
 from ..properties.settings import HangtimeSettings, action_settings, settings_of
 from ..properties.stances import move_empties
 from ..rows.choices import Span
+from ..rows.copying import copy_settings, settings_digest
 from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
