@@ -20,6 +20,7 @@ from .actions import (
     scene_settings,
     settings,
     shown_action,
+    worker_seconds,
 )
 from .driver import Actions, Driver, Scenario, Until
 from .input_device import Place
@@ -74,14 +75,15 @@ def drags_landing(driver: Driver) -> Actions:
         yield driver.input.move(end, 0.5)
         assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
         yield Until("the ghost", lambda: len(ghosts.seen) > 0, 40)
-        begun, first = time.monotonic(), live().version
+        begun, first, taken = time.monotonic(), live().version, worker_seconds()
         driver.profiler.start(lambda: "drag")
         for place in islice(cycle(about(end)), LEGS):
             yield driver.input.move(place, DRAG / LEGS)
         driver.profiler.stop()
         rate = ghosts.rate(begun, time.monotonic())
-        last = live().version
-        made = (last - first) / (time.monotonic() - begun)
+        updates = live().version - first
+        made = updates / (time.monotonic() - begun)
+        took = 1000.0 * (worker_seconds() - taken) / max(1, updates)
         yield from driver.picture("ghost_follows")
         yield driver.input.move(end, 0.5)
         yield driver.input.let_go()
@@ -89,6 +91,7 @@ def drags_landing(driver: Driver) -> Actions:
         space.draw_handler_remove(handler, "WINDOW")
     driver.figures["ghost updates per second during a drag"] = rate
     driver.figures["ghost updates per second during a drag, drawn or not"] = made
+    driver.figures["worker's processor time per update during a drag"] = took
     yield Until("an adapted action", lambda: idle() and shown_action() != before, 60)
     went = (Vector(row.at) - pin).length
     assert 0.1 < went < 0.3, f"the pin went {went:.3f} m, not about 0.2 m"
