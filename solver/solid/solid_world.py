@@ -32,7 +32,7 @@ from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
 from .way_out import WayOut
 
 ROW_SPACING = 0.016  # s, between rows of solids that stay in each other for longer
-MOST_ROWS = 400  # at once, which take a program a second; beyond, rows are further apart
+MOST_ROWS = 600  # at once, which take a program seconds; beyond, rows are further apart
 SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
 
 NONE = np.empty(0, dtype=int)
