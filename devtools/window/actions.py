@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -132,6 +133,12 @@ def worker_pid() -> int | None:
             if b"solver/worker/main.py" in words:
                 return int(folder.name)
     return None
+
+
+def worker_seconds() -> float:
+    """Processor time, s, that the worker has taken so far."""
+    user, system = Path(f"/proc/{worker_pid()}/stat").read_text().rpartition(")")[2].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
 
 def press(driver: Driver, what: str, *columns: float) -> Actions:

@@ -199,6 +199,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "stance stand on it (On, in the panel Contacts), or move one of them.",
     faults.StandsBelow: "The recording stands {metres:length} below the top of “{thing}”, in it; "
     "lower the object so far, or raise the armature.",
+    faults.NoRoom: "Nothing fits between “{contact}” and “{thing}”: {free:length} are free above "
+    "it, and a leg alone takes {needed:length}; move the object, or the stance.",
     faults.TooManyFaces: "The object “{thing}” has {count} triangles, and {most} are the most; "
     "choose a simpler mesh in its place, or put a Decimate modifier on it.",
     faults.SameObjectName: "Two objects of the scene are called “{thing}”; rename one, so that the "

@@ -16,7 +16,7 @@ from ..arrays import FloatArray
 from ..data.contacts import Contact, ContactSchedule
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
-from ..scene.support import ground_beneath
+from ..scene.support import StandingGround
 from .performance import Performance
 
 NEAR_FLOOR = 0.04  # m; a place further away is on something else
@@ -107,9 +107,9 @@ def grounded(
 
     scene: the objects that contacts may be on.
     """
+    ground = StandingGround.of(schedule.floor_m, scene, performance.recording)
     contacts = tuple(
-        _grounded(c, schedule, performance, ground_beneath(c, schedule.floor_m, scene))
-        for c in schedule.contacts
+        _grounded(c, schedule, performance, ground.beneath(c)) for c in schedule.contacts
     )
     return replace(schedule, contacts=contacts)
 

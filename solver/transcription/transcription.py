@@ -262,7 +262,7 @@ class Transcription:
         return np.asarray(forces.reshape(len(forces), self.layout.n_points, 3))
 
     def _moment_residual(self, x: FloatArray, posed: Pose) -> FloatArray:
-        rate = self.moment.value(*(self.angles_at_nodes(x, k) for k in range(3)))
+        rate = self.moment.value_at(posed, *(self.angles_at_nodes(x, k) for k in (1, 2)))
         if not self.points:
             return rate
         arms = posed.points(self.points)

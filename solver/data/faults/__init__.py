@@ -58,6 +58,7 @@ from .scenes import InsideOut as InsideOut
 from .scenes import JerkyGround as JerkyGround
 from .scenes import NoFaces as NoFaces
 from .scenes import NoFaceThere as NoFaceThere
+from .scenes import NoRoom as NoRoom
 from .scenes import NotFinite as NotFinite
 from .scenes import NotGround as NotGround
 from .scenes import NoThickness as NoThickness
