@@ -72,7 +72,12 @@ def measured(keys: Sequence[str], wanted: set[str]) -> Iterator[RigResult]:
                 reference = reference or mine
                 worst, joint, frame = compared(mine, reference, JOINTS)
                 result = replace(
-                    result, difference_mm=worst, joint=joint, frame=frame, solved=mine.solved
+                    result,
+                    difference_mm=worst,
+                    joint=joint,
+                    frame=frame,
+                    solved=mine.solved,
+                    files=mine.files,
                 )
             yield replace(result, failed=result.failed or said or "")
 

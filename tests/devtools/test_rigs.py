@@ -9,7 +9,7 @@ from hangtime.devtools.rigs.layout import Layout, layouts
 from hangtime.devtools.rigs.limits import figures
 from hangtime.devtools.rigs.recorded import recorded
 from hangtime.devtools.rigs.rest import rest_bones
-from hangtime.devtools.rigs.result import Edited, RigResult, compared
+from hangtime.devtools.rigs.result import Edited, FileResult, RigResult, compared
 from hangtime.devtools.rigs.table import page
 from hangtime.solver.analysis.performance import Performance, contact_points, perform
 from hangtime.solver.body.anatomy import Part
@@ -95,3 +95,11 @@ def test_a_difference_beyond_the_limit_is_told_with_its_place() -> None:
     worst = figures([GOOD, far])[2]
     assert not worst.ok
     assert worst.where == "Daz: foot.l, frame 99"
+
+
+def test_a_file_that_loses_more_than_it_may_is_told_with_its_format() -> None:
+    bad = replace(GOOD, name="VRM", files=(FileResult("FBX", 0.01, 0.3), FileResult("glTF", 2, 0)))
+    found = {figure.name: figure for figure in figures([GOOD, bad])}
+    place, turn = (figure for name, figure in found.items() if name.startswith("file"))
+    assert (place.missed, place.where) == (True, "VRM, glTF")
+    assert (turn.missed, turn.where) == (True, "VRM, FBX")
