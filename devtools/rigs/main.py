@@ -70,7 +70,7 @@ def measured(keys: Sequence[str], wanted: set[str]) -> Iterator[RigResult]:
             if edited.is_file():
                 mine: Edited = undump(edited)
                 reference = mine if key == REFERENCE else reference
-                result = replace(result, solved=mine.solved)
+                result = replace(result, solved=mine.solved, files=mine.files)
                 if reference is not None:  # else its failure is told, and nothing is compared
                     worst, joint, frame = compared(mine, reference, JOINTS)
                     result = replace(result, difference_mm=worst, joint=joint, frame=frame)

@@ -33,7 +33,7 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "“{object_name}” is or holds no armature; choose one with a recording.",
     ),
     faults.NoAction: "The armature “{armature}” has no keyframes; assign it the action that holds "
-    "the recording.",
+    "the recording, also where a strip of the NLA plays it.",
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",

@@ -138,7 +138,9 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
     last = foot if toe is None else toe
     ankle = performance.centres[:, foot]
     tip = performance.centres[:, last] + performance.rotations[:, last] @ character.bodies[last].tip
-    bones = [recording.index(character.bodies[body].bone) for body in (foot, last)]
+    rest = [
+        recording.bones[recording.index(character.bodies[i].bone)].rotation for i in (foot, last)
+    ]
     return FootTracks(
         side=side.value.capitalize(),
         foot_bone=character.bodies[foot].bone,
@@ -147,6 +149,8 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
         ankle=ankle,
         ball=tip if toe is None else performance.centres[:, toe],
         tip=tip,
-        foot_rotation=recording.rotations[:, bones[0]],
-        toe_rotation=recording.rotations[:, bones[1]],
+        foot_rotation=performance.rotations[:, foot],
+        toe_rotation=performance.rotations[:, last],
+        foot_rest=rest[0],
+        toe_rest=rest[1],
     )
