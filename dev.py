@@ -12,6 +12,7 @@
   solid [NAMES...] [--out DIR]            how solid the world is and how human the body, by MuJoCo
   rigs [NAMES...] [--out DIR]             map skeletons of all conventions, adapt one jump on each
   keys [--out DIR]                        what reduced keys leave of adapted jumps, in Blender
+  loop [--out DIR]                        runs made loops: the seam in Blender, and by MuJoCo
   validate [FOLDER] [--out DIR]           forces of the fit against force plates, with a table
   compare BEFORE AFTER [--within X]       whether two folders of results hold the same motions
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
@@ -47,6 +48,7 @@ COMMANDS = {
     "reach": ("devtools.reach.main", [], False),
     "solid": ("devtools.solid.main", [], True),
     "keys": ("devtools.keys.main", [], True),
+    "loop": ("devtools.loop.main", [], True),
     "validate": ("devtools.validation.main", [], True),
     "compare": ("devtools.gallery.compare", [], False),
     "window": ("devtools.window.main", [], False),

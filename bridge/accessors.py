@@ -9,6 +9,8 @@ from typing import Any, TypeVar
 
 import bpy
 
+SHOWS = "hangtime_shows"  # of the action that holds a result's difference: the result, and
+BESIDE = "hangtime_beside"  # what it is the difference from
 ATTRIBUTE = "hangtime"  # under which scenes, objects, actions and bones carry what is stored
 IN_STRIP = "hangtime_in_strip"  # of actions that Hangtime laid into strips; needs no registration
 
@@ -43,7 +45,13 @@ def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     if data is None or data.action is not None:
         return data.action if data is not None else None
     seen = [strip for track, strip in take_strips(armature) if not (track.mute or strip.mute)]
-    return seen[-1].action if seen else None
+    return shown_by(seen[-1]) if seen else None
+
+
+def shown_by(strip: bpy.types.NlaStrip) -> bpy.types.Action | None:
+    """The take that a strip shows: its action, or the result whose difference this holds."""
+    action = strip.action
+    return action if action is None else action.get(SHOWS) or action
 
 
 def take_strips(

@@ -8,21 +8,23 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..bridge import worker_client
-from ..bridge.accessors import ATTRIBUTE, present
+from ..bridge.accessors import present
 from ..bridge.properties import settings, stances
+from ..bridge.properties.attached_groups import attach_groups
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
 from ..operators.export import exports, recipe_export
 from ..operators.lists import (
     body_changes,
     bone_presets,
+    choose_named,
     constraints,
     contacts,
     presets,
     support_box,
     surfaces,
 )
-from ..operators.solve import adapt, analyze, results, session, takes, watch
+from ..operators.solve import adapt, analyze, remedies, results, session, takes, watch
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
@@ -36,7 +38,7 @@ from .timeline import handler as timeline
 # A panel comes after the one that it is part of.
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, surfaces, support_box, presets),
-    *(bone_presets, results, takes, exports, recipe_export),
+    *(bone_presets, choose_named, remedies, results, takes, exports, recipe_export),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
     *(lists, menus, setup, contact_panels, constraint_panels, world, solve, keys, display),
     *(pin_handles, limit_handles),
@@ -63,13 +65,7 @@ def register() -> Callable[[], None]:
         for cls in classes():
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
-        for carrier, group in settings.CARRIERS.items():
-            # a property until it is assigned; the stubs say nothing
-            group_of = bpy.props.PointerProperty(  # type: ignore[func-returns-value]
-                type=group, override={"LIBRARY_OVERRIDABLE"}
-            )
-            setattr(carrier, ATTRIBUTE, group_of)
-            undo.callback(delattr, carrier, ATTRIBUTE)
+        attach_groups(undo)
         for follow in (_follow_empties, watch.follow_takes):
             bpy.app.handlers.depsgraph_update_post.append(follow)
             undo.callback(bpy.app.handlers.depsgraph_update_post.remove, follow)

@@ -76,12 +76,22 @@ def _keyframe_strip(strip: bpy.types.ActionStrip) -> bpy.types.ActionKeyframeStr
 def new_holder(owner: bpy.types.Object, name: str) -> CurveHolder:
     """Container of the curves of a new action, which animates `owner`."""
     data = owner.animation_data_create()
-    data.action = action = bpy.data.actions.new(name)
+    data.action, curves = new_action(owner, name, owner.name)
+    if hasattr(data.action, "slots"):
+        data.action_slot = data.action.slots[0]
+    return curves
+
+
+def new_action(
+    owner: bpy.types.Object, name: str, slot: str
+) -> tuple[bpy.types.Action, CurveHolder]:
+    """A new action, and the container of its curves; in a slot of that name, where it has slots."""
+    action = bpy.data.actions.new(name)
     if not hasattr(action, "slots"):
-        return action
-    data.action_slot = slot = action.slots.new(owner.id_type, owner.name)
+        return action, action
+    made = action.slots.new(owner.id_type, slot)
     strip = _keyframe_strip(action.layers.new("Layer").strips.new(type="KEYFRAME"))
-    return strip.channelbag(slot, ensure=True)
+    return action, strip.channelbag(made, ensure=True)
 
 
 def slot_identifier(owner: bpy.types.Object) -> str | None:

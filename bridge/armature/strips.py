@@ -1,4 +1,7 @@
-"""Takes as strips of the nonlinear animation: the untouched one below, results on top of it."""
+"""Takes as strips of the nonlinear animation: the untouched one below, results on top of it.
+
+A result's strip replaces what is below, or holds only the difference and is combined with it.
+"""
 
 from __future__ import annotations
 
@@ -8,23 +11,28 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from ..accessors import IN_STRIP, take_strips
+from ..accessors import BESIDE, IN_STRIP, SHOWS, shown_by, take_strips
 
 Strips = list[tuple[bpy.types.NlaTrack, bpy.types.NlaStrip]]
 
 
 def strips_of(owner: bpy.types.Object, action: bpy.types.Action) -> Strips:
-    """The strips of an action that Hangtime made for `owner`, with their tracks."""
-    return [(track, strip) for track, strip in take_strips(owner) if strip.action == action]
+    """The strips that Hangtime made for `owner` and that show an action, with their tracks."""
+    return [(track, strip) for track, strip in take_strips(owner) if shown_by(strip) == action]
 
 
 def lay_strips(
-    owner: bpy.types.Object, take: bpy.types.Action, result: bpy.types.Action, slot: str | None
+    owner: bpy.types.Object,
+    take: bpy.types.Action,
+    result: bpy.types.Action,
+    slot: str | None,
+    difference: bpy.types.Action | None = None,
 ) -> None:
-    """Put a result into a strip that replaces the take's, which is laid below where it is not yet.
+    """Put a result into a strip above the take's, which is laid below where it is not yet.
 
     No action is assigned any more; the result is what is shown. slot: identifier of the slot that
-    both have for `owner`.
+    all have for `owner`. difference: what combined with the take is the result; without it the
+    result's strip replaces the take's.
     """
     data = owner.animation_data_create()
     blend = data.action_blend_type, data.action_extrapolation, data.action_influence
@@ -32,7 +40,11 @@ def lay_strips(
     if not strips_of(owner, take):
         strip = _lay(data, take, slot)
         strip.blend_type, strip.extrapolation, strip.influence = blend
-    _lay(data, result, slot)
+    if difference is None:
+        _lay(data, result, slot)
+    else:
+        difference[SHOWS], difference[BESIDE] = result, take
+        _lay(data, difference, slot).blend_type = "COMBINE"
     show_strip(owner, result)
 
 
@@ -46,9 +58,10 @@ def _lay(
     track = data.nla_tracks.new()
     track.name = action.name
     strip = track.strips.new(action.name, int(start), action)
-    slots = {each.identifier: each for each in getattr(action, "slots", ())}
-    if slot in slots:
-        strip.action_slot = slots[slot]
+    slots = list(getattr(action, "slots", ()))
+    named = [each for each in slots if each.identifier == slot]
+    if slots:
+        strip.action_slot = (named or slots)[0]
     strip.action_frame_start, strip.action_frame_end = start, end
     strip.frame_start, strip.frame_end = start, max(end, start + 1.0)
     strip.blend_type, strip.extrapolation = "REPLACE", "HOLD"
@@ -56,20 +69,30 @@ def _lay(
 
 
 def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
-    """Let a strip's action be seen: of the strips that Hangtime made only the take's below stays,
-    and the action's own."""
+    """Let a strip's take be seen: of the strips that Hangtime made only the first one, below,
+    stays, and the take's own with those that it is the difference from."""
     strips = take_strips(owner)
+    needed, seen = [action], set()
+    while needed:
+        showing = needed.pop()
+        seen.add(showing)
+        held = (strip.action for _, strip in strips if shown_by(strip) == showing)
+        beside = (each.get(BESIDE) for each in held if each is not None)
+        needed += [each for each in beside if each is not None and each not in seen]
     for index, (track, strip) in enumerate(strips):
-        track.mute = index > 0 and strip.action != action
+        track.mute = index > 0 and shown_by(strip) not in seen
 
 
 def remove_strips(owner: bpy.types.Object, action: bpy.types.Action) -> None:
-    """Remove the tracks of an action's strips."""
+    """Remove the tracks of an action's strips, and the difference that they hold."""
     data = owner.animation_data
     if data is None:
         return
-    for track, _ in strips_of(owner, action):
+    for track, strip in strips_of(owner, action):
+        held = strip.action
         data.nla_tracks.remove(track)
+        if held is not None and held != action:
+            bpy.data.actions.remove(held)
 
 
 @contextmanager

@@ -94,9 +94,7 @@ def _write_rotation(
     curves: fcurves.CurveHolder, bone: bpy.types.PoseBone, frames: FloatArray, basis: FloatArray
 ) -> None:
     used = rotation_channel(bone)
-    for channel in (*_ROTATION_CHANNELS.values(), _EULER_CHANNEL):
-        if channel != used:
-            _remove(curves, bone.path_from_id(channel))
+    remove_other_rotations(curves, bone, used)
     path = bone.path_from_id(used)
     near = np.array(getattr(bone, used))
     for index in range(len(near)):
@@ -107,7 +105,17 @@ def _write_rotation(
     fcurves.write_channels(curves, path, frames, values, bone.name)
 
 
-def _remove(curves: fcurves.CurveHolder, path: str) -> None:
+def remove_other_rotations(
+    curves: fcurves.CurveHolder, bone: bpy.types.PoseBone, used: str
+) -> None:
+    """Remove the curves of a bone's rotation in other modes than the used property's."""
+    for channel in (*_ROTATION_CHANNELS.values(), _EULER_CHANNEL):
+        if channel != used:
+            remove(curves, bone.path_from_id(channel))
+
+
+def remove(curves: fcurves.CurveHolder, path: str) -> None:
+    """Remove the curves of a property."""
     for curve in [c for c in curves.fcurves if c.data_path == path]:
         curves.fcurves.remove(curve)
 

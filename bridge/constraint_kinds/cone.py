@@ -78,7 +78,7 @@ KIND = ConstraintKind(
             default=radians(40.0),
         ),
         "use_axis": boolean(
-            "Own Axis", "Aim the cone yourself instead of along the recording's mean direction"
+            "Custom Axis", "Aim the cone yourself instead of along the recording's mean direction"
         ),
         "axis": vector(
             "Axis",

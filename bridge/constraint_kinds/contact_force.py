@@ -79,7 +79,7 @@ KIND = ConstraintKind(
         "peak": stored_number(
             "Peak", "Largest contact force, in body weights", min=0.1, soft_max=10.0, default=3.0
         ),
-        "use_friction": boolean("Own Friction", "Set how slippery the ground is; 1 otherwise"),
+        "use_friction": boolean("Custom Friction", "Set how slippery the ground is; 1 otherwise"),
         "friction": stored_number("Friction", min=0.0, soft_max=1.5, default=0.8),
         "shape": stored_choice("Shape", ShapeLabel),
         "use_match": boolean("Keep Forces", "Keep all forces more like the recording's"),

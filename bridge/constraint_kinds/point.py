@@ -163,10 +163,11 @@ KIND = ConstraintKind(
     added=_added,
     fields={
         "use_place": boolean(
-            "Own Place", "Hold the point at a place of yours instead of where the recording has it"
+            "Custom Place",
+            "Hold the point at a place of yours instead of where the recording has it",
         ),
         "place": position("Place", "Where the point shall be, in the world"),
-        "use_offset": boolean("Own Point", "Choose the point of the bone instead of its middle"),
+        "use_offset": boolean("Custom Point", "Choose the point of the bone instead of its middle"),
         "offset": OFFSET,
         "target": target("Target", "An object that the point follows, wherever it moves"),
         "environment": boolean(

@@ -47,6 +47,11 @@ def _draw(fields: FieldDrawing, row: Row) -> None:
     fields.optional(layout, "use_dof", "dof", "One Angle")
 
 
+def _added(_armature: object, row: Row, _bones: object) -> None:
+    """By a share: what joints give in newton metres is known to few."""
+    row.torque_by = TorqueBy.SHARE.name
+
+
 KIND = ConstraintKind(
     name="TORQUE",
     number=5,
@@ -71,6 +76,7 @@ KIND = ConstraintKind(
         excludes=(("bound", "share"),),
     ),
     bones=BoneUse.SEVERAL,
+    added=_added,
     short="Torque",
     fields={
         "torque_by": choice("In", TorqueBy),

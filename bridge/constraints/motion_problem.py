@@ -22,10 +22,13 @@ from ...solver.data.solver_options import HumanRanges
 from ...solver.worker.protocol import Analysed
 from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
-from ..properties.settings import HangtimeContact, HangtimeSettings
+from ..properties.contact import HangtimeContact
+from ..properties.settings import HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
+from ..rows.phases import phases_of
 from ..scene.members import ground_members, present_members
+from ..takes.options import loop_options
 from .bone_mapping import chosen_parts
 from .requests import joined, requests_of
 
@@ -55,10 +58,12 @@ def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, fl
 
 
 def analysis_key(settings: HangtimeSettings, recording: Recording) -> str:
-    """What an analysis is of: the recording, and the range where there are frames beyond it."""
+    """What an analysis is of: the recording, the range where there are frames beyond it, and
+    whether it is a loop's. Raises BadRecipe."""
     span, key = span_of(settings, recording), digest(recording)
     whole = span == (recording.frames[0], recording.frames[-1])
-    return key if whole else f"{key} {span[0]:g} {span[1]:g}"
+    key = key if whole else f"{key} {span[0]:g} {span[1]:g}"
+    return key if loop_options(settings) is None else f"{key} loop"
 
 
 def problem_of(
@@ -88,6 +93,7 @@ def problem_of(
         pins=_pins(settings, span) if with_contacts else (),
         scene=scene if with_contacts else (),
         requests=_requests(settings, span, scene) if with_contacts else Requests(),
+        loop=loop_options(settings) is not None,
     )
 
 
@@ -246,8 +252,24 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     for row, kept in zip(rows[len(contacts) :], added, strict=True):
         for name, value in vars(kept).items():
             setattr(row, name, value)
-    settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
     _restore(settings, edits)
+    if edits:
+        settings.active_contact = min(settings.active_contact, len(settings.contacts) - 1)
+    else:
+        _choose_first_landing(settings)
+
+
+def _choose_first_landing(settings: HangtimeSettings) -> None:
+    """What artists mostly move; the first stance where nothing flies."""
+    flown = False
+    landing = settings.contacts[0].phase if len(settings.contacts) else ""
+    for phase in phases_of(settings):
+        if flown and phase.is_ground:
+            landing = phase.name
+            break
+        flown = flown or not phase.is_ground
+    phases = [row.phase for row in settings.contacts]
+    settings.active_contact = phases.index(landing) if landing in phases else 0
 
 
 def _resized(rows: Any, count: int) -> list[Any]:

@@ -14,6 +14,7 @@ from ..rows.choices import Met
 from .body_requests import leaves_limb
 
 PINNED = 1.0  # mm; a point that something holds from outside and that is nearer is held
+CENTIMETRES = 20.0  # mm, from which on lengths are told in these
 UNITS = {  # after an amount, where not the report's own
     RowKind.TORQUE: " N·m",
     RowKind.PEAK: " body weights",
@@ -51,6 +52,8 @@ def _told(met: bool, amount: float, kind: RowKind, frame: float) -> tuple[bool, 
     if met:
         return True, "Met"
     unit = UNITS.get(kind, f" {kind.reported_unit}")
+    if unit == " mm" and amount >= CENTIMETRES:
+        amount, unit = amount / 10.0, " cm"
     by = f" by {_rounded(amount)}{unit}" if isfinite(amount) else ""
     return False, f"Missed{by} at frame {frame:.0f}"
 

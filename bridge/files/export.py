@@ -1,4 +1,4 @@
-"""Export of an action as FBX or glTF; re-import of an FBX for checking."""
+"""Export of an action as FBX or glTF; re-import of either for checking."""
 
 from __future__ import annotations
 
@@ -60,6 +60,7 @@ def export_gltf(armature: bpy.types.Object, action: bpy.types.Action, path: str 
             use_selection=True,
             export_animations=True,
             export_animation_mode="ACTIVE_ACTIONS",
+            export_nla_strips_merged_animation_name=action.name,  # else it is "Animation"
             export_anim_single_armature=False,  # else 4.2 merges all actions that fit into one
             export_frame_range=True,
             export_force_sampling=True,
@@ -127,6 +128,18 @@ def reimport_fbx(path: str | Path, frames: FloatArray) -> Recording:
         render.fps, render.fps_base = rate
         armature = next(o for o in set(bpy.data.objects) - before if o.type == "ARMATURE")
         recording = read.record(armature, imported_frames)
+    return dataclasses.replace(recording, frames=frames, times=seconds - seconds[0])
+
+
+def reimport_gltf(path: str | Path, frames: FloatArray) -> Recording:
+    """Record a glTF file as `reimport_fbx` does an FBX file."""
+    scene = current_scene()
+    seconds = frames / frames_per_second(scene)
+    with _removed_afterwards():
+        before = set(bpy.data.objects)
+        bpy.ops.import_scene.gltf(filepath=str(path))
+        armature = next(o for o in set(bpy.data.objects) - before if o.type == "ARMATURE")
+        recording = read.record(armature, seconds * frames_per_second(scene))
     return dataclasses.replace(recording, frames=frames, times=seconds - seconds[0])
 
 

@@ -47,7 +47,8 @@ def chosen_keys(
         case KeyChoice.REDUCED:
             keys = yield from _within(posed, options, events)
     yield
-    return ChosenKeys(keys, _report(posed, options.on, keys, rate))
+    done = KeyChoice.EVERY_FRAME if keys is None else options.on
+    return ChosenKeys(keys, _report(posed, done, keys, rate))
 
 
 def _within(

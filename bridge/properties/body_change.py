@@ -31,7 +31,7 @@ class HangtimeBodyChange(bpy.types.PropertyGroup):
     by_share: asked(boolean("Share of the Body", "Give the weight as a share"))
     mass: asked(number("Mass (kg)", min=0.0, soft_max=100.0, default=10.0))
     share: asked(number("Share", subtype="FACTOR", min=0.0, soft_max=1.0, default=0.1))
-    use_offset: asked(boolean("Own Place", "Carry it elsewhere than at the bone's tail"))
+    use_offset: asked(boolean("Custom Place", "Carry it elsewhere than at the bone's tail"))
     offset: asked(OFFSET)
     length: asked(number("Length", "Times as long", min=0.2, max=5.0, default=1.0))
     mass_factor: asked(number("Mass", "Times as heavy", min=0.1, max=10.0, default=1.0))

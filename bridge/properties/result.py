@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..rows.choices import After, WrittenAs
+from ..rows.choices import After, ContactMarkers, WrittenAs
 from ..rows.row import OVERRIDABLE, chosen
 from ..rows.stored import boolean, whole
 
@@ -42,7 +42,7 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
     )
     use_blend: chosen(
         boolean(
-            "Own Blend",
+            "Custom Blend",
             "Choose how many frames before and after the adapted ones are blended; "
             "else those of a quarter of a second",
         )
@@ -67,12 +67,35 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
             (WrittenAs.ACTION.name, "New Action", "The armature performs a new action"),
             (
                 WrittenAs.STRIP.name,
-                "NLA Strip",
+                "NLA Strip, Replace",
                 "The take goes down into a strip of its own, and the result into one above; "
                 "mute its track and the take is there, untouched",
             ),
+            (
+                WrittenAs.COMBINE.name,
+                "NLA Strip, Combine",
+                "The strip above holds only the difference, so that the take below can still be "
+                "edited. Channels that physics does not own keep their times",
+            ),
         ],
         override=OVERRIDABLE,
+    )
+    markers: bpy.props.EnumProperty(
+        name="Contact Markers",
+        description="Mark where each foot or hand comes down and goes up",
+        items=[
+            (ContactMarkers.NONE.name, "None", "No markers"),
+            (ContactMarkers.ACTION.name, "Pose Markers", "Markers of the result's action"),
+            (ContactMarkers.TIMELINE.name, "Timeline", "Markers of the scene"),
+        ],
+        override=OVERRIDABLE,
+    )
+    contact_channels: chosen(
+        boolean(
+            "Contact Channels",
+            "Key a custom property of the armature for each foot or hand, such as "
+            "contact_left_foot: 1 while it touches and else 0",
+        )
     )
 
 

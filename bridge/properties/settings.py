@@ -5,9 +5,7 @@ Lengths are in Blender units, world; frames are the scene's; angles in rad.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import pi
-from typing import Any
 
 import bpy
 
@@ -24,18 +22,22 @@ from ..rows.row import (
     declared,
     hidden,
 )
-from ..rows.stored import angle, boolean, frame, number, position, target, text, vector, whole
+from ..rows.stored import angle, boolean, number, target, text, whole
 from . import stances
 from .body_change import CLASSES as BODY_CHANGE_CLASSES
 from .body_change import HangtimeBodyChange
 from .constraint import CLASSES as CONSTRAINT_CLASSES
 from .constraint import HangtimeConstraint
+from .contact import CLASSES as CONTACT_CLASSES
+from .contact import HangtimeContact, HangtimeStance
 from .keys import CLASSES as KEYS_CLASSES
 from .keys import HangtimeKeys
+from .loop import CLASSES as LOOP_CLASSES
+from .loop import HangtimeLoop
 from .result import CLASSES as RESULT_CLASSES
 from .result import HangtimeResultOptions
 from .surface import CLASSES as SURFACE_CLASSES
-from .surface import HangtimeSurface, has_faces
+from .surface import HangtimeSurface
 from .view import CLASSES as VIEW_CLASSES
 from .view import HangtimeView
 
@@ -49,102 +51,16 @@ def _is_armature(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -
     return bool(candidate.type == "ARMATURE")
 
 
-def _is_empty(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    return bool(candidate.type == "EMPTY")
-
-
 # Blender evaluates a class's annotations apart from this module's names, so that a lambda among
 # them would not find any: callbacks are functions.
 
 
-def _get_place(row: HangtimeContact) -> Sequence[float]:
-    return tuple(row.at)
+def _get_active_stance(settings: HangtimeSettings) -> int:
+    return stances.active_stance_index(settings)
 
 
-def _set_place(row: HangtimeContact, to: Sequence[float]) -> None:
-    stances.place(attached(row.id_data), row, to)
-
-
-class HangtimeContact(bpy.types.PropertyGroup):
-    """A contact as it was found and as the artist wants it; `name` is its own ("Left heel 2")."""
-
-    COMPUTED = ("place",)  # from what else is stored
-
-    point: hidden(text())
-    bone: hidden(text("Bone"))
-    phase: hidden(text("Phase"))
-    found_start: hidden(number())
-    found_end: hidden(number())
-    found_at: hidden(vector())
-    at: hidden(vector())
-
-    added: hidden(boolean())  # by the artist
-    used: chosen(boolean("Touches", "Whether this contact counts; off removes it", default=True))
-    start_frame: chosen(frame("Start", "Frame at which the point begins to carry"))
-    end_frame: chosen(frame("End", "Frame at which the point ceases to carry"))
-    place: chosen(
-        position(
-            "Place",
-            "Where the point shall touch, in the world. Its whole stance moves along "
-            "while Move Whole Stance is on",
-            get=_get_place,
-            set=_set_place,
-        )
-    )
-    empty: chosen(target("Empty", "Where this empty is, the point shall touch", poll=_is_empty))
-    on: chosen(
-        target(
-            "On",
-            "The ground that the point stands on, vertically below or above its place; "
-            "it must be among the surfaces. Dragging the pin there chooses it",
-            poll=has_faces,
-        )
-    )
-
-
-def _shift(axis: int, name: str, description: str) -> Any:
-    """A stance's shift along one of its axes."""
-
-    def get(stance: HangtimeStance) -> float:
-        return float(stance.shifted[axis])
-
-    def put(stance: HangtimeStance, to: float) -> None:
-        shifted = list(stance.shifted)
-        shifted[axis] = to
-        stances.shift_stance(attached(stance.id_data), stance, shifted)
-
-    options = {"unit": "LENGTH", "subtype": "DISTANCE", "step": 1}
-    return chosen(number(name, description, get=get, set=put, **options))
-
-
-def _get_turn(stance: HangtimeStance) -> float:
-    return float(stance.turned)
-
-
-def _set_turn(stance: HangtimeStance, to: float) -> None:
-    stances.turn_stance(attached(stance.id_data), stance, to)
-
-
-class HangtimeStance(bpy.types.PropertyGroup):
-    """A stance, which is all contacts of a ground phase; `name` is the phase's ("ground 2")."""
-
-    COMPUTED = ("forward", "left", "up", "turn")
-
-    forward_axis: hidden(vector())
-    shifted: hidden(vector())
-    turned: hidden(number())
-
-    forward: _shift(0, "Forward", "Move the stance along the jump's travel")
-    left: _shift(1, "Left", "Move the stance to the left of the jump's travel")
-    up: _shift(2, "Up", "Raise or lower the stance")
-    turn: chosen(
-        angle(
-            "Turn",
-            "Turn the stance about the vertical, counter-clockwise seen from above",
-            get=_get_turn,
-            set=_set_turn,
-        )
-    )
+def _set_active_stance(settings: HangtimeSettings, index: int) -> None:
+    stances.choose_stance(settings, index)
 
 
 class HangtimePart(bpy.types.PropertyGroup):
@@ -163,6 +79,8 @@ class HangtimePart(bpy.types.PropertyGroup):
 class HangtimeSettings(bpy.types.PropertyGroup):
     """An armature's edit; of an empty that marks a contact, whose contact it marks."""
 
+    COMPUTED = ("active_stance",)  # from what else is stored
+
     marks: hidden(target(poll=_is_armature))
 
     mass: chosen(number("Mass (kg)", "The performer's mass", default=70.0, min=10.0, max=300.0))
@@ -175,7 +93,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     )
     measured_height: hidden(number())
     use_height: chosen(
-        boolean("Own Height", "State the performer's height instead of the measured one")
+        boolean("Custom Height", "State the performer's height instead of the measured one")
     )
     height: chosen(
         number(
@@ -198,6 +116,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
     active_contact: hidden(whole())
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
+    active_stance: hidden(whole(get=_get_active_stance, set=_set_active_stance))
     whole_stance: chosen(
         boolean(
             "Move Whole Stance",
@@ -286,8 +205,8 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         angle("Wider", "How much further than a person's joints may go", min=0.0, max=pi)
     )
     objective: bpy.props.EnumProperty(
-        name="Lessen",
-        description="What Refine lessens, beside staying close",
+        name="Minimize",
+        description="What Refine minimizes, beside staying close",
         items=[
             ("TORQUE_SMOOTHNESS", "Jerky Torques", "Muscles that change evenly"),
             ("TORQUE_OUTPUT", "Torque", "Muscles that work less hard"),
@@ -302,7 +221,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     stay_close: chosen(
         number(
             "Stay Close",
-            "How much staying near the quick solution counts, beside what is lessened",
+            "How much staying near the quick solution counts, beside what is minimized",
             default=1.0,
             min=0.0,
             soft_max=10.0,
@@ -311,14 +230,33 @@ class HangtimeSettings(bpy.types.PropertyGroup):
 
     result: bpy.props.PointerProperty(type=HangtimeResultOptions, override=OVERRIDABLE)
     result_keys: bpy.props.PointerProperty(type=HangtimeKeys, override=OVERRIDABLE)
+    loop: bpy.props.PointerProperty(type=HangtimeLoop, override=OVERRIDABLE)
     adapted: hidden(target(type=bpy.types.Action))
     source: hidden(target(type=bpy.types.Action))  # a result to start from; none: the recording
     status: hidden(text())
 
 
-class HangtimeScene(bpy.types.PropertyGroup):
-    """Which armature the sidebar is about, and what is shown of it."""
+def _pin_active(scene: HangtimeScene, context: bpy.types.Context) -> None:
+    """What is pinned is what the sidebar is about: the active armature, else the last one."""
+    active = context.view_layer.objects.active if context.view_layer is not None else None
+    if scene.pinned and active is not None and active.type == "ARMATURE":
+        scene.armature = active
 
+
+class HangtimeScene(bpy.types.PropertyGroup):
+    """Which armature the sidebar is about, and what is shown of it.
+
+    armature: the pinned one; else the one that was worked on last, which counts while no armature
+    is active.
+    """
+
+    pinned: declared(
+        boolean(
+            "Pin",
+            "Keep the sidebar on this armature, whichever one is active",
+            update=_pin_active,
+        )
+    )
     view: declared(target(type=HangtimeView))
     snap: declared(
         boolean(
@@ -331,7 +269,7 @@ class HangtimeScene(bpy.types.PropertyGroup):
     armature: declared(
         target(
             "Armature",
-            "The armature that carries the recording; the active one where none is chosen",
+            "The armature that carries the recording",
             poll=_is_armature,
         )
     )
@@ -352,9 +290,10 @@ class HangtimeAction(bpy.types.PropertyGroup):
     take_key: declared(text(), options=HIDDEN)
     own_key: declared(text(), options=HIDDEN)
     spans: declared(text(), options=HIDDEN)
+    warning: declared(text(), options=HIDDEN)  # what is beyond reason in it: lines
     stale: declared(text(), options=HIDDEN)  # why it is not what would be made now
     polished: declared(boolean(), options=HIDDEN)  # edited by hand since
-    performer: declared(target(), options=HIDDEN)
+    performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
     times: declared(text(), options=HIDDEN)  # its time map: recorded frames, adapted frames
@@ -387,9 +326,9 @@ CLASSES = (
     *VIEW_CLASSES,
     *RESULT_CLASSES,
     *KEYS_CLASSES,
+    *LOOP_CLASSES,
     HangtimePart,
-    HangtimeContact,
-    HangtimeStance,
+    *CONTACT_CLASSES,
     HangtimeSettings,
     HangtimeScene,
     HangtimeAction,

@@ -92,6 +92,31 @@ def stance_middle(settings: Settings, phase: str) -> Vector | None:
     return _middle([contact.at for contact in contacts]) if contacts else None
 
 
+def active_stance_index(settings: Settings) -> int:
+    """The place in the list of the stance that the chosen contact belongs to; -1 where none is."""
+    row = active_contact(settings)
+    phases = [stance.name for stance in settings.stances]
+    return phases.index(row.phase) if row is not None and row.phase in phases else -1
+
+
+def choose_stance(settings: Settings, index: int) -> None:
+    """Choose a stance in the list, which is to choose the first of its contacts."""
+    if not 0 <= index < len(settings.stances):
+        return
+    phases = [row.phase for row in settings.contacts]
+    name = settings.stances[index].name
+    if name in phases and active_stance_index(settings) != index:
+        settings.active_contact = phases.index(name)
+
+
+def stance_frames(settings: Settings, phase: str) -> tuple[float, float] | None:
+    """From which frame to which contacts of a stance that count touch; None where none does."""
+    used = [row for row in stance_contacts(settings, phase) if row.used]
+    if not used:
+        return None
+    return min(row.start_frame for row in used), max(row.end_frame for row in used)
+
+
 def active_contact(settings: Settings) -> ContactRow | None:
     """The contact chosen in the list."""
     index = settings.active_contact

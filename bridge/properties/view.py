@@ -20,6 +20,11 @@ class HangtimeView(bpy.types.PropertyGroup):
     show: _switch("Hangtime Overlays", "Show overlays in this scene")
     pins: _switch("Pins", "Contacts and points that are held, as red spheres")
     limits: _switch("Cones and Limits", "Cones around limbs, and arcs of joint limits")
+    all_limits: _switch(
+        "All Limits",
+        "Every cone and limit; else the chosen one, those of selected bones, and what is missed",
+        on=False,
+    )
     poses: _switch("Poses", "Poses that are asked for, as white bodies")
     forces: _switch("Contact Forces", "Forces of the ground as arrows")
     path: _switch("Centre of Mass", "Its path, and the parabola of each flight")
@@ -32,6 +37,11 @@ class HangtimeView(bpy.types.PropertyGroup):
     )
     shapes: _switch("Shapes", "The body's solid shapes; red where one is in something", on=False)
     ghosts: _switch("Ghosts", "The adapted motion beside the recording, at chosen frames")
+    ghost_auto: _switch(
+        "Automatic",
+        "Some nine ghosts about the flight that is shown, fading towards its surroundings; "
+        "else one every so many frames of the whole clip",
+    )
     ghost_step: declared(whole("Every", "Frames from one ghost to the next", default=30, min=1))
     recording_too: _switch("Recording's Ghosts", "Also show the recording at these frames")
 

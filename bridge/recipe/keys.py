@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import radians
 
+from ...solver.data.faults import NotInLoop
 from ..recipe_syntax.items import Kind, angle, choice, number
 from ..recipe_syntax.table import ABOVE_ZERO
 from ..rows.choices import KeyChoice
@@ -21,6 +22,12 @@ class KeyOptions:
     on: KeyChoice = KeyChoice.EVERY_FRAME
     distance: float = 0.002
     angle: float = radians(0.2)
+
+
+def require_every_frame(options: KeyOptions) -> None:
+    """A loop's keys are on every frame. Raises NotInLoop."""
+    if options.on is not KeyChoice.EVERY_FRAME:
+        raise NotInLoop(f"keys on “{options.on.value}”")
 
 
 KEYS = Kind(

@@ -28,7 +28,13 @@ return_frame = 400              # of the recording, by which it is back; default
 blend_in = 30                   # frames before the adapted ones, and
 blend_out = 30                  # after them, that are blended; default: a quarter of a second
 lock_others = true              # channels that physics does not own keep their times
-written_as = "strip"            # on top of the take, in the NLA; default: "action"
+written_as = "strip"            # on top of the take, in the NLA; "combine": as the difference from
+                                # the take; default: "action"
+markers = "action"              # where limbs come down and go up; or "timeline"; default: "none"
+contact_channels = true         # a property of the armature for each limb, 1 while it touches
+
+[loop]                          # the motion repeats: its end meets its start, solved so
+root = "hips"                   # carry the travel; or "in place", or "root bone"
 
 [keys]                          # of the adapted frames
 on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has
@@ -79,15 +85,27 @@ from ..recipe_syntax.items import (
 )
 from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
 from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
-from ..recipe_syntax.toml_text import entries
+from ..recipe_syntax.toml_text import entries, sections
 from .keys import KEYS, KeyOptions
+from .loop import LOOP, LoopOptions
 from .object_texts import object_text
 from .objects import HEADER as OBJECT
 from .objects import Under, default_name, read_objects
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 from .result import RESULT, ResultOptions
 
-OWN_KEYS = ("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact", "keys")
+OWN_KEYS = (
+    "clip",
+    "frames",
+    "mass",
+    "height",
+    "mass_table",
+    "bones",
+    "pin",
+    "contact",
+    "keys",
+    "loop",
+)
 TOP_KEYS = (*OWN_KEYS, "add_contact", OBJECT, *REQUEST_KEYS, RESULT.header)
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
@@ -104,7 +122,8 @@ _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 bracke
 class Recipe:
     """Parsed recipe. clip: a path as written, relative to the recipe; None where not given.
 
-    under: objects of which the analysis is to tell the places. result, keys: None where not given.
+    under: objects of which the analysis is to tell the places. result, keys, loop: None where not
+    given.
     """
 
     problem: MotionProblem
@@ -112,6 +131,7 @@ class Recipe:
     under: tuple[Under, ...] = ()
     result: ResultOptions | None = None
     keys: KeyOptions | None = None
+    loop: LoopOptions | None = None
 
 
 def read_recipe_text(path: str | Path) -> str:
@@ -144,11 +164,13 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
         pins=PIN.read_all(table),
         scene=scene,
         requests=read_requests(table),
+        loop=LOOP.header in table.values,
     )
     _refuse_same_names(table)
     result = RESULT.read(table) if RESULT.header in table.values else None
     keys = KEYS.read(table) if KEYS.header in table.values else None
-    return Recipe(problem, table.word("clip"), under, result, keys)
+    loop = LOOP.read(table) if problem.loop else None
+    return Recipe(problem, table.word("clip"), under, result, keys, loop)
 
 
 def locate(text: str, fault: Fault) -> int | None:
@@ -340,10 +362,13 @@ def write_recipe(
     *,
     clip: str | None = None,
     files: Mapping[str, str] = MappingProxyType({}),
+    result: ResultOptions | None = None,
+    keys: KeyOptions | None = None,
 ) -> str:
     """The TOML text that `parse_recipe` reads as this problem.
 
-    files: of objects' meshes, by the objects' names; what has none is written out.
+    files: of objects' meshes, by the objects' names; what has none is written out. result, keys:
+    left out where they are the usual ones, which a recipe that says nothing means.
     """
     top = {
         "clip": clip,
@@ -355,6 +380,10 @@ def write_recipe(
     parts = [entries(top)]
     if problem.bones:
         parts.append("[bones]\n" + entries(problem.bones))
+    parts += sections(RESULT.header, RESULT.write(result)) if result is not None else []
+    parts += sections(KEYS.header, KEYS.write(keys)) if keys is not None else []
+    if problem.loop:
+        parts.append(f"[{LOOP.header}]")
     parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)
     parts += ADDED.text(problem.added)
     parts += [object_text(thing, files.get(thing.name)) for thing in problem.scene]

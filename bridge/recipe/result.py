@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from ...solver.data.faults import ReturnTooEarly
 from ..recipe_syntax.items import Kind, choice, flag, number
 from ..recipe_syntax.table import NOT_NEGATIVE
-from ..rows.choices import After, WrittenAs
+from ..rows.choices import After, ContactMarkers, WrittenAs
 
 
 @dataclass(frozen=True)
@@ -14,6 +14,7 @@ class ResultOptions:
 
     return_frame: of the recording, by which it is back; None is a second after the adapted frames.
     blend_in, blend_out: frames before and after the adapted ones; None is a quarter of a second.
+    markers, contact_channels: how contacts are told (keys/contact_marks.py).
     lock_others: channels that physics does not own keep their times where durations changed.
     """
 
@@ -23,6 +24,13 @@ class ResultOptions:
     blend_out: float | None = None
     lock_others: bool = False
     written_as: WrittenAs = WrittenAs.ACTION
+    markers: ContactMarkers = ContactMarkers.NONE
+    contact_channels: bool = False
+
+    @property
+    def others_stay(self) -> bool:
+        """Whether channels that physics does not own keep their times: a difference has none."""
+        return self.lock_others or self.written_as is WrittenAs.COMBINE
 
 
 def require_return_after(options: ResultOptions, last: float) -> None:
@@ -43,6 +51,8 @@ RESULT = Kind(
         number("blend_out", NOT_NEGATIVE),
         flag("lock_others"),
         choice("written_as", WrittenAs),
+        choice("markers", ContactMarkers),
+        flag("contact_channels"),
     ),
     named=False,
 )

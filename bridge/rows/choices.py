@@ -75,11 +75,28 @@ class After(Enum):
     CUT = "cut"  # left out, and what is before them, too
 
 
+class LoopRoot(Enum):
+    """What carries a loop's travel."""
+
+    HIPS = "hips"
+    IN_PLACE = "in place"  # nothing: what is left of it is the sway about a steady speed
+    ROOT_BONE = "root bone"  # the topmost above the pelvis, at a steady speed
+
+
 class WrittenAs(Enum):
     """Form in which a result is written."""
 
     ACTION = "action"
     STRIP = "strip"  # on top of the take
+    COMBINE = "combine"  # only the difference, on top of the take
+
+
+class ContactMarkers(Enum):
+    """Where contacts of a result are marked."""
+
+    NONE = "none"
+    ACTION = "action"  # pose markers
+    TIMELINE = "timeline"  # the scene's
 
 
 class KeyChoice(Enum):

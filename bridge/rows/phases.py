@@ -80,6 +80,21 @@ def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:
     return phases(carried(settings), *ends) if ends is not None else ()
 
 
+def roles(settings: Settings) -> dict[str, str]:
+    """What each stance is to the clip, by its phase's name: "Take-Off", "Landing 2", "Stance"."""
+    every = phases_of(settings)
+    flights = sum(not phase.is_ground for phase in every)
+    found, flown = {}, 0
+    for index, phase in enumerate(every):
+        if not phase.is_ground:
+            flown += 1
+        elif flown:
+            found[phase.name] = f"Landing {flown}" if flights > 1 else "Landing"
+        else:
+            found[phase.name] = "Take-Off" if index + 1 < len(every) else "Stance"
+    return found
+
+
 def names(settings: Settings) -> tuple[str, ...]:
     """What a constraint may be about: the phases and the frames that are held, in time."""
     holds = (row.name for row in settings.constraints if row.kind == HOLD)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+DIGITS = 4  # of lengths: Blender counts those before the point too
+
 
 class PropertyType(Enum):
     """Blender's property types, by their functions in bpy.props."""
@@ -81,7 +83,8 @@ def vector(name: str = "", description: str = "", **options: Any) -> Stored:
 
 def position(name: str, description: str = "", **options: Any) -> Stored:
     """A place, or the way to it."""
-    return vector(name, description, subtype="TRANSLATION", unit="LENGTH", **options)
+    shared = {"subtype": "TRANSLATION", "unit": "LENGTH", "precision": DIGITS}
+    return vector(name, description, **shared, **options)
 
 
 def text(name: str = "", description: str = "", **options: Any) -> Stored:
@@ -94,4 +97,9 @@ def target(name: str = "", description: str = "", **options: Any) -> Stored:
     return _declared(PropertyType.OBJECT, name, description, options)
 
 
-OFFSET = position("Offset", "From the bone's head, in the bone's axes and the armature's own scale")
+OFFSET = vector(
+    "Offset",
+    "From the bone's head, in the bone's axes and the armature's own units, which its object's "
+    "scale makes the world's",
+    precision=DIGITS,
+)

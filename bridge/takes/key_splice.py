@@ -86,6 +86,28 @@ def splice(
     put(curve, joined(joined(head, made), tail))
 
 
+def anchor(
+    curve: bpy.types.FCurve,
+    between: tuple[float, float],
+    beside: tuple[float | None, float | None],
+    rest: float,
+) -> None:
+    """Key what a curve shows at a frame beside those that are replaced strictly between two, on a
+    side where it has no key: there it would hold the first or last new value.
+
+    beside: None where nothing is to be kept. rest: what the channel is while the curve has no key.
+    """
+    keys = table(curve)
+    at = keys["co"][:, 0]
+    keyed = (at <= between[0] + EPSILON).any(), (at >= between[1] - EPSILON).any()
+    frames = np.array(
+        [f for f, has in zip(beside, keyed, strict=True) if f is not None and not has]
+    )
+    if len(frames):
+        values = np.array([curve.evaluate(f) if len(at) else rest for f in frames])
+        put(curve, joined(keys, linear_keys(keys, frames, values)))
+
+
 def applied(curve: bpy.types.FCurve, frames: FloatArray, constant: float | None) -> None:
     """Make a curve keys of what it does at frames (T,): without modifiers, and not muted.
 

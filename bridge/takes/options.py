@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from ..properties.settings import HangtimeSettings
+from ..recipe.loop import LoopOptions
 from ..recipe.problem import parse_recipe
 from ..recipe.result import ResultOptions
-from ..rows.choices import After, WrittenAs
+from ..rows.choices import After, ContactMarkers, LoopRoot, WrittenAs
+
+
+def loop_options(settings: HangtimeSettings) -> LoopOptions | None:
+    """How a loop is to be written, None where none is; a [loop] in the armature's text goes before
+    the panel. Raises BadRecipe."""
+    text = settings.requests
+    stated = None if text is None else parse_recipe(text.as_string(), text.name).loop
+    if stated is not None:
+        return stated
+    return LoopOptions(LoopRoot[settings.loop.root]) if settings.loop.use else None
 
 
 def result_options(settings: HangtimeSettings) -> ResultOptions:
@@ -23,4 +34,6 @@ def result_options(settings: HangtimeSettings) -> ResultOptions:
         blend_out=float(chosen.blend_out) if chosen.use_blend else None,
         lock_others=chosen.lock_others,
         written_as=WrittenAs[chosen.written_as],
+        markers=ContactMarkers[chosen.markers],
+        contact_channels=chosen.contact_channels,
     )

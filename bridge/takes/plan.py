@@ -40,7 +40,8 @@ class AdaptedMotion:
 
 @dataclass(frozen=True)
 class Plan:
-    """What goes where. back: frame by which the take is where it was, where it is to come back."""
+    """What goes where. moved: with which stance what follows is carried; None where nothing is.
+    back: frame by which the take is where it was, where it is to come back."""
 
     span: ResultSpan
     time: TakeTime
@@ -69,6 +70,15 @@ class Plan:
             right = float(self.rest_frames[-1]) + (BESIDE if self.back is None else 0.0)
         return left, right
 
+    def beside(self, channel: OwnedChannel) -> tuple[float | None, float | None]:
+        """Whole frames next to those that are replaced; None where the take does not reach them."""
+        left, right = self.between(channel)
+        before, after = float(np.floor(left)), float(np.ceil(right))
+        return (
+            before if before >= self.span.begin else None,
+            after if after <= self.span.end else None,
+        )
+
 
 def planned(curves: CurveHolder, motion: AdaptedMotion) -> Plan:
     """What is to be done to a take that these curves animate."""
@@ -87,7 +97,8 @@ def planned(curves: CurveHolder, motion: AdaptedMotion) -> Plan:
         blend_out = 0.0
     time = TakeTime.of(motion.times, max(blend_out, 1.0))
     begin, end = time.to_result(np.array(key_span(list(curves.fcurves)))).tolist()
-    moved = None if motion.moved is None or motion.moved.stays else motion.moved
+    follows = not motion.ends and np.floor(end) > last
+    moved = None if motion.moved is None or motion.moved.stays or not follows else motion.moved
     back = None
     if moved is not None and options.after is After.RETURN:
         by = options.return_frame

@@ -14,12 +14,14 @@ import bpy
 
 from ..accessors import current_action
 from ..armature.actions import recorded_action, show
+from ..armature.fcurves import slot_identifier
+from ..armature.keys_digest import keys_digest
 from ..armature.traces_store import forget, put_by, take_up
-from ..properties.copying import copy_settings, settings_digest
 from ..properties.settings import HangtimeSettings, action_settings, settings_of
 from ..properties.stances import move_empties
 from ..rows.choices import Span
-from .keys_digest import keys_digest
+from ..rows.copying import copy_settings, settings_digest
+from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
 _NOT_ASKED = (  # of the next result
@@ -135,6 +137,7 @@ def start_from_result(armature: bpy.types.Object, result: bpy.types.Action) -> N
     """Make the next results from a result: a second jump builds on the first, and hand polish
     stays. Contacts are to be found anew; limits that always hold stay."""
     keep_edit(armature)
+    bake_shown(armature, result)
     settings = settings_of(armature)
     settings.source, settings.adapted = result, None
     settings.contacts.clear()
@@ -166,7 +169,7 @@ def note_made(
     assert source is not None
     copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
     made.asked_key = settings_digest(settings_of(armature), _NOT_ASKED)
-    made.take_key, made.own_key = keys_digest(source), keys_digest(action)
+    made.take_key, made.own_key = _digest(source), _digest(action)
     made.stale, made.polished = "", False
     spans = []
     if span is not None:
@@ -201,7 +204,7 @@ def look_again(armature: bpy.types.Object) -> bool:
         if take.source is None or not kept.own_key:
             continue
         for action in (take.action, take.source):
-            keys.setdefault(action, keys_digest(action))
+            keys.setdefault(action, _digest(action))
         edit = settings if take.action == settings.adapted else kept.edit
         stale = ""
         if keys[take.source] != kept.take_key:
@@ -220,4 +223,22 @@ def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:
     result: bpy.types.Action | None = settings_of(armature).adapted
     if result is None or not action_settings(result).own_key:
         return None
-    return result if keys_digest(result) != action_settings(result).own_key else None
+    return result if _digest(result) != action_settings(result).own_key else None
+
+
+def _digest(action: bpy.types.Action) -> str:
+    """Of a take's keys, and of the difference that is edited in its stead."""
+    difference = difference_shown(action)
+    own = keys_digest(action)
+    return own if difference is None else f"{own} {keys_digest(difference)}"
+
+
+def bake_shown(armature: bpy.types.Object, result: bpy.types.Action) -> None:
+    """Make a result that is combined with its take what its strip shows, where either was edited;
+    before it is built upon, or leaves the file."""
+    made, source = action_settings(result), source_of(result)
+    if source is None or difference_shown(result) is None:
+        return
+    if (_digest(source), _digest(result)) != (made.take_key, made.own_key):
+        bake_combined(result, slot_identifier(armature))
+        made.own_key = _digest(result)

@@ -28,7 +28,7 @@ from ..controls.control_rig import (
 )
 from ..controls.driven import is_driven
 from .carry import carried, shares_of_return
-from .key_splice import FullTurns, applied, retime, splice
+from .key_splice import FullTurns, anchor, applied, retime, splice
 from .offsets import faded, seam_offset
 from .owned import OwnedChannel, owned_by, owned_channels
 from .plain_root import plain_poses
@@ -56,7 +56,7 @@ def write_take(
     rig = yield from _controls(armature, action, motion)
     owned = tuple(owned_channels(armature, motion.track.bones) if rig is None else owned_by(rig))
     plan = planned(curves, motion)
-    yield from _retime(action, curves, owned, plan.time, alone=motion.options.lock_others)
+    yield from _retime(action, curves, owned, plan.time, alone=motion.options.others_stay)
     done = _apply_modifiers(armature, curves, owned, plan.span)
     action.update_tag()
     showing = partial(showing_action, armature, action)
@@ -88,9 +88,8 @@ def write_take(
         for curve in fcurves.all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
-    moved = None if plan.moved is None or motion.ends else plan.moved
     kept = None if posed is None else kept_by(posed, plan.body_frames)
-    return WrittenTake(plan.span, moved, plan.back, plan.time.later, done, kept)
+    return WrittenTake(plan.span, plan.moved, plan.back, plan.time.later, done, kept)
 
 
 def _controls(
@@ -252,6 +251,8 @@ def _write_channel(
     values = channel.values(armature, bases, recorded)
     goes_on = plan.span.blend_out > 0.0 or len(frames) > len(plan.body_frames)
     turns = channel.turns(values, recorded) if goes_on else [FullTurns()] * values.shape[1]
+    rest = channel.at_rest(armature)
     for index, column in enumerate(values.T):
         curve = fcurves.ensured(curves, channel.path, index, channel.bone)
+        anchor(curve, plan.between(channel), plan.beside(channel), rest[index])
         splice(curve, frames, column, plan.between(channel), turns[index])

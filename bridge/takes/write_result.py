@@ -10,11 +10,12 @@ from ..accessors import ATTRIBUTE, current_action, present
 from ..armature import fcurves
 from ..armature.actions import recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
-from ..armature.strips import lay_strips
+from ..armature.strips import lay_strips, strips_of
 from ..armature.write import write_incrementally
 from ..controls.driven import is_driven
 from ..properties.settings import action_settings, settings_of
 from ..rows.choices import After, WrittenAs
+from .difference import difference_of
 from .plan import AdaptedMotion
 from .span import WrittenTake
 from .takes import root_of
@@ -52,6 +53,18 @@ def write_adapted_incrementally(
     return action, written
 
 
+def combine(armature: bpy.types.Object, action: bpy.types.Action, after: After) -> None:
+    """Lay a result that is shown, with the keys that it is to have, as its difference from what it
+    was made from into a strip on top of that."""
+    take, slot = action_settings(action).recording, fcurves.slot_identifier(armature)
+    more = difference_of(armature, present(take), action, slot)
+    lay_strips(armature, present(take), action, slot, more)
+    if after is After.CUT:  # nothing of it is left beside the adapted frames
+        for _, strip in strips_of(armature, action):
+            strip.extrapolation = "NOTHING"
+    show(armature, action, slot)
+
+
 def _write(
     armature: bpy.types.Object,
     motion: AdaptedMotion,
@@ -65,12 +78,12 @@ def _write(
         cut = yield from write_incrementally(
             armature, motion.track, recorded, slot, name=name, showing=showing
         )
-        _forget_copied(cut)
+        forget_copied(cut)
         return cut, None
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False
-    _forget_copied(action)
+    forget_copied(action)
     whole = False
     try:
         written = yield from write_take(armature, action, slot, motion)
@@ -85,7 +98,7 @@ def _write(
     return action, written
 
 
-def _forget_copied(action: bpy.types.Action) -> None:
+def forget_copied(action: bpy.types.Action) -> None:
     """Remove what a copy has of the take's own history, where that is a result itself."""
     for name in tuple(action.keys()):
         if name.startswith(ATTRIBUTE):

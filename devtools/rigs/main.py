@@ -69,11 +69,11 @@ def measured(keys: Sequence[str], wanted: set[str]) -> Iterator[RigResult]:
             edited = Path(folder) / EDITED
             if edited.is_file():
                 mine: Edited = undump(edited)
-                reference = reference or mine
-                worst, joint, frame = compared(mine, reference, JOINTS)
-                result = replace(
-                    result, difference_mm=worst, joint=joint, frame=frame, solved=mine.solved
-                )
+                reference = mine if key == REFERENCE else reference
+                result = replace(result, solved=mine.solved, files=mine.files)
+                if reference is not None:  # else its failure is told, and nothing is compared
+                    worst, joint, frame = compared(mine, reference, JOINTS)
+                    result = replace(result, difference_mm=worst, joint=joint, frame=frame)
             yield replace(result, failed=result.failed or said or "")
 
 

@@ -21,6 +21,7 @@ from ..figures.clips import EDITS
 from ..processes import dump
 from .actor import CLIP, JOINTS, Actor, actor
 from .build import build
+from .files import round_trips
 from .layout import Layout, layouts
 from .result import Edited, RigResult
 
@@ -74,7 +75,9 @@ def edited(layout: Layout, armature: bpy.types.Object, performer: Actor) -> Edit
     write_action(armature, result.track, name=EDIT)
     shown = record(armature, result.track.frames)
     columns = [shown.index(layout.parts[joint]) for joint in JOINTS]
-    return Edited(shown.frames, shown.heads[:, columns], result.adaptation.solved)
+    with quiet():
+        files = round_trips(armature, shown)
+    return Edited(shown.frames, shown.heads[:, columns], result.adaptation.solved, files)
 
 
 def _joint(part: Part, side: Side) -> str:

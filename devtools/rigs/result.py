@@ -10,12 +10,25 @@ from ...solver.arrays import FloatArray
 
 
 @dataclass(frozen=True)
+class FileResult:
+    """What a file of a format loses at most: of any bone's place, and of its turn."""
+
+    name: str
+    mm: float
+    degrees: float
+
+
+@dataclass(frozen=True)
 class Edited:
-    """The adapted jump as Blender shows it: joint centres (T, J, 3), m, at frames (T,)."""
+    """The adapted jump as Blender shows it: joint centres (T, J, 3), m, at frames (T,).
+
+    files: it, written to files and read again.
+    """
 
     frames: FloatArray
     centres: FloatArray
     solved: bool
+    files: tuple[FileResult, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -40,6 +53,7 @@ class RigResult:
     recording_mm: float | None = None
     solved: bool = False
     failed: str = ""
+    files: tuple[FileResult, ...] = ()
 
     @property
     def mapped(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -13,12 +14,8 @@ from .driver import Actions, Driver, Until
 from .screen import present, window_manager
 
 if TYPE_CHECKING:  # the Blender with the window sees devtools and the installed zip alone
-    from ...bridge.properties.settings import (
-        HangtimeAction,
-        HangtimeScene,
-        HangtimeSettings,
-        HangtimeStance,
-    )
+    from ...bridge.properties.contact import HangtimeStance
+    from ...bridge.properties.settings import HangtimeAction, HangtimeScene, HangtimeSettings
     from ...operators.solve.solving import Solving
 
 PACKAGE = "bl_ext.user_default.hangtime"
@@ -136,6 +133,12 @@ def worker_pid() -> int | None:
             if b"solver/worker/main.py" in words:
                 return int(folder.name)
     return None
+
+
+def worker_seconds() -> float:
+    """Processor time, s, that the worker has taken so far."""
+    user, system = Path(f"/proc/{worker_pid()}/stat").read_text().rpartition(")")[2].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
 
 def press(driver: Driver, what: str, *columns: float) -> Actions:

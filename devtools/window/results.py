@@ -20,6 +20,7 @@ CLICKS = "clicks from an imported BVH to an adapted landing"
 LIMITS = {
     "ghost updates per second during a drag": Limit("1/s", 5.0, 15.0, at_least=True),
     "ghost updates per second during a drag, drawn or not": Limit("1/s"),
+    "worker's processor time per update during a drag": Limit("ms"),
     **{BLOCKED + stage: Limit("ms", 100.0, 30.0) for stage in STAGES},
     "Esc to idle": Limit("s", 0.3, 0.1),
     OVERLAY: Limit("ms", 4.0, 1.0),

@@ -13,22 +13,30 @@ import bpy
 from mathutils import Vector
 
 from .actions import (
+    ASIDE,
     LANDING,
     armature,
+    current_scene,
     extension_module,
     idle,
     scene_settings,
     settings,
     shown_action,
+    worker_seconds,
 )
 from .driver import Actions, Driver, Scenario, Until
 from .input_device import Place
+from .screen import present
 
 if TYPE_CHECKING:  # as in actions.py
     from ...operators.solve.live import Live
 
 DRAG = 4.0  # s that the pin is dragged about while the ghost's updates are counted
 LEGS = 4
+CRATE = (0.8, 0.8, 0.25)  # m
+CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+ON_TOP = 0.03  # m, by which the ghost may be off while it follows
 CONSTRAINTS = 20
 REDRAWS = 2.0  # s of redraws that are measured
 OF_SIDEBAR = re.compile(r"(Panel|Operator|List|Menu)\.")
@@ -74,14 +82,15 @@ def drags_landing(driver: Driver) -> Actions:
         yield driver.input.move(end, 0.5)
         assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
         yield Until("the ghost", lambda: len(ghosts.seen) > 0, 40)
-        begun, first = time.monotonic(), live().version
+        begun, first, taken = time.monotonic(), live().version, worker_seconds()
         driver.profiler.start(lambda: "drag")
         for place in islice(cycle(about(end)), LEGS):
             yield driver.input.move(place, DRAG / LEGS)
         driver.profiler.stop()
         rate = ghosts.rate(begun, time.monotonic())
-        last = live().version
-        made = (last - first) / (time.monotonic() - begun)
+        updates = live().version - first
+        made = updates / (time.monotonic() - begun)
+        took = 1000.0 * (worker_seconds() - taken) / max(1, updates)
         yield from driver.picture("ghost_follows")
         yield driver.input.move(end, 0.5)
         yield driver.input.let_go()
@@ -89,9 +98,56 @@ def drags_landing(driver: Driver) -> Actions:
         space.draw_handler_remove(handler, "WINDOW")
     driver.figures["ghost updates per second during a drag"] = rate
     driver.figures["ghost updates per second during a drag, drawn or not"] = made
+    driver.figures["worker's processor time per update during a drag"] = took
     yield Until("an adapted action", lambda: idle() and shown_action() != before, 60)
     went = (Vector(row.at) - pin).length
     assert 0.1 < went < 0.3, f"the pin went {went:.3f} m, not about 0.2 m"
+
+
+def lands_on_crate(driver: Driver) -> Actions:
+    """Drags the landing's pin onto a crate; the ghost's foot lands on it. Esc puts it back."""
+    own = settings()
+    row = own.contacts[own.active_contact]
+    pin = Vector(row.at)
+    crate = add_crate(pin + 0.35 * Vector(own.stances[LANDING].forward_axis))
+    yield from driver.screen.find_button("hangtime.select_surface", ASIDE)
+    begun = live().version
+    yield driver.input.press(driver.screen.place_of(pin), "the landing's pin")
+    top = crate.matrix_world.translation + Vector((0.0, 0.0, CRATE[2]))
+    yield driver.input.move(driver.screen.place_of(top), 1.0)
+    assert row.on == crate, f"the pin is on {row.on}, not on the crate"
+
+    def landed() -> bool:
+        return live().version > begun and abs(ghost_height(row.point) - top.z) < ON_TOP
+
+    yield Until("the ghost on the crate", landed, 60)
+    yield from driver.picture("world_panel")
+    yield driver.input.key("Escape")
+    yield Until("the end of the drag", idle)
+    assert row.on is None, "the pin stayed on the crate"
+    assert (Vector(row.at) - pin).length < 1e-4, "the pin did not go back"
+    own.surfaces.clear()
+    bpy.data.objects.remove(crate)
+
+
+def add_crate(base: Vector) -> bpy.types.Object:
+    """A crate on the floor at a place, as ground; m, as the scene's units are."""
+    corners = [[(x - 0.5) * CRATE[0], (y - 0.5) * CRATE[1], z * CRATE[2]] for x, y, z in CORNERS]
+    mesh = bpy.data.meshes.new("Crate")
+    mesh.from_pydata(corners, [], FACES)
+    crate = bpy.data.objects.new("Crate", mesh)
+    crate.location = (base.x, base.y, 0.0)
+    current_scene().collection.objects.link(crate)
+    row = extension_module("operators.lists.surfaces").row_of(settings(), crate)
+    row.object, row.name, row.role = crate, crate.name, "GROUND"
+    present(bpy.context.view_layer).update()
+    return crate
+
+
+def ghost_height(point: str) -> float:
+    """How high, m, a point of the ghost is at its last frame."""
+    traces = present(live().seen).traces
+    return float(traces.points[-1, traces.contacts.index(point), 2])
 
 
 def about(place: Place) -> list[Place]:
@@ -137,4 +193,7 @@ def overlays(driver: Driver) -> Actions:
     driver.figures[f"{name}, by the clock"] = by_clock
 
 
-SCENARIOS = (Scenario("overlays", overlays, ("analyses",)),)
+SCENARIOS = (
+    Scenario("lands_on_crate", lands_on_crate, ("chooses_landing",), 120),
+    Scenario("overlays", overlays, ("analyses",)),
+)

@@ -15,7 +15,7 @@ from ...solver.worker.protocol import Answer, Failed, Followed, Progress
 from ..operator_types import OperatorResult, PolledOperator
 from ..solve.adapt import ask_for, unanalysed
 from ..solve.common import required_armature, said
-from ..solve.live import live, redraw_viewports
+from ..solve.live import live, redraw_viewports, redraw_views
 from ..solve.session import session
 from ..solve.task import LOOK_EVERY
 from .mouse import BACK, CONFIRM, GIVEN, Press
@@ -99,7 +99,7 @@ class FollowedDrag(PolledOperator):
         if keyed or (event.type == "MOUSEMOVE" and self._press.drags(event)):
             self.pull(context, event)
             self._moved = True
-            redraw_viewports()
+            self._redraw()
         if event.type == "TIMER" and self._press.dragging:
             self._look()
         self._show()
@@ -174,6 +174,14 @@ class FollowedDrag(PolledOperator):
             live().clear()
         except StopIteration:
             pass  # after such a fault
+
+    def _redraw(self) -> None:
+        """The pin goes with the mouse; the sidebar's numbers, where there is one, with the ghost:
+        what draws the sidebar is not left for the motion."""
+        if live().seen is None:
+            redraw_viewports()
+        else:
+            redraw_views()
 
     def _show(self) -> None:
         text = self.text() + self._found()

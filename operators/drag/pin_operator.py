@@ -7,7 +7,8 @@ from mathutils import Vector
 from ...bridge.accessors import current_scene, present
 from ...bridge.armature.poses import metres_per_unit
 from ...bridge.properties.constraint import HangtimeConstraint
-from ...bridge.properties.settings import HangtimeContact, settings_of
+from ...bridge.properties.contact import HangtimeContact
+from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import place, stance_contacts, stand_on
 from ...bridge.scene.members import ground_members
 from ..names import OperatorId

@@ -7,7 +7,8 @@ from functools import cached_property
 import bpy
 
 from ...bridge.armature.poses import metres_per_unit
-from ...bridge.properties.settings import HangtimeContact, scene_settings, settings_of
+from ...bridge.properties.contact import HangtimeContact
+from ...bridge.properties.settings import scene_settings, settings_of
 from ...bridge.scene.ground import GroundFaces, ground_faces
 from ...bridge.scene.members import Member, ground_members
 from . import rays

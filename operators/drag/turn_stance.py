@@ -6,7 +6,8 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from ...bridge.properties.settings import HangtimeStance, settings_of
+from ...bridge.properties.contact import HangtimeStance
+from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import active_stance, stance_contacts, stance_middle
 from ..names import OperatorId
 from ..operator_types import OperatorResult

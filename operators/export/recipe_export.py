@@ -13,6 +13,7 @@ from ...bridge.formats.obj import obj_text
 from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.object_texts import mesh_files
 from ...bridge.recipe.problem import write_recipe
+from ...bridge.takes.options import result_options
 from ...solver.data.problem import MotionProblem
 from ...solver.data.scene import SceneObject
 from ...solver.data.solver_options import Method
@@ -21,6 +22,7 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..solve.adapt import ask_for, unanalysed
 from ..solve.common import FaultyOperator, required_armature
+from ..solve.keys import key_options
 
 EXPORTED = "Exported {}"
 NO_CLIP = "; it names no recording until this file is saved: name one as CLIP on the command line"
@@ -31,8 +33,9 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
     bl_idname = OperatorId.EXPORT_RECIPE
     bl_label = "Export Recipe"
     bl_description = (
-        "Write pins, constraints and the surfaces of the panel World as a recipe for the command "
-        "line, with an OBJ file beside it for each mesh that is no box or ramp"
+        "Write pins, constraints, the surfaces of the panel World, the rest of the take and the "
+        "keys as a recipe for the command line, with an OBJ file beside it for each mesh that is "
+        "no box or ramp"
     )
 
     filename_ext = ".toml"
@@ -50,11 +53,19 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         asked = complete(ask_for(context))
-        problem = _as_adapted(asked.problem, settings_of(required_armature(context)).method)
+        settings = settings_of(required_armature(context))
+        problem = _as_adapted(asked.problem, settings.method)
         path = Path(bpy.path.abspath(self.filepath))
         files = mesh_files(problem.scene)
         with Outbox(path.parent) as outbox:
-            outbox.write_text(path.name, write_recipe(problem, clip=_clip(path), files=files))
+            text = write_recipe(
+                problem,
+                clip=_clip(path),
+                files=files,
+                result=result_options(settings),
+                keys=key_options(settings),
+            )
+            outbox.write_text(path.name, text)
             for thing in problem.scene:
                 if thing.name in files:
                     outbox.write_text(files[thing.name], obj_text(thing.vertices, thing.triangles))

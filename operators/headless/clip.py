@@ -86,7 +86,9 @@ def _open(path: Path) -> bpy.types.Object:
     import bpy
 
     from ...bridge.accessors import current_scene, present
+    from ...bridge.properties.attached_groups import ensure_groups
 
+    ensure_groups()  # else it is not known which action is the recording
     try:
         with quiet():
             bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from io import TextIOWrapper
 from pathlib import Path
 
-from ...bridge.recipe.keys import KeyOptions
+from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.objects import placed_objects
 from ...bridge.recipe.problem import Recipe, locate, parse_recipe, read_recipe_text
@@ -142,16 +142,16 @@ def adapt(options: argparse.Namespace) -> None:
     """
     recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     clip, problem = _clip(options, recipe), overridden(recipe.problem, options)
-    wanted = recipe.result or ResultOptions()
+    wanted, keys = recipe.result or ResultOptions(), recipe.keys or KeyOptions()
+    if recipe.loop is not None:
+        require_every_frame(keys)
     stages = Stages(sys.stdout)
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
-        outputs = Outputs(
-            loaded, problem, wanted, recipe.keys or KeyOptions(), result, outbox, stages
-        )
+        outputs = Outputs(loaded, problem, wanted, keys, result, outbox, stages, recipe.loop)
         if result.fault is not None:
             outputs.write_failure()
             outbox.deliver()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...bridge.recipe.keys import KeyOptions
+from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import KeyChoice, WrittenAs
 from ...solver.data.faults import OutputNotWritable
@@ -41,7 +42,7 @@ class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
 
     problem: as it was asked for, in the recording's own lengths. options: of the rest of the take.
-    keys: of the adapted frames.
+    keys: of the adapted frames. loop: where the motion repeats.
     """
 
     clip: LoadedClip
@@ -51,13 +52,19 @@ class Outputs:
     result: AdaptationResult
     outbox: Outbox
     stages: Stages
+    loop: LoopOptions | None = None
 
     def write(self, *, picture: bool = True) -> Report:
         """All files of a result that is what was asked for; the picture where wanted."""
+        from ...bridge.accessors import current_action, present
+
         with self.stages.stage("Writing keyframes"):
-            take = self._recorded_curves()
+            take, recorded = self._recorded_curves(), current_action(self.clip.armature)
             performer, adapted, written = self._write_actions("adapted")
             keys = self._choose_keys(performer, adapted, take)
+            self._mark_contacts(performer, adapted)
+            if self.loop is None:  # which is an action of its own
+                self._lay_strips(performer, present(recorded), adapted)
             self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
         with self.stages.stage("Exporting FBX"), quiet():
@@ -118,9 +125,10 @@ class Outputs:
 
         from ...bridge.accessors import current_action, present
         from ...bridge.armature.fcurves import slot_identifier
+        from ...bridge.armature.incremental import complete
         from ...bridge.armature.reproportioned import build_reproportioned
-        from ...bridge.armature.strips import lay_strips
         from ...bridge.armature.write import side_by_side, write_action
+        from ...bridge.loops.write_loop import Loop, write_loop
         from ...bridge.takes.write_result import write_result
 
         recorded = present(current_action(self.clip.armature))
@@ -130,14 +138,49 @@ class Outputs:
             armature, track, _ = build_reproportioned(self.result.recording, track)
             adapted = write_action(armature, track, name=name)
             self.clip.armature.location += Vector(self._beside())  # it performs the recording
+        elif self.loop is not None:
+            loop = Loop.of(armature, track, self.loop.root)
+            slot = slot_identifier(armature)
+            adapted = complete(write_loop(armature, loop, recorded, slot, name=name))
+            side_by_side(armature, recorded, adapted, offset=self._beside())
         else:
             adapted, written = write_result(armature, self._motion(), name=name)
             side_by_side(armature, recorded, adapted, offset=self._beside())
-            if self.options.written_as is WrittenAs.STRIP:
-                lay_strips(armature, recorded, adapted, slot_identifier(armature))
         first, last = adapted.frame_range.to_tuple()
         _show_frames(round(first), round(last))
         return armature, adapted, written
+
+    def _mark_contacts(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
+        """By markers and channels, as is asked for."""
+        from ...bridge.armature import fcurves
+        from ...bridge.keys.contact_marks import (
+            limb_contacts,
+            write_contact_channels,
+            write_markers,
+        )
+
+        frames, rate = self.result.track.frames, self.result.recording.rate
+        found = limb_contacts(self.result.schedule, float(frames[0]), rate)
+        between = round(frames[0]), round(frames[-1])
+        write_markers(adapted, found, between, self.options.markers)
+        curves = fcurves.holder_in(adapted, fcurves.slot_identifier(performer))
+        if self.options.contact_channels and curves is not None:
+            write_contact_channels(performer, curves, found, between)
+
+    def _lay_strips(
+        self, performer: bpy.types.Object, take: bpy.types.Action, adapted: bpy.types.Action
+    ) -> None:
+        """Result and take as strips, where that is asked for and one armature performs both."""
+        written_as = self.options.written_as
+        if written_as is WrittenAs.ACTION or performer != self.clip.armature:
+            return
+        from ...bridge.armature.fcurves import slot_identifier
+        from ...bridge.armature.strips import lay_strips
+        from ...bridge.takes.difference import difference_of
+
+        slot, combined = slot_identifier(performer), written_as is WrittenAs.COMBINE
+        more = difference_of(performer, take, adapted, slot) if combined else None
+        lay_strips(performer, take, adapted, slot, more)
 
     def _motion(self) -> AdaptedMotion:
         """The motion, to be put into the take."""

@@ -91,6 +91,7 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
                 continue
             row = add_constraint(armature, torque_limit.KIND, bones, 0.0)
             row.name = free_name(settings, f"{joint} Strength")
+            row.torque_by = torque_limit.TorqueBy.NEWTON_METRES.name
             row.torque = peak_torque(part, mass, _height(settings))
             hold_throughout(row)
             told.append(f"{joint.lower()} {row.torque:.0f} N·m{_needed(settings, bones)}")
@@ -146,6 +147,7 @@ class LimpLimbOperator(SelectedBonesOperator, bpy.types.Operator):
         frame = present(context.scene).frame_current_final
         row = add_constraint(armature, torque_limit.KIND, bones, frame)
         row.name = free_name(settings_of(armature), f"Limp {title(chosen[0])}")
+        row.torque_by = torque_limit.TorqueBy.NEWTON_METRES.name
         row.torque = 0.0
         others = len(limb) - len(bones)
         left_out = f"; {others} below have no joint in the physics" if others else ""

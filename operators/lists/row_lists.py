@@ -59,7 +59,7 @@ def chosen_bones(armature: bpy.types.Object) -> list[str]:
     """Names of the selected pose bones, the active one first; none outside pose mode."""
     if armature.mode != "POSE":
         return []
-    names = [bone.name for bone in pose_of(armature).bones if _is_selected(bone)]
+    names = [bone.name for bone in pose_of(armature).bones if is_selected(bone)]
     active = armature_data(armature).bones.active
     if active is not None and active.name in names:
         names.remove(active.name)
@@ -67,7 +67,8 @@ def chosen_bones(armature: bpy.types.Object) -> list[str]:
     return names
 
 
-def _is_selected(bone: bpy.types.PoseBone) -> bool:
+def is_selected(bone: bpy.types.PoseBone) -> bool:
+    """Whether a pose bone is selected and seen."""
     # From Blender 5.0 on the pose's bone knows it.
     carrier = bone if hasattr(bone, "select") else bone.bone
     return bool(carrier.select and not getattr(carrier, "hide", False))

@@ -21,14 +21,21 @@ from ...bridge.constraints.motion_problem import (
     wanted_range,
 )
 from ...bridge.constraints.status import write_status
+from ...bridge.loops.write_loop import (
+    Loop,
+    root_bone,
+    write_loop_incrementally,
+)
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
+from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
-from ...bridge.takes.options import result_options
+from ...bridge.rows.choices import LoopRoot, WrittenAs
+from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.takes import adapted_spans, note_made, polished_result
-from ...bridge.takes.write_result import write_adapted_incrementally
+from ...bridge.takes.write_result import combine, write_adapted_incrementally
 from ...bridge.worker_client import shared
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault
@@ -40,16 +47,19 @@ from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import (
+    amount,
     as_text,
     certificate_lines,
     durations_lines,
     given_up_lines,
     joint_lines,
+    loop_lines,
     retimed,
 )
 from ..words.take_text import take_lines
+from ..words.warning_text import warnings_of
 from .common import hindrance, required_armature
-from .keys import write_keys
+from .keys import key_options, mark_contacts, write_keys
 from .live import live
 from .scene import note_surfaces, read_surfaces, stale_surfaces
 from .session import Asked, session
@@ -82,7 +92,8 @@ class _Adapting(TaskOperator):
         told = left_behind(required_armature(context))
         if told and not (self.leave_edits or bpy.app.background):
             leave = bpy.ops.hangtime.leave_edits  # type: ignore[attr-defined]  # our own
-            leave("INVOKE_DEFAULT", then=self.bl_idname, text=told)
+            # Of an instance Blender tells its own name, "HANGTIME_OT_adapt".
+            leave("INVOKE_DEFAULT", then=type(self).bl_idname, text=told)
             return {"CANCELLED"}
         return super().invoke(context, event)
 
@@ -198,9 +209,23 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     if analysis_key(settings, recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     require_return_after(result_options(settings), span_of(settings, recording)[1])
+    _require_loopable(armature)
     scene = yield from read_surfaces(armature, recording.frames)
     problem = problem_of(settings, recording, scene.objects)
     return Asked(armature.name, armature.session_uid, recording, problem, scene)
+
+
+def _require_loopable(armature: bpy.types.Object) -> None:
+    """Before a solve takes its seconds. Raises NotInLoop, NoRootBone."""
+    settings = settings_of(armature)
+    looped = loop_options(settings)
+    if looped is None:
+        return
+    require_every_frame(key_options(settings))
+    if looped.root is LoopRoot.ROOT_BONE:
+        pelvis = next((p.bone for p in settings.parts if p.name == "pelvis"), None)
+        if pelvis:
+            root_bone(armature, pelvis)
 
 
 def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
@@ -233,11 +258,20 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
 def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
     """The answer as a new action of the armature."""
     stood = armature.matrix_world.copy()
+    looped, options = loop_options(settings_of(armature)), result_options(settings_of(armature))
+    if looped is not None:
+        loop = Loop.of(armature, answer.track, looped.root)
+        action = yield from write_loop_incrementally(armature, loop)
+        keep(action, answer.traces, stood)
+        _note(armature, armature, action, answer)
+        mark_contacts(armature, action, answer, options)
+        note_made(armature, action, None, 0)
+        return f"Wrote the loop {action.name}"
     motion = AdaptedMotion(
         answer.track,
         answer.report.times,
         answer.moved,
-        result_options(settings_of(armature)),
+        options,
         ends=any(hold.ends for hold in asked.problem.requests.holds),
         kept=adapted_spans(present(recorded_action(armature))),
     )
@@ -248,6 +282,9 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     try:
         yield from write_keys(armature, armature, action, answer)
     finally:  # cancelled it has a key on every frame
+        mark_contacts(armature, action, answer, options)
+        if options.written_as is WrittenAs.COMBINE:
+            combine(armature, action, options.after)
         note_made(armature, action, span, later)
     return f"Wrote the action {action.name}"
 
@@ -284,7 +321,9 @@ def _note(
     action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)
     store_overlaps(action, answer.report)
-    action_settings(action).performer = performer
+    action_settings(action).warning = "\n".join(warnings_of(answer.report))
+    if performer != armature:
+        action_settings(action).performer = performer
 
 
 def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
@@ -318,8 +357,10 @@ def summary(answer: Adapted) -> str:
                 for p in retimed(report)
             ),
             *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
-            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})",
+            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f}), "
+            f"in the recording {report.forces.recorded_peak_bw:.1f}",
             *given_up_lines(report),
+            *loop_lines(report),
             *joint_lines(report),
             *certificate_lines(report),
         ]
@@ -329,4 +370,4 @@ def summary(answer: Adapted) -> str:
 def _held(constraint: ConstraintReport) -> str:
     if constraint.met:
         return "held"
-    return f"missed by {constraint.worst_violation:.0f} {constraint.kind.reported_unit}"
+    return f"missed by {amount(constraint)}"

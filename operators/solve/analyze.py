@@ -20,6 +20,7 @@ from ...solver.data.faults import (
     Treadmill,
     UnseenSupport,
 )
+from ...solver.data.loop import Cycle
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.reports.report import FitQuality
@@ -29,6 +30,7 @@ from ...solver.skeleton.mapping import UNSURE
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
+from ..words.report_text import higher
 from .adapt import ask_for, read_wanted
 from .common import FaultyOperator, chosen_armature, required_armature, said
 from .scene import read_surfaces
@@ -40,6 +42,7 @@ from .task import Task, TaskOperator, answered
 CLOSENESS_WORDS = ((1.5, "very close to the recording"), (3.0, "close to the recording"))
 HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was imported at a wrong scale
 USUAL_HEIGHT = 1.75  # m
+MOST_SNAPS = 3  # of the frame range to a cycle; the last only confirms
 LOOSE = "only roughly like the recording: check the contacts' frames, and the scale"
 
 
@@ -100,6 +103,13 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         session().support = None
         try:
             answer = yield from _analysed(armature, recording, problem)
+            for _ in range(MOST_SNAPS):
+                if answer.cycle is None or answer.cycle.as_asked:
+                    break
+                _take_cycle(settings, answer.cycle)
+                recording = yield from read_wanted(armature)
+                problem = problem_of(settings, recording, with_contacts=False)
+                answer = yield from _analysed(armature, recording, problem)
         except Fault as fault:
             raise _telling(fault, armature, recording, problem) from None
         contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
@@ -112,7 +122,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         found = (
             f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
         )
-        found = f"{found}{bind}"
+        found = f"{found}{bind}{_snapped(settings, span)}"
         return f"{found}; but {said(odd)}" if odd is not None else found
 
 
@@ -130,6 +140,22 @@ def _leave_out_bind_pose(settings: HangtimeSettings, recording: Recording) -> st
         else "The first frame holds"
     )
     return f". {held} the rest pose; the range begins at frame {frames[count]:g}"
+
+
+def _take_cycle(settings: HangtimeSettings, cycle: Cycle) -> None:
+    settings.first_frame, settings.last_frame = map(round, cycle.frames)
+    settings.use_range = True
+
+
+def _snapped(settings: HangtimeSettings, asked: tuple[float, float]) -> str:
+    """Words on a frame range that was moved to a whole cycle."""
+    first, last = settings.first_frame, settings.last_frame
+    if not settings.use_range or (first, last) == asked:
+        return ""
+    return (
+        f". A whole cycle is frames {first} to {last}: the range begins {first - asked[0]:+g} and "
+        f"ends {last - asked[1]:+g} frames from where it did"
+    )
 
 
 def _analysed(
@@ -206,6 +232,6 @@ def quality(fit: FitQuality) -> str:
     return (
         f"{words[0].upper()}{words[1:]}\n"
         f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
-        f"apex {fit.pelvis_apex_difference_cm:+.1f} cm\n"
+        f"apex {higher(fit.pelvis_apex_difference_cm)}\n"
         f"At worst {fit.worst_frame_rms_cm:.1f} cm (frame {fit.worst_frame:.0f})"
     )

@@ -3,25 +3,41 @@
 import bpy
 
 from ...bridge.accessors import current_action, present
-from ...bridge.properties.settings import scene_settings
+from ...bridge.properties.settings import action_settings, scene_settings, settings_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoAction, NoArmature
 from ..operator_types import OperatorResult, PolledOperator
+from ..words.failure_text import Failure, failure_of
 from ..words.messages import sentence
 from .session import session
 
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
 EDIT_MODE = "Leave edit mode first"
+TWEAK_MODE = "Leave tweak mode first (Tab in the Nonlinear Animation editor)"
 
 
 def chosen_armature(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The target armature: the one chosen in the sidebar, else the active object if that is one."""
+    """The target armature: the one pinned in the sidebar, else the active object if that is one,
+    else, while something else is active, the one that was worked on last."""
     scene = present(context.scene)
-    chosen: bpy.types.Object | None = scene_settings(scene).armature
-    if chosen is not None and chosen.name in scene.objects:
-        return chosen
+    own = scene_settings(scene)
+    chosen: bpy.types.Object | None = own.armature
+    if chosen is not None and chosen.name not in scene.objects:
+        chosen = None
     active = present(context.view_layer).objects.active
-    return active if active is not None and active.type == "ARMATURE" else None
+    if active is None or active.type != "ARMATURE":
+        return chosen
+    stays = chosen is not None and (own.pinned or active == _beside(chosen))
+    return chosen if stays else active
+
+
+def _beside(armature: bpy.types.Object) -> bpy.types.Object | None:
+    """Who performs an armature's last result in its stead, with other limbs; it has no settings."""
+    result = settings_of(armature).adapted
+    performer: bpy.types.Object | None = (
+        action_settings(result).performer if result is not None else None
+    )
+    return performer
 
 
 def required_armature(context: bpy.types.Context) -> bpy.types.Object:
@@ -42,15 +58,27 @@ def hindrance(context: bpy.types.Context) -> str | None:
         return said(NoArmature(active.name if active is not None else None))
     if armature.mode == "EDIT":
         return EDIT_MODE
+    if tweaked(armature):
+        return TWEAK_MODE
     if current_action(armature) is None:
         return said(NoAction(armature.name))
     return None
+
+
+def tweaked(armature: bpy.types.Object) -> bool:
+    """Whether a strip's keys are being edited, while Blender lets no other action be assigned."""
+    return armature.animation_data is not None and armature.animation_data.use_tweak_mode
 
 
 def said(fault: Fault) -> str:
     """The fault's sentence, in the language of Blender's reports."""
     # The stubs do not know what it returns.
     return sentence(fault, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
+
+
+def failed(fault: Fault, uid: int, of: str) -> Failure:
+    """The fault for the sidebar. uid: the armature's number; of: the operator's bl_idname."""
+    return failure_of(fault, uid, of, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
 
 
 class FaultyOperator(PolledOperator):

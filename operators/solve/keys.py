@@ -7,11 +7,13 @@ from ...bridge.armature import fcurves
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
 from ...bridge.controls.driven import is_driven
+from ...bridge.keys.contact_marks import limb_contacts, write_contact_channels, write_markers
 from ...bridge.keys.events import events_of
 from ...bridge.keys.written import KeyedAction, choose_keys
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.problem import parse_recipe
+from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import KeyChoice
 from ...solver.worker.protocol import Adapted
 from ..words.report_text import keys_line
@@ -25,6 +27,19 @@ def key_options(settings: HangtimeSettings) -> KeyOptions:
         return stated
     panel = settings.result_keys
     return KeyOptions(KeyChoice[panel.on], panel.distance / 1000.0, panel.angle)
+
+
+def mark_contacts(
+    armature: bpy.types.Object, action: bpy.types.Action, answer: Adapted, options: ResultOptions
+) -> None:
+    """Tell contacts of a result that an armature shows by markers and channels, as is asked for."""
+    frames, rate = answer.track.frames, answer.report.recording.frames_per_second
+    found = limb_contacts(answer.schedule, float(frames[0]), rate)
+    between = round(frames[0]), round(frames[-1])
+    write_markers(action, found, between, options.markers)
+    curves = fcurves.holder_in(action, fcurves.slot_identifier(armature))
+    if options.contact_channels and curves is not None:
+        write_contact_channels(armature, curves, found, between)
 
 
 def write_keys(

@@ -6,10 +6,10 @@ from ...bridge.accessors import current_action, present
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
-from ...bridge.takes.takes import results_from, source_of
+from ...bridge.takes.takes import bake_shown, results_from, source_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import chosen_armature, required_armature
+from .common import TWEAK_MODE, chosen_armature, required_armature, tweaked
 from .session import session
 from .task import CANCELLED
 
@@ -17,11 +17,14 @@ NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
 NOT_SHOWN = "The recording is shown; show the result that is to go"
 BUILT_ON = "{} was made from this result; discard that one first"
+REPORT = "{} report"
+SURE = "Accept this result?"
 ACCEPTED = "The result is accepted already"
 
 
 def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
-    """The result that is shown, else the one that was adapted last."""
+    """The result that is shown, else the one that was adapted last, else of those that are left of
+    the same take the last."""
     if armature is None:
         return None
     shown = current_action(armature)
@@ -29,7 +32,10 @@ def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
     beside = adapted is not None and action_settings(adapted).performer not in (None, armature)
     if shown is not None and source_of(shown) is not None and not beside:
         return shown
-    return adapted
+    if adapted is not None or shown is None:
+        return adapted
+    left = results_from(shown)
+    return left[-1] if left else None
 
 
 def required_result(context: bpy.types.Context) -> bpy.types.Action:
@@ -48,7 +54,10 @@ class _OfResult(PolledOperator):
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return NOTHING_ADAPTED if result_of(chosen_armature(context)) is None else None
+        armature = chosen_armature(context)
+        if armature is None or result_of(armature) is None:
+            return NOTHING_ADAPTED
+        return TWEAK_MODE if tweaked(armature) else None
 
 
 class CompareOperator(_OfResult, bpy.types.Operator):
@@ -84,7 +93,7 @@ class ShowRecordingOperator(PolledOperator, bpy.types.Operator):
         armature = chosen_armature(context)
         if armature is None or current_action(armature) == recorded_action(armature):
             return "The recording is what is shown"
-        return None
+        return TWEAK_MODE if tweaked(armature) else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
@@ -126,8 +135,22 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
             return ACCEPTED
         return why
 
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
+        warning = action_settings(required_result(context)).warning
+        if not warning or bpy.app.background:
+            return self.execute(context)
+        return present(context.window_manager).invoke_confirm(
+            self,
+            event,
+            title=SURE,
+            message=warning,
+            confirm_text="Accept Anyway",
+            icon="WARNING",
+        )
+
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature, result = required_armature(context), required_result(context)
+        bake_shown(performer_of(armature), result)
         action_settings(result).accepted = result.use_fake_user = True
         if performer_of(armature) == armature and current_action(armature) != result:
             show(armature, result)
@@ -160,14 +183,14 @@ class DiscardOperator(_OfResult, bpy.types.Operator):
         performer = performer_of(armature)
         if settings.source == result:
             settings.source = None
-        if current_action(armature) == result:
-            show(armature, recorded)
         if performer != armature:
             bpy.data.objects.remove(performer)
-        remove_strips(armature, result)
+        for each in bpy.data.objects:  # a linked copy may perform it, too
+            if current_action(each) == result:
+                show(each, recorded)
+            remove_strips(each, result)
         bpy.data.actions.remove(result)
-        left = results_from(present(recorded))
-        settings.adapted = left[-1] if left else None
+        settings.adapted = None  # the edit at work is no other result's
         settings.status = ""
         self.report({"INFO"}, f"Discarded {name}")
         return {"FINISHED"}
@@ -182,21 +205,25 @@ class ShowReportOperator(_OfResult, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         result = required_result(context)
-        name = f"{result.name} report"
+        name = REPORT.format(result.name)
         text = bpy.data.texts.get(name) or bpy.data.texts.new(name)
         text.from_string(action_settings(result).report)
+        text.current_line_index = 0  # else it is shown from its end
         self.report({"INFO"}, f"The report is the text {name}")
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+        """In a window of its own, whose letters are of one width, as the columns need them."""
         self.execute(context)
-        return present(context.window_manager).invoke_popup(self, width=760)
-
-    def draw(self, context: bpy.types.Context) -> None:
-        column = present(self.layout).column(align=True)
-        column.scale_y = 0.7
-        for line in action_settings(required_result(context)).report.splitlines():
-            column.label(text=line)
+        bpy.ops.wm.window_new()
+        area = present(context.window_manager).windows[-1].screen.areas[0]
+        area.type = "TEXT_EDITOR"
+        editor = area.spaces.active
+        assert isinstance(editor, bpy.types.SpaceTextEditor)
+        editor.text = bpy.data.texts[REPORT.format(required_result(context).name)]
+        editor.top = 0
+        editor.show_line_numbers = editor.show_syntax_highlight = False
+        return {"FINISHED"}
 
 
 class CancelOperator(PolledOperator, bpy.types.Operator):

@@ -9,6 +9,7 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.scene import SupportBox
 from ...solver.worker.protocol import Adapted
+from ..words.failure_text import Failure
 from .solving import SolveState, Solving
 
 
@@ -38,7 +39,7 @@ class Session:
     that would."""
 
     solving: Solving | None = None
-    failure: str = ""
+    failure: Failure | None = None
     best: tuple[Asked, Adapted] | None = None
     support: tuple[int, tuple[SupportBox, ...]] | None = None
     running: list[Running] = field(default_factory=list)
@@ -52,7 +53,7 @@ class Session:
         """Ends what runs, without a word; for when the extension goes."""
         for operator in list(self.running):
             operator.leave()
-        self.best, self.failure, self.support = None, "", None
+        self.best, self.failure, self.support = None, None, None
 
 
 @cache

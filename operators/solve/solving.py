@@ -10,7 +10,7 @@ STAGES = {
     "refine": "refining",
     "adapt": "adapting",
     "bounds": "checking in between",
-    "explicit": "lessening effort",
+    "explicit": "minimizing effort",
 }
 
 
@@ -25,6 +25,7 @@ class SolveState(Enum):
     ENDED = "done"
 
 
+MOST_TOLD = 1000.0  # times what is allowed
 SHARES = {SolveState.READING: 0.0, SolveState.CHECKING: 0.9, SolveState.WRITING: 0.95}
 
 
@@ -88,5 +89,12 @@ class Solving:
         parts = [f"{self.doing}, {100.0 * self.share:.0f} %"]
         if self.progress is not None and self.state is SolveState.SOLVING:
             violation = self.progress.violation
-            parts.append(f"furthest off: {self.progress.worst} ({violation:.3g} × allowed)")
+            parts.append(f"furthest off: {self.progress.worst} ({_times(violation)} allowed)")
         return ", ".join(parts)
+
+
+def _times(violation: float) -> str:
+    """A violation over its tolerance, without exponents."""
+    if violation >= MOST_TOLD:
+        return f"over {MOST_TOLD:.0f} ×"
+    return f"{violation:.0f} ×" if violation >= 10.0 else f"{violation:.1f} ×"

@@ -11,12 +11,13 @@ from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import Fault
 from ...solver.worker.protocol import Failed, Progress
 from ..operator_types import OperatorResult
-from .common import FaultyOperator, hindrance, said
-from .live import editors
+from .common import FaultyOperator, chosen_armature, failed, hindrance
+from .live import editors, redraw_viewports
 from .session import session
 from .solving import SolveState, Solving
 
 LOOK_EVERY = 0.02  # s
+LOOK_AGAIN = 0.1  # s
 BUDGET = 0.012  # s of work at each look
 STATUS = "Hangtime: {} (Esc cancels)"
 CANCELLED = "Cancelled; nothing was changed"
@@ -72,7 +73,9 @@ class TaskOperator(FaultyOperator):
         if bpy.app.background or context.window is None:
             return self.execute(context)
         self._solving = session().solving = Solving()
-        session().failure = ""
+        session().failure = None
+        armature = chosen_armature(context)
+        self._uid = armature.session_uid if armature is not None else 0
         self._task = self.task(context)
         manager = present(context.window_manager)
         self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
@@ -108,8 +111,10 @@ class TaskOperator(FaultyOperator):
             self.report({"INFO"}, end.value)
             return {"FINISHED"}
         except Fault as fault:
-            session().failure = said(fault)  # the report vanishes when the mouse moves
-            return self.refuse(session().failure)
+            # the report vanishes when the mouse moves
+            failure = session().failure = failed(fault, self._uid, type(self).bl_idname)
+            # An error's pop-up would hide the panel, which says more.
+            return self.refuse(failure.short, "WARNING")
         except ReferenceError:  # an undo took the armature away from under us
             return self.refuse(TAKEN_AWAY)
         finally:
@@ -141,6 +146,9 @@ class TaskOperator(FaultyOperator):
         present(bpy.context.window_manager).event_timer_remove(self._timer)
         self._workspace.status_text_set(None)
         _redraw()
+        # What is drawn now still is what was before: buttons change their kind a redraw later, and
+        # what was found shows in the viewport.
+        bpy.app.timers.register(redraw_viewports, first_interval=LOOK_AGAIN)
 
     def _show(self) -> None:
         """Only what is new: drawing the sidebar again costs more than a look."""

@@ -33,10 +33,27 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "“{object_name}” is or holds no armature; choose one with a recording.",
     ),
     faults.NoAction: "The armature “{armature}” has no keyframes; assign it the action that holds "
-    "the recording.",
+    "the recording, also where a strip of the NLA plays it.",
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",
+    faults.NothingRecurs: "Nothing repeats from frame {first:g} to {last:g}: no heel or toe lands "
+    "or leaves, and does so again that many frames later. Choose frames from one landing of a foot "
+    "to its next.",
+    faults.EndsTouchOtherwise: "The motion repeats after {period:g} frames, but near frames "
+    "{first:g} and {last:g} nowhere with the same points on the ground at both ends (at the first: "
+    "{at_first:names}; at the last: {at_last:names}). Choose frames that begin elsewhere, with "
+    "keys for a whole cycle.",
+    faults.CycleTurns: "From the cycle's first to its last frame the body turns by {degrees:.0f}°, "
+    "and only a straight cycle can repeat; choose frames in which it goes straight.",
+    faults.CycleClimbs: "The body is {metres:+.2f} m higher at the cycle's end than at its start, "
+    "and only a cycle on level ground can repeat; choose frames on one level.",
+    faults.NotInLoop: "A loop cannot have {what}; take that away, or switch the loop off.",
+    faults.SeamStanceMoved: "The pin moves “{name}”, which the loop's seam cuts in two, so the two "
+    "parts would not meet; move all of that stance, or begin the loop where that foot is in the "
+    "air.",
+    faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
+    "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (
@@ -91,6 +108,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
         "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box. Add it (Add "
         "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
+        "The body falls as gravity has it at {rate} frames a second, but the scene has "
+        "{scene_rate:.4g} (frames {first:g} to {last:g}); set the scene's frame rate to {rate}.",
     ),
     faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
     "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
@@ -180,6 +199,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "stance stand on it (On, in the panel Contacts), or move one of them.",
     faults.StandsBelow: "The recording stands {metres:length} below the top of “{thing}”, in it; "
     "lower the object so far, or raise the armature.",
+    faults.NoRoom: "Nothing fits between “{contact}” and “{thing}”: {free:length} are free above "
+    "it, and a leg alone takes {needed:length}; move the object, or the stance.",
     faults.TooManyFaces: "The object “{thing}” has {count} triangles, and {most} are the most; "
     "choose a simpler mesh in its place, or put a Decimate modifier on it.",
     faults.SameObjectName: "Two objects of the scene are called “{thing}”; rename one, so that the "
@@ -208,7 +229,7 @@ AWAY = "“{name}” stays {amount:millimetres} from its place"
 AT_ITS_END = "{name} as far as its range goes"
 MISSED = {  # of a constraint, by its type
     RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
-    RowKind.MOMENT: "in {name}, the body turns without cause ({amount:.3g} BW·m)",
+    RowKind.MOMENT: "in {name}, the body would have to push off thin air ({amount:.3g} BW·m)",
     RowKind.PIN: AWAY,
     RowKind.PIN_SPEED: "“{name}” still slides at {amount:.3g} m/s",
     RowKind.POINT: AWAY,
@@ -238,6 +259,11 @@ def sentence(fault: Fault, translate: Translate = str) -> str:
     return _Formatter(translate).format(translate(template), fault)
 
 
+def missed(violation: Violation, translate: Translate = str) -> str:
+    """What is left of a violation, without a full stop."""
+    return _Formatter(translate).missed(violation)
+
+
 def outcome(status: Status, translate: Translate = str) -> str:
     """The solver's termination status in words, and what to do about it."""
     return translate(OUTCOMES[status])
@@ -262,7 +288,7 @@ def _variant(fault: Fault) -> int:
         case faults.NothingTouches():
             return bool(fault.touching)
         case faults.UnseenSupport():
-            return bool(fault.boxes)
+            return 2 if fault.rate is not None else bool(fault.boxes)
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile():
@@ -290,24 +316,26 @@ class _Formatter(Formatter):
             case "percent":
                 return f"{100.0 * value:.0f} %"
             case "length":
-                return _length(value)
+                return length(value)
             case "millimetres":
-                return _length(value / 1000.0)
+                return length(value / 1000.0)
             case "ended":
                 return value if value.endswith("?") else f"{value}."
             case "outcome":
                 return outcome(value, self._translate)
             case "missed":
-                return "; ".join(self._missed(each) for each in value)
+                return "; ".join(self.missed(each) for each in value)
         return super().format_field(value, format_spec)
 
-    def _missed(self, violation: Violation) -> str:
+    def missed(self, violation: Violation) -> str:
+        """A violation in words."""
         at_end = violation.kind is RowKind.RANGE and violation.amount == 0.0
         template = AT_ITS_END if at_end else MISSED[violation.kind]
         return self.format(self._translate(template), violation)
 
 
-def _length(metres: float) -> str:
+def length(metres: float) -> str:
+    """A length in the unit that suits it: "3.2 mm", "42.0 cm", "1.25 m"."""
     if metres < 0.02:
         return f"{1000 * metres:.3g} mm"
     return f"{100 * metres:.1f} cm" if metres < 1.0 else f"{metres:.2f} m"

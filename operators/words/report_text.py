@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from math import hypot
 
+from ...bridge.rows.choices import KeyChoice
 from ...solver.data.contacts import PhaseKind
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import ConstraintReport
@@ -11,7 +12,7 @@ from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.report import Report
 from ...solver.data.row_kinds import RowKind
 from ...solver.data.status import Durations, Status
-from .messages import outcome
+from .messages import length, outcome
 
 LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,
@@ -61,6 +62,8 @@ def as_text(report: Report) -> str:
     """A report in plain words, some forty lines."""
     lines = [*headline(report), ""]
     lines += [*_input(report), ""]
+    if report.loop is not None:
+        lines += [*loop_lines(report), ""]
     lines += [*_changes(report), ""]
     lines += [*_quality(report), ""]
     lines += [*_contacts(report), ""]
@@ -111,6 +114,25 @@ def joint_lines(report: Report) -> list[str]:
     return [f"Joints changed most: {', '.join(told)}"] if told else []
 
 
+def loop_lines(report: Report) -> list[str]:
+    """A loop's frames, way and seam; none of other motions."""
+    loop = report.loop
+    if loop is None:
+        return []
+    frames = f"{loop.first_frame:g} to {loop.last_frame:g}"
+    if (loop.first_frame, loop.last_frame) != (loop.asked_first, loop.asked_last):
+        frames += f" (asked for {loop.asked_first:g} to {loop.asked_last:g})"
+    seam = (
+        _amount(loop.seam_pose_mm, "mm"),
+        _amount(loop.seam_velocity_mm_s, "mm/s"),
+        _amount(loop.seam_force_bw, "BW"),
+    )
+    return [
+        f"Loop: frames {frames}, {loop.travel_m:.2f} m a cycle at {loop.speed_m_s:.2f} m/s",
+        f"At the seam pose, speed and force differ by {', '.join(seam)}",
+    ]
+
+
 def certificate_lines(report: Report) -> list[str]:
     """The certificate for the sidebar: how many lines hold, and the worst that do not."""
     failed, count = report.failed, len(report.certificate)
@@ -149,9 +171,12 @@ def _certificate(report: Report) -> Iterator[str]:
 
 
 def _amount(amount: float, unit: str) -> str:
-    """To three digits, or two places where there is less."""
-    text = f"{amount:.0f}" if amount >= 100.0 else f"{amount:.3g}" if amount >= 0.01 else "0"
-    return f"{text} {unit}".rstrip()
+    return f"{_plain(amount)} {unit}".rstrip()
+
+
+def _plain(amount: float) -> str:
+    """To three digits, or two places where there is less; without an exponent."""
+    return f"{amount:.0f}" if amount >= 100.0 else f"{amount:.3g}" if amount >= 0.01 else "0"
 
 
 def _input(report: Report) -> Iterator[str]:
@@ -182,8 +207,8 @@ def _changes(report: Report) -> Iterator[str]:
             f"instead of {was.flight_length_m:.2f} m"
         )
         yield (
-            f"            the pelvis rises to {now.apex_pelvis_height_m:.2f} m above the floor "
-            f"({_signed(jump.apex_higher_cm)} cm)"
+            f"            the pelvis rises to {now.apex_pelvis_height_m:.2f} m above the floor, "
+            f"{higher(jump.apex_higher_cm)}"
         )
         if jump.crouch_deeper_cm is not None:
             deeper = jump.crouch_deeper_cm
@@ -233,7 +258,7 @@ def _quality(report: Report) -> Iterator[str]:
     fit = report.fit_to_recording
     yield (
         f"Fit         joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms), "
-        f"apex {_signed(fit.pelvis_apex_difference_cm)} cm"
+        f"apex {higher(fit.pelvis_apex_difference_cm)}"
     )
     for i, each in enumerate(report.recorded_overlaps[:MOST_NAMED]):
         name = "" if i else "Recording"
@@ -280,11 +305,19 @@ def _conditions(report: Report) -> Iterator[str]:
     for each in report.conditions:
         held = "yes"
         if not each.met:
-            held = (
-                f"missed by {each.worst_violation:.3g} {each.kind.reported_unit} "
-                f"(frame {each.worst_violation_frame:.0f})"
-            )
+            held = f"missed by {amount(each)} (frame {each.worst_violation_frame:.0f})"
         yield f"{each.name:<24}{each.kind.label:<14}{held}"
+
+
+def amount(missed: ConstraintReport) -> str:
+    """By how much a constraint is missed, with its unit: "91.2 cm", "2.5°"."""
+    much, unit = missed.worst_violation, missed.kind.reported_unit
+    match unit:
+        case "mm":
+            return length(much / 1000.0)
+        case "degrees":
+            return f"{much:.1f}°" if much < 10.0 else f"{much:.0f}°"
+    return f"{_plain(much)} {unit}"
 
 
 def _torque_limits(report: Report) -> Iterator[str]:
@@ -300,14 +333,16 @@ def _objective(report: Report) -> Iterator[str]:
     if left is None:
         return
     if left < 1.0:
-        yield f"Objective   {100.0 * left:.0f} % of what it was before it was lessened"
+        yield f"Objective   {100.0 * left:.0f} % of what it was before it was minimized"
     else:
         yield "Objective   no motion was found with less of it; the one before stands"
 
 
 def keys_line(keys: KeysReport) -> str:
-    """How many keys a result has, and what they leave."""
+    """How many keys a result has, and what they leave; and that they are no fewer than frames."""
+    every = "a key on every frame, as fewer do not keep the error: "
     return (
+        f"{every if keys.choice == KeyChoice.EVERY_FRAME.value else ''}"
         f"{keys.keys} keys, {keys.rate:.1f} a second and channel; joints at most "
         f"{keys.largest_error_mm:.2f} mm off ({keys.error_bone}, frame {keys.error_frame:.0f}), "
         f"bones {keys.largest_turn_deg:.2f}° ({keys.turn_bone}, frame {keys.turn_frame:.0f})"
@@ -329,5 +364,6 @@ def _stages(report: Report) -> Iterator[str]:
         yield f"{'' if i else 'Time':<12}{stage.name} {stage.seconds:.1f} s"
 
 
-def _signed(amount: float) -> str:
-    return f"{amount:+.1f}".replace("-", "−")
+def higher(centimetres: float) -> str:
+    """A difference of heights, such as "1.3 cm lower"."""
+    return f"{abs(centimetres):.1f} cm {'higher' if centimetres >= 0.0 else 'lower'}"

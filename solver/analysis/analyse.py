@@ -11,10 +11,11 @@ track = adaptation.motion.track(analysis.performance.recording)
 from dataclasses import dataclass, replace
 
 from ..body.character import Character, build_character
-from ..data.contacts import Contact, ContactSchedule, snap
+from ..data.contacts import Contact, ContactSchedule, Interval, snap
 from ..data.faults import BadTiming, ClipTooShort, Treadmill, UnknownContactName, UnseenSupport
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
+from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
 from .belt import belt_speed
 from .grounding import foot_sized, grounded, parted
@@ -53,9 +54,18 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
         points, floor_m = contact_points(performance)
         if speed := belt_speed(performance.times, points):
             raise Treadmill(speed)
-        boxes = boxes_beneath(performance.times, points, gap, floor_m)
-        raise UnseenSupport(_frame(within, gap.start), _frame(within, gap.end), boxes)
+        rate = _fitting_rate(performance, gap)
+        boxes = boxes_beneath(performance.times, points, gap, floor_m) if rate is None else ()
+        first, last = _frame(within, gap.start), _frame(within, gap.end)
+        raise UnseenSupport(first, last, boxes, rate, within.rate)
     return Analysis(performance, schedule)
+
+
+def _fitting_rate(performance: Performance, gap: Interval) -> int | None:
+    """The frame rate at which the body falls in a gap; None where that does not explain it."""
+    inside = (performance.times >= gap.start) & (performance.times <= gap.end)
+    heights = performance.com[inside, 2]
+    return fitting_rate(performance.times[inside], heights, performance.recording.rate)
 
 
 def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:

@@ -46,10 +46,10 @@ def detect_contacts(
     times: (T,) s. duration_s: the schedule is of [0, duration_s], None for all times; what is
     recorded before and after tells of the contacts that are cut off. points: by name ("Left heel").
     com: (T, 3) m, the centre of mass: an interval without contact in which it does not fall freely
-    is `unseen` support, not a flight. ground: heights of what points are above, None for the floor
-    alone. Gaps below shortest_flight_s are closed. A point that is low
-    and slow touches; the contact lasts while it stays at its height of that contact, and a foot's
-    as long as its force acts, to a fraction of a frame.
+    is `unseen` support, not a flight. ground: heights of what points are above then, None for the
+    floor alone. Gaps below shortest_flight_s are closed. A point that is low and slow touches; the
+    contact lasts while it stays at its height of that contact, and a foot's as long as its force
+    acts, to a fraction of a frame.
     """
     duration = float(times[-1]) if duration_s is None else duration_s
     clock = even_clock(float(times[0]), float(times[-1]))
@@ -77,7 +77,7 @@ def _touches(
 ) -> Iterable[Contact]:
     """Contacts of one point, in order and disjoint. clock: (N,) s, of the movement."""
     thresholds = point.kind.value
-    low = movement.track[:, 2] < ground(movement.track) + thresholds.max_height
+    low = movement.track[:, 2] < ground(clock, movement.track) + thresholds.max_height
     at_rest = low & (np.linalg.norm(movement.velocity, axis=1) < thresholds.max_speed)
     candidates = [
         candidate

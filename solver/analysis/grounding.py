@@ -16,7 +16,7 @@ from ..arrays import FloatArray
 from ..data.contacts import Contact, ContactSchedule
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
-from ..scene.support import ground_beneath
+from ..scene.support import StandingGround
 from .performance import Performance
 
 NEAR_FLOOR = 0.04  # m; a place further away is on something else
@@ -64,11 +64,11 @@ def foot_sized(schedule: ContactSchedule, performance: Performance) -> ContactSc
     """The schedule with heel and toe of a foot as far apart as the foot is long.
 
     A foot that turns while it stands leaves its heel and toe places of different moments. The point
-    that stands for longer keeps its place.
+    that stands for longer keeps its place, or takes along what stands for less than it.
     """
     contacts = list(schedule.contacts)
-    for i, j in combinations(range(len(contacts)), 2):
-        longer, shorter = sorted((i, j), key=lambda k: contacts[k].start - contacts[k].end)
+    longest_first = sorted(range(len(contacts)), key=lambda k: contacts[k].start - contacts[k].end)
+    for longer, shorter in combinations(longest_first, 2):
         apart = _recorded_apart(contacts[shorter], contacts[longer], performance)
         if apart is None:
             continue
@@ -107,9 +107,9 @@ def grounded(
 
     scene: the objects that contacts may be on.
     """
+    ground = StandingGround.of(schedule.floor_m, scene, performance.recording)
     contacts = tuple(
-        _grounded(c, schedule, performance, ground_beneath(c, schedule.floor_m, scene))
-        for c in schedule.contacts
+        _grounded(c, schedule, performance, ground.beneath(c)) for c in schedule.contacts
     )
     return replace(schedule, contacts=contacts)
 

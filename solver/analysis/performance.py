@@ -80,9 +80,9 @@ def perform(recording: Recording, character: Character) -> Performance:
 def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -> ContactSchedule:
     """Contact schedule of feet and hands, event times snapped so that no span is too short.
 
-    Found in the whole take, and told as far as they are within the recording. Still ground of the
-    scene counts where the floor alone leaves support unseen: elsewhere the recording knows nothing
-    of what is put into its way.
+    Found in the whole take, and told as far as they are within the recording. Ground of the scene
+    counts where the floor alone leaves support unseen: elsewhere the recording knows nothing of
+    what is put into its way.
     """
     take = performance.take
     points, floor_m = contact_points(take)
@@ -90,7 +90,7 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
     detect = partial(
         detect_contacts, take.times, points, floor_m=floor_m, com=take.com, duration_s=duration
     )
-    schedule, ground = detect(), StandingGround.of(floor_m, scene)
+    schedule, ground = detect(), StandingGround.of(floor_m, scene, performance.recording)
     if schedule.unseen and ground.things:
         schedule = ground.named(detect(ground=ground.heights))
     return snap(schedule, snap_tolerance(performance))
@@ -138,7 +138,9 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
     last = foot if toe is None else toe
     ankle = performance.centres[:, foot]
     tip = performance.centres[:, last] + performance.rotations[:, last] @ character.bodies[last].tip
-    bones = [recording.index(character.bodies[body].bone) for body in (foot, last)]
+    rest = [
+        recording.bones[recording.index(character.bodies[i].bone)].rotation for i in (foot, last)
+    ]
     return FootTracks(
         side=side.value.capitalize(),
         foot_bone=character.bodies[foot].bone,
@@ -147,6 +149,8 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
         ankle=ankle,
         ball=tip if toe is None else performance.centres[:, toe],
         tip=tip,
-        foot_rotation=recording.rotations[:, bones[0]],
-        toe_rotation=recording.rotations[:, bones[1]],
+        foot_rotation=performance.rotations[:, foot],
+        toe_rotation=performance.rotations[:, last],
+        foot_rest=rest[0],
+        toe_rest=rest[1],
     )

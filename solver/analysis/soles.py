@@ -23,8 +23,9 @@ class FootTracks:
     """Joint tracks of one foot over the clip, world, Z up.
 
     side: as in the points' names ("Left"). hip, ankle, ball, tip: (T, 3) m; the heads of the thigh,
-    foot and toe bones, and the toe bone's tail. foot_rotation, toe_rotation: (T, 3, 3), bone to
-    world. A rig without toes names its foot bone twice, with the foot's tail as ball and tip.
+    foot and toe bones, and the toe's end. foot_rotation, toe_rotation: (T, 3, 3), body to world;
+    foot_rest, toe_rest: (3, 3) bone to body. A rig without toes names its foot bone twice, with
+    the foot's tail as ball and tip.
     """
 
     side: str
@@ -36,6 +37,8 @@ class FootTracks:
     tip: FloatArray
     foot_rotation: FloatArray
     toe_rotation: FloatArray
+    foot_rest: FloatArray
+    toe_rest: FloatArray
 
 
 def floor_height(times: FloatArray, feet: Sequence[FootTracks]) -> float:
@@ -65,6 +68,7 @@ def foot_points(
                 foot.toe_bone,
                 toe_head,
                 foot.toe_rotation,
+                foot.toe_rest,
                 _on_floor(foot.ball + ratio * _level(foot.tip - foot.ball), floor_m),
                 flat,
             )
@@ -76,6 +80,7 @@ def foot_points(
                 foot.foot_bone,
                 foot.ankle,
                 foot.foot_rotation,
+                foot.foot_rest,
                 _on_floor(heel, floor_m),
                 flat,
             ),
@@ -121,10 +126,14 @@ def _fixed_in(
     bone: str,
     head: FloatArray,
     rotation: FloatArray,
+    rest: FloatArray,
     seen: FloatArray,
     flat: BoolArray,
 ) -> ContactPoint:
-    """Bone-fixed point: the median of `seen` (T, 3) in the bone's frame over the frames `flat`."""
+    """Bone-fixed point: the median of `seen` (T, 3) over the frames `flat`.
+
+    It is taken along the body's axes, as it would be another one along those of another roll.
+    """
     local = np.einsum("tji,tj->ti", rotation[flat], (seen - head)[flat])
-    offset = np.median(local, axis=0)
-    return ContactPoint(kind, bone, offset, head + rotation @ offset)
+    place = np.median(local, axis=0)
+    return ContactPoint(kind, bone, rest.T @ place, head + rotation @ place)

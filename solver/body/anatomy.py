@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from ..data.recording import Bone
 from ..skeleton.mapping import guess_labels, settled, trunk
 from ..skeleton.names import split_side as split_side
-from ..skeleton.parts import REQUIRED_PARTS as REQUIRED_PARTS
 from ..skeleton.parts import SIDED_PARTS as SIDED_PARTS
 from ..skeleton.parts import Part as Part
 from ..skeleton.parts import Segment as Segment
@@ -40,8 +39,3 @@ def guess_anatomy(bones: Sequence[Bone]) -> dict[str, str | None]:
     Raises nothing, so that an artist can fill in what is missing.
     """
     return {label: found[0] if found else None for label, found in guess_labels(bones).items()}
-
-
-def is_required(part: Part) -> bool:
-    """Whether the dynamics need the part; the pelvis follows from the others."""
-    return part in REQUIRED_PARTS or part is Part.HEAD

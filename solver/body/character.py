@@ -14,8 +14,9 @@ from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.faults import StillBone, ZeroLengthBone
 from ..data.problem import MassTable
 from ..data.recording import Recording
-from ..numerics.rotations import unit
+from ..numerics.rotations import shortest_rotation, unit
 from ..skeleton.ends import end_span
+from ..skeleton.still_bones import without_still
 from ..skeleton.tree import tree_of
 from .anatomy import Part, Segment, Side, map_anatomy
 from .joint_axes import JointAxes, ball_axes, hinge_axes, residual_angle, universal_axes
@@ -78,13 +79,15 @@ class Character:
     """Kinematic tree: bodies and joints, one joint a body, parents first; the root is body 0.
 
     Configuration: centre of mass (3,) m and joint angles (n_angles,) rad, the root's three first.
-    height: m. gravity: m/s², of the world that the figure is in.
+    height: m. gravity: m/s², of the world that the figure is in. joined: bones of the trunk that
+    are rigid to another, and that one's.
     """
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     height: float
     gravity: float = STANDARD_GRAVITY
+    joined: tuple[tuple[str, str], ...] = ()
 
     @property
     def mass(self) -> float:
@@ -111,7 +114,7 @@ class Character:
 
     def moved_by(self, request: str, bone: str) -> int:
         """Index of a bone's body. request: whose name a fault tells. Raises StillBone."""
-        known = tuple(body.bone for body in self.bodies)
+        known, bone = tuple(body.bone for body in self.bodies), dict(self.joined).get(bone, bone)
         if bone not in known:
             raise StillBone(request, bone, known)
         return known.index(bone)
@@ -137,7 +140,7 @@ def build_character(
     mass: total, kg. chosen: segment label -> bone name, see `map_anatomy`.
     Raises MissingPart, ZeroLengthBone.
     """
-    segments = map_anatomy(recording.bones, chosen)
+    segments, joined = without_still(recording, map_anatomy(recording.bones, chosen))
     parents = _parents(recording, segments)
     rotations = body_rotations(recording, [s.bone for s in segments])
     offsets = _offsets(recording, segments, parents, rotations)
@@ -148,17 +151,19 @@ def build_character(
     lengths = np.array([np.linalg.norm(tip) for tip in tips])
     masses, shares = _masses(segments, lengths, mass, table)
     forward = _forward(segments, rest)
-    bodies, joints, first = [], [], 0
+    bodies, joints, frames, first = [], [], list[FloatArray](), 0
     for i, segment in enumerate(segments):
         bodies.append(_body(recording, segment, masses[i], shares[i], tips[i], forward))
         parent = parents[i]
         relative = rotations[:, i]
         if parent >= 0:
             relative = np.swapaxes(rotations[:, parent], -1, -2) @ relative
-        axes = _axes(segment, relative, tips[i], forward, root=parent < 0)
+        frames.append(_own_directions(segment, tips[i], forward))
+        above = frames[parent] if parent >= 0 else None
+        axes = _axes(segment, relative, tips[i], above, frames[i])
         joints.append(Joint(parent, offsets[i], axes, first))
         first += axes.dofs
-    return Character(tuple(bodies), tuple(joints), height)
+    return Character(tuple(bodies), tuple(joints), height, joined=joined)
 
 
 def body_rotations(recording: Recording, bones: Sequence[int]) -> FloatArray:
@@ -357,18 +362,35 @@ def _box_frame(direction: FloatArray, forward: FloatArray) -> FloatArray:
     return np.stack([width, np.cross(direction, width), direction], axis=1)
 
 
-def _axes(
-    segment: Segment, relative: FloatArray, tip: FloatArray, forward: FloatArray, *, root: bool
-) -> JointAxes:
-    """Joint axes of a segment from its rotations (T, 3, 3) to its parent."""
+def _own_directions(segment: Segment, tip: FloatArray, forward: FloatArray) -> FloatArray:
+    """(3, 3) columns left, ahead, up as a body has them: of an arm's, as if it rested level.
+
+    Some rigs rest with their arms level, others with them lowered: the joints are the same.
+    """
     sideways = np.cross(UP, forward)
-    frame = np.stack([sideways, forward, UP], axis=1)
-    if root:
-        return ball_axes(relative, (UP, sideways), frame)
+    frame: FloatArray = np.stack([sideways, forward, UP], axis=1)
+    if segment.part not in (Part.UPPER_ARM, Part.FOREARM, Part.HAND):
+        return frame
+    outwards = sideways if segment.side is Side.LEFT else -sideways
+    return np.asarray(shortest_rotation(outwards, unit(tip)) @ frame)
+
+
+def _axes(
+    segment: Segment,
+    relative: FloatArray,
+    tip: FloatArray,
+    above: FloatArray | None,
+    frame: FloatArray,
+) -> JointAxes:
+    """Joint axes of a segment from its rotations (T, 3, 3) to its parent.
+
+    above, frame: (3, 3) own directions of parent and segment; above is None for the root.
+    """
+    sideways, _, up = frame.T
+    if above is None:
+        return ball_axes(relative, (UP, sideways), (frame, frame))
     along = unit(tip) if np.linalg.norm(tip) > MIN_BONE_LENGTH else UP
-    hinge = (
-        sideways if abs(float(sideways @ along)) < 0.8 else UP
-    )  # arms may point sideways at rest
+    hinge = sideways if abs(float(sideways @ along)) < 0.8 else up  # arms point sideways
     dofs = JOINT_DOFS.get(segment.part, 3)
     grow = segment.part in EXTENDABLE_JOINTS
     if dofs == 1:
@@ -377,8 +399,10 @@ def _axes(
             return axes
         dofs = 2
     if dofs == 2:
-        other = {Part.FOREARM: along, Part.FOOT: along}.get(segment.part, np.cross(along, hinge))
-        axes = universal_axes(relative, (hinge, unit(other)))
+        other = along if segment.part in (Part.FOREARM, Part.FOOT) else np.cross(along, hinge)
+        pair = (hinge, unit(other))
+        # Palms face down where arms are level: there wrists fold about the way ahead.
+        axes = universal_axes(relative, pair[::-1] if segment.part is Part.HAND else pair)
         if not grow or residual_angle(axes, relative) < MAX_JOINT_RESIDUAL:
             return axes
-    return ball_axes(relative, frame=frame)
+    return ball_axes(relative, frames=(above, frame))

@@ -25,6 +25,9 @@ from ..numerics.rotations import (
 MAX_MIDDLE_SINE = np.sin(
     np.radians(45.0)
 )  # the preferred axes stand if the middle angle stays below
+PRIOR_TURNS = (0.1, 0.05, -0.1, -0.05)  # rad, of the two expected axes in turn
+CLEARLY = 0.9  # of the error of one pair of axes: another is no better than that by rounding
+PRIOR_NOISE = 1e-6  # rad², likewise where both errors are nothing
 
 
 @dataclass(frozen=True)
@@ -76,17 +79,18 @@ def middle_sine(R: FloatArray, u: FloatArray, w: FloatArray) -> float:
 def ball_axes(
     R: FloatArray,
     preferred: tuple[FloatArray, FloatArray] | None = None,
-    frame: FloatArray | None = None,
+    frames: tuple[FloatArray, FloatArray] = (np.eye(3), np.eye(3)),
 ) -> JointAxes:
     """Ball joint: the axes farthest from gimbal lock over (T, 3, 3) rotations, child to parent.
 
-    preferred: (u, w), taken if the middle angle stays below 45 degrees with it. frame: (3, 3)
-    the figure's own directions as columns, so that the choice does not depend on where it faces.
+    preferred: (u, w), taken if the middle angle stays below 45 degrees with it. frames: (3, 3)
+    the figure's own directions as columns, as parent and child have them, so that the choice
+    depends neither on where it faces nor on how it rests.
     """
     if preferred is not None and middle_sine(R, *preferred) < MAX_MIDDLE_SINE:
         u, w = preferred
     else:
-        u, w = _search(R, np.eye(3) if frame is None else frame)
+        u, w = _search(R, *frames)
     mean = mean_rotation(R)
     along = mean @ w
     third = along - u * (u @ along)
@@ -96,16 +100,16 @@ def ball_axes(
     return JointAxes(3, before, (before @ middle).T @ mean)
 
 
-def _search(R: FloatArray, frame: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The pair (u, w) of smallest `middle_sine`, by exhaustion over directions."""
+def _search(R: FloatArray, parent: FloatArray, child: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The pair (u, w) of smallest `middle_sine`, by exhaustion over directions in two frames."""
     sample = R[:: max(1, len(R) // 80)]
-    directions = _half_sphere(180) @ frame.T
-    turned = np.einsum("tij,wj->twi", sample, directions)
-    worst = np.zeros((len(directions), len(directions)))
+    first, last = (_half_sphere(180) @ frame.T for frame in (parent, child))
+    turned = np.einsum("tij,wj->twi", sample, last)
+    worst = np.zeros((len(first), len(last)))
     for block in turned:
-        np.maximum(worst, np.abs(directions @ block.T), out=worst)
+        np.maximum(worst, np.abs(first @ block.T), out=worst)
     i, j = np.unravel_index(int(np.argmin(worst)), worst.shape)
-    return directions[i], directions[j]
+    return first[i], last[j]
 
 
 def _half_sphere(count: int) -> FloatArray:
@@ -136,11 +140,11 @@ def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Jo
     """Universal joint (u fixed in the parent, v in the child) that best fits (T, 3, 3) rotations.
 
     R = A Rx Ry B holds exactly if u . R v = 0; the pair minimising the sum of squares is found by
-    alternating eigenvectors. expected: the two anatomical axes in the child's frame, which decide
-    where the clip hardly moves.
+    alternating eigenvectors. expected: the two anatomical axes in the child's frame, the one that
+    turns further first, which decide where the clip hardly moves.
     """
     mean = mean_rotation(R)
-    turns = 0.1 * np.array([sign * axis for axis in expected for sign in (1.0, -1.0)])
+    turns = np.array([s * axis for axis, s in zip(expected * 2, PRIOR_TURNS, strict=True)])
     prior = mean @ rotation_matrix(turns)
     poses = np.concatenate([R, prior])
     weight = np.concatenate([np.full(len(R), 1 / len(R)), np.full(len(prior), 0.1 / len(prior))])
@@ -153,7 +157,7 @@ def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Jo
             back = np.swapaxes(poses, -1, -2) @ u
             v = np.linalg.eigh(np.einsum("t,ti,tj->ij", weight, back, back))[1][:, 0]
         error = float(weight @ ((poses @ v) @ u) ** 2)
-        if best is None or error < best[0] - 1e-12:
+        if best is None or error < CLEARLY * best[0] - PRIOR_NOISE:
             best = (error, u, v)
     assert best is not None
     _, u, v = best

@@ -66,6 +66,7 @@ class MotionProblem:
     """Everything that defines an adaptation but the recording itself.
 
     frames: first and last scene frame, None for all. mass: kg. height: m, None as the armature is.
+    loop: whether the motion shall repeat; it is then made of the cycle nearest to the frames.
     """
 
     frames: tuple[float, float] | None = None
@@ -78,6 +79,7 @@ class MotionProblem:
     pins: tuple[Pin, ...] = ()
     scene: tuple[SceneObject, ...] = ()
     requests: Requests = field(default_factory=Requests)
+    loop: bool = False
 
     def keeping_times(self) -> "MotionProblem":
         """The same, but for durations that are not asked for."""

@@ -93,6 +93,12 @@ class CholeskyFactor:
     inverse: FloatArray  # (K, n, n)
     below: FloatArray  # (band, K, n, n)
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """K blocks of n unknowns."""
+        count, size, _ = self.inverse.shape
+        return count, size
+
     def solve(self, b: FloatArray) -> FloatArray:
         """x of A x = b, both (K, n) or (K, n, m)."""
         return self.backward(self.forward(b))

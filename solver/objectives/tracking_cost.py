@@ -135,7 +135,8 @@ class TrackingCost:
             self._turning = share * weights.shape * price.metric(posed)
         time = weights.acceleration_time
         to_go = CostToGo(transcription, target.ends, self.points, time, weights.position)
-        self._to_go = to_go if weights.goes_on else None
+        goes_on = weights.goes_on and not transcription.periodic  # a loop goes on in itself
+        self._to_go = to_go if goes_on else None
 
     def _batches(self) -> Iterator[slice]:
         """Spans a few at a time: what they need then stays in the processor's cache."""

@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..numerics.block_banded import CholeskyFactor
+from ..numerics.tied_factor import Factor
 from ..transcription.rows import violation
 
 CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
@@ -33,7 +33,7 @@ class BoundedStep:
 
     def __init__(
         self,
-        factor: CholeskyFactor,
+        factor: Factor,
         columns: Callable[[IntArray], FloatArray],
         bounds: tuple[FloatArray, FloatArray],
         tolerance: FloatArray,
@@ -57,7 +57,7 @@ class BoundedStep:
 
         times: G d for (K, n).
         """
-        change = np.zeros(self._factor.inverse.shape[:2])
+        change = np.zeros(self._factor.shape)
         reached = z
         for _ in range(MAX_ROUNDS):
             off = np.abs(violation(reached, self.lower, self.upper)) > self._tolerance
@@ -87,6 +87,8 @@ class BoundedStep:
         # The rows give a little (SOFT); their last multipliers make up for it.
         base = z[rows] + self._soft * self.multipliers[rows]
         u = solve_dual_qp(self._root, self.lower[rows] - base, self.upper[rows] - base)
+        if not np.isfinite(u).all():  # DAQP lost its way; the line search judges the step without
+            u = np.zeros(len(rows))
         self.multipliers[rows] = u
         return u
 

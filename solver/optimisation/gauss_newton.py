@@ -60,19 +60,24 @@ def _corrected_step(
     d: FloatArray,
     begin: tuple[float, float],
 ) -> tuple[FloatArray, float, float] | None:
-    """Backtracking line search with second-order corrections: unknowns, objective and length.
+    """Line search with second-order corrections: unknowns, objective and length.
 
-    None where no length lowers the objective. begin: the objective at x, and the first length.
+    Lengths are halved for as long as that gains: the first that lowers the objective may be one
+    that barely does, or that a hair's breadth keeps from being brought back, so that recordings
+    that differ by rounding would end millimetres apart. None where no length lowers the objective.
+    begin: the objective at x, and the first length.
     """
     value, length = begin
+    best: tuple[FloatArray, float, float] | None = None
     while length > MIN_STEP_LENGTH:
         trial = _corrected(feasible, linearised, x + length * d)
-        if trial is not None:
-            reached = objective.value(trial)
-            if reached < value:
-                return trial, reached, length
+        reached = np.inf if trial is None else objective.value(trial)
+        if trial is not None and reached < value:
+            value, best = reached, (trial, reached, length)
+        elif best is not None:
+            break
         length *= 0.5
-    return None
+    return best
 
 
 def _corrected(

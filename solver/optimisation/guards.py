@@ -66,7 +66,8 @@ def with_guards(guards: Sequence[Guard], now: FeasibleSet, x: FloatArray) -> Fea
 
 
 def in_the_way(feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> set[str]:
-    """Names of the guard rows that pull the hardest where a solve got stuck, at x (K, n_block).
+    """Names of the guard rows that pull the hardest at x (K, n_block), where a solve got stuck, or
+    where they joined; none where all hold.
 
     What cannot be met has multipliers far beyond the others'; each counts as what its tolerance
     costs, as a millimetre and a tenth of a degree have no common unit.
@@ -75,4 +76,5 @@ def in_the_way(feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> set
     _, multipliers = feasible.linearise(rows, metric).step(rows.value)
     pull = np.abs(multipliers * rows.tolerance) * rows.guards
     owners = feasible.transcription.owners
-    return {owners[i] for i in rows.owner[pull >= HARD_PULL * pull.max()] if i >= 0}
+    hardest = (pull > 0.0) & (pull >= HARD_PULL * pull.max())
+    return {owners[i] for i in rows.owner[hardest]}

@@ -17,6 +17,7 @@ from ..data.row_kinds import RowKind
 from ..numerics.block_banded import BlockBanded, CholeskyFactor
 from ..numerics.parallel import in_threads
 from ..numerics.splines import ORDER
+from ..numerics.tied_factor import Factor, TiedFactor
 from ..transcription.rows import Rows, by_kind
 from ..transcription.transcription import Transcription
 from .bounded_qp import BoundedStep
@@ -130,7 +131,11 @@ class LinearisedProblem:
         self._equalities = _SpanRows.of(rows.some(self._equal), scale, first, basis)
         system = self._metric.copy()
         self._equalities.add_normal(system, PENALTY)
-        self._factor = _factor(system)
+        self._factor: Factor = _factor(system)
+        if transcription.seam is not None:
+            ties = transcription.seam.columns(self._blocks)
+            ties = ties if basis is None else np.einsum("knr,nb->kbr", ties, basis)
+            self._factor = TiedFactor.of(self._factor, ties)
         self._bound(transcription, rows, working)
 
     def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":

@@ -239,7 +239,7 @@ def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> DenseResiduals:
 def _forces(adaptation: Adaptation) -> ForcesReport:
     fit, motion = adaptation.fit, adaptation.motion
     times = instants(motion.duration, SAMPLE_RATE)
-    forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
+    forces = _forces_bw(motion, times)
     total = np.linalg.norm(forces.sum(axis=1), axis=1)
     friction = friction_used(motion.transcription.contacts, times, forces)
     peaks = []
@@ -250,7 +250,18 @@ def _forces(adaptation: Adaptation) -> ForcesReport:
             frame = scene_frame(fit, float(times[at]))
             needed = float(friction[inside].max())
             peaks.append(ForcePeak(phase.name, float(total[at]), frame, needed))
-    return ForcesReport(tuple(peaks), float(forces[:, :, 2].min(initial=0.0)))
+    recorded = _forces_bw(fit.motion, instants(fit.motion.duration, SAMPLE_RATE))
+    return ForcesReport(
+        tuple(peaks),
+        float(np.linalg.norm(recorded.sum(axis=1), axis=1).max(initial=0.0)),
+        float(forces[:, :, 2].min(initial=0.0)),
+    )
+
+
+def _forces_bw(motion: Motion, times: FloatArray) -> FloatArray:
+    """(T, points, 3) contact forces at some times, s, in body weights."""
+    weight = motion.transcription.character.mass * STANDARD_GRAVITY
+    return np.asarray(motion.forces(times) / weight)
 
 
 def fit_quality(fit: Fit) -> FitQuality:

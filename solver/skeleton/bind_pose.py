@@ -7,7 +7,7 @@ from ..data.recording import Recording
 
 AT_REST = np.radians(2.0)  # a joint that is nearer to its rest than this is at rest
 SHARE = 0.95  # of the joints that are at rest in a bind pose
-JUMP = np.radians(20.0)  # from a frame to the next; no joint turns by as much at 24 frames a second
+JUMP = np.radians(20.0)  # from a frame to the next; at 24 a second no joint leaves its rest so fast
 
 
 def bind_frames(recording: Recording) -> int:
@@ -24,7 +24,7 @@ def bind_frames(recording: Recording) -> int:
     resting = _angles(_between(rest[parents], rest[bones])[None], local) < AT_REST
     held = resting.mean(axis=1) >= SHARE
     count = int(np.argmin(held)) if not held.all() else 0
-    if count == 0 or count >= len(local):
+    if count == 0:
         return 0
     jump = _angles(local[count - 1], local[count]).max()
     return count if jump > JUMP else 0

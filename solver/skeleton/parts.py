@@ -55,7 +55,7 @@ def label_of(key: Key) -> str:
     return f"{side.value} {part.value}".strip()
 
 
-LABELS: Mapping[str, Key] = {label_of((part, side)): (part, side) for side in Side for part in Part}
+LABELS: Mapping[str, Key] = {label_of(key): key for key in KEYS}
 
 
 @dataclass(frozen=True)

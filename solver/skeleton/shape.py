@@ -21,9 +21,7 @@ FOREARM_OVER_UPPER_ARM = 0.146 / 0.186
 BALL = np.hypot(0.152 * (0.72 - 0.25), 0.039) / 0.491  # ankle to ball, over hip to ankle
 EAR = (0.93 - 0.53) / 0.491  # hip to ear, over hip to ankle: the head's joint is no higher
 APART = 1.15  # shoulders over hips, at least; what is nearer to its twin is a clavicle
-SEEN = (
-    0.02  # of the trunk's length: knees or toes that lead ahead by less do not tell where that is
-)
+SEEN = 0.02  # of the trunk's length: knees or toes that lead ahead by less do not tell where it is
 NEAR = 1e-3  # of a limb's length: bones nearer to each other have one joint
 LONGER, TURNED, FANNED = 0.2, 0.5, 0.5  # weights of a limb's other marks against its proportions
 

@@ -6,7 +6,7 @@ long as it does: that along which the least is missing, shortly before and after
 forth are none then, as what is yet before the bar would have to be behind it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,12 +39,12 @@ class Passable:
     linked: BoolArray
 
     def directed(
-        self, found: Penetrations, kept: Penetrations, motion: Motion
+        self, found: Penetrations, kept: Penetrations, motion: Motion, given_up: Set[str]
     ) -> tuple[Penetrations, Penetrations]:
         """What is found, and of what passes all that is not beyond the object on its way; and what
         is kept: what has rows already, but for those by the nearest face of what passes.
 
-        A passage that has rows keeps to their way.
+        A passage that has rows keeps to their way. given_up: names of what is not taken along.
         """
         mine = self._of_mesh(found)
         order = np.flatnonzero(mine)[np.argsort(found.times[mine], kind="stable")]
@@ -55,7 +55,7 @@ class Passable:
             way = self._kept(passing, kept)
             if way is None and self._goes_through(passing, motion):
                 way = self._shortest(passing, motion)
-            missing = passing if way is None else self._on(way, passing, motion)
+            missing = passing if way is None else self._on(way, passing, motion).but(given_up)
             if way is None or not len(missing.items):
                 parts = parts.with_more(passing)
                 continue

@@ -32,6 +32,7 @@ from .surfaces import WORLD, Closest, Floor, OwnLimbs, Placed, Surface, Surfaces
 from .way_out import WayOut
 
 ROW_SPACING = 0.016  # s, between rows of solids that stay in each other for longer
+MOST_ROWS = 600  # at once, which take a program seconds; beyond, rows are further apart
 SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
 
 NONE = np.empty(0, dtype=int)
@@ -154,10 +155,21 @@ class SolidWorld:
             return old
         kept = _penetrations(old).but(given_up) if old is not None else found.some(NONE)
         for each in self.passables:
-            found, kept = each.directed(found, kept, motion)
-        found = kept.with_more(found.some(chosen(found, SPACING, ROW_SPACING)))
+            found, kept = each.directed(found, kept, motion, given_up)
+        found = kept.with_more(found.some(_few(found)))
         function = SolidDistance(self.surfaces, found)
         return GuardRows(self.names, found.items, found.times, found.lower, function)
+
+
+def _few(found: Penetrations) -> IntArray:
+    """Indices of those that get rows. Where a body is all in something these are so many that a
+    step takes minutes; then they are further apart, and what is left between is found next time."""
+    apart = ROW_SPACING
+    picked = chosen(found, SPACING, apart)
+    while len(picked) > MOST_ROWS and apart < found.times.max():
+        apart *= 2.0
+        picked = chosen(found, SPACING, apart)
+    return picked
 
 
 def _penetrations(rows: GuardRows) -> Penetrations:

@@ -1,7 +1,7 @@
 """Signed distances that may not become negative: of limbs from each other, and from a floor.
 
 A surface knows its *items*, each one distance: `near` finds those worth a look at, `closest` gives
-them with what their Jacobian needs. A mesh would be one more class of this kind.
+them with what their Jacobian needs. Meshes are in mesh_surface.py, ways out of them in way_out.py.
 """
 
 from collections.abc import Callable

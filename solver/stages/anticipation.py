@@ -149,6 +149,8 @@ def _jumps(motion: Motion, schedule: ContactSchedule) -> Iterator[Jump]:
     rhythm.
     """
     for flight in schedule.flights:
+        if flight.start <= 0.0:
+            continue  # its push is not in the range
         landed = max((f.end for f in schedule.flights if f.end < flight.start), default=0.0)
         times = np.arange(flight.start, landed, -1.0 / SAMPLING_RATE)
         height = motion.com(times)[:, 2]

@@ -26,6 +26,7 @@ from ..objectives.tracking_cost import CostWeights, TrackingCost, TrackingTarget
 from ..optimisation.gauss_newton import minimise
 from ..optimisation.guards import with_guards
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
+from ..transcription.contact_pins import tied_places
 from ..transcription.motion import (
     DenseTolerance,
     Motion,
@@ -34,6 +35,7 @@ from ..transcription.motion import (
     split_spans,
 )
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
+from ..transcription.transcription import Transcription
 from .transcribe import initial_guess, recorded_target, transcribe
 
 # One g of the centre of mass's acceleration weighs like a decimetre: recordings are off by a tenth
@@ -118,20 +120,25 @@ def fit(
     performance: Performance,
     schedule: ContactSchedule,
     *,
+    periodic: bool = False,
     progress: Progress | None = None,
 ) -> Fit:
     """The physically valid motion nearest to the recording, with its contacts (thesis 4.2).
 
-    A fit that fails is returned as it ended, with a status that says so.
+    periodic: whether it shall repeat, its end meeting its start. A fit that fails is returned as
+    it ended, with a status that says so.
     """
-    transcription = transcribe(performance, schedule)
+    transcription = transcribe(performance, schedule, periodic=periodic)
     x = initial_guess(transcription, performance)
     places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
+    places = settled_places(transcription, places)
     recorded = Motion(transcription, x, places)
     human = HumanGuard(recorded_ranges(recorded), recorded)
     tracking_cost = TrackingCost(
         transcription, recorded_target(transcription, performance, schedule), FIT_COST_WEIGHTS
     )
+    if transcription.seam is not None:
+        x = transcription.seam.closed(x, tracking_cost.expand(x)[1])
     feasible = FeasibleSet(transcription, places)
     near = project(
         feasible, tracking_cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
@@ -204,7 +211,15 @@ def reached_places(motion: Motion) -> FloatArray:
     for i, contact in enumerate(motion.transcription.contacts):
         instants = pinned_instants(contact, 120.0)
         places[i] = motion.contact_points(instants)[:, contact.point].mean(axis=0)
-    return places
+    return settled_places(motion.transcription, places)
+
+
+def settled_places(transcription: Transcription, places: FloatArray) -> FloatArray:
+    """Places (n_contacts, 3) m as a motion that repeats needs them; of others as they are."""
+    if not transcription.periodic:
+        return places
+    duration = float(transcription.basis.breaks[-1])
+    return tied_places(places, transcription.contacts, duration)
 
 
 def refine(

@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.faults import NotInLoop, SeamStanceMoved
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.row_kinds import RowKind
@@ -19,6 +20,7 @@ from ..inverse_kinematics.arm_ik import reach_grips
 from ..optimisation.guards import Guard, guarded, in_the_way, with_guards
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import dense_violation, exchange
+from ..transcription.contact_pins import tied_places
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from .explicit import explicit
@@ -28,11 +30,13 @@ from .warm_start import Standing, continuation_steps, partial_places, stance_mov
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_ARRIVALS = 2  # where guards were given up, which in smaller steps need not be
+HOPELESS = 300.0  # tolerances beyond guards, as of six limbs 50 mm deep: smaller steps find no room
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
 MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
 MAX_GUARD_STEPS = 10  # after which what is in the way is given up
 MOST_FURTHER = 0.1  # rad, by which rows may take another joint further beyond its range
+SAME_PLACE = 1e-4  # m
 MAX_DENSE_VIOLATION = 3.0  # times a constraint's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
 
@@ -67,11 +71,13 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     """Adapts a fitted performance to a problem (thesis 4.3, 4.4).
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults. What cannot
-    be reached with the durations that go with the pins is tried with the recorded ones. A solve
+    be reached with the durations that go with the pins is tried with the recorded ones; a loop
+    keeps these, for it lasts whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve
     that fails is returned with the best motion found and a status that says so; one that
     `progress` ends by raising Stopped, with the motion as it stood.
     """
     setup = set_up(fit, problem)
+    _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)
         if found.reached == 1.0 or setup.durations is not Durations.FOUND:
@@ -81,6 +87,18 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
         return replace(again, outcomes=(*found.outcomes, *again.outcomes))
     except Stopped as stop:
         return _stopped(stop.motion, fit, setup)
+
+
+def _require_closed(setup: Setup) -> None:
+    """What is asked of a loop leaves it one. Raises SeamStanceMoved, NotInLoop."""
+    t, places = setup.start.transcription, setup.target_places
+    if not t.periodic:
+        return
+    if setup.target.moves:
+        raise NotInLoop("ground that moves")
+    torn = np.linalg.norm(tied_places(places, t.contacts, setup.start.duration) - places, axis=1)
+    if torn.max(initial=0.0) > SAME_PLACE:
+        raise SeamStanceMoved(t.contacts[int(torn.argmax())].contact.name)
 
 
 def _stopped(motion: Motion, fit: Fit, setup: Setup) -> Adaptation:
@@ -94,7 +112,8 @@ def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | 
     for harder in range(MAX_ATTEMPTS):
         attempts.append(_attempt(setup, 2**harder, progress))
         arrived = [attempt for attempt in attempts if attempt.arrived]
-        enough = len(arrived) == MAX_ARRIVALS or (arrived and arrived[-1].over == 0.0)
+        over = arrived[-1].over if arrived else None
+        enough = len(arrived) == MAX_ARRIVALS or over == 0.0 or (over or 0.0) > HOPELESS
         iterations = sum(len(outcome.steps) for each in attempts for outcome in each.outcomes)
         if enough or iterations > MAX_SQP_ITERATIONS:
             break
@@ -204,6 +223,8 @@ def _continuation(setup: Setup, times: int, progress: Progress | None) -> Contin
         if step < steps and standing.moves:
             transcription = transcription.riding(standing.rides)
         start = warm_start(motion, stance_moves(schedule, last, standing))
+        if transcription.seam is not None:
+            start = transcription.seam.closed(start, setup.metric)
         if step == 1:  # where nothing is gripped this changes nothing
             start = reach_grips(Motion(transcription, start, places), setup.target_places).x
         if step < steps:
@@ -279,7 +300,8 @@ def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | Non
         elif new.guards is old.guards:
             break  # what was solved for stands; what it misses in between is reported
         else:
-            conflicting = in_the_way(feasible, metric, tried.x) - hard
+            stuck = outcome.x if tried.solved else tried.x  # where all rows hold none pulls
+            conflicting = in_the_way(feasible, metric, stuck) - hard
             if not conflicting - given_up:
                 break  # the artist's hard ranges are missed, and reported
             given_up |= conflicting

@@ -41,7 +41,7 @@ def resampled_fit(
         basis = _mapped_basis(t.basis, context, extra)
     else:
         basis = SplineBasis(*phase_breaks(schedule.jumps, [*schedule.boundaries, *extra], coarse))
-    new = Transcription(t.character, basis, points, contacts, t.moment)
+    new = Transcription(t.character, basis, points, contacts, t.moment, periodic=t.periodic)
     x = _resampled(reference, new, context.timeline.eased)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
     return replace(motion, places=_current_places(motion, fit))

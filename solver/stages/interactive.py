@@ -214,20 +214,27 @@ def _by_guard(guards: Sequence[GuardRows], flags: BoolArray) -> list[BoolArray]:
     return [flags[end - len(guard.items) : end] for guard, end in zip(guards, ends, strict=True)]
 
 
-def change(fit: Fit, setup: Setup, motion: Motion, seen: Traces) -> DragSummary:
-    """Change of a motion, as sampled (seen), against the fit."""
+def pelvis_range(fit: Fit) -> tuple[float, float]:
+    """The lowest and the highest place of a fit's pelvis, m."""
+    height = fit.motion.joint_centres(fit.performance.times)[:, 0, 2]
+    return float(height.min()), float(height.max())
+
+
+def change(
+    fit: Fit, was: tuple[float, float], setup: Setup, motion: Motion, seen: Traces
+) -> DragSummary:
+    """Change of a motion, as sampled (seen), against the fit. was: the fit's pelvis_range."""
     known = {c.name: place for c, place in zip(fit.schedule.contacts, fit.places, strict=True)}
     moves = [
         float(np.linalg.norm(place - known[c.name]))
         for c, place in zip(setup.schedule.contacts, motion.places, strict=True)
         if c.name in known
     ]
-    was = fit.motion.joint_centres(fit.performance.times)[:, 0, 2]
     now = seen.heads[:, 0, 2]
     forces = np.linalg.norm(seen.forces.sum(axis=1), axis=1)
     return DragSummary(
         moved_cm=100.0 * max(moves, default=0.0),
-        deeper_cm=100.0 * float(was.min() - now.min()),
-        higher_cm=100.0 * float(now.max() - was.max()),
+        deeper_cm=100.0 * (was[0] - float(now.min())),
+        higher_cm=100.0 * (float(now.max()) - was[1]),
         peak_bw=float(forces.max(initial=0.0)) / seen.weight,
     )

@@ -38,6 +38,7 @@ from ..objectives.tracking_cost import CostWeights
 from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
+from ..solid.room import check_room
 from ..solid.shape_changes import ShapeChanges
 from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
@@ -186,6 +187,11 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     target, footing = find_standing(fit, problem, context)
     if requests.solution.solid:
         check_sunk(problem.scene, context.schedule, footing)
+        if requests.solution.human:
+            changes = ShapeChanges.of(requests.shapes, context.character)
+            check_room(
+                problem.scene, reference.transcription, context.schedule, target.places, changes
+            )
     start = on_faces(start, footing)
     durations = Durations.MOVING_GROUND
     if not target.moves:  # the ground's clock is no jumper's to stretch
@@ -240,7 +246,7 @@ def _anticipated(
     timed = {timing.phase for timing in requests.timings}
     kept = tuple(Interval(p.start, p.end) for p in context.phases if p.name in timed)
     kept += tuple(Interval(hold.start, hold.end) for hold in context.timeline.holds)
-    if requests.solution.keep_times:
+    if requests.solution.keep_times or start.transcription.periodic:  # a loop lasts whole frames
         return context, start, Durations.RECORDED
     jumps = changed_jumps(start, context.schedule, target, kept)
     if not jumps:

@@ -29,8 +29,10 @@ MIN_LOAD = 0.25  # of the weight, with which the direction of the contact force 
 MAX_SLOPE = 0.5  # of that direction; runners and jumpers on force plates use 0.25 to 0.6
 
 
-def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcription:
-    """Transcription of a performance with its contacts."""
+def transcribe(
+    performance: Performance, schedule: ContactSchedule, *, periodic: bool = False
+) -> Transcription:
+    """Transcription of a performance with its contacts. periodic: whether it is one cycle."""
     character = performance.character
     points, which = body_points(character, performance.recording, schedule)
     contacts, extra = point_contacts(schedule, which)
@@ -40,6 +42,7 @@ def transcribe(performance: Performance, schedule: ContactSchedule) -> Transcrip
         points,
         contacts,
         MomentFunction(character),
+        periodic=periodic,
     )
 
 

@@ -132,6 +132,25 @@ class PointContact:
         return np.asarray(self.ride.poses(times).turn @ self.normal)
 
 
+def tied_places(
+    places: FloatArray, contacts: Sequence[PointContact], duration: float
+) -> FloatArray:
+    """Places (n_contacts, 3) m of a motion that repeats: the parts of contacts that its seam cuts
+    are equally far apart, level. Each is moved half of the way there."""
+    starting = {c.point: i for i, c in enumerate(contacts) if c.contact.start <= 0.0}
+    ending = {c.point: i for i, c in enumerate(contacts) if c.contact.end >= duration}
+    cut = [(starting[point], ending[point]) for point in starting if point in ending]
+    if not cut:
+        return places
+    first, last = np.array(cut).T
+    apart = places[last] - places[first]
+    common = apart.mean(axis=0) * [1.0, 1.0, 0.0]
+    tied = places.copy()
+    tied[first] += 0.5 * (apart - common)
+    tied[last] -= 0.5 * (apart - common)
+    return tied
+
+
 @dataclass(frozen=True)
 class _PinPairs:
     """M pairs of a contact and one of the pins' breaks (`at`) at which it is held.

@@ -136,9 +136,10 @@ def dynamics_residual(motion: Motion, times: FloatArray) -> DynamicsResidual:
     forces = motion.forces(times) / weight
     total = forces.sum(axis=1)
     force = motion.com(times, 2) / STANDARD_GRAVITY + np.array([0.0, 0.0, fall]) - total
-    rate = t.moment.value(*(motion.angles(times, k) for k in range(3)))
+    posed = motion.pose(times)
+    rate = t.moment.value_at(posed, *(motion.angles(times, k) for k in (1, 2)))
     if t.points:
-        arms = motion.pose(times).points(t.points)
+        arms = posed.points(t.points)
         rate = rate - np.einsum("tpij,tpj->ti", cross_matrix(arms), forces)
     return DynamicsResidual(times, force, rate)
 

@@ -31,6 +31,7 @@ from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix
+from ..numerics.seam import Seam
 from ..numerics.splines import ORDER, SplineBasis, gauss_instants
 from .constraint import Constraint, DiscretisedConstraint
 from .contact_pins import Pins, PointContact, touching_spans
@@ -49,7 +50,8 @@ class Transcription:
 
     points: the bodies' points that touch. contacts: when and where they do. moment: the rate of
     angular momentum about the centre of mass. guards: at most one of a kind. active: which unknowns
-    exist. discretised: the constraints on this basis, guards last.
+    exist. discretised: the constraints on this basis, guards last. periodic: whether the motion
+    repeats, so that its last instant is tied to its first (`seam`).
     """
 
     character: Character
@@ -59,12 +61,15 @@ class Transcription:
     moment: MomentFunction
     constraints: tuple[Constraint, ...] = ()
     guards: tuple[GuardRows, ...] = ()
+    periodic: bool = False
+    seam: Seam | None = field(init=False)
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block)
 
     def __post_init__(self) -> None:
         self.layout = Layout(self.character.n_angles, len(self.points))
         self.active = self._active()
+        self.seam = self._seam() if self.periodic else None
         times, self.node_weights, self.node_spans = gauss_instants(self.basis.breaks, GAUSS_NODES)
         self.node_times = times
         self._node_basis = [self.basis.evaluate(times, k, self.node_spans) for k in range(3)]
@@ -151,6 +156,19 @@ class Transcription:
             if contact.contact.end < basis.breaks[-1]:
                 active[layout.force_block(nodes[-1, 1]), layout.force(contact.point)] = False
         return active
+
+    def _seam(self) -> Seam:
+        """Pose, velocities, the joints' accelerations and forces of a motion that repeats.
+
+        The centre of mass has gone somewhere, level: how far is for the solver to say, or for
+        contacts that the seam cuts. Its acceleration follows from the forces.
+        """
+        layout = self.layout
+        com, angles, forces = (
+            range(part.start, part.stop) for part in (layout.com, layout.angles, layout.forces)
+        )
+        smooth = [[com[-1], *angles], [*com, *angles], [*angles]]
+        return Seam.of(self.basis, self.active, smooth, forces)
 
     def window(self, x: FloatArray, spans: IntArray) -> FloatArray:
         """(R, 4, n_block) the four blocks of x (K, n_block) that act in each span (R,)."""
@@ -244,7 +262,7 @@ class Transcription:
         return np.asarray(forces.reshape(len(forces), self.layout.n_points, 3))
 
     def _moment_residual(self, x: FloatArray, posed: Pose) -> FloatArray:
-        rate = self.moment.value(*(self.angles_at_nodes(x, k) for k in range(3)))
+        rate = self.moment.value_at(posed, *(self.angles_at_nodes(x, k) for k in (1, 2)))
         if not self.points:
             return rate
         arms = posed.points(self.points)

@@ -21,6 +21,7 @@ from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..data.contacts import ContactSchedule
 from ..data.faults import NoFit, NoSolution, UnseenSupport
+from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
 from ..data.reports.jumps import TimeMap
@@ -36,6 +37,8 @@ from ..data.scaling import (
 from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
+from ..loops.find_cycle import check_loop, find_cycle
+from ..loops.loop_report import loop_report
 from ..optimisation.sqp import Step
 from ..results.joint_report import joint_turns
 from ..results.last_stance import last_stance_move
@@ -78,13 +81,15 @@ class StageClock:
 class Subject:
     """An analysed recording and the problem to solve on it, both at the stated stature.
 
-    height: m, as recorded. factor: the stated stature over that one.
+    height: m, as recorded. factor: the stated stature over that one. cycle: of a motion that shall
+    repeat, whose frames were analysed; None of others.
     """
 
     analysis: Analysis
     problem: MotionProblem
     height: float
     factor: float
+    cycle: Cycle | None = None
 
     @property
     def recording(self) -> Recording:
@@ -174,30 +179,53 @@ class AdaptationResult:
 
     def report(self, origin: Origin, stages: list[StageReport] | None = None) -> Report:
         """At the stated stature. stages: None leaves out times."""
-        return report(self.adaptation, self.subject.problem, origin, stages)
+        made, cycle = (
+            report(self.adaptation, self.subject.problem, origin, stages),
+            self.subject.cycle,
+        )
+        if cycle is None:
+            return made
+        return replace(made, loop=loop_report(self.adaptation.motion, cycle))
 
 
 def measure(recording: Recording, problem: MotionProblem) -> Subject:
-    """Analyses the problem's frames of a recording. Raises what `analyse` does."""
+    """Analyses the problem's frames of a recording, or the cycle nearest to them for a loop.
+
+    Raises what `analyse`, `find_cycle` and `check_loop` do.
+    """
     if problem.height is None:
-        analysis = analyse(recording, problem)
-        return Subject(analysis, problem, analysis.performance.character.height, 1.0)
+        analysis, cycle = _analysed(recording, problem)
+        return Subject(analysis, problem, analysis.performance.character.height, 1.0, cycle)
     # Before any contact is sought: at a wrong scale none would be found.
     height = build_figure(recording, problem)[1].height
     factor = problem.height / height
     problem = scaled_problem(problem, factor)
     try:
-        analysis = analyse(scaled_recording(recording, factor), problem)
+        analysis, cycle = _analysed(scaled_recording(recording, factor), problem)
     except UnseenSupport as fault:
         boxes = tuple(scaled_box(box, 1.0 / factor) for box in fault.boxes)
         raise replace(fault, boxes=boxes) from None
-    return Subject(analysis, problem, height, factor)
+    return Subject(analysis, problem, height, factor, cycle)
+
+
+def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, Cycle | None]:
+    """The analysis, and the cycle that it is of where the motion shall repeat."""
+    if not problem.loop:
+        return analyse(recording, problem), None
+    check_loop(problem)
+    cycle = find_cycle(recording, problem)
+    return analyse(recording, replace(problem, frames=cycle.frames)), cycle
 
 
 def fit_subject(subject: Subject, clock: StageClock) -> Fit:
     """The valid motion nearest to the recording, solved or not."""
     with clock.stage(FITTING):
-        fitted = fit(subject.analysis.performance, subject.analysis.schedule, progress=clock.step)
+        fitted = fit(
+            subject.analysis.performance,
+            subject.analysis.schedule,
+            periodic=subject.cycle is not None,
+            progress=clock.step,
+        )
         clock.ended(fitted.outcome.violation)
     return fitted
 
@@ -220,10 +248,13 @@ def solve(
 ) -> AdaptationResult:
     """The whole way from an analysis. fitted_by: may remember fits.
 
-    Raises what `adapt` and `check_scene` do; wrong names in pins before the fit takes its seconds.
+    Raises what `adapt` and `check_scene` do; wrong names in pins and shapes before the fit takes
+    its seconds.
     """
     check_scene(subject.problem)
-    schedule = subject.analysis.schedule
+    check_loop(subject.problem)
+    performance, schedule = subject.analysis.performance, subject.analysis.schedule
+    ShapeChanges.of(subject.problem.requests.shapes, performance.character)
     for pin in subject.problem.pins:
         chosen_contacts(pin, phase_of(pin, schedule), schedule)
     return adapt_fit(subject, fitted_by(subject, clock), clock)

@@ -28,13 +28,14 @@ if TYPE_CHECKING:
     from ..arrays import FloatArray
     from ..data.contacts import ContactSchedule
     from ..data.faults import Fault, NoSolution
+    from ..data.loop import Cycle
     from ..data.problem import MotionProblem
     from ..data.recording import PoseTrack, Recording
     from ..data.reports.report import DragSummary, FitQuality, Report
     from ..data.stance_move import StanceMove
     from ..data.traces import Traces
 
-PROTOCOL = 4
+PROTOCOL = 5
 LARGEST = 1 << 30  # bytes; a longer message is not one
 _HEAD = struct.Struct("<Q")  # length of the pickle
 _NUMPY = {
@@ -134,7 +135,8 @@ class Analysed:
     """The contacts found.
 
     height: m, as measured. axes: (3, 3) by ground phase's name, columns forward, left and up.
-    bones: by the part of the body that they move ("left foot").
+    bones: by the part of the body that they move ("left foot"). cycle: whose frames these are,
+    where the motion shall repeat.
     """
 
     id: int
@@ -143,6 +145,7 @@ class Analysed:
     axes: dict[str, FloatArray]
     bones: dict[str, str]
     traces: Traces
+    cycle: Cycle | None = None
 
 
 @dataclass(frozen=True)

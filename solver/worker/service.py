@@ -17,7 +17,7 @@ from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
-from ..stages.interactive import Follower, change
+from ..stages.interactive import Follower, change, pelvis_range
 from ..transcription.motion import Motion
 from .pipeline import ADAPTING, FITTING, StageClock, Subject, fit_subject, measure, no_fit, solve
 from .progress import ProgressFraction
@@ -47,9 +47,10 @@ class Cancel(Exception):
 
 @dataclass
 class _Following:
-    """A drag's fit and follower, kept from update to update."""
+    """A drag's fit, its pelvis's range and the follower, kept from update to update."""
 
     fit: Fit
+    pelvis: tuple[float, float]
     follower: Follower
 
 
@@ -110,14 +111,13 @@ class Service:
     def _followed(self, request: int, subject: Subject, fitted: Fit) -> Followed:
         problem, following = subject.problem, self._following
         if following is None or following.fit is not fitted:
-            following = _Following(
-                fitted, Follower(fitted, problem, self._similar(fitted, problem))
-            )
+            follower = Follower(fitted, problem, self._similar(fitted, problem))
+            following = _Following(fitted, pelvis_range(fitted), follower)
             self._following = following
         follower = following.follower
         status = follower.follow(problem)
         traces = subject.motion_traces(follower.motion, follower.setup.schedule, torques=False)
-        summary = change(fitted, follower.setup, follower.motion, traces)
+        summary = change(fitted, following.pelvis, follower.setup, follower.motion, traces)
         return Followed(request, traces, status, summary)
 
     def _similar(self, fitted: Fit, problem: MotionProblem) -> Adaptation | None:
@@ -198,6 +198,7 @@ def _analysed(request: int, subject: Subject) -> Analysed:
         {p.name: travel_axes(performance, schedule, p) for p in ground},
         {body.name: body.bone for body in performance.character.bodies},
         subject.recorded_traces(),
+        subject.cycle,
     )
 
 

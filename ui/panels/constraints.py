@@ -11,7 +11,7 @@ from ...operators.lists.row_lists import RowList
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from .constraint_fields import RowDrawing
-from .lists import MET_ICONS, BodyChangeList, ConstraintList
+from .lists import MET_ICONS, BodyChangeList, ConstraintList, status_counts
 from .menus import AddBodyChangeMenu, AddConstraintMenu, ConstraintMoreMenu
 from .sidebar import ArmaturePanel, draw_list, optional, settings_in, split
 
@@ -109,7 +109,9 @@ def _draw_body_change(layout: bpy.types.UILayout, armature: bpy.types.Object) ->
 
 def _draw_status(layout: bpy.types.UILayout, row: Row) -> None:
     if row.status:
-        layout.label(text=row.status, icon=MET_ICONS[row.met])
+        line = layout.row()
+        line.active = status_counts(row.id_data)
+        line.label(text=row.status, icon=MET_ICONS[row.met])
 
 
 def _chosen(armature: bpy.types.Object, of: RowList) -> Row:

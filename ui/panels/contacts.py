@@ -7,7 +7,7 @@ from ...bridge.properties.settings import settings_of
 from ...bridge.properties.stances import active_contact, active_stance
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .lists import ContactList
+from .lists import ContactList, StanceList, called
 from .sidebar import ArmaturePanel, draw_list, settings_in, split
 
 
@@ -22,9 +22,7 @@ class ContactsPanel(ArmaturePanel):
         if not settings.contacts:
             layout.label(text="Press Analyze to find them", icon="INFO")
             return
-        side = draw_list(layout, ContactList, settings, "contacts")
-        side.operator(OperatorId.ADD_CONTACT, text="", icon="ADD")
-        side.operator(OperatorId.REMOVE_CONTACT, text="", icon="REMOVE")
+        draw_list(layout, StanceList, settings, "stances", rows=3)
         layout.prop(settings, "whole_stance")
 
 
@@ -39,7 +37,9 @@ class StancePanel(ArmaturePanel):
         return armature is not None and active_stance(settings_of(armature)) is not None
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        present(self.layout).label(text=f"Move {present(active_stance(settings_in(context))).name}")
+        settings = settings_in(context)
+        name = called(settings, present(active_stance(settings)).name)
+        present(self.layout).label(text=f"Move {name}")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = split(self)
@@ -52,9 +52,32 @@ class StancePanel(ArmaturePanel):
         buttons.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")
 
 
+class StanceContactsPanel(ArmaturePanel):
+    bl_idname = "HANGTIME_PT_stance_contacts"
+    bl_parent_id = ContactsPanel.bl_idname
+    bl_label = ""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and len(settings_of(armature).contacts) > 0
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        settings = settings_in(context)
+        stance = active_stance(settings)
+        of = f" of {called(settings, stance.name)} ({stance.name})" if stance is not None else ""
+        present(self.layout).label(text=f"Contacts{of}")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        side = draw_list(layout, ContactList, settings_in(context), "contacts", rows=4)
+        side.operator(OperatorId.ADD_CONTACT, text="", icon="ADD")
+        side.operator(OperatorId.REMOVE_CONTACT, text="", icon="REMOVE")
+
+
 class ContactPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_contact"
-    bl_parent_id = ContactsPanel.bl_idname
+    bl_parent_id = StanceContactsPanel.bl_idname
     bl_label = ""
     bl_options = {"DEFAULT_CLOSED"}
 

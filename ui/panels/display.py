@@ -10,7 +10,7 @@ from ...operators.solve.common import chosen_armature
 from .sidebar import SidebarPanel, split
 
 _COLUMNS = {
-    "Constraints": ("pins", "limits", "poses"),
+    "Constraints": ("pins", "limits", "all_limits", "poses"),
     "Motion": ("path", "forces", "momentum", "changes", "shapes"),
 }
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
@@ -45,7 +45,10 @@ def _draw_ghosts(layout: bpy.types.UILayout, view: HangtimeView) -> None:
     column = column.column()
     column.active = view.ghosts
     column.prop(view, "recording_too", text="Recording Too")
-    column.prop(view, "ghost_step", text="Frame Step")
+    column.prop(view, "ghost_auto")
+    step = column.column()
+    step.active = not view.ghost_auto
+    step.prop(view, "ghost_step", text="Frame Step")
 
 
 def _draw_plots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -2,17 +2,19 @@
 
 import bpy
 
-from ...bridge.accessors import present
+from ...bridge.accessors import current_action, present
 from ...bridge.constraint_kinds import KINDS
 from ...bridge.constraints.linked_rows import linked_count
-from ...bridge.properties.settings import HangtimeContact, HangtimeSettings
+from ...bridge.properties.contact import HangtimeContact, HangtimeStance
+from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
+from ...bridge.properties.stances import active_stance, stance_frames
 from ...bridge.properties.surface import HangtimeSurface
 from ...bridge.rows.choices import BodyKind, Met, SurfaceRole
 from ...bridge.rows.kind import Icon, Row
+from ...bridge.rows.phases import roles
 from ..drawing.editor import ui_scale
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
-CONTACT_WIDE = 400  # px; one in which the places find room too
 ICONS: dict[str, Icon] = {
     **{kind.name: kind.icon for kind in KINDS.values()},
     BodyKind.LOAD.name: "PACKAGE",
@@ -31,6 +33,14 @@ ROLE_ICONS: dict[str, Icon] = {
     SurfaceRole.OBSTACLE.name: "CUBE",
     SurfaceRole.CLEAR.name: "TRIA_UP_BAR",
 }
+
+
+def status_counts(armature: bpy.types.Object) -> bool:
+    """Whether what rows say of the last solve is about what is shown, and what is asked now."""
+    result: bpy.types.Action | None = settings_of(armature).adapted
+    shown = result is not None and current_action(armature) == result
+    beside = result is not None and action_settings(result).performer not in (None, armature)
+    return result is not None and (shown or beside) and not action_settings(result).stale
 
 
 class _RowList(bpy.types.UIList):
@@ -68,6 +78,7 @@ class _RowList(bpy.types.UIList):
         if text:
             end.label(text=text)
         if row.status:
+            end.active = status_counts(row.id_data)
             end.label(text="", icon=MET_ICONS[row.met])
 
     def told(self, row: Row) -> str:
@@ -125,7 +136,7 @@ class ContactList(bpy.types.UIList):
 
     def draw_item(
         self,
-        context: bpy.types.Context,
+        _context: bpy.types.Context,
         layout: bpy.types.UILayout,
         _settings: HangtimeSettings | None,
         contact: HangtimeContact | None,
@@ -140,9 +151,53 @@ class ContactList(bpy.types.UIList):
         line.prop(row, "used", text="")
         line = line.row(align=True)
         line.active = row.used
-        wide = present(context.region).width > CONTACT_WIDE * ui_scale(context)
-        line = line.split(factor=0.4 if wide else 0.6, align=True)
         line.label(text=row.name)
-        if wide:
-            line.label(text=row.phase)
-        line.label(text=f"{row.start_frame:.0f} – {row.end_frame:.0f}")
+        _draw_frames(line, (row.start_frame, row.end_frame))
+
+    # The stubs want arrays of Blender's, which nobody can make.
+    def filter_items(  # type: ignore[override]
+        self, _context: bpy.types.Context, settings: HangtimeSettings, name: str
+    ) -> tuple[list[int], list[int]]:
+        """Only the contacts of the stance that is chosen, and those of none."""
+        stance = active_stance(settings)
+        shown = None if stance is None else stance.name
+        named = {row.name for row in settings.stances}
+        rows = getattr(settings, name)
+        kept = [row.phase == shown or row.phase not in named for row in rows]
+        return [self.bitflag_filter_item if keep else 0 for keep in kept], []
+
+
+class StanceList(bpy.types.UIList):
+    bl_idname = "HANGTIME_UL_stances"
+
+    def draw_item(
+        self,
+        _context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        settings: HangtimeSettings | None,
+        stance: HangtimeStance | None,
+        _icon: int | None,
+        _active_owner: HangtimeSettings | None,
+        _active_name: str | None,
+        _index: int | None,
+        _filter: int | None,
+    ) -> None:
+        row, owner = present(stance), present(settings)
+        line = layout.row(align=True)
+        frames = stance_frames(owner, row.name)
+        line.active = frames is not None
+        line.label(text=called(owner, row.name), icon="TRIA_DOWN_BAR")
+        if frames is not None:
+            _draw_frames(line, frames)
+
+
+def called(settings: HangtimeSettings, phase: str) -> str:
+    """What a stance is called to the artist: by its role, where phases still have it."""
+    return roles(settings).get(phase, phase.capitalize())
+
+
+def _draw_frames(line: bpy.types.UILayout, frames: tuple[float, float]) -> None:
+    """At the end of a line, as wide as they need."""
+    end = line.row()
+    end.alignment = "RIGHT"
+    end.label(text=f"{frames[0]:.0f}–{frames[1]:.0f}")

@@ -12,8 +12,13 @@ from ...bridge.rows.kind import Icon
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from ...solver.skeleton.mapping import Evidence
+from .failure import draw_failure
 from .menus import BonePresetsMenu
 from .sidebar import ArmaturePanel, SidebarPanel, lines, optional, settings_in, split
+
+FIRST_STEPS = """Select a character that jumps
+Press Analyze
+Drag where it lands"""
 
 
 @dataclass(frozen=True)
@@ -40,14 +45,19 @@ class CharacterPanel(SidebarPanel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = split(self)
-        armature = chosen_armature(context)
-        active = armature.name if armature is not None else "Select an armature"
-        layout.prop(scene_settings(context.scene), "armature", placeholder=active)
+        armature, scene = chosen_armature(context), scene_settings(context.scene)
         if armature is None:
+            lines(layout, FIRST_STEPS, icon="INFO")
             return
+        row = layout.row(align=True)
+        if scene.pinned:
+            row.prop(scene, "armature", text="")
+        else:
+            row.label(text=armature.name, icon="ARMATURE_DATA")
+        row.prop(scene, "pinned", text="", icon="PINNED" if scene.pinned else "UNPINNED")
         settings = settings_of(armature)
         layout.prop(settings, "mass")
-        optional(layout, settings, "use_height", "Own Height", "height")
+        optional(layout, settings, "use_height", "Custom Height", "height")
         if settings.measured_height > 0.0:
             layout.label(text=f"Measured height: {settings.measured_height:.2f} m")
 
@@ -102,8 +112,8 @@ class RecordingPanel(ArmaturePanel):
         else:
             layout.label(text="No action is assigned", icon="ERROR")
         optional(layout, settings, "use_range", "Frame Range", "first_frame", "last_frame")
-        buttons = layout.row(align=True)
-        buttons.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
-        buttons.operator(OperatorId.FIT, icon="CON_FOLLOWPATH")
-        if settings.fit_quality:
-            lines(layout, settings.fit_quality, icon="CHECKMARK")
+        layout.prop(settings.loop, "use")
+        if settings.loop.use:
+            layout.prop(settings.loop, "root")
+        layout.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
+        draw_failure(layout, context, armature, OperatorId.ANALYZE)

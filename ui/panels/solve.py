@@ -1,12 +1,10 @@
 """Solve, Result and Export."""
 
-from textwrap import fill
-
 import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.armature.actions import recorded_action
-from ...bridge.properties.settings import action_settings
+from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.rows.choices import After
 from ...bridge.rows.kind import Icon
 from ...bridge.takes.takes import ListedTake, starts_from_result, takes_of
@@ -14,10 +12,10 @@ from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from ...operators.solve.results import performer_of, result_of
 from ...operators.solve.session import session
-from ..drawing.editor import ui_scale
+from .failure import draw_failure, wrapped
 from .sidebar import ArmaturePanel, lines, optional, settings_in, split
 
-CHARACTER_PX = 7.5  # at an interface scale of 1, with room for the icon
+OF_SOLVES = (OperatorId.ADAPT, OperatorId.REFINE, OperatorId.USE_BEST, OperatorId.FIT)
 
 
 class SolvePanel(ArmaturePanel):
@@ -39,9 +37,8 @@ class SolvePanel(ArmaturePanel):
         row.scale_y = 1.5
         row.operator(OperatorId.ADAPT, icon="PLAY")
         row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
-        if session().failure:
-            width = present(context.region).width / (CHARACTER_PX * ui_scale(context))
-            lines(layout, fill(session().failure, max(20, int(width))), icon="ERROR")
+        armature = present(chosen_armature(context))
+        draw_failure(layout, context, armature, *OF_SOLVES)
         if session().best is not None:
             layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
 
@@ -52,9 +49,9 @@ class SolvePanel(ArmaturePanel):
         if len(takes_of(armature)) < 2:
             return
         on_result = starts_from_result(armature)
-        split = layout.split(factor=0.3, align=True)
-        split.label(text="Start From")
-        row = split.row(align=True)
+        line = layout.split(factor=0.3)
+        line.label(text="Start From")
+        row = line.row(align=True)
         for text, result in (("Recording", False), ("This Result", True)):
             start = row.operator(OperatorId.START_FROM, text=text, depress=result is on_result)
             start.result = result
@@ -69,6 +66,9 @@ class AdvancedPanel(ArmaturePanel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = split(self)
         settings = settings_in(context)
+        layout.operator(OperatorId.FIT, icon="CON_FOLLOWPATH")
+        if settings.fit_quality:
+            lines(layout, settings.fit_quality, icon="CHECKMARK")
         layout.prop(settings, "method")
         layout.prop(settings, "keep_times")
         layout.prop(settings, "human_ranges")
@@ -97,9 +97,11 @@ class TakePanel(ArmaturePanel):
             optional(layout, options, "use_return_frame", "By Frame", "return_frame")
         column = layout.column()
         column.active = options.after != After.CUT.name
-        optional(column, options, "use_blend", "Own Blend", "blend_in", "blend_out")
+        optional(column, options, "use_blend", "Custom Blend", "blend_in", "blend_out")
         column.prop(options, "lock_others")
         layout.prop(options, "written_as")
+        layout.prop(options, "markers")
+        layout.prop(options, "contact_channels")
 
 
 class ResultPanel(ArmaturePanel):
@@ -122,9 +124,23 @@ class ResultPanel(ArmaturePanel):
         row = layout.row(align=True)
         self._draw_switch(row, armature)
         row.operator(OperatorId.SHOW_REPORT, text="Report", icon="TEXT")
+        self._draw_warning(layout, context, armature)
+        first = settings.status.partition("\n")[0]
         told = layout.column()
         told.active = current_action(armature) == settings.adapted
-        lines(told, settings.status)
+        lines(told, wrapped(context, first))
+
+    @staticmethod
+    def _draw_warning(
+        layout: bpy.types.UILayout, context: bpy.types.Context, armature: bpy.types.Object
+    ) -> None:
+        """What is beyond reason in the result that is shown."""
+        result = result_of(armature)
+        warning = action_settings(result).warning if result is not None else ""
+        if warning and current_action(performer_of(armature)) == result:
+            box = layout.box()
+            box.alert = True
+            lines(box, wrapped(context, warning), icon="ERROR")
 
     @staticmethod
     def _draw_switch(row: bpy.types.UILayout, armature: bpy.types.Object) -> None:
@@ -155,13 +171,35 @@ class ResultPanel(ArmaturePanel):
                 end.label(text="Recording")
             if take.polished:
                 end.label(text="", icon="GREASEPENCIL")
+            if action_settings(take.action).warning:
+                end.label(text="", icon="ERROR")
             if take.stale:
-                end.label(text="Stale", icon="ERROR")
+                end.label(text="Stale", icon="FILE_REFRESH")
             if action_settings(take.action).accepted:
                 end.label(text="", icon="CHECKMARK")
         for take in takes:
             if take.shown and take.stale:
-                column.label(text=take.stale, icon="ERROR")
+                column.label(text=take.stale, icon="FILE_REFRESH")
+
+
+class DetailsPanel(ArmaturePanel):
+    bl_idname = "HANGTIME_PT_details"
+    bl_parent_id = ResultPanel.bl_idname
+    bl_label = "Details"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        return armature is not None and "\n" in settings_of(armature).status
+
+    def draw(self, context: bpy.types.Context) -> None:
+        armature = present(chosen_armature(context))
+        settings = settings_of(armature)
+        told = present(self.layout).column()
+        told.active = current_action(armature) == settings.adapted
+        for line in settings.status.splitlines()[1:]:
+            lines(told, wrapped(context, line))
 
 
 class ExportPanel(ArmaturePanel):

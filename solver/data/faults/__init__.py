@@ -3,6 +3,13 @@
 from .base import Fault as Fault
 from .base import NameMissing as NameMissing
 from .base import RequestFault as RequestFault
+from .loops import CycleClimbs as CycleClimbs
+from .loops import CycleTurns as CycleTurns
+from .loops import EndsTouchOtherwise as EndsTouchOtherwise
+from .loops import NoRootBone as NoRootBone
+from .loops import NothingRecurs as NothingRecurs
+from .loops import NotInLoop as NotInLoop
+from .loops import SeamStanceMoved as SeamStanceMoved
 from .recordings import BadScale as BadScale
 from .recordings import ChangedMeanwhile as ChangedMeanwhile
 from .recordings import ClipTooShort as ClipTooShort
@@ -51,6 +58,7 @@ from .scenes import InsideOut as InsideOut
 from .scenes import JerkyGround as JerkyGround
 from .scenes import NoFaces as NoFaces
 from .scenes import NoFaceThere as NoFaceThere
+from .scenes import NoRoom as NoRoom
 from .scenes import NotFinite as NotFinite
 from .scenes import NotGround as NotGround
 from .scenes import NoThickness as NoThickness

@@ -94,12 +94,15 @@ class UnreadableClip(Fault):
 class UnseenSupport(Fault):
     """Nothing touches, yet the body does not fall: something unrecorded carries it (frames).
 
-    boxes: what would, where feet rest above the floor.
+    boxes: what would, where feet rest above the floor. rate: frames a second at which the body
+    would fall as gravity has it, where the scene's, scene_rate, is another.
     """
 
     first: float
     last: float
     boxes: tuple[SupportBox, ...] = ()
+    rate: int | None = None
+    scene_rate: float = 0.0
 
 
 @dataclass

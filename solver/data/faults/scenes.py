@@ -51,6 +51,16 @@ class StandsBelow(SceneFault):
     metres: float
 
 
+@dataclass
+class NoRoom(SceneFault):
+    """A foot stands where the object leaves no room for its shank: metres that are free above it,
+    and that the leg needs at least."""
+
+    contact: str
+    free: float
+    needed: float
+
+
 class SameObjectName(SceneFault):
     """Two objects of the scene by one name."""
 

@@ -36,9 +36,10 @@ class ForcePeak:
 
 @dataclass(frozen=True)
 class ForcesReport:
-    """Contact forces."""
+    """Contact forces. recorded_peak_bw: the largest that the recording's fit has."""
 
     peaks: tuple[ForcePeak, ...]
+    recorded_peak_bw: float
     smallest_vertical_force_bw: float
 
 

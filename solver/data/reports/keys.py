@@ -7,8 +7,9 @@ from dataclasses import dataclass
 class KeysReport:
     """Keys of the channels that a result has of its own, and what they leave.
 
-    choice: such as "reduced". keys: all channels' together. largest_error_mm: of a joint centre in
-    the world, over every frame, and where; largest_turn_deg: of a bone in the world.
+    choice: such as "reduced"; "every frame" where that could not be. keys: all channels' together.
+    largest_error_mm: of a joint centre in the world, over every frame, and where;
+    largest_turn_deg: of a bone in the world.
     """
 
     choice: str

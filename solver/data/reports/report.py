@@ -19,6 +19,7 @@ from .dynamics import DenseResiduals, ForcesReport, TorquesReport, TorqueUse
 from .joints import JointChange, RecordedRange
 from .jumps import JumpReport, PhaseReport, TimeMap
 from .keys import KeysReport
+from .loop import LoopReport
 from .omission import OMIT_NONE
 from .recording import FigureSummary, RecordingSummary
 
@@ -138,6 +139,7 @@ class Report:
     times: TimeMap
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
     keys: KeysReport | None = field(default=None, metadata=OMIT_NONE)
+    loop: LoopReport | None = field(default=None, metadata=OMIT_NONE)
 
     @property
     def given_up(self) -> tuple[ConstraintReport, ...]:

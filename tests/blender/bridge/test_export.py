@@ -12,7 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.armature.write import side_by_side, write_action
-from hangtime.bridge.files.export import export_fbx, reimport_fbx
+from hangtime.bridge.files.export import export_fbx, export_gltf, reimport_fbx, reimport_gltf
 from hangtime.devtools.recordings import JUMP, find
 from hangtime.solver.data.faults import (
     OutputNotWritable,
@@ -86,6 +86,21 @@ def test_fbx_holds_that_action_alone_and_leaves_the_scene(tmp_path: Path) -> Non
     assert bpy.context.view_layer.objects.active == other
     assert (scene.frame_start, scene.frame_end, scene.frame_current) == (100, 200, 3)
     assert blocks == [set(k) for k in (bpy.data.objects, bpy.data.actions, bpy.data.armatures)]
+
+
+def test_gltf_holds_the_action_by_its_name_and_comes_back(tmp_path: Path) -> None:
+    armature = animated_rig("XZY")
+    armature.scale = (0.01, 0.01, 0.01)
+    action = write_action(armature, altered(read_recording(armature)), name="Longer Jump")
+    adapted = read_recording(armature)
+    path = tmp_path / "adapted.glb"
+    export_gltf(armature, action, path)
+    before = set(bpy.data.objects), set(bpy.data.actions)
+    again = reimport_gltf(path, adapted.frames)
+    assert before == (set(bpy.data.objects), set(bpy.data.actions))
+    columns = [again.index(bone.name) for bone in adapted.bones]
+    np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=1e-4)
+    assert b'"name":"Longer Jump"' in path.read_bytes()
 
 
 def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:

@@ -13,12 +13,14 @@ from hangtime.bridge.armature.channels import EULER_ORDERS, channels, rotations_
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.read import read_recording, record
 from hangtime.bridge.armature.write import write_action
+from hangtime.bridge.keys import choose
 from hangtime.bridge.keys.bezier_keys import splice_bezier
 from hangtime.bridge.keys.events import KeyEvents, PlantedPoint
 from hangtime.bridge.keys.hermite import fitted
 from hangtime.bridge.keys.written import KeyedAction, choose_keys
 from hangtime.bridge.recipe.keys import KeyOptions
 from hangtime.bridge.rows.choices import KeyChoice
+from hangtime.operators.words.report_text import keys_line
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.keys import KeysReport
 from hangtime.solver.numerics.rotations import rotation_matrix
@@ -151,3 +153,14 @@ def test_channels_are_read_as_they_are_made(mode: str) -> None:
     rotations = rotation_matrix(np.cumsum(0.1 * vectors, axis=0))
     values = channels(rotations, mode)
     np.testing.assert_allclose(rotations_of(values, mode), rotations, atol=1e-9)
+
+
+def test_it_is_told_where_no_fewer_keys_keep_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(choose, "TIGHTENINGS", 0)
+    armature, track, report = written(REDUCED)
+    assert {len(c.keyframe_points) for c in fcurves.curves_of(armature)} == {len(track.frames)}
+    assert report.choice == "every frame"
+    assert keys_line(report).startswith("a key on every frame, as fewer do not keep the error: ")
+    monkeypatch.undo()
+    rigs.reset()
+    assert keys_line(written(REDUCED)[2])[0].isdigit()

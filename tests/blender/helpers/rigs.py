@@ -102,6 +102,12 @@ def swing(amplitudes: np.ndarray, frame: float) -> Quaternion:
     return Quaternion(vector / angle, angle)
 
 
+def turn_by(vector: np.ndarray) -> np.ndarray:
+    """(3, 3) rotation by a rotation vector, rad."""
+    angle = float(np.linalg.norm(vector))
+    return np.array(Quaternion(vector / angle, angle).to_matrix())
+
+
 def rotation_path(bone: bpy.types.PoseBone) -> str:
     """The property that holds a bone's rotation in its mode."""
     paths = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}

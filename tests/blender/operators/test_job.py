@@ -167,6 +167,7 @@ def test_the_recording_is_untouched(done: Path, clip: Path) -> None:
         assert np.array_equal(keys[curve.data_path, curve.array_index], fcurves.keys(curve))
 
 
+@pytest.mark.slow
 def test_the_command_line_wins_over_the_recipe(clip: Path, tmp_path: Path) -> None:
     options = ("--mass", "35", "--height", "1.2", "--last", "280")
     assert run(tmp_path, clip, "mass = 90\n" + EDIT + PLAIN, *options) == 0
@@ -225,6 +226,7 @@ def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Pa
     assert max(report["change"].values()) < 1e-3
 
 
+@pytest.mark.slow
 def test_a_recipe_asks_for_few_keys(clip: Path, tmp_path: Path) -> None:
     keys = '[keys]\non = "reduced"\n'
     options = ("--first", "140", "--last", "330", "--no-picture")
@@ -323,6 +325,7 @@ def test_a_clip_that_is_no_clip(tmp_path: Path, capsys) -> None:
     assert "bad.blend" in one_line(capsys)
 
 
+@pytest.mark.slow
 def test_no_solution_leaves_a_report(clip: Path, tmp_path: Path, capsys) -> None:
     assert run(tmp_path, clip, EDIT.replace("up = 0.2", "up = 8.0") + PLAIN) == 3
     assert "“Landing: " in one_line(capsys)

@@ -11,8 +11,10 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.incremental import complete
-from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.recipe.problem import Recipe, parse_recipe
+from hangtime.bridge.takes.options import result_options
 from hangtime.operators.solve.adapt import ask_for
+from hangtime.operators.solve.keys import key_options
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.scene.triangle_mesh import placed_mesh
 from hangtime.tests.blender.helpers.solids import add_row, make_box
@@ -21,9 +23,13 @@ pytestmark = pytest.mark.usefixtures("_enabled")
 
 
 def exported(folder: Path) -> MotionProblem:
+    return recipe(folder).problem
+
+
+def recipe(folder: Path) -> Recipe:
     path = folder / "edit.toml"
     assert bpy.ops.hangtime.export_recipe(filepath=str(path)) == {"FINISHED"}
-    return parse_recipe(path.read_text(encoding="utf-8"), str(path)).problem
+    return parse_recipe(path.read_text(encoding="utf-8"), str(path))
 
 
 def test_the_world_s_objects_come_along(analysed: bpy.types.Object, tmp_path: Path) -> None:
@@ -67,3 +73,19 @@ def test_contacts_and_times_that_the_artist_changed_come_along(
     added.bone, added.start_frame, added.end_frame = contact.bone, 200.0, 210.0
     analysed.hangtime.keep_times = True
     assert exported(tmp_path) == complete(ask_for(bpy.context)).problem
+
+
+def test_the_rest_of_the_take_and_the_keys_come_along(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    settings = analysed.hangtime
+    assert "[result]" not in (recipe(tmp_path), (tmp_path / "edit.toml").read_text())[1]
+    options = settings.result
+    options.after, options.written_as, options.lock_others = "RETURN", "STRIP", True
+    options.use_return_frame, options.return_frame = True, 900
+    options.use_blend, options.blend_in, options.blend_out = True, 7, 11
+    settings.result_keys.on, settings.result_keys.distance = "REDUCED", 3.0
+    found = recipe(tmp_path)
+    assert found.result == result_options(settings)
+    keys = key_options(settings)
+    assert found.keys == replace(keys, angle=pytest.approx(keys.angle))

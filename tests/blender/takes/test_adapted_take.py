@@ -111,3 +111,32 @@ def test_edits_made_by_hand_are_told_before_they_stay_behind(
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     assert f"Keys of {first.name} were edited by hand" in capfd.readouterr().out
     assert first.use_fake_user
+
+
+def test_contacts_are_marked_and_told_to_engines(analysed: bpy.types.Object) -> None:
+    options = analysed.hangtime.result
+    options.markers, options.contact_channels = "ACTION", True
+    analysed.hangtime.stances["ground 2"].forward = 0.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    result = current_action(analysed)
+    curve = next(c for c in fcurves.curves_of(analysed) if c.data_path == '["contact_left_foot"]')
+    assert set(fcurves.keys(curve)[:, 1]) == {0.0, 1.0}
+    assert {point.interpolation for point in curve.keyframe_points} == {"CONSTANT"}
+    markers = {(m.name, m.frame) for m in result.pose_markers}
+    (up,) = (frame for name, frame in markers if name == "Left foot up")
+    (down,) = (frame for name, frame in markers if name == "Left foot down")
+    scene = bpy.context.scene
+    for frame, touches in ((up, 1.0), (up + 1, 0.0), (down - 1, 0.0), (down, 1.0)):
+        scene.frame_set(frame)
+        assert analysed["contact_left_foot"] == touches
+    # it lands later where it lands further, as the result's own times are told
+    found = next(c.found_start for c in analysed.hangtime.contacts if c.name == "Left toe 2")
+    assert down >= round(found)
+    assert not scene.timeline_markers
+    options.markers, options.written_as = "TIMELINE", "COMBINE"
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert {m.name for m in scene.timeline_markers} >= {"Right foot up", "Right foot down"}
+    scene.frame_set(up + 1)
+    assert analysed["contact_left_foot"] == 0.0
+    scene.frame_set(up)
+    assert analysed["contact_left_foot"] == 1.0

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import recorded_action, show, showing_action
 from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.armature.poses import Poses, sample
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.bridge.takes.takes import bake_shown, look_again, note_made
+from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
+from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.blender.helpers import rigs
 
 FRAMES = np.arange(1.0, 25.0, 0.5)
@@ -34,15 +40,24 @@ def armature() -> bpy.types.Object:
     return made
 
 
-def lifted(armature: bpy.types.Object, by: float) -> bpy.types.Action:
-    """Write the middle of the take anew, so much higher, into a strip."""
+COMBINED = replace(OPTIONS, written_as=WrittenAs.COMBINE)
+
+
+def lifted(
+    armature: bpy.types.Object, by: float, options: ResultOptions = OPTIONS
+) -> bpy.types.Action:
+    """Write the middle of the take anew, so much higher and turned, into a strip."""
     with showing_action(armature, recorded_action(armature)):
         part = read_recording(armature).window(10, 14)
     bones = [part.index(bone) for bone in rigs.MOVING]
     heads = part.heads[:, bones[0]] + [0.0, 0.0, by]
-    track = PoseTrack(part.frames, rigs.MOVING, part.rotations[:, bones], heads)
-    motion = AdaptedMotion(track, TimeMap((10.0, 14.0), (10.0, 14.0)), None, OPTIONS)
-    action, _ = complete(write_adapted_incrementally(armature, motion))
+    rotations = axis_rotation(2, np.full(len(part.frames), 2.0 * by))[:, None]
+    track = PoseTrack(part.frames, rigs.MOVING, rotations @ part.rotations[:, bones], heads)
+    motion = AdaptedMotion(track, TimeMap((10.0, 14.0), (10.0, 14.0)), None, options)
+    action, written = complete(write_adapted_incrementally(armature, motion))
+    if options.written_as is WrittenAs.COMBINE:
+        combine(armature, action, options.after)
+    note_made(armature, action, written.span, written.later)
     return action
 
 
@@ -88,3 +103,82 @@ def test_a_second_result_is_made_from_the_take_and_the_first_is_muted(
     np.testing.assert_allclose(hips - was, (0.0, 0.0, 0.2), atol=1e-6)
     show(armature, first)
     assert [track.mute for track in tracks] == [False, False, True]
+
+
+def test_while_a_strip_is_tweaked_what_assigns_actions_waits(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.armature = armature
+    lifted(armature, 0.1)
+    tracks = armature.animation_data.nla_tracks
+    tracks.active = tracks[-1]
+    for track in tracks:
+        for strip in track.strips:
+            track.select = strip.select = track == tracks[-1]
+    ours = bpy.ops.hangtime
+    waiting = (ours.analyze, ours.show_take, ours.compare, ours.show_recording, ours.discard)
+    for tweaking in (True, False):
+        armature.animation_data.use_tweak_mode = tweaking
+        assert {each.poll() for each in waiting} == {not tweaking}
+
+
+WHOLE = np.arange(1.0, 25.0)
+
+
+@pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "ZYX", "AXIS_ANGLE"])
+def test_a_difference_combined_with_the_take_is_the_result(mode: str) -> None:
+    rigs.reset()
+    armature = rigs.make_armature()
+    rigs.animate(armature, mode)
+    take, before = current_action(armature), sample(armature, FRAMES)
+    keys = keys_digest(take)
+    result = lifted(armature, 0.1, COMBINED)
+    assert current_action(armature) == result
+    strip = armature.animation_data.nla_tracks[-1].strips[0]
+    assert (strip.blend_type, strip.action != result) == ("COMBINE", True)
+    shown = sample(armature, WHOLE)
+    with showing_action(armature, result):
+        alone = sample(armature, WHOLE)
+    np.testing.assert_allclose(shown.matrices, alone.matrices, atol=5e-5)
+    assert not same(sample(armature, FRAMES), before)
+    armature.animation_data.nla_tracks[-1].mute = True
+    assert same(sample(armature, FRAMES), before)  # to the bit
+    assert keys_digest(take) == keys
+
+
+def test_the_take_below_a_difference_is_edited_and_the_result_follows(
+    armature: bpy.types.Object,
+) -> None:
+    take = current_action(armature)
+    result = lifted(armature, 0.1, COMBINED)
+    was = sample(armature, WHOLE).matrices
+    location = fcurves.holder_in(take, fcurves.slot_identifier(armature)).fcurves.find(
+        armature.pose.bones["hips"].path_from_id("location"), index=1
+    )
+    fcurves.scale_keys(location, 1.0, 1.5)
+    take.update_tag()
+    now = sample(armature, WHOLE).matrices
+    assert np.abs(now - was).max() > 0.01
+    look_again(armature)
+    assert result.hangtime.stale
+    with showing_action(armature, result):
+        kept = sample(armature, WHOLE).matrices
+    assert np.abs(kept - now).max() > 0.01
+    bake_shown(armature, result)
+    with showing_action(armature, result):
+        np.testing.assert_allclose(sample(armature, WHOLE).matrices, now, atol=5e-5)
+
+
+def test_a_difference_goes_with_its_result(armature: bpy.types.Object) -> None:
+    take = current_action(armature)
+    first = lifted(armature, 0.1, COMBINED)
+    second = lifted(armature, 0.2, COMBINED)
+    assert [track.mute for track in armature.animation_data.nla_tracks] == [False, True, False]
+    show(armature, first)
+    assert [track.mute for track in armature.animation_data.nla_tracks] == [False, False, True]
+    bpy.context.scene.hangtime.armature = armature
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(armature) == take
+    assert {action.name for action in bpy.data.actions} == {
+        take.name,
+        second.name,
+        f"{second.name} difference",
+    }

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import ClassVar
+
 import numpy as np
 import pytest
 
@@ -27,6 +30,7 @@ from hangtime.bridge.takes.takes import (
     takes_of,
 )
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.operators.solve import adapt as adapt_operators
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
@@ -128,10 +132,24 @@ def test_results_that_are_out_of_date_say_so(armature: bpy.types.Object) -> None
     armature.hangtime.contacts[0].at = (0.0, 0.0, 0.1)
     look_again(armature)
     assert first.hangtime.stale == ""
+    for asked in (True, False):
+        armature.hangtime.keep_times = asked
+        look_again(armature)
+        assert first.hangtime.stale == (EDIT_CHANGED if asked else "")
     holder = fcurves.holder_in(recording, fcurves.slot_identifier(armature))
     holder.fcurves[0].keyframe_points[5].co.y += 0.1
     look_again(armature)
     assert first.hangtime.stale == TAKE_CHANGED
+
+
+def test_a_recipe_text_that_is_edited_makes_results_stale(armature: bpy.types.Object) -> None:
+    armature.hangtime.requests = text = bpy.data.texts.new("Requests")
+    first = adapt(armature, 10, 20, 0.1)
+    look_again(armature)
+    assert first.hangtime.stale == ""
+    text.write("[solution]\nkeep_times = true\n")
+    look_again(armature)
+    assert first.hangtime.stale == EDIT_CHANGED
 
 
 def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
@@ -146,6 +164,36 @@ def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
     assert first.hangtime.polished
 
 
+class Probe(adapt_operators.AdaptOperator, bpy.types.Operator):
+    """Adapt as a window calls it, which only tells how."""
+
+    bl_idname = "hangtime.probe"
+    bl_label = "Probe"
+    left: ClassVar[list[bool]] = []
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.left.append(self.leave_edits)
+        return {"FINISHED"} if self.leave_edits else self.invoke(context, None)
+
+
+def test_adapt_anyway_goes_on_to_adapt(
+    armature: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, asked = adapt(armature, 10, 20, 0.1), {}
+    fcurves.holder_in(first, fcurves.slot_identifier(armature)).fcurves[0].mute = True
+    ours = SimpleNamespace(leave_edits=lambda _how, **told: asked.update(told))
+    ops, app = SimpleNamespace(hangtime=ours), SimpleNamespace(background=False)
+    monkeypatch.setattr(adapt_operators, "bpy", SimpleNamespace(app=app, ops=ops))
+    bpy.utils.register_class(Probe)
+    try:
+        assert bpy.ops.hangtime.probe() == {"CANCELLED"}
+        assert f"Keys of {first.name} were edited by hand" in asked["text"]
+        assert bpy.ops.hangtime.leave_edits(**asked) == {"FINISHED"}
+        assert Probe.left == [False, True]
+    finally:
+        bpy.utils.unregister_class(Probe)
+
+
 def test_what_is_discarded_is_what_is_shown(armature: bpy.types.Object) -> None:
     recording = current_action(armature)
     first, second = adapt(armature, 10, 20, 0.1), adapt(armature, 10, 20, 0.2)
@@ -155,7 +203,20 @@ def test_what_is_discarded_is_what_is_shown(armature: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.discard() == {"FINISHED"}
     assert current_action(armature) == recording
     assert [take.action for take in takes_of(armature)] == [recording, second]
-    assert armature.hangtime.adapted == second
+    assert armature.hangtime.contacts[0].at[2] == pytest.approx(0.1)  # what was asked for stays
+    look_again(armature)
+    assert second.hangtime.stale == ""
+    assert bpy.ops.hangtime.show_take(action=second.name) == {"FINISHED"}
+    assert armature.hangtime.contacts[0].at[2] == pytest.approx(0.2)
+
+
+def test_a_result_without_its_recording_is_discarded(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    adapt(armature, 10, 20, 0.1)
+    bpy.data.actions.remove(recording)
+    assert bpy.ops.hangtime.discard() == {"FINISHED"}
+    assert current_action(armature) is None
+    assert len(bpy.data.actions) == 0
 
 
 def test_a_result_that_others_build_on_is_not_discarded(armature: bpy.types.Object) -> None:

@@ -176,6 +176,22 @@ def test_a_take_returns_by_a_frame() -> None:
     assert left[85:].max() == 0.0
 
 
+@pytest.mark.parametrize("ends", [False, True])
+def test_where_nothing_follows_nothing_is_carried_or_comes_back(ends: bool) -> None:
+    armature = take()
+    recording = read_recording(armature)
+    asked = motion(recording, MOVED, after=After.RETURN)
+    if not ends:
+        for curve in fcurves.curves_of(armature):
+            fcurves.crop(curve, 1.0, LAST)
+    _, written = write_result(armature, replace(asked, ends=ends), name="Result")
+    assert written is not None
+    assert (written.moved, written.back) == (None, None)
+    now = read_recording(armature)
+    assert now.frames[[0, -1]].tolist() == [1.0, LAST]
+    np.testing.assert_allclose(now.heads[-1, 0], asked.track.root_head[-1], atol=2e-6)
+
+
 def later(recording: Recording, **options: object) -> AdaptedMotion:
     """A motion of the frames that takes 3.4 frames more."""
     track = adapted(recording, LAST - FIRST + 4)
@@ -269,6 +285,27 @@ def test_no_blend_reaches_into_another_adaptation_of_the_take() -> None:
     after = keys_of(armature)
     for channel, keys in before.items():
         assert outside(after[channel], 37.0, 63.0) == outside(keys, 37.0, 63.0)
+
+
+@pytest.mark.parametrize("keyed", [(), (1,), (LENGTH,)])
+def test_without_blends_a_bone_that_is_hardly_keyed_stays_as_it_was(keyed: tuple[int, ...]) -> None:
+    armature = take()
+    curves = fcurves.holder(armature).fcurves
+    for curve in [c for c in curves if fcurves.bone_of(c.data_path) == "foot"]:
+        curves.remove(curve)
+    foot = armature.pose.bones["foot"]
+    foot.rotation_quaternion = (1.0, 0.0, 0.0, 0.0)
+    for frame in keyed:
+        foot.keyframe_insert("rotation_quaternion", frame=frame)
+    recording = read_recording(armature)
+    asked = motion(recording, blend_in=0.0, blend_out=0.0)
+    asked.track.rotations[:, -1] = TURN @ asked.track.rotations[:, -1]  # the foot's, by itself
+    write_result(armature, asked, name="Result")
+    now = read_recording(armature)
+    outer = (recording.frames < FIRST) | (recording.frames > LAST)
+    np.testing.assert_allclose(now.rotations[outer], recording.rotations[outer], atol=1e-6)
+    rows, bones = slice(FIRST - 1, LAST), [now.index(bone) for bone in rigs.MOVING]
+    np.testing.assert_allclose(now.rotations[rows][:, bones], asked.track.rotations, atol=5e-6)
 
 
 def spoilt_by_a_modifier(curve: bpy.types.FCurve) -> None:

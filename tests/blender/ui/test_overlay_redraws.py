@@ -36,7 +36,7 @@ from hangtime.ui.overlay.context.layer import Layer, Part
 from hangtime.ui.overlay.context.view_context import read_view
 from hangtime.ui.overlay.geometry.shapes import Label, Shape, Standing
 from hangtime.ui.overlay.layer_selection import layers
-from hangtime.ui.overlay.layers import limits, pins
+from hangtime.ui.overlay.layers import ghosts, limits, pins
 from hangtime.ui.overlay.picture_cache import PictureCache
 from mathutils import Matrix
 
@@ -168,6 +168,7 @@ class Counted:
 
 @pytest.fixture
 def constrained(armature: bpy.types.Object) -> bpy.types.Object:
+    bpy.context.scene.hangtime.view.all_limits = True
     constrain(armature, KINDS["CONE"], "thigh")
     constrain(armature, KINDS["ANGLE"], "shin")
     constrain(armature, KINDS["TWIST"], "head")
@@ -280,7 +281,19 @@ def test_a_chosen_limit_that_is_off_is_still_seen(armature: bpy.types.Object) ->
     assert [x.standing for x in limits.layer(seen(armature), FigureCache()).content[0]] == [
         Standing.OFF
     ]
+    bpy.context.scene.hangtime.view.all_limits = True
     armature.hangtime.active_constraint = -1
     assert not limits.layer(seen(armature), FigureCache()).content[0]
     row.used = True
     assert limits.layer(seen(armature), FigureCache()).content[0]
+
+
+def test_ghosts_stand_about_a_flight_and_fade_around_it() -> None:
+    frames, flight = np.arange(1.0, 2753.0), (1400.0, 1460.0)
+    shown = frames[ghosts.about(frames, flight, 120.0)]
+    assert len(shown) == 9
+    assert (shown[0], shown[-1]) == (1340.0, 1520.0)
+    clear = [ghosts.nearness(frame, flight, 120.0) for frame in (1430.0, 1470.0, 1520.0, 1800.0)]
+    assert clear[0] == 1.0
+    assert clear == sorted(clear, reverse=True)
+    assert clear[-1] == ghosts.FAINTEST

@@ -17,6 +17,7 @@ from hangtime.solver.analysis.grounding import (
 from hangtime.solver.analysis.performance import find_contacts
 from hangtime.solver.data.contacts import Contact, ContactSchedule
 from hangtime.solver.data.problem import ContactEdit, MotionProblem
+from hangtime.solver.numerics.rotations import unit
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import hop
 
@@ -152,6 +153,20 @@ def test_a_heel_goes_with_the_toe_whose_place_is_of_another_moment() -> None:
     assert sized[toe].place == pytest.approx(turned_away)
     moved = sized[heel].place - contacts[heel].place
     assert moved == pytest.approx([0.1, 0.0, 0.0], abs=0.01)
+
+
+def test_a_toe_that_goes_with_a_heel_takes_its_other_heel_along() -> None:
+    """Of a foot that is put down twice: the second time for longest, and elsewhere."""
+    heel, toe = (found().contacts[i] for i in heel_and_toe())
+    span = max(0.0, toe.start - 0.1), min(found().duration, toe.end + 0.1)
+    ahead = 0.1 * unit((toe.place - heel.place) * [1.0, 1.0, 0.0])
+    elsewhere = heel.place + ahead
+    second = replace(heel, name="Left heel 9", start=span[0], end=span[1], place=elsewhere)
+    turned = replace(found(), contacts=(heel, toe, second))
+    first, between, last = foot_sized(turned, hop().performance).contacts
+    assert last.place == pytest.approx(elsewhere)
+    assert between.place - toe.place == pytest.approx(ahead, abs=0.01)
+    assert first.place - heel.place == pytest.approx(ahead, abs=0.01)
 
 
 def test_places_of_a_foot_that_stands_still_stay() -> None:

@@ -305,6 +305,7 @@ def test_unknown_choices_are_refused() -> None:
     with pytest.raises(MissingPart) as caught:
         map_anatomy(bones, {"left foot": "foot.L"})
     assert caught.value.tried == ("foot.L",)
-    with pytest.raises(MissingPart) as caught:
-        map_anatomy(bones, {"left tail": "foot_l"})
-    assert caught.value.part == "left tail"
+    for label in ("left tail", "left head", "foot", "spine"):  # no part, of no side, or of several
+        with pytest.raises(MissingPart) as caught:
+            map_anatomy(bones, {label: "foot_l"})
+        assert caught.value.part == label

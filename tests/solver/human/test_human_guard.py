@@ -5,6 +5,7 @@ from functools import cache
 from math import radians
 
 import numpy as np
+import pytest
 from hangtime.operators.words.report_text import headline
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.reports.recording import Origin
@@ -110,6 +111,7 @@ def test_what_cannot_be_met_is_given_up_and_told_by_name() -> None:
     assert any(name in line and "°" in line for line in headline(told))
 
 
+@pytest.mark.slow
 def test_hard_ranges_are_not_given_up_and_the_conflict_is_told() -> None:
     problem = nodding(SolverOptions(human=HumanRanges.HARD))
     adaptation = adapt(fitted_hop(), problem)

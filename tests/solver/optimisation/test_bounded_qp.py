@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray, IntArray
 from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
+from hangtime.solver.optimisation import bounded_qp
 from hangtime.solver.optimisation.bounded_qp import BoundedStep, solve_dual_qp
 from hangtime.solver.transcription.rows import violation
 from hypothesis import example, given, settings
@@ -168,6 +169,20 @@ def test_a_step_within_its_bounds_is_left_alone() -> None:
     bounded = problem.step()
     assert not bounded.correct(problem.z, problem.times).any()
     assert not bounded.working.any()
+
+
+def test_a_program_without_an_answer_leaves_the_step_as_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """DAQP, at programs of thousands of rows, may end with multipliers that are no numbers."""
+    problem = Problem(3, 6, 5)
+    bounded = problem.step()
+    with monkeypatch.context() as lost:
+        lost.setattr(bounded_qp, "solve_dual_qp", lambda root, *_: np.full(len(root), np.nan))
+        assert not bounded.correct(problem.z, problem.times).any()
+        assert not bounded.working.any()
+    best = problem.reference()
+    assert settled(problem, bounded) == pytest.approx(best, abs=1e-4 * (1.0 + np.abs(best).max()))
 
 
 def test_rows_that_say_the_same_are_one() -> None:

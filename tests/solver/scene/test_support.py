@@ -74,14 +74,35 @@ def test_the_box_explains_what_carried_the_body() -> None:
     assert {contact.on for contact in landing} == {None}
 
 
-def test_only_still_ground_beneath_the_feet_explains_anything() -> None:
+def sinking(since: float) -> SceneObject:
+    """The box as a lift: half a second long, from that instant, s, on, it sinks by a metre."""
+    (box,), recording = boxes(), drop()
+    down = -np.clip((recording.times - since) / 0.5, 0.0, 1.0)
+    places = box.positions[0] + down[:, None] * np.array([0.0, 0.0, 1.0])
+    turns = np.tile(box.rotations[0], (len(down), 1, 1))
+    return replace(box, frames=recording.frames, positions=places, rotations=turns)
+
+
+def test_a_lift_that_waits_explains_what_carried_the_body() -> None:
+    (flight,) = (p for p in hop().schedule.phases if p.kind is PhaseKind.FLIGHT)
+    lift = sinking(flight.start + 0.1)
+    found = analyse(drop(), MotionProblem(scene=(lift,)))
+    first = found.schedule.of_phase(found.schedule.phases[0])
+    assert {contact.on for contact in first} == {lift.name}
+    still = analyse(drop(), MotionProblem(scene=boxes()))
+    for contact, same in zip(found.schedule.contacts, still.schedule.contacts, strict=True):
+        np.testing.assert_allclose(contact.place, same.place, atol=1e-6)
+
+
+def test_only_ground_at_rest_beneath_the_feet_explains_anything() -> None:
     for changed in (
         {"role": SceneRole.OBSTACLE},
         {"positions": np.array([[5.0, 0.0, 0.0]])},
-        {"frames": np.array([1.0, 2.0]), "positions": np.zeros((2, 3))},
     ):
         with pytest.raises(UnseenSupport):
             analyse(drop(), MotionProblem(scene=boxes(**changed)))
+    with pytest.raises(UnseenSupport):
+        analyse(drop(), MotionProblem(scene=(sinking(-0.1),)))
 
 
 def test_a_scene_changes_nothing_where_the_floor_explains_all() -> None:

@@ -80,6 +80,15 @@ def test_limbs_that_are_lifted_take_the_rest_of_the_leg_along() -> None:
     assert {"Left toe in Bar", "Left foot in Bar", "Left shank in Bar"} <= named
 
 
+def test_what_is_given_up_is_not_lifted_along() -> None:
+    of = in_the_way(BAR, 0.4)
+    found = world(of)
+    for given_up in ({"Left toe in Bar"}, {name for name in found.names if "shank" not in name}):
+        rows = found.rows(fitted_hop().motion, given_up)
+        assert rows is not None
+        assert not given_up & {found.names[i] for i in rows.items}
+
+
 def test_a_wall_that_is_touched_is_left_the_nearest_way() -> None:
     """Beside the hop, by 3 cm too near for the outermost limb."""
     wall = in_the_way(box((3.0, 0.1, 3.0)), 1.0)

@@ -10,9 +10,12 @@ from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import PhaseTiming, Requests
 from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.data.status import Durations
+from hangtime.solver.stages.anticipation import changed_jumps
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
+from hangtime.solver.stages.transcribe import initial_guess, transcribe
+from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP_CLIP
 
@@ -68,6 +71,7 @@ def arm_swing(adaptation: Adaptation) -> float:
     return float(between.max(axis=(0, 1)).mean())
 
 
+@pytest.mark.slow
 def test_a_longer_jump_flies_longer_and_a_shorter_one_shorter() -> None:
     """Near the square root of the distance, as where the take-off's angle stays."""
     was = recorded()[FLIGHT]
@@ -145,9 +149,20 @@ def test_contacts_phases_and_timeline_agree() -> None:
     assert len(found.track.frames) > len(whole_hop().performance.recording.frames)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("forward", "up"), [(1.8, 0.0), (0.0, 1.2)])
 def test_far_landings_have_durations_too(forward: float, up: float) -> None:
     setup = set_up(whole_hop(), to(forward, up=up))
     assert setup.durations is Durations.FOUND
     (flight,) = setup.schedule.flights
     assert flight.end - flight.start > 1.1 * recorded()[FLIGHT]
+
+
+def test_a_flight_that_the_range_begins_in_has_no_push_to_change() -> None:
+    analysis = analyse(load_recording("run_2.bvh"), MotionProblem(frames=(28, 123)))
+    transcription = transcribe(analysis.performance, analysis.schedule)
+    x = initial_guess(transcription, analysis.performance)
+    places = np.array([contact.place for contact in analysis.schedule.contacts])
+    start = Motion(transcription, x, places)
+    jumps = changed_jumps(start, analysis.schedule, places + np.array([0.1, 0.0, 0.0]), ())
+    assert all(jump.take_off > 0.0 for jump in jumps)

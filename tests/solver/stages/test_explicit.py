@@ -139,6 +139,7 @@ def test_torques_weighed_in_the_step_change_less() -> None:
     assert moved[1] < moved[0]
 
 
+@pytest.mark.slow
 def test_a_preferred_pose_is_approached_but_not_held() -> None:
     when = When(phase="flight 1", moment=Moment.APEX)
     frame = float(fitted_hop().performance.recording.frames[0])
@@ -157,6 +158,7 @@ def test_a_preferred_pose_is_approached_but_not_held() -> None:
     assert 0.01 < misses[1] < 0.9 * misses[0]
 
 
+@pytest.mark.slow
 def test_a_reduction_of_full_rank_gives_the_full_problems_result() -> None:
     n = fitted_hop().motion.transcription.character.n_angles
     for kind in (ReductionKind.PCA, ReductionKind.VARIMAX):

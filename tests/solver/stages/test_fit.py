@@ -133,7 +133,8 @@ def test_a_finer_basis_holds_the_same_motion() -> None:
     assert finer.forces(times) == pytest.approx(motion.forces(times), abs=1e-3 * weight)
 
 
-@pytest.mark.parametrize("degrees", [37.0, pytest.param(161.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("degrees", [37.0, 161.0])
 def test_where_the_recording_lies_changes_nothing_else(degrees: float) -> None:
     turn, shift = axis_rotation(2, np.radians(degrees)), np.array([30.0, -7.0, 0.0])
     seen = fit_of(moved(load_recording(HOP_CLIP), turn, shift), frames_of(HOP_CLIP, HOP))
@@ -143,6 +144,7 @@ def test_where_the_recording_lies_changes_nothing_else(degrees: float) -> None:
     assert off.max() < 0.01  # refinement's thresholds may fall on other spans
 
 
+@pytest.mark.slow
 def test_a_mirrored_recording_gives_the_mirrored_fit() -> None:
     seen = fit_of(mirrored(hop_recording()))
     assert seen.outcome.status is Status.SOLVED

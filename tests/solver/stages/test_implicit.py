@@ -134,6 +134,7 @@ def finite(adaptation: Adaptation) -> bool:
     return bool(np.isfinite(centres).all() and np.isfinite(adaptation.outcome.x).all())
 
 
+@pytest.mark.slow
 def test_feet_that_land_ten_metres_apart_end_soon_and_say_so() -> None:
     """No body can stand so."""
     steps: list[Step] = []

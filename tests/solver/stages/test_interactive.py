@@ -112,6 +112,7 @@ def test_a_far_jump_of_the_mouse_takes_some_updates() -> None:
     assert 1 < settled(follower, moved(0.9)) < 30
 
 
+@pytest.mark.slow
 def test_where_nobody_can_jump_the_motion_stays_where_it_last_could_follow() -> None:
     follower = Follower(fitted_hop(), moved(0.0))
     settled(follower, moved(0.1))

@@ -153,6 +153,7 @@ CASES = {
     ),
 }
 SLOW = {"twist", "share of a torque", "rest", "pyramid", "hold that ends", "limp", "pin and cone"}
+SLOW |= {"grip", "pose"}
 # The others are quick: each is also seen from outside, below.
 ALL = [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in CASES]
 
@@ -217,6 +218,7 @@ def test_the_hand_rises_by_what_was_asked() -> None:
     assert height(found, "LeftHand", apex(found)) == pytest.approx(before + 0.1, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_a_grip_holds_its_hand_still_and_may_pull() -> None:
     motion = adapted("grip").motion
     t = motion.transcription

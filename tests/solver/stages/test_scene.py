@@ -8,6 +8,7 @@ from hangtime.solver.data.faults import (
     Fault,
     InsideOut,
     NoFaces,
+    NoRoom,
     NotFinite,
     NotGround,
     NoThickness,
@@ -24,8 +25,10 @@ from hangtime.solver.data.scene import SceneObject, SceneRole
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.results.violations import condition_violations
 from hangtime.solver.scene.checks import check_scene
+from hangtime.solver.solid.solid_world import MOST_ROWS
 from hangtime.solver.stages.footing import check_sunk, find_footing
 from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.solver.stages.setup import set_up
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.meshes import box, thing
 
@@ -134,3 +137,45 @@ def test_a_floor_a_little_off_is_none_to_stand_in(height: float) -> None:
 
 def recorded_footing() -> Footing:
     return find_footing(fitted_hop(), MotionProblem(), fitted_hop().schedule)
+
+
+def ceiling(above: float) -> SceneObject:
+    """A slab over where the hop lands, that far above the floor."""
+    fit = fitted_hop()
+    landed = [c.start > 0.6 for c in fit.schedule.contacts]
+    x, y, z = fit.places[landed].mean(axis=0).tolist()
+    slab = box((1.2, 1.2, 0.1))
+    return thing("Ceiling", slab, (x, y, z + above + 0.05), role=SceneRole.OBSTACLE)
+
+
+def test_a_ceiling_under_which_no_leg_fits_is_told_before_the_solve() -> None:
+    with pytest.raises(NoRoom) as caught:
+        set_up(fitted_hop(), MotionProblem(scene=(ceiling(0.3),)))
+    assert caught.value.thing == "Ceiling"
+    assert caught.value.free == pytest.approx(0.3, abs=0.01)
+    assert caught.value.needed > 0.35
+    set_up(fitted_hop(), MotionProblem(scene=(ceiling(0.6),)))  # whoever crouches would do
+
+
+def test_a_body_that_is_all_in_something_gets_no_more_rows_than_a_step_can_bear() -> None:
+    setup = set_up(fitted_hop(), MotionProblem(scene=(ceiling(0.9),)))
+    assert setup.solid is not None
+    rows = setup.solid.rows(setup.start, frozenset())
+    assert rows is not None
+    assert len(rows.items) <= MOST_ROWS
+    found = {rows.names[item] for item in rows.items.tolist()}
+    assert "Pelvis in Ceiling" in found
+
+
+@pytest.mark.slow
+def test_a_ceiling_under_which_nobody_fits_is_told_after_one_attempt() -> None:
+    heard: list[str] = []
+    found = adapt(
+        fitted_hop(),
+        MotionProblem(
+            pins=(Pin("Landing", "ground 2", offset=(0.1, 0.0, 0.0)),), scene=(ceiling(0.9),)
+        ),
+        progress=lambda step, _: heard.append(step.stage),
+    )
+    assert any(row.name == "Pelvis in Ceiling" for row in condition_violations(found))
+    assert heard.count("adapt") < 12

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
-from hangtime.solver.data.faults import UnknownPhase
+from hangtime.solver.data.faults import StillBone, UnknownPhase
 from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.requests import Requests, Shape
+from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.stages.fit import Fit
 from hangtime.solver.worker.pipeline import ADAPTING, StageClock, Subject, adapt_fit, measure, solve
 from hangtime.tests.helpers.clips import load_recording
@@ -24,6 +26,15 @@ def unfitted(_: Subject, __: StageClock) -> Fit:
 def test_a_wrong_name_is_said_before_the_fit() -> None:
     with pytest.raises(UnknownPhase):
         solve(subject(Pin("nowhere", "ground 7")), StageClock(), unfitted)
+
+
+@pytest.mark.parametrize("solid", [True, False])
+def test_a_shape_of_a_bone_without_a_body_is_said_before_the_fit(solid: bool) -> None:
+    solution = SolverOptions(solid=solid)
+    requests = Requests(shapes=(Shape("Ring", ("LeftFingerBase",)),), solution=solution)
+    asked = subject().asked(MotionProblem(frames=FRAMES, requests=requests))
+    with pytest.raises(StillBone):
+        solve(asked, StageClock(), unfitted)
 
 
 def test_a_stated_stature_scales_the_solvers_lengths_alone() -> None:

@@ -8,6 +8,7 @@ from ....bridge.constraint_kinds import pose
 from ....bridge.properties.constraint import HangtimeConstraint
 from ....bridge.rows.times import Frames
 from ....solver.arrays import FloatArray, IntArray
+from ....solver.data.contacts import PhaseKind
 from ...drawing.sketch import Colour
 from ..context.figure_cache import FigureCache
 from ..context.layer import Layer, Part
@@ -21,23 +22,60 @@ ROW, RECORDED_ROW, LIVE_ROW = 0.34, 0.24, 0.18  # opacities
 NOW, LIVE_NOW = 0.5, 0.85
 POSE_PLUMP, RECORDED_PLUMP = 1.7, 0.5  # times as thick as bones
 ELSEWHEN = 0.6  # opacity of a pose at another frame than the shown one
+MANY = 9  # ghosts about a flight
+AROUND = 0.5  # s before and after it in which there are some
+FAINTEST = 0.3  # of a ghost's opacity
 MOST = 200  # ghosts of a motion at most
 TELLING = 0.2  # m, by which some joint must have moved since the ghost before
 
 
 def row(view: ViewContext, shown: ShownMotion, part: Part) -> Layer:
-    """A motion every few frames."""
-    step, size = view.options.ghost_step, view.size
-    colour = _row_colour(view, part)
+    """A motion at some frames."""
+    size, colour = view.size, _row_colour(view, part)
     plump = RECORDED_PLUMP if part is Part.RECORDED_GHOSTS else 1.0
-    content = shown.key, step, size, colour
+    frames = shown.traces.frames
+    core = _core(view, shown) if view.options.ghost_auto else None
+    step = view.options.ghost_step
+    content = shown.key, core or step, size, colour
 
     def build() -> Iterator[Shape]:
-        chosen = telling(shown.traces.heads, instants(shown.traces.frames, step), TELLING * size)
-        h, t = (a[chosen].reshape(-1, 3) for a in (shown.traces.heads, shown.traces.tails))
-        yield solids.bodies(h, t, colour, size=size, plump=plump)
+        at = about(frames, core, view.rate) if core is not None else instants(frames, step)
+        for instant in telling(shown.traces.heads, at, TELLING * size):
+            faint = faded(colour, colour[3] * nearness(float(frames[instant]), core, view.rate))
+            heads, tails = shown.traces.heads[instant], shown.traces.tails[instant]
+            yield solids.bodies(heads, tails, faint, size=size, plump=plump)
 
     return Layer(part, content, build, shown.matrix)
+
+
+def _core(view: ViewContext, shown: ShownMotion) -> Frames:
+    """The flight nearest to the frame that is shown; the whole clip where nothing flies.
+
+    A recording tells no flights: the phases of its contacts do.
+    """
+    flights = [(each.start, each.end) for each in shown.traces.flights] or [
+        span for name, span in view.phases.items() if name.startswith(PhaseKind.FLIGHT.value)
+    ]
+    if not flights:
+        return float(shown.traces.frames[0]), float(shown.traces.frames[-1])
+    frame = view.frame
+    return min(flights, key=lambda span: max(span[0] - frame, frame - span[1], 0.0))
+
+
+def about(frames: FloatArray, core: Frames, rate: float) -> IntArray:
+    """Indices of MANY instants, evenly from AROUND before the core to as much after it."""
+    first = max(core[0] - AROUND * rate, frames[0])
+    last = min(core[1] + AROUND * rate, frames[-1])
+    wished = np.linspace(first, last, MANY)
+    return np.asarray(np.unique(np.searchsorted(frames, wished - 1e-6).clip(max=len(frames) - 1)))
+
+
+def nearness(frame: float, core: Frames | None, rate: float) -> float:
+    """How much is seen of a ghost: all within the core, less the further it is outside."""
+    if core is None:
+        return 1.0
+    outside = max(core[0] - frame, frame - core[1], 0.0)
+    return max(1.0 - (1.0 - FAINTEST) * outside / (AROUND * rate), FAINTEST)
 
 
 def _row_colour(view: ViewContext, part: Part) -> Colour:

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from ....bridge.accessors import pose_of
 from ....bridge.properties.constraint import HangtimeConstraint
+from ....bridge.rows.choices import Met
+from ....operators.lists.row_lists import is_selected
 from ..context.figure_cache import FigureCache, parent_of
 from ..context.layer import Layer, Part, xyz
 from ..context.view_context import ViewContext, holds
@@ -18,7 +20,7 @@ from ..geometry.shapes import Label, Shape, Standing
 
 def layer(view: ViewContext, figures: FigureCache) -> Layer:
     """All limits, in the armature's space."""
-    rows = view.rows(CONE, ANGLE, TWIST)
+    rows = [each for each in view.rows(CONE, ANGLE, TWIST) if _matters(view, *each)]
     limits = tuple(limit for row, chosen in rows for limit in _limit(view, row, chosen))
     shown = view.recorded
     pose = _posed(view.armature).tobytes() if limits else b""
@@ -31,6 +33,14 @@ def layer(view: ViewContext, figures: FigureCache) -> Layer:
             )
 
     return Layer(Part.LIMITS, content, build, view.armature.matrix_world.copy().freeze())
+
+
+def _matters(view: ViewContext, row: HangtimeConstraint, chosen: bool) -> bool:
+    """Whether a limit is drawn: a preset has eighteen, which would cover the body."""
+    if view.options.all_limits or chosen or row.met == Met.MISSED.name:
+        return True
+    bone = view.bone(row)
+    return bone is not None and view.armature.mode == "POSE" and is_selected(bone)
 
 
 def chosen_limit(view: ViewContext) -> Limit | None:

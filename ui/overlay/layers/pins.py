@@ -9,7 +9,8 @@ from mathutils import Matrix, Vector
 from ....bridge.constraint_kinds import point
 from ....bridge.constraints.motion_problem import moved
 from ....bridge.properties.constraint import HangtimeConstraint
-from ....bridge.properties.settings import HangtimeContact
+from ....bridge.properties.contact import HangtimeContact
+from ....bridge.rows.phases import roles
 from ....bridge.rows.times import Frames
 from ....solver.data.requests import PointAxes
 from ..context.layer import IDENTITY, Layer, Part, xyz
@@ -45,6 +46,7 @@ def _standing_of(row: HangtimeContact, frame: float) -> Standing:
 
 def _labels(view: ViewContext) -> Iterator[Label]:
     """The distance by which each stance has been moved."""
+    called = roles(view.settings)
     for stance in view.settings.stances:
         shift = Vector(stance.shifted).length
         if shift <= SHIFTED:
@@ -52,7 +54,7 @@ def _labels(view: ViewContext) -> Iterator[Label]:
         places = [Vector(c.at) for c in view.settings.contacts if c.phase == stance.name and c.used]
         if places:
             middle = sum(places, Vector()) / len(places)
-            words = f"{stance.name}: {shift * view.metres:.2f} m"
+            words = f"{called.get(stance.name, stance.name)}: {shift * view.metres:.2f} m"
             middle.z += ABOVE * view.units
             yield Label(words, xyz(middle), palette.MOVE)
 

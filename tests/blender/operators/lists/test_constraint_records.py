@@ -68,7 +68,14 @@ def rig() -> bpy.types.Object:
         (
             KINDS["TORQUE"],
             ("foot", "shin"),
-            {"name": "Weak", "torque": 60.0, "use_dof": True, "dof": 1, "torque_value": 5.0},
+            {
+                "name": "Weak",
+                "torque_by": "NEWTON_METRES",
+                "torque": 60.0,
+                "use_dof": True,
+                "dof": 1,
+                "torque_value": 5.0,
+            },
             "torques",
             requests.TorqueLimit(
                 "Weak", ("foot", "shin"), bound=60.0, value=5.0, dof=1, when=FLIGHT

@@ -103,6 +103,7 @@ def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
     assert [load.share for load in problem.requests.body.added] == [0.1]
 
 
+@pytest.mark.slow
 def test_a_longer_jump_has_more_frames(analysed: bpy.types.Object) -> None:
     analysed.hangtime.stances["ground 2"].forward = 0.2
     recorded = analysed.animation_data.action
@@ -122,24 +123,25 @@ def test_times_are_kept_where_that_is_chosen(analysed: bpy.types.Object) -> None
     assert (solution.keep_times, solution.longest_span) == (True, 0.1)
 
 
-def test_limbs_keep_out_unless_switched_off(analysed: bpy.types.Object) -> None:
+@pytest.mark.parametrize(
+    ("setting", "option"),
+    [("keep_out", "solid"), ("human_ranges", "human")],
+    ids=["limbs", "joints"],
+)
+def test_the_body_is_solid_and_human_unless_switched_off(
+    analysed: bpy.types.Object, setting: str, option: str
+) -> None:
     recording = read_recorded(analysed, FIRST, LAST)
-    assert problem_of(analysed.hangtime, recording).requests.solution.solid
-    analysed.hangtime.keep_out = False
-    assert not problem_of(analysed.hangtime, recording).requests.solution.solid
-    analysed.hangtime.keep_out = True
-    ask_by_text(analysed, "[solution]\nsolid = false\n")
-    assert not problem_of(analysed.hangtime, recording).requests.solution.solid
 
+    def asked() -> object:
+        return getattr(problem_of(analysed.hangtime, recording).requests.solution, option)
 
-def test_joints_are_a_person_s_unless_switched_off(analysed: bpy.types.Object) -> None:
-    recording = read_recorded(analysed, FIRST, LAST)
-    assert problem_of(analysed.hangtime, recording).requests.solution.human
-    analysed.hangtime.human_ranges = False
-    assert not problem_of(analysed.hangtime, recording).requests.solution.human
-    analysed.hangtime.human_ranges = True
-    ask_by_text(analysed, "[solution]\nhuman = false\n")
-    assert not problem_of(analysed.hangtime, recording).requests.solution.human
+    assert asked()
+    setattr(analysed.hangtime, setting, False)
+    assert not asked()
+    setattr(analysed.hangtime, setting, True)
+    ask_by_text(analysed, f"[solution]\n{option} = false\n")
+    assert not asked()
 
 
 def test_ranges_are_hard_or_wider_where_asked(analysed: bpy.types.Object) -> None:

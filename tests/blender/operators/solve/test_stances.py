@@ -55,6 +55,7 @@ def test_a_stance_turns_about_its_middle(analysed: bpy.types.Object) -> None:
     assert all(tuple(row.place) == tuple(row.found_at) for row in rows)
 
 
+@pytest.mark.slow
 def test_an_empty_carries_its_stance(analysed: bpy.types.Object) -> None:
     settings = analysed.hangtime
     first, second = landing(settings)[:2]

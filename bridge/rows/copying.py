@@ -20,7 +20,8 @@ def copy_settings(
 
 
 def settings_digest(group: bpy.types.PropertyGroup, skip: Collection[str] = ()) -> str:
-    """A number for everything that is stored in a group; another where something differs."""
+    """A number for everything that is stored in a group, and what its texts say; another where
+    something differs."""
     return str(crc32(repr(_stored(group, skip)).encode()))
 
 
@@ -65,9 +66,13 @@ def _stored(group: Any, skip: Collection[str]) -> list[tuple[str, object]]:
             found.append((name, [_stored(row, skip) for row in value]))
         elif _is_group(group, what):
             found.append((name, _stored(value, skip)))
+        elif isinstance(value, bpy.types.Text):
+            found.append((name, value.as_string()))
         elif what.type == "POINTER":
             found.append((name, value.name if value is not None else None))
         elif group.is_property_set(name):
-            value = getattr(group, name)
-            found.append((name, tuple(value) if getattr(what, "is_array", False) else value))
+            many = getattr(what, "is_array", False)
+            value = tuple(getattr(group, name)) if many else getattr(group, name)
+            if value != (tuple(what.default_array) if many else what.default):
+                found.append((name, value))  # else it is as if nobody had touched it
     return found

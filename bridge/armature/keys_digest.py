@@ -7,7 +7,7 @@ from zlib import crc32
 import bpy
 import numpy as np
 
-from ..armature.fcurves import all_curves, table
+from .fcurves import all_curves, table
 
 _BEZIER = 2  # of Blender's enum
 _HANDLES = ("handle_left", "handle_right")

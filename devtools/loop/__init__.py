@@ -1,0 +1,1 @@
+"""Loops made of recorded runs, as Blender plays them."""

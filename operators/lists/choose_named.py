@@ -1,0 +1,47 @@
+"""From a failure to what it is about: the contact or constraint of that name, in its list."""
+
+import bpy
+
+from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ..names import OperatorId
+from ..operator_types import OperatorResult, PolledOperator
+from ..solve.common import chosen_armature, required_armature
+from ..solve.live import redraw
+
+NO_ARMATURE = "Select the armature that carries the recording"
+NOT_LISTED = "No contact and no constraint is called “{}” any more"
+
+
+def choose_named(settings: HangtimeSettings, name: str) -> bool:
+    """Choose the constraint, the contact or the stance of that name, which may be followed by that
+    of its point; whether there is one."""
+    name = name.partition(": ")[0]
+    constraint: int = settings.constraints.find(name)
+    contact: int = settings.contacts.find(name)
+    if contact < 0:
+        phases = [row.phase for row in settings.contacts]
+        contact = phases.index(name) if name in phases else -1
+    if constraint >= 0:
+        settings.active_constraint = constraint
+    elif contact >= 0:
+        settings.active_contact = contact
+    return constraint >= 0 or contact >= 0
+
+
+class ChooseNamedOperator(PolledOperator, bpy.types.Operator):
+    bl_idname = OperatorId.CHOOSE_NAMED
+    bl_label = "Choose"
+    bl_description = "Choose what this is about in its list"
+    bl_options = {"UNDO"}
+
+    name: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return NO_ARMATURE if chosen_armature(context) is None else None
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        if not choose_named(settings_of(required_armature(context)), self.name):
+            return self.refuse(NOT_LISTED.format(self.name), "WARNING")
+        redraw("VIEW_3D")
+        return {"FINISHED"}

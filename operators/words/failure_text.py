@@ -1,0 +1,65 @@
+"""Wording of a failure for the sidebar: a short line, the whole, and what is furthest off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from textwrap import shorten
+
+from ...solver.data.faults import Fault, NoFit, NoSolution
+from .messages import Translate, missed, sentence
+
+NO_MOTION = "No motion: {}"
+NO_FIT = "The recording itself cannot be held: {}"
+REACHED = "The best found goes {} % of the way."
+MOST_ROWS = 4
+MOST_LETTERS = 100  # of the short line
+
+
+@dataclass(frozen=True)
+class FailureRow:
+    """Something that is missed: the name by which the lists have it, and what is left."""
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why the last solve of an armature (its number in this session) failed.
+
+    short: one line for the status bar. text: the whole of it, or what it says beside that line and
+    the rows where there are rows, worst first. of: the operator that failed. fault: what happened.
+    """
+
+    uid: int
+    of: str
+    fault: Fault
+    short: str
+    text: str
+    rows: tuple[FailureRow, ...] = ()
+
+    @property
+    def head(self) -> str:
+        """The short line without what the rows say."""
+        return self.short.partition(":")[0] if self.rows else self.short
+
+
+def failure_of(fault: Fault, uid: int, of: str, translate: Translate = str) -> Failure:
+    """A fault in the sidebar's words."""
+    told = sentence(fault, translate)
+    if not isinstance(fault, NoSolution) or not fault.worst:
+        first = told.partition("; ")[0].rstrip(".")
+        return Failure(uid, of, fault, shorten(first, MOST_LETTERS, placeholder=" …"), told)
+    worst = [replace(each, name=_called(each.name)) for each in fault.worst[:MOST_ROWS]]
+    rows = tuple(FailureRow(each.name, missed(each, translate)) for each in worst)
+    head = translate(NO_FIT if isinstance(fault, NoFit) else NO_MOTION).format(rows[0].text)
+    advice = sentence(replace(fault, worst=()), translate)
+    if fault.reached > 0.0:
+        advice = f"{advice} {translate(REACHED).format(round(100.0 * fault.reached))}"
+    return Failure(uid, of, fault, head, advice, rows)
+
+
+def _called(name: str) -> str:
+    """A violation's name as the lists have it: "Left toe 2: Left toe 2" is a pin and its point."""
+    pin, _, point = name.partition(": ")
+    return pin if pin == point else name

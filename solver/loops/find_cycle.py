@@ -1,0 +1,129 @@
+"""Which frames of a take are one cycle: those near the artist's, a period of the contacts apart.
+
+The period is the median of the times after which heels and toes come down, and leave, again. Where
+the cycle begins is the artist's choice; it moves only as far as it must for the same points to
+stand at both ends, and clearly so.
+"""
+
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from ..analysis.analyse import build_figure
+from ..analysis.grounding import parted
+from ..analysis.performance import Performance, find_contacts, perform
+from ..analysis.take import take_of
+from ..arrays import FloatArray
+from ..data.contacts import ContactSchedule
+from ..data.faults import CycleClimbs, CycleTurns, EndsTouchOtherwise, NothingRecurs, NotInLoop
+from ..data.loop import Cycle
+from ..data.problem import MotionProblem
+from ..data.recording import Recording
+
+NEAR_PERIOD = 0.3  # of the asked duration, by which the period may differ from it
+NEAR_START = 0.5  # of the period, by which the start may move
+MARGIN = 0.02  # s, between the seam and the next landing or lift-off: spans need as much
+MAX_TURN = np.radians(20.0)
+MAX_CLIMB = 0.1  # m; floors are level, and captured runs bob by half of it from step to step
+
+
+def find_cycle(recording: Recording, problem: MotionProblem) -> Cycle:
+    """The cycle nearest to the problem's frames; these themselves where they are one.
+
+    Raises NothingRecurs, EndsTouchOtherwise, CycleTurns, CycleClimbs, ClipTooShort, MissingPart,
+    ZeroLengthBone.
+    """
+    within, character = build_figure(recording, problem)
+    take = take_of(recording, within)
+    take = replace(take, times=take.times - take.times[0])
+    performance = perform(take, character)
+    seams = _Seams(parted(find_contacts(performance, problem.scene)), take.rate)
+    asked = float(within.frames[0]), float(within.frames[-1])
+    first, count = _nearest(seams, take.frames, asked)
+    _require_level(performance, first, first + count)
+    frames = float(take.frames[first]), float(take.frames[first + count])
+    return Cycle(frames, asked)
+
+
+def check_loop(problem: MotionProblem) -> None:
+    """What a loop cannot have: other times, or another figure. Raises NotInLoop."""
+    requests = problem.requests
+    if not problem.loop:
+        return
+    for what, asked in (
+        ("a timing", requests.timings),
+        ("a hold", requests.holds),
+        ("limbs of other lengths", requests.body.limbs),
+    ):
+        if asked:
+            raise NotInLoop(what)
+
+
+@dataclass(frozen=True)
+class _Seams:
+    """Where a take of `schedule`, with `rate` frames a second, may be cut. Frames count from its
+    first."""
+
+    schedule: ContactSchedule
+    rate: float
+
+    def touching(self, frame: int) -> tuple[str, ...]:
+        """Points on the ground."""
+        t = frame / self.rate
+        return tuple(sorted(c.point for c in self.schedule.contacts if c.start <= t < c.end))
+
+    def clear(self, frame: int) -> bool:
+        """Whether nothing lands or leaves beside it."""
+        apart = np.abs(np.array(self.schedule.boundaries[1:-1]) - frame / self.rate)
+        return bool((apart > MARGIN).all())
+
+    def meet(self, first: int, last: int) -> bool:
+        """Whether a cycle may begin and end there."""
+        same = self.touching(first) == self.touching(last)
+        return same and self.clear(first) and self.clear(last)
+
+    def period(self, start: int, end: int) -> float | None:
+        """The median of the times, s, after which points land or leave again that are about those
+        of a cycle between two frames; None without any."""
+        about = (end - start) / self.rate
+        around = (start / self.rate - NEAR_START * about, end / self.rate + NEAR_START * about)
+        events: defaultdict[tuple[str, bool], list[float]] = defaultdict(list)
+        for contact in self.schedule.contacts:
+            if max(0.0, around[0]) < contact.start < around[1]:
+                events[contact.point, True].append(contact.start)
+            if around[0] < contact.end < min(self.schedule.duration, around[1]):
+                events[contact.point, False].append(contact.end)
+        apart = [b - a for each in events.values() for a, b in combinations(sorted(each), 2)]
+        near = [each for each in apart if abs(each - about) <= NEAR_PERIOD * about]
+        return float(np.median(near)) if near else None
+
+
+def _nearest(seams: _Seams, frames: FloatArray, asked: tuple[float, float]) -> tuple[int, int]:
+    """Index of the cycle's first frame in the take's, and its number of frames."""
+    start, end = (int(np.abs(frames - frame).argmin()) for frame in asked)
+    period = seams.period(start, end)
+    if period is None:
+        raise NothingRecurs(*asked)
+    whole = round(period * seams.rate)
+    # What is a cycle already stays one: detection is no better than a frame.
+    counts = [end - start] if abs(end - start - period * seams.rate) <= 1.0 else []
+    for count in dict.fromkeys([*counts, whole]):
+        reach = range(max(0, start - round(NEAR_START * count)), len(frames) - count)
+        found = [f for f in reach if f <= start + NEAR_START * count and seams.meet(f, f + count)]
+        if found:
+            return min(found, key=lambda f: abs(f - start)), count
+    at_ends = (seams.touching(f) for f in (start, min(start + whole, len(frames) - 1)))
+    raise EndsTouchOtherwise(*asked, whole, *at_ends)
+
+
+def _require_level(performance: Performance, first: int, last: int) -> None:
+    """Raises CycleTurns, CycleClimbs."""
+    turn = performance.rotations[last, 0] @ performance.rotations[first, 0].T
+    angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+    if abs(angle) > MAX_TURN:
+        raise CycleTurns(float(np.degrees(angle)))
+    climb = float(performance.com[last, 2] - performance.com[first, 2])
+    if abs(climb) > MAX_CLIMB:
+        raise CycleClimbs(climb)

@@ -1,0 +1,130 @@
+"""A cycle as an action: played over and over, in place, and on a root bone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.read import record
+from hangtime.bridge.loops.write_loop import Loop, write_loop
+from hangtime.bridge.rows.choices import LoopRoot
+from hangtime.solver.data.faults import NoRootBone
+from hangtime.solver.data.recording import PoseTrack
+from hangtime.tests.blender.helpers import rigs
+
+FRAMES = np.arange(3.0, 24.0)
+TRAVEL = np.array([0.4, 2.0, 0.0])
+CLOSE = 2e-5  # m and rad; single precision
+
+
+def cycle(armature: bpy.types.Object) -> PoseTrack:
+    """Every bone swings once, and the pelvis sways as it goes."""
+    phase = np.linspace(0.0, 1.0, len(FRAMES))
+    about = 2.0 * np.pi * phase
+    rest = record(armature, FRAMES[:1])
+    turned = []
+    for i, bone in enumerate(rigs.MOVING):
+        amplitudes = np.array([[0.3, 0.1 * i, -0.2], [0.1, 0.3, 0.05 * i]])
+        swings = np.sin(about)[:, None] * amplitudes[0] + np.cos(about)[:, None] * amplitudes[1]
+        turns = np.array([rigs.turn_by(swing) for swing in swings])
+        turned.append(turns @ rest.rotations[0, rest.index(bone)])
+    sway = 0.05 * np.stack([np.sin(about), np.cos(about), np.cos(2.0 * about)], axis=1)
+    head = np.array([0.5, 0.2, 1.1]) + phase[:, None] * TRAVEL + sway
+    return PoseTrack(FRAMES, rigs.MOVING, np.stack(turned, axis=1), head)
+
+
+def looped(armature: bpy.types.Object, root: LoopRoot) -> PoseTrack:
+    track = cycle(armature)
+    take, slot = current_action(armature), fcurves.slot_identifier(armature)
+    action = complete(write_loop(armature, Loop.of(armature, track, root), take, slot, name="Loop"))
+    fcurves.assign(armature, action, slot)
+    assert action.use_cyclic
+    assert tuple(action.frame_range) == (FRAMES[0], FRAMES[-1])
+    return track
+
+
+def made(mode: str = "QUATERNION", *, root: bool = True) -> bpy.types.Object:
+    """A rig whose recording moves all of it, its root and its object too."""
+    rigs.reset()
+    armature = rigs.make_armature(rigs.with_root() if root else rigs.BODY)
+    rigs.animate(armature, mode, frames=range(1, 40))
+    armature.location = (0.2, 0.0, 0.1)
+    armature.keyframe_insert("location", frame=1)
+    armature.location = (0.5, 0.3, 0.1)
+    armature.keyframe_insert("location", frame=30)
+    return armature
+
+
+def shown(armature: bpy.types.Object, track: PoseTrack, frames: np.ndarray) -> np.ndarray:
+    """(T, bones, 3) m, heads of the bones that move."""
+    seen = record(armature, frames)
+    return seen.heads[:, [seen.index(bone) for bone in track.bones]]
+
+
+@pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "AXIS_ANGLE"])
+def test_every_repetition_goes_on_from_the_last(mode: str) -> None:
+    armature = made(mode)
+    track = looped(armature, LoopRoot.HIPS)
+    seen = record(armature, FRAMES)
+    bones = [seen.index(bone) for bone in track.bones]
+    np.testing.assert_allclose(seen.heads[:, bones[0]], track.root_head, atol=CLOSE)
+    np.testing.assert_allclose(seen.rotations[:, bones], track.rotations, atol=CLOSE)
+    between = np.arange(FRAMES[0], FRAMES[-1], 0.25)
+    once = shown(armature, track, between)
+    for times in (1.0, 2.0, -1.0):
+        again = shown(armature, track, between + times * (len(FRAMES) - 1))
+        np.testing.assert_allclose(again, once + times * TRAVEL, atol=2.0 * CLOSE)
+
+
+def test_speed_goes_on_across_the_seam() -> None:
+    armature = made()
+    track = looped(armature, LoopRoot.HIPS)
+    step = 0.05
+    at = shown(armature, track, FRAMES[-1] + step * np.arange(-2.0, 3.0))
+    before = (3.0 * at[2] - 4.0 * at[1] + at[0]) / (2.0 * step)
+    after = (-3.0 * at[2] + 4.0 * at[3] - at[4]) / (2.0 * step)
+    np.testing.assert_allclose(after, before, atol=1e-4)  # m a frame, of 0.1
+
+
+def test_in_place_leaves_the_steady_travel_out() -> None:
+    armature = made()
+    track = looped(armature, LoopRoot.IN_PLACE)
+    steady = np.linspace(0.0, 1.0, len(FRAMES))[:, None] * TRAVEL
+    first = shown(armature, track, FRAMES)
+    np.testing.assert_allclose(first[:, 0], track.root_head - steady, atol=CLOSE)
+    again = shown(armature, track, FRAMES + len(FRAMES) - 1)
+    np.testing.assert_allclose(again, first, atol=CLOSE)
+
+
+def test_root_bone_carries_the_travel_at_a_steady_speed() -> None:
+    armature = made()
+    track = looped(armature, LoopRoot.ROOT_BONE)
+    np.testing.assert_allclose(shown(armature, track, FRAMES)[:, 0], track.root_head, atol=CLOSE)
+    frames = np.arange(FRAMES[0], FRAMES[-1] + 30.0)
+    seen = record(armature, frames)
+    root = seen.heads[:, seen.index("root")]
+    speed = TRAVEL / (len(FRAMES) - 1)
+    np.testing.assert_allclose(
+        np.diff(root, axis=0), np.tile(speed, (len(frames) - 1, 1)), atol=CLOSE
+    )
+
+
+def test_a_rig_without_a_root_bone_is_refused() -> None:
+    armature = made(root=False)
+    with pytest.raises(NoRootBone):
+        Loop.of(armature, cycle(armature), LoopRoot.ROOT_BONE)
+
+
+def test_recording_stays_as_it_was() -> None:
+    armature = made()
+    take = current_action(armature)
+    before = record(armature, FRAMES)
+    looped(armature, LoopRoot.ROOT_BONE)
+    fcurves.assign(armature, take, fcurves.slot_identifier(armature))
+    after = record(armature, FRAMES)
+    assert after.heads.tobytes() == before.heads.tobytes()

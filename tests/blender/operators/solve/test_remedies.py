@@ -1,0 +1,90 @@
+"""What the sidebar offers where a recording falls, or is tall, as nobody is; what it is about."""
+
+from __future__ import annotations
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature import fcurves
+from hangtime.bridge.properties.stances import active_stance
+from hangtime.bridge.rows.phases import roles
+from hangtime.operators.solve.common import chosen_armature
+from hangtime.operators.words.failure_text import failure_of
+from hangtime.solver.data.faults import NoSolution, UnseenSupport
+from hangtime.solver.data.row_kinds import RowKind, Violation
+from hangtime.solver.data.status import Status
+from hangtime.tests.blender.helpers import rigs
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def test_a_wrong_frame_rate_is_told_and_mended(jump: bpy.types.Object) -> None:
+    scene = bpy.context.scene
+    scene.render.fps, scene.render.fps_base = 24, 1.0
+    with pytest.raises(RuntimeError, match="at 120 frames a second, but the scene has 24"):
+        bpy.ops.hangtime.analyze()
+    assert bpy.ops.hangtime.set_frame_rate(rate=120) == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert active_stance(jump.hangtime).name == "ground 2"  # the landing is chosen
+
+
+def test_stances_are_called_by_their_roles(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    assert roles(settings) == {"ground 1": "Take-Off", "ground 2": "Landing"}
+    settings.active_stance = 0
+    assert settings.contacts[settings.active_contact].phase == "ground 1"
+    assert settings.active_stance == 0
+
+
+def test_a_keyed_scale_is_scaled_with_its_object(jump: bpy.types.Object) -> None:
+    jump.scale = (0.01, 0.01, 0.01)
+    jump.keyframe_insert("scale", frame=1)
+    jump.keyframe_insert("scale", frame=300)
+    with pytest.raises(RuntimeError, match="m tall"):
+        bpy.ops.hangtime.analyze()
+    assert bpy.ops.hangtime.scale_to_human(factor=100.0) == {"FINISHED"}
+    bpy.context.scene.frame_set(200)
+    assert tuple(jump.scale) == pytest.approx((1.0, 1.0, 1.0))
+    holder = fcurves.holder_in(jump.animation_data.action, fcurves.slot_identifier(jump))
+    assert holder.fcurves.find("scale", index=2).evaluate(150) == pytest.approx(1.0)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+
+
+def test_the_sidebar_is_about_the_active_armature_unless_pinned() -> None:
+    rigs.reset()
+    first, second = rigs.make_armature(), rigs.make_armature()
+    layer, own = bpy.context.view_layer, bpy.context.scene.hangtime
+    layer.objects.active = first
+    own.pinned = True
+    layer.objects.active = second
+    assert chosen_armature(bpy.context) == first
+    own.pinned = False
+    assert chosen_armature(bpy.context) == second
+    empty = bpy.data.objects.new("Aim", None)
+    bpy.context.collection.objects.link(empty)
+    layer.objects.active = empty
+    assert chosen_armature(bpy.context) == first  # worked on last
+
+
+def test_a_failure_is_a_short_line_with_what_is_furthest_off_first() -> None:
+    worst = (
+        Violation("Right Hand: Right Hand", RowKind.POINT, 420.0),
+        Violation("Knee", RowKind.BEND, 3.0),
+    )
+    failure = failure_of(NoSolution(Status.STALLED, worst, 0.8), 1, "hangtime.adapt")
+    assert failure.short == "No motion: “Right Hand” stays 42.0 cm from its place"
+    assert [row.name for row in failure.rows] == ["Right Hand", "Knee"]
+    assert failure.text.endswith("The best found goes 80 % of the way.")
+    told = failure_of(UnseenSupport(1.0, 9.0), 1, "hangtime.analyze")
+    assert len(told.short) <= 100
+    assert not told.rows
+
+
+def test_a_row_of_a_failure_leads_to_its_list(analysed: bpy.types.Object) -> None:
+    settings = analysed.hangtime
+    assert bpy.ops.hangtime.choose_named(name="Left heel 1") == {"FINISHED"}
+    assert settings.contacts[settings.active_contact].name == "Left heel 1"
+    assert bpy.ops.hangtime.choose_named(name="ground 2") == {"FINISHED"}
+    assert active_stance(settings).name == "ground 2"
+    assert bpy.ops.hangtime.choose_named(name="Nobody") == {"CANCELLED"}
