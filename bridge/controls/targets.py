@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.skeleton.tree import tree_of
 from ..accessors import current_scene
@@ -21,7 +21,7 @@ from ..armature.read import rest_bones
 class Targets:
     """Poses of bodies (B) at T frames, in the armature's space and units.
 
-    unit: (T,) m in a unit of the armature.
+    unit: (T,) m in a unit of the armature. upper: (B,) what is above the pelvis, and the arms.
     """
 
     frames: FloatArray
@@ -29,6 +29,7 @@ class Targets:
     rotations: FloatArray
     heads: FloatArray
     unit: FloatArray
+    upper: BoolArray
 
 
 def targets_of(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> Targets:
@@ -37,7 +38,8 @@ def targets_of(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> Ta
     world = poses.object_to_world
     columns = [poses.bones.index(bone) for bone in track.bones]
     recorded = world[:, None] @ poses.matrices[:, columns]
-    heads = _heads(armature, poses, track, proper(recorded[..., :3, :3]), recorded[..., :3, 3])
+    parents = parents_of(armature, poses, track.bones)
+    heads = _heads(parents, track, proper(recorded[..., :3, :3]), recorded[..., :3, 3])
     linear = world[:, :3, :3]
     apart = heads - world[:, None, :3, 3]
     return Targets(
@@ -46,12 +48,22 @@ def targets_of(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> Ta
         np.swapaxes(proper(linear), 1, 2)[:, None] @ track.rotations,
         np.einsum("tij,tbj->tbi", np.linalg.inv(linear), apart),
         metres * np.cbrt(np.abs(np.linalg.det(linear))),
+        _upper(parents),
     )
 
 
+def _upper(parents: list[int]) -> BoolArray:
+    """(B,) whether bodies are above the pelvis, the first: on the branch with most bodies."""
+    branch = np.arange(len(parents))  # parents first
+    for b, parent in enumerate(parents):
+        if parent > 0:
+            branch[b] = branch[parent]
+    counts = np.bincount(branch[1:], minlength=1)
+    return np.asarray(branch == counts.argmax()) & (branch > 0)
+
+
 def _heads(
-    armature: bpy.types.Object,
-    poses: Poses,
+    parents: list[int],
     track: PoseTrack,
     turned: FloatArray,
     placed: FloatArray,
@@ -59,7 +71,7 @@ def _heads(
     """(T, B, 3) heads, world, Blender units; each where it mostly is on the body above."""
     heads = np.empty_like(placed)
     heads[:, 0] = track.root_head / metres_per_unit(current_scene())
-    for b, parent in enumerate(_parents(armature, poses, track.bones)):
+    for b, parent in enumerate(parents):
         if parent >= 0:
             apart = placed[:, b] - placed[:, parent]
             offset = np.median(np.einsum("tji,tj->ti", turned[:, parent], apart), axis=0)
@@ -67,7 +79,7 @@ def _heads(
     return heads
 
 
-def _parents(armature: bpy.types.Object, poses: Poses, bodies: Sequence[str]) -> list[int]:
+def parents_of(armature: bpy.types.Object, poses: Poses, bodies: Sequence[str]) -> list[int]:
     """Index of the body above each, -1 for the first."""
     tree = tree_of(rest_bones(armature, poses))
     names = [bone.name for bone in tree.bones]
