@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray
+from ...solver.data.faults import NoControls
 from ...solver.data.recording import PoseTrack
 from ..accessors import current_scene
 from ..armature.channels import proper
@@ -29,7 +30,10 @@ LOOKS = 3  # frames at which the controls are sought: a switch may be thrown in 
 
 @dataclass(frozen=True)
 class ControlRig:
-    """The controls that pose bodies. used: what of each; carriers: those that no other moves."""
+    """The controls that pose bodies. used: what of each; carriers: those that no other moves.
+
+    turns: (D, B, 3) of the bodies by each degree of freedom where they were tried.
+    """
 
     armature: bpy.types.Object
     controls: tuple[str, ...]
@@ -37,6 +41,7 @@ class ControlRig:
     responses: Responses
     used: dict[str, set[Freedom]]
     carriers: tuple[str, ...]
+    turns: FloatArray
 
     @property
     def posing(self) -> Posing:
@@ -61,7 +66,10 @@ def found_controls(
     frames: FloatArray,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
 ) -> Incremental[ControlRig]:
-    """The controls of bodies, the first of which is the pelvis, at frames (T,)."""
+    """The controls of bodies, the first of which is the pelvis, at frames (T,).
+
+    Raises NoControls.
+    """
     at = frames[np.linspace(0, len(frames) - 1, LOOKS).round().astype(int)]
     names = candidates(armature, bodies)
     felt: set[str] = set()
@@ -69,6 +77,8 @@ def found_controls(
     for part in found:
         felt.update(part)
     names = [name for name in names if name in felt]
+    if not names:
+        raise NoControls(bodies)
     with showing():
         used = _used(armature, names, bodies, float(at[len(at) // 2]))
     yield
@@ -114,17 +124,19 @@ def _measured(
     posing = Posing(armature, controls, bodies)
     with posing.kept():
         posing.go_to(frame)
-        responses = all_responses(posing, posing.bases())
+        bases = posing.bases()
+        responses, posed = all_responses(posing, bases), posing.look()
     chosen = [
         d
         for d, dof in enumerate(responses.dofs)
         if (controls[dof.control], dof.freedom, dof.axis) in used
     ]
     responses = responses.part(chosen)
+    turns, _ = responses.columns(posed, bases)
     free = [name for c, name in enumerate(controls) if not responses.moved[:, c].any()]
     parts = by_control(responses.dofs, controls)
     carriers = tuple(name for name in free if Freedom.SHIFT in parts[name])
-    return ControlRig(armature, controls, bodies, responses, parts, carriers)
+    return ControlRig(armature, controls, bodies, responses, parts, carriers, turns)
 
 
 def control_poses(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import bpy
 
@@ -16,27 +16,52 @@ _CHAINS = (bpy.types.KinematicConstraint, bpy.types.SplineIKConstraint)
 
 
 def is_driven(armature: bpy.types.Object, bones: Iterable[str]) -> bool:
-    """Whether something else than their own keys and their parents' moves some of these bones."""
+    """Whether constraints, and no keys of their own, pose some of these bones."""
+    return bool(driven_of(armature, bones))
+
+
+def driven_of(armature: bpy.types.Object, bones: Iterable[str]) -> list[str]:
+    """Those of these bones that constraints pose, and no keys of their own."""
     moved = constrained(armature)
-    rest = armature_data(armature).bones
-    return any(
-        each.name in moved for name in bones for each in (rest[name], *rest[name].parent_recursive)
-    )
+    keyed = {fcurves.bone_of(curve.data_path) for curve in fcurves.curves_of(armature)}
+    return [name for name in bones if name in moved and name not in keyed]
 
 
 def constrained(armature: bpy.types.Object) -> set[str]:
-    """Bones with constraints, and those of inverse kinematics' chains."""
-    found = set()
+    """Bones with constraints that may act, and those of inverse kinematics' chains."""
+    switched = _animated(armature)
+    found: set[str] = set()
+    for bone, constraint in constraints_of(armature):
+        if constraint.influence > 0.0 or constraint.path_from_id("influence") in switched:
+            found.update((bone.name, *chain_of(bone, constraint)))
+    return found
+
+
+def constraints_of(
+    armature: bpy.types.Object,
+) -> Iterator[tuple[bpy.types.PoseBone, bpy.types.Constraint]]:
+    """The constraints that move bones wherever they have influence, with their bones."""
     for bone in pose_of(armature).bones:
         for constraint in bone.constraints:
-            if constraint.mute or constraint.type.startswith(_PASSIVE):
-                continue
-            found.add(bone.name)
-            if isinstance(constraint, _CHAINS):
-                chain = [bone, *bone.parent_recursive]
-                count = constraint.chain_count or len(chain)
-                found.update(each.name for each in chain[:count])
-    return found
+            passive = constraint.mute or constraint.type.startswith(_PASSIVE)
+            if not passive and constraint.is_valid:
+                yield bone, constraint
+
+
+def chain_of(bone: bpy.types.PoseBone, constraint: bpy.types.Constraint) -> list[str]:
+    """The bones that a constraint of inverse kinematics moves; none of another constraint."""
+    if not isinstance(constraint, _CHAINS) or constraint.target is None:
+        return []
+    chain = [bone, *bone.parent_recursive]
+    count = constraint.chain_count or len(chain)
+    return [each.name for each in chain[:count]]
+
+
+def _animated(armature: bpy.types.Object) -> set[str]:
+    """Paths of what curves or drivers change."""
+    data = armature.animation_data
+    drivers = [] if data is None else list(data.drivers)
+    return {curve.data_path for curve in (*drivers, *fcurves.curves_of(armature))}
 
 
 def candidates(armature: bpy.types.Object, bodies: Iterable[str]) -> list[str]:

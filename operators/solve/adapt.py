@@ -9,11 +9,13 @@ from ...bridge.accessors import present
 from ...bridge.armature.actions import (
     read_recorded_incrementally,
     recorded_action,
+    showing_recorded,
 )
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
+from ...bridge.constraints.bone_mapping import chosen_parts
 from ...bridge.constraints.motion_problem import (
     analysis_key,
     problem_of,
@@ -21,6 +23,7 @@ from ...bridge.constraints.motion_problem import (
     wanted_range,
 )
 from ...bridge.constraints.status import write_status
+from ...bridge.controls.refusals import require_posable
 from ...bridge.loops.write_loop import (
     Loop,
     root_bone,
@@ -37,8 +40,9 @@ from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.takes import adapted_spans, note_made, polished_result
 from ...bridge.takes.write_result import combine, write_adapted_incrementally
 from ...bridge.worker_client import shared
+from ...solver.body.anatomy import map_anatomy
 from ...solver.body.proportions import changed_recording
-from ...solver.data.faults import ChangedMeanwhile, Fault
+from ...solver.data.faults import ChangedMeanwhile, Fault, NotInLoop
 from ...solver.data.recording import BEYOND, Recording, same_motion
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
@@ -201,7 +205,8 @@ def left_behind(armature: bpy.types.Object) -> str:
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     """The motion problem that the settings state, with the recording as it is.
 
-    Raises any Fault of reading, and ChangedMeanwhile where it is not what was analysed.
+    Raises any Fault of reading and of a rig that cannot be written to, and ChangedMeanwhile where
+    it is not what was analysed.
     """
     armature = required_armature(context)
     settings = settings_of(armature)
@@ -210,9 +215,26 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     require_return_after(result_options(settings), span_of(settings, recording)[1])
     _require_loopable(armature)
+    yield from require_writable(armature, recording, span_of(settings, recording))
     scene = yield from read_surfaces(armature, recording.frames)
     problem = problem_of(settings, recording, scene.objects)
     return Asked(armature.name, armature.session_uid, recording, problem, scene)
+
+
+def require_writable(
+    armature: bpy.types.Object, recording: Recording, span: tuple[float, float]
+) -> Incremental[None]:
+    """Before a solve takes its seconds. span: first and last frame that are adapted.
+
+    Raises LimbsInChains, NoControls, NotInLoop, and as `map_anatomy`.
+    """
+    settings = settings_of(armature)
+    segments = map_anatomy(recording.bones, chosen_parts(settings))
+    bodies = tuple(recording.bones[segment.bone].name for segment in segments)
+    frames = recording.window(*span).frames
+    driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
+    if driven and loop_options(settings) is not None:
+        raise NotInLoop("a rig that is posed through controls")
 
 
 def _require_loopable(armature: bpy.types.Object) -> None:

@@ -31,7 +31,7 @@ from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import higher
-from .adapt import ask_for, read_wanted
+from .adapt import ask_for, read_wanted, require_writable
 from .common import FaultyOperator, chosen_armature, required_armature, said
 from .scene import read_surfaces
 from .session import session
@@ -99,6 +99,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         for missing in missing_parts(settings):
             raise MissingPart(missing)
         problem = problem_of(settings, recording, with_contacts=False)
+        yield from require_writable(armature, recording, problem.frames)
         session().advance(SolveState.SOLVING)
         session().support = None
         try:

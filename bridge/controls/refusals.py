@@ -1,0 +1,70 @@
+"""What cannot be written to a rig, found before a solve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+
+import bpy
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ...solver.data.faults import LimbsInChains, NoControls
+from ..armature.incremental import Incremental
+from ..armature.poses import sample
+from .control_rig import ControlRig, found_controls
+from .driven import driven_of
+from .followed import in_chains
+from .targets import parents_of
+
+MISSING = 0.5  # share of a body's own turn that controls may lack about its best axis
+SMALL = 1e-3  # of the largest response: below it there is none
+
+
+def require_posable(
+    armature: bpy.types.Object,
+    bodies: tuple[str, ...],
+    frames: FloatArray,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[bool]:
+    """Refuse bodies whose poses a result could not be given, at frames (T,); in slices.
+
+    bodies: the pelvis first. Returns whether controls pose them. Raises LimbsInChains, NoControls.
+    """
+    chained = yield from in_chains(armature, bodies, frames, showing)
+    if chained:
+        raise LimbsInChains(tuple(chained), float(frames[0]), float(frames[-1]))
+    with showing():
+        driven = driven_of(armature, bodies)
+    if not driven:
+        return False
+    rig = yield from found_controls(armature, bodies, frames, showing)
+    with showing():
+        poses = sample(armature, frames[:1])
+    unled = _unled(rig, parents_of(armature, poses, bodies))
+    if unled:
+        raise NoControls(tuple(unled))
+    return True
+
+
+def _unled(rig: ControlRig, parents: list[int]) -> list[str]:
+    """Bodies that the controls cannot turn about any axis while all stay that are not below them.
+
+    What is missing of a turn of 1 rad, as a share, by least squares.
+    """
+    found = []
+    for b, body in enumerate(rig.bodies):
+        stays = [o for o in range(len(rig.bodies)) if b not in _line(o, parents)] + [b]
+        turns = rig.turns[:, stays].reshape(len(rig.turns), -1)
+        wanted = np.zeros((3, turns.shape[1]))
+        wanted[:, -3:] = np.eye(3)
+        weights = np.linalg.lstsq(turns.T, wanted.T, rcond=SMALL)[0]
+        missing = np.linalg.norm(wanted - weights.T @ turns, axis=1)
+        if missing.min() > MISSING:
+            found.append(body)
+    return found
+
+
+def _line(body: int, parents: list[int]) -> list[int]:
+    """The body and those above it."""
+    return [] if body < 0 else [body, *_line(parents[body], parents)]
