@@ -30,7 +30,7 @@ from .warm_start import Standing, continuation_steps, partial_places, stance_mov
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_ARRIVALS = 2  # where guards were given up, which in smaller steps need not be
-HOPELESS = 300.0  # tolerances beyond guards, as of six limbs 50 mm deep: smaller steps find no room
+HOPELESS = 500.0  # tolerances beyond guards, as of ten limbs 50 mm deep: smaller steps find no room
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
 MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
@@ -112,8 +112,9 @@ def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | 
     for harder in range(MAX_ATTEMPTS):
         attempts.append(_attempt(setup, 2**harder, progress))
         arrived = [attempt for attempt in attempts if attempt.arrived]
-        over = arrived[-1].over if arrived else None
-        enough = len(arrived) == MAX_ARRIVALS or over == 0.0 or (over or 0.0) > HOPELESS
+        enough = len(arrived) == MAX_ARRIVALS or any(
+            each.over == 0.0 or each.over > HOPELESS for each in arrived
+        )
         iterations = sum(len(outcome.steps) for each in attempts for outcome in each.outcomes)
         if enough or iterations > MAX_SQP_ITERATIONS:
             break

@@ -127,7 +127,7 @@ REPORT = Report(
         MovingGroundReport("ground 1", "train", "Ride", (0.0, 1.0, 0.0), (3.0, 3.0), 0.9),
     ),
     between_nodes=DenseResiduals(1000.0, flight=PhaseResidual(0.0, 0.0, 0.0, 0.0)),
-    forces=ForcesReport((ForcePeak("ground 1", 3.0, 2.0, 0.4),), 0.0),
+    forces=ForcesReport((ForcePeak("ground 1", 3.0, 2.0, 0.4),), 2.5, 0.0),
     objective_end_over_start=None,
     reduction=ReductionReport(ReductionKind.PCA, 5, (1.0,), (1.0,)),
     torques=TorquesReport((TorquePeak("hips", 10.0),), 8, 0.1),
