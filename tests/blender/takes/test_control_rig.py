@@ -24,7 +24,7 @@ from hangtime.tests.helpers.clips import JUMP_FRAMES
 
 EVERY = 5  # frames: 24 a second
 MOVED = 0.2  # m
-FOOT = "DEF-foot.L"
+TOE = "DEF-toe.L"
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -58,17 +58,20 @@ def test_a_generated_rig_lands_further_on_by_keys_on_its_controls() -> None:
     keyed = {re.findall(r'"(.*?)"', curve.data_path)[0] for curve in curves_of(rig)}
     assert {"torso", "thigh_fk.L", "foot_fk.R", "hand_fk.R"} <= keyed
     assert not [bone for bone in keyed if bone.startswith(("DEF-", "ORG-", "MCH-"))]
-    foot = before.index(FOOT)
-    went = np.linalg.norm(after.heads[-1, foot] - before.heads[-1, foot])
     told = re.search(
         r"The controls miss the solution: (\S+) by ([\d.]+) mm \(frame (\d+)\), (\S+) by",
         settings.status,
     )
     assert told is not None, settings.status
-    # A spine that bends as its chest turns follows no other; feet are where they should be.
+    # A spine that bends as its chest turns cannot follow each bone of the solution.
     assert told[1].startswith("DEF-spine")
-    assert 1.0 < float(told[2]) < 60.0
-    assert went == pytest.approx(MOVED, abs=0.005)
+    assert 1.0 < float(told[2]) < 40.0
+    # Feet skate in this take, for the actor has other hips; the landing is held, and further on.
+    toe, landed = before.index(TOE), slice(-12, None)
+    was, now = before.heads[landed, toe], after.heads[landed, toe]
+    assert np.linalg.norm(np.ptp(was, axis=0)) > 0.01
+    assert np.ptp(now[:, 1]) < 0.003
+    assert (was - now).mean(0) == pytest.approx([0.0, MOVED, 0.0], abs=0.03)
 
 
 def test_limbs_in_inverse_kinematics_are_refused_before_a_solve() -> None:
