@@ -6,7 +6,7 @@ much is allowed as of its floor, as soles give there likewise, and of obstacles 
 """
 
 from collections.abc import Callable, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -36,7 +36,7 @@ MOST_ROWS = 600  # at once, which take a program seconds; beyond, rows are furth
 SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
 
 NONE = np.empty(0, dtype=int)
-OWN = 2  # surfaces of a body without a scene: its limbs, and the floor
+LIMBS, OWN = 1, 2  # surfaces of a body without a scene: its limbs; these and the floor
 
 TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (N,) s
 Placement = tuple[SceneObject, ObjectMotion]
@@ -102,6 +102,13 @@ class SolidWorld:
     def names(self) -> tuple[str, ...]:
         """Of the items."""
         return self.surfaces.names
+
+    def limbs_alone(self) -> "SolidWorld":
+        """The same for the body's own limbs, which keep out of each other wherever it is."""
+        ours, theirs = (
+            Surfaces(each.parts[:LIMBS]) for each in (self.surfaces, self.fitted_surfaces)
+        )
+        return replace(self, surfaces=ours, fitted_surfaces=theirs, passables=())
 
     @cached_property
     def recorded(self) -> Penetrations:

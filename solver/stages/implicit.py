@@ -110,7 +110,8 @@ def _stopped(motion: Motion, fit: Fit, setup: Setup) -> Adaptation:
 def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | None) -> Adaptation:
     attempts: list[ContinuationAttempt] = []
     for harder in range(MAX_ATTEMPTS):
-        attempts.append(_attempt(setup, 2**harder, progress))
+        again = any(attempt.arrived for attempt in attempts)
+        attempts.append(_attempt(setup, 2**harder, progress, limbs=again))
         arrived = [attempt for attempt in attempts if attempt.arrived]
         enough = len(arrived) == MAX_ARRIVALS or any(
             each.over == 0.0 or each.over > HOPELESS for each in arrived
@@ -186,9 +187,11 @@ class ContinuationAttempt:
         return len(self.steps_taken) == self.steps and self.steps_taken[-1].solved
 
 
-def _attempt(setup: Setup, times: int, progress: Progress | None) -> ContinuationAttempt:
+def _attempt(
+    setup: Setup, times: int, progress: Progress | None, *, limbs: bool
+) -> ContinuationAttempt:
     """A continuation, and where it arrives, what closes it between the nodes."""
-    attempt = _continuation(setup, times, progress)
+    attempt = _continuation(setup, times, progress, limbs=limbs)
     if not attempt.arrived:
         return attempt
     closed = close_between_nodes(attempt.outcomes[-1], setup, progress)
@@ -208,8 +211,15 @@ def _best_feasible(
     return Adaptation(tuple(outcomes), places, fit, setup, stuck, attempt.reached)
 
 
-def _continuation(setup: Setup, times: int, progress: Progress | None) -> ContinuationAttempt:
-    """Solves in as many steps as the pins' moves ask for, times `times`; bounds ease in."""
+def _continuation(
+    setup: Setup, times: int, progress: Progress | None, *, limbs: bool
+) -> ContinuationAttempt:
+    """Solves in as many steps as the pins' moves ask for, times `times`; bounds ease in.
+
+    limbs: whether they keep out of each other on the way as well. That costs more, but a leg that
+    once is through the other finds no short way back.
+    """
+    on_the_way = _on_the_way(setup, limbs=limbs)
     motion, schedule = setup.start, setup.schedule
     before = last = Standing.still(motion.places)
     whole = stance_moves(schedule, before, setup.target, setup.turns)
@@ -231,7 +241,8 @@ def _continuation(setup: Setup, times: int, progress: Progress | None) -> Contin
         if step < steps:
             transcription = transcription.relaxed(start, 1.0 / (steps - step + 1))
         feasible = setup.feasible_set(transcription, places)
-        outcome = _restored(feasible, start, setup, progress, last=step == steps)
+        guards = setup.guards if step == steps else on_the_way
+        outcome = _restored(feasible, start, setup, progress, guards)
         outcomes.append(outcome)
         motion = setup.feasible_set(outcome.transcription, places).motion(outcome.x)
         last = standing
@@ -240,16 +251,26 @@ def _continuation(setup: Setup, times: int, progress: Progress | None) -> Contin
     return ContinuationAttempt(tuple(outcomes), steps)
 
 
+def _on_the_way(setup: Setup, *, limbs: bool) -> tuple[Guard, ...]:
+    """Guards of the steps before the last: floor and scene are not yet where they shall be, but a
+    joint that once is far beyond its range finds a long way back."""
+    guards: list[Guard] = [] if setup.human is None else [setup.human]
+    if limbs and setup.solid is not None:
+        guards.append(setup.solid.limbs_alone())
+    return tuple(guards)
+
+
 def _restored(
-    feasible: FeasibleSet, start: FloatArray, setup: Setup, progress: Progress | None, *, last: bool
+    feasible: FeasibleSet,
+    start: FloatArray,
+    setup: Setup,
+    progress: Progress | None,
+    guards: tuple[Guard, ...],
 ) -> Outcome:
     """A continuation step; the guards join in at its end, where that helps.
 
-    On the way to the last step these are the ranges of joints alone: there floors and limbs are
-    not where they shall be, but a joint that once is far beyond its range finds a long way back.
     Where not all can be kept, floor and limbs go before ranges, unless these are hard.
     """
-    guards = tuple(guard for guard in setup.guards if last or guard is setup.human)
     for some in _ways_to_guard(guards):
         wider = partial(with_guards, some)
         outcome = restore(

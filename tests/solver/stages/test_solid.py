@@ -13,6 +13,7 @@ from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.results.report import report
 from hangtime.solver.solid.solid_world import floor_heights
 from hangtime.solver.stages.implicit import Adaptation, adapt
+from hangtime.solver.stages.setup import set_up
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.validity import assert_valid
 
@@ -71,6 +72,18 @@ def test_a_hand_stays_out_of_the_thigh() -> None:
     rows = report(adaptation, in_thigh(), Origin("hop")).conditions
     kept = {row.name: row for row in rows if row.kind is RowKind.SOLID}
     assert kept["Left hand in left thigh"].met
+
+
+def test_limbs_alone_are_in_each_other_as_in_the_whole_world() -> None:
+    world = set_up(fitted_hop(), in_thigh()).solid
+    assert world is not None
+    motion = adapt(fitted_hop(), soft(in_thigh())).motion
+    whole, alone = (
+        {each.name: each.amount for each in solids.penetrations(motion).worst()}
+        for solids in (world, world.limbs_alone())
+    )
+    assert alone["Left hand in left thigh"] > 0.05
+    assert alone == {name: depth for name, depth in whole.items() if "floor" not in name}
 
 
 def test_a_fit_alone_is_unchanged() -> None:
