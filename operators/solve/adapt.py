@@ -23,6 +23,7 @@ from ...bridge.constraints.motion_problem import (
     wanted_range,
 )
 from ...bridge.constraints.status import write_status
+from ...bridge.controls.driven import constrained
 from ...bridge.controls.refusals import require_posable
 from ...bridge.loops.write_loop import (
     Loop,
@@ -228,6 +229,8 @@ def require_writable(
 
     Raises LimbsInChains, NoControls, NotInLoop, and as `map_anatomy`.
     """
+    if not constrained(armature):  # keys of their own pose all bones
+        return
     settings = settings_of(armature)
     segments = map_anatomy(recording.bones, chosen_parts(settings))
     bodies = tuple(recording.bones[segment.bone].name for segment in segments)

@@ -164,8 +164,9 @@ def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
     assert first.hangtime.polished
 
 
-class Probe(adapt_operators.AdaptOperator, bpy.types.Operator):
-    """Adapt as a window calls it, which only tells how."""
+class Probe(adapt_operators.AdaptOperator.__bases__[0], bpy.types.Operator):
+    """Adapt as a window calls it, which only tells how. Adapt's mixin and not Adapt itself, which
+    would be gone with a class of its own."""
 
     bl_idname = "hangtime.probe"
     bl_label = "Probe"
