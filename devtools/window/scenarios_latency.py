@@ -124,6 +124,7 @@ def lands_on_crate(driver: Driver) -> Actions:
     yield from driver.picture("world_panel")
     yield driver.input.key("Escape")
     yield Until("the end of the drag", idle)
+    yield driver.input.let_go()  # else the next click is none
     assert row.on is None, "the pin stayed on the crate"
     assert (Vector(row.at) - pin).length < 1e-4, "the pin did not go back"
     own.surfaces.clear()

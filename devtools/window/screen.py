@@ -23,7 +23,6 @@ Value = TypeVar("Value")
 Waits = Generator[float, None, Result]
 
 LINE = 12  # pixels between the places looked at; the smallest button is 18 high
-EDGE = 16  # px of a region where a click may be for its border instead
 LOOK = 0.02  # s until Blender knows what lies under the pointer
 COLUMNS = (0.3, 0.7)  # of the sidebar's width, tabs left out
 FOLDS = (-60, *(6,) * 8)  # notches of the wheel: up to the top, then down fold by fold
@@ -171,7 +170,7 @@ class Screen:
         region = self.region("UI")
         for _ in range(20):
             y = region.view2d.view_to_region(0, spot.height, clip=False)[1]
-            if y - EDGE >= 0 and y + EDGE < region.height:
+            if y - LINE >= 0 and y + LINE < region.height:
                 break
             if not (yield from self._scroll(-3 if y > 0 else 3)):
                 break
@@ -195,7 +194,7 @@ class Screen:
         region = self.region("UI")
         x = region.x + column * (region.width - TAB_WIDTH)
         top = region.y + region.height - 4
-        return [self.on_screen(x, y) for y in range(top, region.y + EDGE, -LINE)]
+        return [self.on_screen(x, y) for y in range(top, region.y + 8, -LINE)]
 
     def blanks(self) -> Waits[list[Place]]:
         """Places of the sidebar where no button is, from its foot upwards."""
