@@ -110,8 +110,9 @@ def _stopped(motion: Motion, fit: Fit, setup: Setup) -> Adaptation:
 def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | None) -> Adaptation:
     attempts: list[ContinuationAttempt] = []
     for harder in range(MAX_ATTEMPTS):
-        again = any(attempt.arrived for attempt in attempts)
-        attempts.append(_attempt(setup, 2**harder, progress, limbs=again))
+        # What moves far may bring one limb through another on its way.
+        limbs = any(attempt.arrived and attempt.steps > 1 for attempt in attempts)
+        attempts.append(_attempt(setup, 2**harder, progress, limbs=limbs))
         arrived = [attempt for attempt in attempts if attempt.arrived]
         enough = len(arrived) == MAX_ARRIVALS or any(
             each.over == 0.0 or each.over > HOPELESS for each in arrived
