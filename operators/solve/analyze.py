@@ -99,7 +99,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         for missing in missing_parts(settings):
             raise MissingPart(missing)
         problem = problem_of(settings, recording, with_contacts=False)
-        yield from require_writable(armature, recording, problem.frames)
+        yield from require_writable(armature, recording, span_of(settings, recording))
         session().advance(SolveState.SOLVING)
         session().support = None
         try:

@@ -130,7 +130,7 @@ def with_slots(armature: bpy.types.Object) -> bpy.types.Object:
     """The action animates a camera as well, whose slot comes first by name."""
     action = armature.animation_data.action
     if not hasattr(action, "slots"):
-        pytest.skip("no slots before Blender 4.4")
+        pytest.skip("actions have no slots before Blender 4.4")
     camera = bpy.data.objects.new("A Camera", None)
     bpy.context.scene.collection.objects.link(camera)
     camera.animation_data_create().action = action
