@@ -58,7 +58,7 @@ def whole_frames(
     reach = np.floor(beyond * frames_per_second(current_scene()))
     before = start if first is None else max(start - reach, np.ceil(spans.min() - _EPSILON))
     after = end if last is None else min(end + reach, np.floor(spans.max() + _EPSILON))
-    return np.arange(min(before, start), max(after, end) + 1.0)
+    return np.arange(min(before, start), max(after, end) + 1.0) + 0.0  # no frame is called -0
 
 
 def record(armature: bpy.types.Object, frames: FloatArray) -> Recording:

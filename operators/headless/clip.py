@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ from ...solver.data.faults import NoArmature, UnreadableClip
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
+from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
 from .quiet import quiet
 from .stages import Stages
@@ -38,23 +39,34 @@ class Clip:
 
 @dataclass(frozen=True)
 class LoadedClip:
-    """An imported clip: its armature and its analysis."""
+    """An imported clip: its armature and its analysis.
+
+    problem: as it was asked for, in the recording's own lengths, after a bind pose.
+    """
 
     armature: bpy.types.Object
     origin: Origin
+    problem: MotionProblem
     subject: Subject
 
 
 def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
     """Imports a clip into a new, empty file (a .blend is one in itself) and analyses it.
 
+    Where no frames are asked for, a bind pose before the motion is left out.
     Raises every Fault that a clip can have.
     """
     with stages.stage("Importing the clip"):
         armature, origin = _import(clip)
     with stages.stage("Finding contacts"):
-        subject = measure(_read(armature, problem), problem)
-    return LoadedClip(armature, origin, subject)
+        recording = _read(armature, problem)
+        count = bind_frames(recording) if problem.frames is None else 0
+        if count:
+            origin = replace(origin, bind_frames=count)
+            after = float(recording.frames[count]), float(recording.frames[-1])
+            problem = replace(problem, frames=after)
+        subject = measure(recording, problem)
+    return LoadedClip(armature, origin, problem, subject)
 
 
 def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:

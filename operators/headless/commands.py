@@ -151,7 +151,7 @@ def adapt(options: argparse.Namespace) -> None:
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
-        outputs = Outputs(loaded, problem, wanted, keys, result, outbox, stages, recipe.loop)
+        outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop)
         if result.fault is not None:
             outputs.write_failure()
             outbox.deliver()
@@ -175,7 +175,7 @@ def analyze(options: argparse.Namespace) -> None:
     print(analysis_text(loaded.subject.analysis, loaded.origin), end="")
     target: Path | None = options.write_recipe
     if target is not None:
-        text = starter_recipe(loaded.subject.analysis, problem, options.clip, target)
+        text = starter_recipe(loaded.subject.analysis, loaded.problem, options.clip, target)
         try:
             with target.open("x", encoding="utf-8") as file:
                 file.write(text)

@@ -14,7 +14,6 @@ from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
 from ...bridge.rows.choices import KeyChoice, WrittenAs
 from ...solver.data.faults import OutputNotWritable
-from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.report import Report, as_json
 from ...solver.data.scaling import scaled_problem
@@ -41,12 +40,10 @@ ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
 class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
 
-    problem: as it was asked for, in the recording's own lengths. options: of the rest of the take.
-    keys: of the adapted frames. loop: where the motion repeats.
+    options: of the rest of the take. keys: of the adapted frames. loop: where the motion repeats.
     """
 
     clip: LoadedClip
-    problem: MotionProblem
     options: ResultOptions
     keys: KeyOptions
     result: AdaptationResult
@@ -89,7 +86,7 @@ class Outputs:
             from .picture import draw
 
             marks = marks_of(adaptation, self.result.subject.problem)
-            draw(adaptation, self.problem, self.outbox.path("sheet.png"), marks)
+            draw(adaptation, self.clip.problem, self.outbox.path("sheet.png"), marks)
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""
@@ -191,7 +188,7 @@ class Outputs:
             self.result.times,
             self.result.moved,
             self.options,
-            ends=any(hold.ends for hold in self.problem.requests.holds),
+            ends=any(hold.ends for hold in self.clip.problem.requests.holds),
         )
 
     def _recorded_curves(self) -> CurveHolder | None:

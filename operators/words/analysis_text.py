@@ -9,13 +9,14 @@ from ...solver.analysis.analyse import Analysis
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
+from .report_text import held_at_rest
 
 
 def analysis_text(analysis: Analysis, origin: Origin) -> str:
     """Figure, phases and contacts; frames are the scene's."""
     recording, figure = analysis.performance.recording, analysis.performance.character
     lines = [
-        f"{origin.clip}: frames {recording.frames[0] + 0.0:g} to {recording.frames[-1]:g}, "
+        f"{origin.clip}: frames {recording.frames[0]:g} to {recording.frames[-1]:g}, "
         f"{recording.times[-1]:.2f} s at {recording.rate:.4g} frames a second",
         f"figure: {figure.height:.2f} m tall, {figure.mass:g} kg, {len(figure.bodies)} bodies, "
         f"{figure.n_dofs} degrees of freedom; floor at {analysis.schedule.floor_m:.3f} m",
@@ -24,6 +25,8 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
         lines.append(f"guessed: one unit of the file is {origin.unit_m:.4g} m (else say --unit)")
     if origin.up_guessed:
         lines.append(f"guessed: {origin.up} points up (else say --up)")
+    if origin.bind_frames:
+        lines.append(f"left out: {held_at_rest(origin.bind_frames)} (else say --first)")
     lines += ["", f"{'phase':<12}{'frames':>17}{'seconds':>9}"]
     lines += [_phase_line(analysis, phase) for phase in analysis.schedule.phases]
     lines += ["", f"{'contact':<16}{'frames':>17}  {'bone':<16}place (m)"]

@@ -196,6 +196,15 @@ def _input(report: Report) -> Iterator[str]:
         guesses.append(f"{r.up_axis} points up (--up)")
     if guesses:
         yield f"Guessed     {' and '.join(guesses)}"
+    if r.bind_pose_frames:
+        yield f"Left out    {held_at_rest(r.bind_pose_frames)}"
+
+
+def held_at_rest(count: int) -> str:
+    """Words on frames at the beginning of a recording."""
+    if count == 1:
+        return "the first frame, which holds the rest pose"
+    return f"the first {count} frames, which hold the rest pose"
 
 
 def _changes(report: Report) -> Iterator[str]:

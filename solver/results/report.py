@@ -121,6 +121,7 @@ def _recording(fit: Fit, origin: Origin) -> RecordingSummary:
         unit_guessed=origin.unit_guessed,
         up_axis=origin.up,
         up_axis_guessed=origin.up_guessed,
+        bind_pose_frames=origin.bind_frames,
     )
 
 

@@ -9,7 +9,8 @@ from ..problem import MassTable
 class Origin:
     """Source file of a recording and how it was read; None where nothing had to be settled.
 
-    unit_m: m per unit of length in the file. up: its axis that points up.
+    unit_m: m per unit of length in the file. up: its axis that points up. bind_frames: at its
+    beginning, which hold the rest pose and are left out.
     """
 
     clip: str
@@ -17,6 +18,7 @@ class Origin:
     unit_guessed: bool = False
     up: str | None = None
     up_guessed: bool = False
+    bind_frames: int = 0
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class RecordingSummary:
     unit_guessed: bool
     up_axis: str | None
     up_axis_guessed: bool
+    bind_pose_frames: int
 
 
 @dataclass(frozen=True)

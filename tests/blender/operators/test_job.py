@@ -272,6 +272,28 @@ def test_the_starter_recipe_is_valid_and_names_the_landing(
     assert "jump.toml" in capsys.readouterr().err
 
 
+def begun_at_rest(clip: Path, folder: Path) -> Path:
+    """A copy of a BVH file with the rest pose, whose angles are 0, on its first frame."""
+    text, motion = clip.read_text().split("MOTION\n")
+    count, time, *frames = motion.splitlines()
+    values = frames[0].split()
+    rest = " ".join([*values[:3], *["0.0"] * (len(values) - 3)])
+    count = f"Frames: {len(frames) + 1}"
+    copy = folder / "begun_at_rest.bvh"
+    copy.write_text("\n".join([f"{text}MOTION", count, time, rest, *frames, ""]))
+    return copy
+
+
+def test_a_rest_pose_on_the_first_frame_is_left_out(clip: Path, tmp_path: Path, capsys) -> None:
+    target = tmp_path / "jump.toml"
+    command = ["analyze", str(begun_at_rest(clip, tmp_path)), "--write-recipe", str(target)]
+    assert main(command) == 0
+    assert "left out: the first frame, which holds the rest pose" in capsys.readouterr().out
+    assert parse_recipe(target.read_text(encoding="utf-8")).problem.frames[0] == 2.0
+    assert main([*command[:2], "--first", "1"]) == 0  # frames that are asked for are taken
+    assert "left out" not in capsys.readouterr().out
+
+
 # ---------------------------------------------------------------- jobs that do not
 
 

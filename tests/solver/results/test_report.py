@@ -64,7 +64,7 @@ def test_numbers_carry_units() -> None:
     bare = {"bodies", "degrees_of_freedom", "unknowns", "rows", "iterations", "violation"}
     bare |= {"value", "limit", "worst_violation"}  # whose unit is beside them
     units = ("_m", "_s", "_frame", "_kg", "_hz", "_bw", "_bw_m", "_mm", "_cm", "_deg", "seconds")
-    units += ("frame", "_per_second", "_over_tolerance", "_coefficient_needed", "_m_s2")
+    units += ("frame", "_frames", "_per_second", "_over_tolerance", "_coefficient_needed", "_m_s2")
     units += ("_coefficient", "_over_start", "_share", "_rad2")
 
     def check(key: str, value: object) -> None:
