@@ -30,7 +30,7 @@ RECORDINGS: Mapping[str, Recorded] = {
     "cmu1_jumping_jacks": Recorded("cmu1_jumping_jacks.bvh"),
     "run_1": Recorded("run_1.bvh"),
     "run_2": Recorded("run_2.bvh"),
-    "run_3": Recorded("run_3.bvh", (1, 150)),
+    "run_3": Recorded("run_3.bvh"),
 }
 
 

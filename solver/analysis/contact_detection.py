@@ -29,6 +29,8 @@ MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
+COM_NOISE = 0.001  # m, from frame to frame, of a recorded centre of mass
+STANDARD_ERRORS = 3.0  # of a fitted acceleration, before it speaks against a free fall
 
 
 def detect_contacts(
@@ -208,7 +210,8 @@ def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> li
 
 
 def _falls(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
-    """Whether the body can be in free fall during `gap`: curvature of a fitted parabola."""
+    """Whether the body can be in free fall during `gap`: curvature of a fitted parabola, as far as
+    so many frames tell it (standard error of a least-squares coefficient)."""
     if com is None:
         return gap.end - gap.start < MAX_FLIGHT
     middle, half = (gap.start + gap.end) / 2, max(gap.end - gap.start, MIN_FALL_WINDOW) / 2
@@ -216,9 +219,12 @@ def _falls(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
     if within.sum() < 4:
         return True
     t = times[within] - middle
-    curvature = 2.0 * np.polyfit(t, com[within, 2], 2)[0]
-    return bool(
-        -STANDARD_GRAVITY - FREE_FALL_TOLERANCE
-        < curvature
-        < -STANDARD_GRAVITY + FREE_FALL_TOLERANCE
-    )
+    fitted = np.polynomial.Polynomial.fit(t, com[within, 2], 2).convert()
+    error = 2.0 * COM_NOISE / np.linalg.norm(_without_line(t, t**2))
+    tolerance = max(FREE_FALL_TOLERANCE, STANDARD_ERRORS * error)
+    return bool(abs(2.0 * fitted.coef[2] + STANDARD_GRAVITY) < tolerance)
+
+
+def _without_line(t: FloatArray, samples: FloatArray) -> FloatArray:
+    """Samples (T,) less the straight line that fits them best."""
+    return np.asarray(samples - np.polyval(np.polyfit(t, samples, 1), t))

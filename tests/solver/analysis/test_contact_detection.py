@@ -185,6 +185,18 @@ def test_no_flight_without_a_fall() -> None:
     assert (len(s.flights), len(s.unseen), len(s.phases)) == (0, 1, 1)
 
 
+def test_a_flight_is_not_denied_by_noise_in_its_few_frames() -> None:
+    """A clip ends 50 ms after its last foot left, where a millimetre of noise is some m/s²."""
+    end = TIMES <= 1.05
+    times = TIMES[end]
+    toe = point(leap(1.0, 1.5)[end])
+    com = np.stack([np.zeros_like(times), np.zeros_like(times), 0.9 + leap(1.0, 1.5)[end]], axis=1)
+    noise = np.random.default_rng(5).normal(scale=0.001, size=(40, len(times)))
+    for each in noise:
+        s = detect_contacts(times, {"Left toe": toe}, com=com + np.outer(each, [0.0, 0.0, 1.0]))
+        assert (len(s.flights), s.unseen) == (1, ())
+
+
 def test_a_gap_too_short_to_be_a_flight_is_closed() -> None:
     left, right = np.where(TIMES > 1.0, 0.5, 0.0), np.where(TIMES < 1.01, 0.5, 0.0)
     s = detect_contacts(TIMES, {"Left toe": point(left), "Right toe": point(right)})
