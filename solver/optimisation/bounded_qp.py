@@ -18,6 +18,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..numerics.tied_factor import Factor
 from ..transcription.rows import violation
+from .active_set import multipliers_by_active_set
 
 CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
 MAX_ROUNDS = 6  # of row generation
@@ -44,7 +45,8 @@ class BoundedStep:
         self._tolerance = STEP_TOLERANCE * tolerance
         self.multipliers = np.zeros(len(tolerance))
         self._rows = np.zeros(0, dtype=int)
-        self._half = np.zeros((0, 0, 0))  # L^-1 G' (K, n, m)
+        self._half = np.zeros((factor.shape[0] * factor.shape[1], 0))  # L^-1 G' (K n, m)
+        self._stiffness = np.zeros((0, 0))  # G A^-1 G' (m, m)
         self._initial = working
 
     @property
@@ -69,24 +71,27 @@ class BoundedStep:
             elif len(self._rows) == 0 or reached is not z:
                 break
             u = self._solve(z)
-            change = -self._factor.backward(self._half @ u)
+            change = -self._factor.backward((self._half @ u).reshape(self._factor.shape))
             reached = z + times(change)
         return change
 
     def _add(self, rows: IntArray) -> None:
-        half = self._factor.forward(self._columns(rows))
-        self._half = np.concatenate([self._half, half], axis=2) if len(self._rows) else half
+        half = self._factor.forward(self._columns(rows)).reshape(-1, len(rows))
+        beside = self._half.T @ half
+        self._stiffness = np.block([[self._stiffness, beside], [beside.T, half.T @ half]])
+        self._half = np.concatenate([self._half, half], axis=1)
         self._rows = np.concatenate([self._rows, rows])
-        flat = self._half.reshape(-1, len(self._rows))
-        stiffness = flat.T @ flat
-        self._soft = CONSTRAINT_SOFTNESS * np.diagonal(stiffness) + 1e-14
-        self._root = np.linalg.cholesky(stiffness + np.diag(self._soft))
+        self._soft = CONSTRAINT_SOFTNESS * np.diagonal(self._stiffness) + 1e-14
 
     def _solve(self, z: FloatArray) -> FloatArray:
         rows = self._rows
         # The rows give a little (SOFT); their last multipliers make up for it.
         base = z[rows] + self._soft * self.multipliers[rows]
-        u = solve_dual_qp(self._root, self.lower[rows] - base, self.upper[rows] - base)
+        lower, upper = self.lower[rows] - base, self.upper[rows] - base
+        stiffness = self._stiffness + np.diag(self._soft)
+        u = multipliers_by_active_set(stiffness, lower, upper, self.multipliers[rows])
+        if u is None:
+            u = solve_dual_qp(np.linalg.cholesky(stiffness), lower, upper)
         if not np.isfinite(u).all():  # DAQP lost its way; the line search judges the step without
             u = np.zeros(len(rows))
         self.multipliers[rows] = u

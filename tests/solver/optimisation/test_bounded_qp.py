@@ -7,6 +7,7 @@ import pytest
 from hangtime.solver.arrays import FloatArray, IntArray
 from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
 from hangtime.solver.optimisation import bounded_qp
+from hangtime.solver.optimisation.active_set import multipliers_by_active_set
 from hangtime.solver.optimisation.bounded_qp import BoundedStep, solve_dual_qp
 from hangtime.solver.transcription.rows import violation
 from hypothesis import example, given, settings
@@ -66,6 +67,33 @@ def test_bounds_that_hold_need_no_push() -> None:
     root = random_root(np.random.default_rng(0), 5)
     u = solve_dual_qp(root, np.full(5, -1.0), np.full(5, np.inf))
     assert u == pytest.approx(np.zeros(5))
+
+
+@settings(max_examples=60, deadline=None)
+@given(SEED, st.integers(1, 30))
+def test_the_active_set_s_answer_is_daqp_s(seed: int, m: int) -> None:
+    """Whatever the guess; where no set reproduces itself there is none."""
+    random = np.random.default_rng(seed)
+    root = random_root(random, m)
+    lower, upper = random_bounds(random, m)
+    u = multipliers_by_active_set(root @ root.T, lower, upper, random.normal(size=m))
+    expected = solve_dual_qp(root, lower, upper)
+    if u is not None:
+        assert root.T @ u == pytest.approx(root.T @ expected, abs=1e-5 * (1.0 + np.abs(u).max()))
+
+
+def test_the_active_set_finds_most_programs_and_all_from_their_answer() -> None:
+    found = 0
+    for seed in range(100):
+        random = np.random.default_rng(seed)
+        root = random_root(random, 20)
+        lower, upper = random_bounds(random, 20)
+        stiffness, expected = root @ root.T, solve_dual_qp(root, lower, upper)
+        found += multipliers_by_active_set(stiffness, lower, upper, np.zeros(20)) is not None
+        at = np.where(np.abs(expected) > 1e-7 * np.abs(expected).max(), expected, 0.0)
+        u = multipliers_by_active_set(stiffness, lower, upper, at)
+        assert u == pytest.approx(expected, abs=1e-4 * np.abs(expected).max())
+    assert found >= 60
 
 
 # -- the correction of a step ---------------------------------------------------------------
@@ -178,6 +206,7 @@ def test_a_program_without_an_answer_leaves_the_step_as_it_is(
     problem = Problem(3, 6, 5)
     bounded = problem.step()
     with monkeypatch.context() as lost:
+        lost.setattr(bounded_qp, "multipliers_by_active_set", lambda *_: None)
         lost.setattr(bounded_qp, "solve_dual_qp", lambda root, *_: np.full(len(root), np.nan))
         assert not bounded.correct(problem.z, problem.times).any()
         assert not bounded.working.any()
