@@ -111,8 +111,9 @@ def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | 
     attempts: list[ContinuationAttempt] = []
     for harder in range(MAX_ATTEMPTS):
         # What moves far may bring one limb through another on its way.
-        limbs = any(attempt.arrived and attempt.steps > 1 for attempt in attempts)
-        attempts.append(_attempt(setup, 2**harder, progress, limbs=limbs))
+        limbs = any(attempt.held_back and attempt.steps > 1 for attempt in attempts)
+        giving_up = harder > 0  # what smaller steps keep needs no giving up
+        attempts.append(_attempt(setup, 2**harder, progress, limbs=limbs, giving_up=giving_up))
         arrived = [attempt for attempt in attempts if attempt.arrived]
         enough = len(arrived) == MAX_ARRIVALS or any(
             each.over == 0.0 or each.over > HOPELESS for each in arrived
@@ -187,12 +188,18 @@ class ContinuationAttempt:
     def arrived(self) -> bool:
         return len(self.steps_taken) == self.steps and self.steps_taken[-1].solved
 
+    @property
+    def held_back(self) -> bool:
+        """Whether guards stopped it, or would have and were given up."""
+        stuck = self.steps_taken[-1]
+        return self.over > 0.0 or (not stuck.solved and bool(stuck.transcription.guards))
+
 
 def _attempt(
-    setup: Setup, times: int, progress: Progress | None, *, limbs: bool
+    setup: Setup, times: int, progress: Progress | None, *, limbs: bool, giving_up: bool
 ) -> ContinuationAttempt:
     """A continuation, and where it arrives, what closes it between the nodes."""
-    attempt = _continuation(setup, times, progress, limbs=limbs)
+    attempt = _continuation(setup, times, progress, limbs=limbs, giving_up=giving_up)
     if not attempt.arrived:
         return attempt
     closed = close_between_nodes(attempt.outcomes[-1], setup, progress)
@@ -213,12 +220,13 @@ def _best_feasible(
 
 
 def _continuation(
-    setup: Setup, times: int, progress: Progress | None, *, limbs: bool
+    setup: Setup, times: int, progress: Progress | None, *, limbs: bool, giving_up: bool
 ) -> ContinuationAttempt:
     """Solves in as many steps as the pins' moves ask for, times `times`; bounds ease in.
 
     limbs: whether they keep out of each other on the way as well. That costs more, but a leg that
-    once is through the other finds no short way back.
+    once is through the other finds no short way back. giving_up: whether a step goes on without the
+    guards that hold it back.
     """
     on_the_way = _on_the_way(setup, limbs=limbs)
     motion, schedule = setup.start, setup.schedule
@@ -243,7 +251,8 @@ def _continuation(
             transcription = transcription.relaxed(start, 1.0 / (steps - step + 1))
         feasible = setup.feasible_set(transcription, places)
         guards = setup.guards if step == steps else on_the_way
-        outcome = _restored(feasible, start, setup, progress, guards)
+        ways = _ways_to_guard(guards) if giving_up else [guards]
+        outcome = _restored(feasible, start, setup, progress, ways)
         outcomes.append(outcome)
         motion = setup.feasible_set(outcome.transcription, places).motion(outcome.x)
         last = standing
@@ -266,13 +275,10 @@ def _restored(
     start: FloatArray,
     setup: Setup,
     progress: Progress | None,
-    guards: tuple[Guard, ...],
+    ways: Sequence[tuple[Guard, ...]],
 ) -> Outcome:
-    """A continuation step; the guards join in at its end, where that helps.
-
-    Where not all can be kept, floor and limbs go before ranges, unless these are hard.
-    """
-    for some in _ways_to_guard(guards):
+    """A continuation step; the guards join in at its end, in the first of `ways` that helps."""
+    for some in ways:
         wider = partial(with_guards, some)
         outcome = restore(
             feasible, setup.metric, start, stage="adapt", progress=progress, wider=wider
@@ -283,7 +289,10 @@ def _restored(
 
 
 def _ways_to_guard(guards: tuple[Guard, ...]) -> list[tuple[Guard, ...]]:
-    """By which guards a step is tried in turn: all, some, and none but hard ones."""
+    """By which guards a step is tried in turn: all, some, and none but hard ones.
+
+    Where not all can be kept, floor and limbs go before ranges, unless these are hard.
+    """
     hard = tuple(guard for guard in guards if guard.hard)
     solids = tuple(guard for guard in guards if guard.kind is RowKind.SOLID)
     ways = [guards]
