@@ -32,9 +32,10 @@ class Convention:
     """How a file is written for an engine.
 
     format: that it reads best. y_up: of an FBX; otherwise it has Blender's axes. centimetres: what
-    an FBX counts in; otherwise the scene's units, which its header tells. clean: the object has no transformation
-    in the file, only bones that deform are written, and takes begin at 0 s. object: its name; None
-    is as in the scene. one_root: a bone above all others is needed. loop: end of a loop's name.
+    an FBX counts in; otherwise it is the scene's unit, which its header tells. clean: the object
+    has no transformation in the file, only bones that deform are written, and takes begin at 0 s.
+    object: its name; None is as in the scene. one_root: a bone above all others is needed. loop:
+    end of a loop's name.
     """
 
     format: FileFormat = FileFormat.FBX
