@@ -69,6 +69,7 @@ def _build(name: str, skeleton: Skeleton) -> bpy.types.Object:
     for i, bone in enumerate(made):
         bone.tail = (0.0, skeleton.lengths[i], 0.0)
         bone.matrix = Matrix(skeleton.rest[i])
+        bone.use_deform = skeleton.deforms[i]
         if skeleton.parents[i] >= 0:
             bone.parent = made[skeleton.parents[i]]
     bpy.ops.object.mode_set(mode="OBJECT")

@@ -11,10 +11,10 @@ from ...solver.data.faults import MissingPart, SeveralTakes
 from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import bake
-from .data_blocks import data_blocks, remove_added
+from .data_blocks import data_blocks, remove_added, scene_restored
 from .engines import CONVENTIONS, format_of
 from .placed_takes import place_takes
-from .scene_state import scene_restored
+from .skin import copy_skin
 from .writers import write
 
 AS_IT_IS = ExportOptions()
@@ -45,7 +45,9 @@ def export_takes(
         before = data_blocks()
         try:
             rig = bake("Exported", found.skeleton, found.placed, found.takes)
-            called = CONVENTIONS[options.engine].object or armature.name
-            write(rig, called, found.takes, Path(path), options, keeps_frames=keeps)
+            names = {rig: CONVENTIONS[options.engine].object or armature.name}
+            if options.skin:
+                names |= copy_skin(armature, rig, found.from_armature)
+            write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)
         finally:
             remove_added(before)

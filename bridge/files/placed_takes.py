@@ -25,11 +25,13 @@ _STILL = 1e-5  # Blender units, by which an object that rests may move
 
 @dataclass(frozen=True)
 class PlacedTakes:
-    """What a baked rig is to be. placed: (4, 4), its object to the world."""
+    """What a baked rig is to be. Matrices (4, 4): its object to the world, and the armature's space
+    to its own."""
 
     skeleton: Skeleton
     takes: tuple[BakedTake, ...]
     placed: FloatArray
+    from_armature: FloatArray
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,8 @@ def place_takes(
     )
     poses = [_performed(armature, take) for take in takes]
     space = _space(options, poses)
-    made = skeleton(armature, found, space.to_file @ space.at_rest)
+    from_armature = space.to_file @ space.at_rest
+    made = skeleton(armature, found, from_armature)
     baked = []
     for take, performed in zip(takes, poses, strict=True):
         path = None
@@ -70,7 +73,7 @@ def place_takes(
         name = take.name + (convention.loop if take.use_cyclic else "")
         first = _range(take)[0] if keeps_frames else 0
         baked.append(BakedTake(name, first, _placed(performed, found, made, space, path, carries)))
-    return PlacedTakes(made, tuple(baked), space.placed)
+    return PlacedTakes(made, tuple(baked), space.placed, from_armature)
 
 
 def _placed(

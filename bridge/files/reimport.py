@@ -12,8 +12,7 @@ from ...solver.data.recording import Recording
 from ..accessors import current_scene, present
 from ..armature import fcurves, read
 from ..armature.poses import frames_per_second
-from .data_blocks import data_blocks, remove_added
-from .scene_state import scene_restored
+from .data_blocks import data_blocks, remove_added, scene_restored
 
 
 def reimport(

@@ -41,13 +41,15 @@ class Outline:
 class Skeleton:
     """Bones of a file at rest.
 
-    rest: (B, 4, 4), bone to object, without scale. lengths: (B,). Both as the file counts.
+    rest: (B, 4, 4), bone to object, without scale. lengths: (B,). Both as the file counts. deforms:
+    whether a bone moves skin.
     """
 
     names: tuple[str, ...]
     parents: tuple[int, ...]
     rest: FloatArray
     lengths: FloatArray
+    deforms: tuple[bool, ...]
 
 
 def outline(
@@ -84,9 +86,11 @@ def skeleton(armature: bpy.types.Object, found: Outline, to_file: FloatArray) ->
     bones = [armature_data(armature).bones[name] for name in found.taken]
     rest = [rigid(to_file @ np.array(bone.matrix_local)) for bone in bones]
     lengths = [size * bone.length for bone in bones]
+    deforms = [bone.use_deform for bone in bones]
     if found.added:
         rest, lengths = [np.eye(4), *rest], [_ROOT_LENGTH * size, *lengths]
-    return Skeleton(found.names, found.parents, np.stack(rest), np.array(lengths))
+        deforms = [False, *deforms]
+    return Skeleton(found.names, found.parents, np.stack(rest), np.array(lengths), tuple(deforms))
 
 
 def scale_of(matrix: FloatArray) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -29,28 +29,30 @@ _UNICODE = "allow_unicode"  # an option from Blender 4.3 on
 
 def write(
     rig: bpy.types.Object,
-    name: str,
+    names: Mapping[bpy.types.Object, str],
     takes: Sequence[BakedTake],
     target: Path,
     options: ExportOptions,
     *,
     keeps_frames: bool,
 ) -> None:
-    """Write a baked rig under a name; it is at rest where the file tells no take. The scene's range
-    and frame are left at the takes'. Raises OutputNotWritable, SameUsdNames."""
+    """Write a baked rig, at rest where the file tells no take, and its skin, under these names. The
+    scene's range and frame are left at the takes'. Raises OutputNotWritable, SameUsdNames."""
     form, convention = format_of(options), CONVENTIONS[options.engine]
     scene = current_scene()
-    rig.select_set(True)
+    for thing in names:
+        thing.select_set(True)
     present(bpy.context.view_layer).objects.active = rig
     scene.frame_start, scene.frame_end = takes[0].first, max(take.last for take in takes)
     scene.frame_set(scene.frame_start - 1)
-    with ExitStack() as names, tempfile.TemporaryDirectory() as folder:
-        names.enter_context(_called(rig, name, bpy.data.objects))
-        names.enter_context(_called(rig.data, name, bpy.data.armatures))
+    with ExitStack() as called, tempfile.TemporaryDirectory() as folder:
+        called.enter_context(_called(rig.data, names[rig], bpy.data.armatures))
+        for thing, name in names.items():
+            called.enter_context(_called(thing, name, bpy.data.objects))
         made = Path(folder) / f"export{ENDINGS[form]}"
         if form is FileFormat.FBX:
             if keeps_frames:  # only the scene's own take does, which is called as the scene is
-                names.enter_context(_called(scene, takes[0].name, bpy.data.scenes))
+                called.enter_context(_called(scene, takes[0].name, bpy.data.scenes))
             _write_fbx(made, convention, keeps_frames=keeps_frames)
         elif form is FileFormat.GLTF:
             _write_gltf(made)
@@ -69,7 +71,7 @@ def _write_fbx(path: Path, convention: Convention, *, keeps_frames: bool) -> Non
     bpy.ops.export_scene.fbx(
         filepath=str(path),
         use_selection=True,
-        object_types={"ARMATURE"},
+        object_types={"ARMATURE", "MESH"},
         axis_forward="-Z" if convention.y_up else "Y",
         axis_up="Y" if convention.y_up else "Z",
         apply_scale_options="FBX_SCALE_NONE" if convention.centimetres else "FBX_SCALE_ALL",

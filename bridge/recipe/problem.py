@@ -41,10 +41,8 @@ on = "every frame"              # or "reduced": the fewest; "as the take": where
 distance = 0.002                # m by which reduced keys may move a joint, in the world; and
 angle = 0.2                     # degrees by which they may turn a bone
 
-[export]                        # the file with the result
+[export]                        # the file with the result: the keys are in export.py
 engine = "unreal"               # "unity", "godot"; default: "none", as the armature is in Blender
-format = "fbx"                  # or "gltf", "usd"; default: what the engine reads best
-root = "root bone"              # it carries the way; or "in place"; default: "as it is"
 
 Objects of the scene are in objects.py, and what may be asked for beside in requests.py.
 """

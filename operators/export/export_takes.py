@@ -15,7 +15,13 @@ from ...bridge.takes.takes import bake_shown, takes_of
 from ...solver.data.faults import OutputNotWritable
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..solve.common import FaultyOperator, chosen_armature, required_armature
+from ..solve.common import (
+    TWEAK_MODE,
+    FaultyOperator,
+    chosen_armature,
+    required_armature,
+    tweaked,
+)
 from ..solve.results import performer_of, required_result
 
 NO_NAME = "no file name is given"
@@ -72,11 +78,16 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
     root: bpy.props.EnumProperty(
         name="Travel", description="What carries the way over the floor", items=ROOTS
     )
+    skin: bpy.props.BoolProperty(
+        name="Skin", description="Write the meshes that the bones deform, too"
+    )
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
         armature = chosen_armature(context)
-        return None if armature is not None and _accepted(armature) else NOT_ACCEPTED
+        if armature is None or not _accepted(armature):
+            return NOT_ACCEPTED
+        return TWEAK_MODE if tweaked(armature) else None
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
@@ -89,7 +100,7 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         layout = present(self.layout)
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("engine", "format", "takes", "root"):
+        for name in ("engine", "format", "takes", "root", "skin"):
             layout.prop(self, name)
 
     def check(self, _context: bpy.types.Context) -> bool:
@@ -124,11 +135,9 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
 
     def _options(self, path: str = "") -> ExportOptions:
         """As chosen; without a choice the format that a path's ending tells, else the engine's."""
-        engine, root = Engine[self.engine], RootMotion[self.root]
-        if self.format != "BEST":
-            return ExportOptions(engine, FileFormat[self.format], root)
         told = next((form for form, ending in ENDINGS.items() if path.endswith(ending)), None)
-        return ExportOptions(engine, told, root)
+        form = told if self.format == "BEST" else FileFormat[self.format]
+        return ExportOptions(Engine[self.engine], form, RootMotion[self.root], self.skin)
 
     def _tell(
         self,

@@ -13,8 +13,9 @@ def test_the_file_is_asked_for() -> None:
     engine = "godot"
     format = "fbx"
     root = "in place"
+    skin = true
     """
-    asked = ExportOptions(Engine.GODOT, FileFormat.FBX, RootMotion.IN_PLACE)
+    asked = ExportOptions(Engine.GODOT, FileFormat.FBX, RootMotion.IN_PLACE, skin=True)
     assert parse_recipe(text).export == asked
     assert parse_recipe("[export]").export == ExportOptions()
     assert parse_recipe("mass = 70").export is None
