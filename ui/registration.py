@@ -13,7 +13,7 @@ from ..bridge.properties import settings, stances
 from ..bridge.properties.attached_groups import attach_groups
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
-from ..operators.export import exports, recipe_export
+from ..operators.export import export_takes, recipe_export, save_plots
 from ..operators.lists import (
     body_changes,
     bone_presets,
@@ -38,7 +38,8 @@ from .timeline import handler as timeline
 # A panel comes after the one that it is part of.
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, surfaces, support_box, presets),
-    *(bone_presets, choose_named, remedies, results, takes, exports, recipe_export),
+    *(bone_presets, choose_named, remedies, results, takes),
+    *(export_takes, recipe_export, save_plots),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
     *(lists, menus, setup, contact_panels, constraint_panels, world, solve, keys, display),
     *(pin_handles, limit_handles),

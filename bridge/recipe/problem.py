@@ -41,6 +41,9 @@ on = "every frame"              # or "reduced": the fewest; "as the take": where
 distance = 0.002                # m by which reduced keys may move a joint, in the world; and
 angle = 0.2                     # degrees by which they may turn a bone
 
+[export]                        # the file with the result: the keys are in export.py
+engine = "unreal"               # "unity", "godot"; default: "none", as the armature is in Blender
+
 Objects of the scene are in objects.py, and what may be asked for beside in requests.py.
 """
 
@@ -86,6 +89,7 @@ from ..recipe_syntax.items import (
 from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
 from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
 from ..recipe_syntax.toml_text import entries, sections
+from .export import EXPORT, ExportOptions
 from .keys import KEYS, KeyOptions
 from .loop import LOOP, LoopOptions
 from .object_texts import object_text
@@ -105,6 +109,7 @@ OWN_KEYS = (
     "contact",
     "keys",
     "loop",
+    "export",
 )
 TOP_KEYS = (*OWN_KEYS, "add_contact", OBJECT, *REQUEST_KEYS, RESULT.header)
 REDUCTION = ("solution", "reduction")
@@ -122,8 +127,8 @@ _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 bracke
 class Recipe:
     """Parsed recipe. clip: a path as written, relative to the recipe; None where not given.
 
-    under: objects of which the analysis is to tell the places. result, keys, loop: None where not
-    given.
+    under: objects of which the analysis is to tell the places. result, keys, loop, export: None
+    where not given.
     """
 
     problem: MotionProblem
@@ -132,6 +137,7 @@ class Recipe:
     result: ResultOptions | None = None
     keys: KeyOptions | None = None
     loop: LoopOptions | None = None
+    export: ExportOptions | None = None
 
 
 def read_recipe_text(path: str | Path) -> str:
@@ -170,7 +176,8 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
     result = RESULT.read(table) if RESULT.header in table.values else None
     keys = KEYS.read(table) if KEYS.header in table.values else None
     loop = LOOP.read(table) if problem.loop else None
-    return Recipe(problem, table.word("clip"), under, result, keys, loop)
+    export = EXPORT.read(table) if EXPORT.header in table.values else None
+    return Recipe(problem, table.word("clip"), under, result, keys, loop, export)
 
 
 def locate(text: str, fault: Fault) -> int | None:

@@ -105,3 +105,28 @@ class KeyChoice(Enum):
     EVERY_FRAME = "every frame"
     REDUCED = "reduced"  # the fewest within an error
     TAKE = "as the take"  # where the take has keys
+
+
+class Engine(Enum):
+    """For whom a file is written."""
+
+    NONE = "none"
+    UNREAL = "unreal"
+    UNITY = "unity"
+    GODOT = "godot"
+
+
+class FileFormat(Enum):
+    """Of a file with takes."""
+
+    FBX = "fbx"
+    GLTF = "gltf"
+    USD = "usd"
+
+
+class RootMotion(Enum):
+    """What carries the way over the floor in a file."""
+
+    AS_IT_IS = "as it is"
+    ROOT_BONE = "root bone"
+    IN_PLACE = "in place"

@@ -10,8 +10,9 @@ from ...bridge.accessors import current_action
 from ...bridge.armature import fcurves
 from ...bridge.armature.read import read_recording
 from ...bridge.armature.write import write_action
-from ...bridge.files.export import export_fbx, reimport_fbx
+from ...bridge.files.export import export_takes
 from ...bridge.files.import_clip import import_clip
+from ...bridge.files.reimport import reimport
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.transcription.motion import Motion
 from .clips import Clip
@@ -42,9 +43,9 @@ def drifts(
     own, slot = current_action(armature), fcurves.slot_identifier(armature)
     action = write_action(armature, motion.track(recording), name="measured")
     written = read_recording(armature, first=first, last=last)
-    export_fbx(armature, action, fbx)
+    export_takes(armature, [action], fbx)
     fcurves.assign(armature, own, slot)
-    back = reimport_fbx(fbx, recording.frames)
+    back = reimport(fbx, recording.frames)
     bpy.data.actions.remove(action)
     return drift(motion, written), drift(motion, back)
 
@@ -54,7 +55,7 @@ def drift(motion: Motion, shown: Recording) -> Drift:
     contacts = [c.contact for c in motion.transcription.contacts]
     held = above = 0.0
     for contact, place in zip(contacts, motion.places, strict=True):
-        bone = shown.index(contact.bone)  # keeps its own axes through FBX, though not its rest pose
+        bone = shown.index(contact.bone)
         point = shown.heads[:, bone] + shown.rotations[:, bone] @ contact.offset
         touching = (shown.times > contact.start) & (shown.times < contact.end)
         off = (point - place)[touching]

@@ -10,7 +10,7 @@ import bpy
 from ...bridge.armature.read import read_recording, record
 from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.write import write_action
-from ...bridge.files.export import export_fbx
+from ...bridge.files.export import export_takes
 from ...bridge.files.import_clip import import_clip
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import View
@@ -58,7 +58,7 @@ def _write(armature: bpy.types.Object, result: Result, folder: Path, *, picture:
     content: Json = {"checks": [_checked(check, shown) for check in found]}
     content |= _solid(drawn["solid"], shown)
     with quiet():
-        export_fbx(armature, action, folder / "adapted.fbx")
+        export_takes(armature, [action], folder / "adapted.fbx")
         if picture:
             scene = result.page is Page.SCENE
             view = View(figures=FIGURES, heading=drawn["heading"], in_place=scene)

@@ -22,8 +22,9 @@ rigid to it.
   *name*, where the skeleton's shape tells less; by its *shape* alone.
 - **Same edit**: the landing moved by 0.3 m, adapted on each rig, written and read again; the
   largest distance of a joint centre from where it is on the first rig. Empty: only mapped.
-- **File round trip**: the adapted action of each rig as FBX and glTF, read by Blender's importer;
-  the largest difference of any bone's place, and of its turn since the first frame.
+- **File round trip**: the adapted action of each rig as FBX, glTF and USD, for Unreal, Unity, Godot
+  and for no engine, read by Blender's importers (FBX by the add-on and by the native one); the
+  largest difference of any bone's place and turn at any frame, in glTF of its turn since the first.
 - **Known misses** are declared in `devtools/rigs/limits.py`. The command ends with 1 for others.
 """
 COLUMNS = ("rig", "bones", "named as", "mapped", "by", "same edit (mm)", "worst")

@@ -203,17 +203,17 @@ def accepts(driver: Driver) -> Actions:
 def exports_fbx(driver: Driver) -> Actions:
     yield from open_panel(driver, "ExportPanel")
     path = Path("/tmp/accepted.fbx")
-    yield from export(driver, "hangtime.export_fbx", path, b"Kaydara FBX Binary")
+    yield from export(driver, path, b"Kaydara FBX Binary", "FBX")
 
 
 def exports_gltf(driver: Driver) -> Actions:
     path = Path("/tmp/accepted.glb")
-    yield from export(driver, "hangtime.export_gltf", path, b"glTF", 0.5)  # of three in a row
+    yield from export(driver, path, b"glTF", "GLTF")
 
 
-def export(driver: Driver, command: str, path: Path, begins: bytes, *columns: float) -> Actions:
-    yield from press(driver, command, *columns)
-    yield from dialog(driver, path)
+def export(driver: Driver, path: Path, begins: bytes, form: str) -> Actions:
+    yield from press(driver, "hangtime.export", 0.25)  # the first of two in a row
+    yield from dialog(driver, path, format=form)
     yield Until("the file", path.is_file, 30)
     yield 1.0
     written = path.read_bytes()

@@ -8,6 +8,7 @@ from dataclasses import replace
 from io import TextIOWrapper
 from pathlib import Path
 
+from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.objects import placed_objects
@@ -151,7 +152,8 @@ def adapt(options: argparse.Namespace) -> None:
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
-        outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop)
+        export = recipe.export or ExportOptions()
+        outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop, export)
         if result.fault is not None:
             outputs.write_failure()
             outbox.deliver()

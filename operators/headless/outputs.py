@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
@@ -41,6 +42,7 @@ class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
 
     options: of the rest of the take. keys: of the adapted frames. loop: where the motion repeats.
+    export: of the file for others.
     """
 
     clip: LoadedClip
@@ -50,6 +52,7 @@ class Outputs:
     outbox: Outbox
     stages: Stages
     loop: LoopOptions | None = None
+    export: ExportOptions = field(default_factory=ExportOptions)
 
     def write(self, *, picture: bool = True) -> Report:
         """All files of a result that is what was asked for; the picture where wanted."""
@@ -64,10 +67,7 @@ class Outputs:
                 self._lay_strips(performer, present(recorded), adapted)
             self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
-        with self.stages.stage("Exporting FBX"), quiet():
-            from ...bridge.files.export import export_fbx
-
-            export_fbx(performer, adapted, self.outbox.path("adapted.fbx"))
+        self._export(performer, adapted)
         if picture:
             self._draw()
         with self.stages.stage("Measuring"):
@@ -78,6 +78,15 @@ class Outputs:
             report = replace(self._report(), keys=keys)
         self._write_report(report, written)
         return report
+
+    def _export(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
+        from ...bridge.files.engines import ENDINGS, format_of
+        from ...bridge.files.export import export_takes
+
+        form, pelvis = format_of(self.export), self.result.track.bones[0]
+        with self.stages.stage(f"Exporting {form.name}"), quiet():
+            path = self.outbox.path(f"adapted{ENDINGS[form]}")
+            export_takes(performer, [adapted], path, self.export, pelvis)
 
     def _draw(self) -> None:
         adaptation = self.result.adaptation

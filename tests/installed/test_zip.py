@@ -40,6 +40,12 @@ SHIPPED = {
 ABSENT = ("casadi", "scipy", "mujoco")
 OUTPUTS = {"adapted.blend", "adapted.fbx", "sheet.png", "report.json", "trajectory.npz"}
 
+FOR_UNREAL = """
+[export]
+engine = "unreal"
+root = "root bone"
+"""
+
 # Both scripts end by os._exit: some versions of bpy crash or hang in an ordinary exit.
 INSTALL = """
 import importlib.util, json, os, sys
@@ -130,10 +136,12 @@ def test_the_installed_extension_does_the_main_job(
     zips: dict[str, Path], bare_python: Path, tmp_path: Path
 ) -> None:
     clip = find(HOPS)
-    recipe = ROOT / "examples" / "demo_hop.toml"
-    out = tmp_path / "out"
+    recipe, out = tmp_path / "recipe.toml", tmp_path / "out"
+    demo = (ROOT / "examples" / "demo_hop.toml").read_text(encoding="utf-8")
+    recipe.write_text(f"{demo}\n{FOR_UNREAL}", encoding="utf-8")
     given = (str(zips["linux-x64"]), str(clip), str(recipe), str(out))
     answer = run_installed(bare_python, tmp_path / "user", ADAPT, *given)
     assert answer["code"] == 0, answer["said"]
     assert {p.name for p in out.iterdir() if p.stat().st_size > 0} >= OUTPUTS
+    assert b"Armature\x00\x01Model" in (out / "adapted.fbx").read_bytes()
     assert "status" in json.loads((out / "report.json").read_text(encoding="utf-8"))

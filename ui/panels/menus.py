@@ -25,8 +25,7 @@ GROUPS = (
         OperatorId.SHOW_REPORT,
     ),
     (
-        OperatorId.EXPORT_FBX,
-        OperatorId.EXPORT_GLTF,
+        OperatorId.EXPORT,
         OperatorId.EXPORT_RECIPE,
         OperatorId.SAVE_PLOTS,
     ),

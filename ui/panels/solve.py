@@ -210,6 +210,5 @@ class ExportPanel(ArmaturePanel):
 
     def draw(self, _context: bpy.types.Context) -> None:
         row = present(self.layout).row(align=True)
-        row.operator(OperatorId.EXPORT_FBX, text="FBX", icon="EXPORT")
-        row.operator(OperatorId.EXPORT_GLTF, text="glTF", icon="EXPORT")
+        row.operator(OperatorId.EXPORT, text="Export…", icon="EXPORT")
         row.operator(OperatorId.EXPORT_RECIPE, text="Recipe", icon="TEXT")

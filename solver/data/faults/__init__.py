@@ -43,6 +43,8 @@ from .requests import NotAboveZero as NotAboveZero
 from .requests import NothingTouches as NothingTouches
 from .requests import ReturnTooEarly as ReturnTooEarly
 from .requests import RootHasNoJoint as RootHasNoJoint
+from .requests import SameUsdNames as SameUsdNames
+from .requests import SeveralTakes as SeveralTakes
 from .requests import StillBone as StillBone
 from .requests import TakenName as TakenName
 from .requests import TimedTwice as TimedTwice

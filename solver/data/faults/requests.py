@@ -29,6 +29,21 @@ class ReturnTooEarly(Fault):
 
 
 @dataclass
+class SeveralTakes(Fault):
+    """Several takes are to go into a file that can hold one."""
+
+    takes: tuple[str, ...]
+
+
+@dataclass
+class SameUsdNames(Fault):
+    """Two bones would have one name in a USD file."""
+
+    first_bone: str
+    second_bone: str
+
+
+@dataclass
 class BadDimensions(Fault):
     """A model reduction to no dimension at all, or to more than the joints have."""
 

@@ -13,8 +13,8 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
-from hangtime.bridge.files.export import reimport_fbx
 from hangtime.bridge.files.import_clip import import_clip
+from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.picture.render import draw_sheet
 from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.headless import commands, picture
@@ -135,7 +135,7 @@ def test_pinned_points_stay_where_they_were_sent(done: Path) -> None:
     bpy.ops.wm.open_mainfile(filepath=str(done / "adapted.blend"))
     first, last = report["take"]["adapted_frames"]
     written = read_recording(bpy.data.objects["forward_jump_116cm"], first=first, last=last)
-    exported = reimport_fbx(done / "adapted.fbx", written.frames)
+    exported = reimport(done / "adapted.fbx", written.frames)
     with np.load(done / "trajectory.npz") as trajectory:
         names = list(trajectory["contact_names"])
         for contact in report["contacts"]:

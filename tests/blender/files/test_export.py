@@ -1,4 +1,4 @@
-"""Recording and result side by side in a scene, and as FBX, in the bpy module."""
+"""Recording and result side by side in a scene, and as a file for other programs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.armature.write import side_by_side, write_action
-from hangtime.bridge.files.export import export_fbx, export_gltf, reimport_fbx, reimport_gltf
+from hangtime.bridge.files.export import export_takes
+from hangtime.bridge.files.reimport import reimport
+from hangtime.bridge.recipe.export import ExportOptions
+from hangtime.bridge.rows.choices import FileFormat
 from hangtime.devtools.recordings import JUMP, find
 from hangtime.solver.data.faults import (
     OutputNotWritable,
@@ -72,8 +75,8 @@ def test_fbx_holds_that_action_alone_and_leaves_the_scene(tmp_path: Path) -> Non
     blocks = [set(kind) for kind in (bpy.data.objects, bpy.data.actions, bpy.data.armatures)]
 
     path = tmp_path / "new" / "adapted.fbx"
-    export_fbx(armature, action, path)
-    again = reimport_fbx(path, adapted.frames)
+    export_takes(armature, [action], path)
+    again = reimport(path, adapted.frames)
 
     columns = [again.index(bone.name) for bone in adapted.bones]
     np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=5e-5)
@@ -94,9 +97,9 @@ def test_gltf_holds_the_action_by_its_name_and_comes_back(tmp_path: Path) -> Non
     action = write_action(armature, altered(read_recording(armature)), name="Longer Jump")
     adapted = read_recording(armature)
     path = tmp_path / "adapted.glb"
-    export_gltf(armature, action, path)
+    export_takes(armature, [action], path, ExportOptions(format=FileFormat.GLTF))
     before = set(bpy.data.objects), set(bpy.data.actions)
-    again = reimport_gltf(path, adapted.frames)
+    again = reimport(path, adapted.frames)
     assert before == (set(bpy.data.objects), set(bpy.data.actions))
     columns = [again.index(bone.name) for bone in adapted.bones]
     np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=1e-4)
@@ -108,7 +111,7 @@ def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("no folder")
     path = tmp_path / "file" / "adapted.fbx"
     with pytest.raises(OutputNotWritable) as fault:
-        export_fbx(armature, armature.animation_data.action, path)
+        export_takes(armature, [armature.animation_data.action], path)
     assert fault.value.path == str(path)
 
 
@@ -126,8 +129,8 @@ def test_a_real_jump_survives_writing_and_fbx(tmp_path: Path) -> None:
     track = altered(recording, moving)
     action = write_action(armature, track, name="Adapted")
     adapted = assert_follows(armature, track)
-    export_fbx(armature, action, tmp_path / "adapted.fbx")
-    again = reimport_fbx(tmp_path / "adapted.fbx", adapted.frames)
+    export_takes(armature, [action], tmp_path / "adapted.fbx")
+    again = reimport(tmp_path / "adapted.fbx", adapted.frames)
     columns = [again.index(bone) for bone in moving]
     np.testing.assert_allclose(again.heads[:, columns], adapted.heads, atol=5e-5)
     np.testing.assert_allclose(again.rotations[:, columns], adapted.rotations, atol=2e-4)

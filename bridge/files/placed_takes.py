@@ -1,0 +1,149 @@
+"""Takes of an armature as poses of the bones that a file gets, in its coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ...solver.arrays import FloatArray
+from ..accessors import armature_data, current_scene, present
+from ..armature import fcurves
+from ..armature.poses import Poses, sample
+from ..recipe.export import ExportOptions
+from ..rows.choices import FileFormat, RootMotion
+from .baked_rig import BakedTake
+from .engines import CONVENTIONS, format_of
+from .root_motion import way, without_turns
+from .skeleton import Outline, Skeleton, outline, scale_of, skeleton
+
+_STILL = 1e-5  # Blender units, by which an object that rests may move
+
+
+@dataclass(frozen=True)
+class PlacedTakes:
+    """What a baked rig is to be. Matrices (4, 4): its object to the world, and the armature's space
+    to its own."""
+
+    skeleton: Skeleton
+    takes: tuple[BakedTake, ...]
+    placed: FloatArray
+    from_armature: FloatArray
+
+
+@dataclass(frozen=True)
+class _Space:
+    """Matrices (4, 4): the armature at rest to the world, the world to the file's object, and this
+    to the world, as Blender's exporter is to find it."""
+
+    at_rest: FloatArray
+    to_file: FloatArray
+    placed: FloatArray
+
+
+def place_takes(
+    armature: bpy.types.Object,
+    takes: Sequence[bpy.types.Action],
+    options: ExportOptions,
+    pelvis: str | None,
+    *,
+    keeps_frames: bool,
+) -> PlacedTakes:
+    """Evaluate takes and put them where the file has them; otherwise they begin at frame 0."""
+    convention, carries = CONVENTIONS[options.engine], options.root is RootMotion.ROOT_BONE
+    found = outline(
+        armature, pelvis, clean=convention.clean, root=carries, one_root=convention.one_root
+    )
+    poses = [_performed(armature, take) for take in takes]
+    space = _space(options, poses)
+    from_armature = space.to_file @ space.at_rest
+    made = skeleton(armature, found, from_armature)
+    baked = []
+    for take, performed in zip(takes, poses, strict=True):
+        path = None
+        if pelvis is not None and options.root is not RootMotion.AS_IT_IS:
+            rest = space.at_rest @ np.array(armature_data(armature).bones[pelvis].matrix_local)
+            hips = performed.matrices[:, performed.bones.index(pelvis)]
+            path = way(performed.object_to_world @ hips, rest, steady=take.use_cyclic)
+            if not carries:
+                path = without_turns(path, rest)
+        name = take.name + (convention.loop if take.use_cyclic else "")
+        first = _range(take)[0] if keeps_frames else 0
+        baked.append(BakedTake(name, first, _placed(performed, found, made, space, path, carries)))
+    return PlacedTakes(made, tuple(baked), space.placed, from_armature)
+
+
+def _placed(
+    performed: Poses,
+    found: Outline,
+    made: Skeleton,
+    space: _Space,
+    path: FloatArray | None,
+    carries: bool,
+) -> FloatArray:
+    """(T, B, 4, 4) poses in the file. path: (T, 4, 4) that the root bone carries or, where it
+    does not, that is left out."""
+    columns = [performed.bones.index(name) for name in found.taken]
+    world = performed.object_to_world[:, None] @ performed.matrices[:, columns]
+    if path is not None and not carries:
+        world = np.linalg.inv(path)[:, None] @ world
+    poses = space.to_file @ world
+    poses[..., :3, :3] /= scale_of(space.to_file @ space.at_rest)
+    if found.added:
+        still = np.tile(made.rest[0], (len(poses), 1, 1, 1))
+        poses = np.concatenate([still, poses], axis=1)
+    if path is not None and carries and found.root is not None:
+        moved = space.to_file @ path @ np.linalg.inv(space.to_file)
+        poses[:, found.root] = moved @ made.rest[found.root]
+    return poses
+
+
+def _space(options: ExportOptions, poses: Sequence[Poses]) -> _Space:
+    """Where things are: a clean file has the armature's own place at its origin, as long as this
+    stays where it is, and no transformation of the object."""
+    form, convention = format_of(options), CONVENTIONS[options.engine]
+    file = convention.space(form, current_scene())
+    places = np.concatenate([each.object_to_world for each in poses])
+    at_rest = places[0]
+    if not convention.clean:
+        metres = np.eye(4) if form is FileFormat.FBX else file
+        return _Space(at_rest, np.linalg.inv(at_rest), metres @ at_rest)
+    origin = np.eye(4)
+    if np.ptp(places[:, :3, 3], axis=0).max() < _STILL:
+        origin[:3, 3] = -at_rest[:3, 3]
+    else:
+        at_rest = at_rest.copy()
+        at_rest[:3, 3] = 0.0
+    undone = np.linalg.inv(file) if form is FileFormat.FBX else np.eye(4)
+    return _Space(at_rest, file @ origin, undone)
+
+
+def _performed(armature: bpy.types.Object, take: bpy.types.Action) -> Poses:
+    """Poses at every whole frame of a take."""
+    first, last = _range(take)
+    with _performing(armature, take):
+        return sample(armature, np.arange(first, last + 1.0))
+
+
+def _range(take: bpy.types.Action) -> tuple[int, int]:
+    first, last = take.frame_range.to_tuple()
+    return round(first), round(last)
+
+
+@contextmanager
+def _performing(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[None]:
+    """Context in which the armature performs an action alone."""
+    data = present(armature.animation_data or armature.animation_data_create())
+    was, slot, nla = data.action, fcurves.slot_identifier(armature), data.use_nla
+    try:
+        fcurves.assign(armature, action, slot)
+        data.use_nla = False
+        yield
+    finally:
+        data.use_nla = nla
+        fcurves.assign(armature, was, slot)
+        scene = current_scene()
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)

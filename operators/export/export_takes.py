@@ -1,0 +1,165 @@
+"""Export: accepted results as takes of one file, for a game engine or another program."""
+
+from pathlib import Path
+
+import bpy
+
+from ...bridge.accessors import present
+from ...bridge.files.engines import ENDINGS, format_of
+from ...bridge.files.export import export_takes
+from ...bridge.files.writers import usd_name
+from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.recipe.export import ExportOptions
+from ...bridge.rows.choices import Engine, FileFormat, RootMotion
+from ...bridge.takes.takes import bake_shown, takes_of
+from ...solver.data.faults import OutputNotWritable
+from ..names import OperatorId
+from ..operator_types import OperatorResult
+from ..solve.common import (
+    TWEAK_MODE,
+    FaultyOperator,
+    chosen_armature,
+    required_armature,
+    tweaked,
+)
+from ..solve.results import performer_of, required_result
+
+NO_NAME = "no file name is given"
+NOT_ACCEPTED = "Accept a result first; what is exported are accepted results"
+SHOWN_NOT_ACCEPTED = "The result that is shown is not accepted; accept it, or choose All Accepted"
+LEFT_OUT = "; left out, as another armature performs them: {}"
+RENAMED = "; USD names have letters and digits alone, so {} bones are called otherwise in it"
+
+ENGINES = (
+    ("NONE", "None", "As the armature is in Blender; a single take keeps its frames"),
+    ("UNREAL", "Unreal", "Centimetres, Z up, no bone for the armature, one root bone"),
+    ("UNITY", "Unity", "Metres, Y up, no turn or scale on the armature"),
+    ("GODOT", "Godot", "Metres, Y up; takes that repeat are called so that Godot repeats them"),
+)
+FORMATS = (
+    ("BEST", "Best", "What the engine reads best: glTF for Godot, FBX for others"),
+    ("FBX", "FBX", "Autodesk's exchange format, binary"),
+    ("GLTF", "glTF", "Khronos' transmission format, one binary file"),
+    ("USD", "USD", "Universal Scene Description, as text; it holds one take"),
+)
+ROOTS = (
+    ("AS_IT_IS", "As It Is", "What carries it in Blender"),
+    (
+        "ROOT_BONE",
+        "Root Bone",
+        "A root bone stays under the hips on the floor and turns with them; one is added where "
+        "the armature has none. The motion is the same",
+    ),
+    ("IN_PLACE", "In Place", "Left out; the figure stays where it stands at rest"),
+)
+TAKES = (
+    ("SHOWN", "This Result", "The result that is shown"),
+    ("ACCEPTED", "All Accepted", "Every result with a tick, each as a take of its own"),
+)
+
+
+class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
+    bl_idname = OperatorId.EXPORT
+    bl_label = "Export"
+    bl_description = (
+        "Write the armature with accepted results as FBX, glTF or USD, with a key on every frame, "
+        "as a game engine wants it. The scene stays as it is"
+    )
+    bl_options = {"PRESET"}
+
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH")
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_glob: bpy.props.StringProperty(
+        default=";".join(f"*{ending}" for ending in ENDINGS.values()), options={"HIDDEN"}
+    )
+    engine: bpy.props.EnumProperty(name="Engine", description="For whom the file is", items=ENGINES)
+    format: bpy.props.EnumProperty(name="Format", description="Of the file", items=FORMATS)
+    takes: bpy.props.EnumProperty(name="Takes", description="What goes into it", items=TAKES)
+    root: bpy.props.EnumProperty(
+        name="Travel", description="What carries the way over the floor", items=ROOTS
+    )
+    skin: bpy.props.BoolProperty(
+        name="Skin", description="Write the meshes that the bones deform, too"
+    )
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        armature = chosen_armature(context)
+        if armature is None or not _accepted(armature):
+            return NOT_ACCEPTED
+        return TWEAK_MODE if tweaked(armature) else None
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
+        folder = Path(bpy.data.filepath).parent if bpy.data.filepath else Path.home()
+        name = bpy.path.clean_name(required_result(context).name)
+        self.filepath = str(folder / f"{name}{ENDINGS[format_of(self._options())]}")
+        present(context.window_manager).fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        for name in ("engine", "format", "takes", "root", "skin"):
+            layout.prop(self, name)
+
+    def check(self, _context: bpy.types.Context) -> bool:
+        """Let the name end as the chosen format's files do."""
+        path = Path(self.filepath)
+        known = path.suffix in ENDINGS.values()
+        wanted = str(path.with_suffix("") if known else path) + ENDINGS[format_of(self._options())]
+        changed = bool(wanted != self.filepath)
+        self.filepath = wanted
+        return changed
+
+    def run(self, context: bpy.types.Context) -> OperatorResult:
+        armature = required_armature(context)
+        if not bpy.path.basename(self.filepath):
+            raise OutputNotWritable(self.filepath, NO_NAME)
+        accepted, shown = _accepted(armature), required_result(context)
+        if self.takes == "SHOWN" and shown not in accepted:
+            return self.refuse(SHOWN_NOT_ACCEPTED)
+        chosen = [shown] if self.takes == "SHOWN" else accepted
+        performer = performer_of(armature)
+        taken = [take for take in chosen if _performer(take, armature) == performer]
+        for take in taken:
+            bake_shown(performer, take)
+        options = self._options(bpy.path.abspath(self.filepath))
+        ending = ENDINGS[format_of(options)]
+        path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ending)
+        pelvis = next((p.bone for p in settings_of(armature).parts if p.name == "pelvis"), None)
+        export_takes(performer, taken, path, options, pelvis or None)
+        left_out = [take.name for take in chosen if take not in taken]
+        self._tell(performer, Path(path).name, options, left_out)
+        return {"FINISHED"}
+
+    def _options(self, path: str = "") -> ExportOptions:
+        """As chosen; without a choice the format that a path's ending tells, else the engine's."""
+        told = next((form for form, ending in ENDINGS.items() if path.endswith(ending)), None)
+        form = told if self.format == "BEST" else FileFormat[self.format]
+        return ExportOptions(Engine[self.engine], form, RootMotion[self.root], self.skin)
+
+    def _tell(
+        self,
+        performer: bpy.types.Object,
+        name: str,
+        options: ExportOptions,
+        left_out: list[str],
+    ) -> None:
+        said = f"Exported {name}"
+        if left_out:
+            said += LEFT_OUT.format(", ".join(left_out))
+        renamed = [b for b in present(performer.pose).bones if usd_name(b.name) != b.name]
+        if format_of(options) is FileFormat.USD and renamed:
+            said += RENAMED.format(len(renamed))
+        self.report({"INFO"}, said)
+
+
+def _accepted(armature: bpy.types.Object) -> list[bpy.types.Action]:
+    """The results with a tick, in the order of the list of takes."""
+    return [t.action for t in takes_of(armature) if action_settings(t.action).accepted]
+
+
+def _performer(take: bpy.types.Action, armature: bpy.types.Object) -> bpy.types.Object:
+    performer: bpy.types.Object | None = action_settings(take).performer
+    return performer or armature

@@ -1,0 +1,105 @@
+"""What carries the way over the floor in a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.read import record
+from hangtime.bridge.files.export import export_takes
+from hangtime.bridge.files.reimport import reimport
+from hangtime.bridge.files.root_motion import way
+from hangtime.bridge.recipe.export import ExportOptions
+from hangtime.bridge.rows.choices import Engine, FileFormat, RootMotion
+from hangtime.devtools.rigs.actor import actor
+from hangtime.devtools.rigs.build import build
+from hangtime.devtools.rigs.layout import layouts
+from hangtime.solver.data.faults import MissingPart
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.numerics.rotations import axis_rotation
+
+FRAMES = np.arange(170.0, 220.0)  # the take-off and some of the flight
+LEVEL = np.array([1.0, 1.0, 0.0])
+PELVIS = {"cmu": "Hips", "unreal": "pelvis"}
+
+
+def exported(
+    key: str, root: RootMotion, path: Path, engine: Engine = Engine.UNREAL
+) -> tuple[Recording, Recording]:
+    """The jump as Blender shows it and as the file has it."""
+    armature = build(next(each for each in layouts() if each.key == key), actor())
+    action = armature.animation_data.action
+    action.use_frame_range = True
+    action.frame_start, action.frame_end = FRAMES[[0, -1]]
+    shown = record(armature, FRAMES)
+    export_takes(armature, [action], path, ExportOptions(engine, root=root), PELVIS[key])
+    return shown, reimport(path, FRAMES, begins=FRAMES[0])
+
+
+@pytest.mark.parametrize("key", ["cmu", "unreal"])
+def test_a_root_bone_carries_the_same_motion(key: str, tmp_path: Path) -> None:
+    """One that is there, and one that is added."""
+    shown, again = exported(key, RootMotion.ROOT_BONE, tmp_path / "jump.fbx")
+    root = again.index("root")
+    columns = [again.index(bone.name) for bone in shown.bones if bone.name != "root"]
+    mine = [shown.index(bone.name) for bone in shown.bones if bone.name != "root"]
+    np.testing.assert_allclose(again.heads[:, columns], shown.heads[:, mine], atol=1e-4)
+    hips = shown.heads[:, shown.index(PELVIS[key])]
+    travelled = again.heads[-1, root] - again.heads[0, root]
+    assert np.linalg.norm(travelled) > 0.5
+    np.testing.assert_allclose(travelled, (hips[-1] - hips[0]) * LEVEL, atol=0.05)
+    assert np.ptp(again.heads[:, root, 2]) < 1e-4
+    assert all(bone.parent >= 0 for bone in again.bones if bone.name != "root")
+
+
+def test_in_place_leaves_out_the_way_and_nothing_else(tmp_path: Path) -> None:
+    shown, again = exported("cmu", RootMotion.IN_PLACE, tmp_path / "jump.fbx")
+    columns = [again.index(bone.name) for bone in shown.bones]
+    hips = shown.index("Hips")
+    assert np.ptp(again.heads[:, columns[hips], :2], axis=0).max() < 1e-4
+    apart = again.heads[:, columns] - shown.heads
+    assert np.ptp(apart, axis=1).max() < 1e-4  # every bone was shifted alike
+    assert np.abs(apart[..., 2]).max() < 1e-4
+
+
+def test_as_it_is_takes_no_root_bone_but_where_an_engine_needs_one(tmp_path: Path) -> None:
+    _, plain = exported("cmu", RootMotion.AS_IT_IS, tmp_path / "jump.fbx")
+    assert "root" not in [bone.name for bone in plain.bones]
+
+
+def test_a_root_bone_needs_a_pelvis(tmp_path: Path) -> None:
+    armature = build(next(each for each in layouts() if each.key == "cmu"), actor())
+    with pytest.raises(MissingPart):
+        export_takes(
+            armature,
+            [armature.animation_data.action],
+            tmp_path / "jump.fbx",
+            ExportOptions(format=FileFormat.FBX, root=RootMotion.ROOT_BONE),
+        )
+
+
+def test_the_way_of_a_cycle_is_straight_and_even() -> None:
+    pelvis = np.tile(np.eye(4), (11, 1, 1))
+    pelvis[:, 0, 3] = np.linspace(0.0, 2.0, 11) ** 2  # faster and faster
+    pelvis[:, 2, 3] = 1.0
+    pelvis[:, :3, :3] = axis_rotation(2, 0.2 * np.sin(np.arange(11.0)))
+    rest = np.eye(4)
+    rest[2, 3] = 1.0
+    found = way(pelvis, rest, steady=True)
+    np.testing.assert_allclose(found[:, 0, 3], np.linspace(0.0, 4.0, 11), atol=1e-12)
+    np.testing.assert_allclose(found[:, :3, :3], np.eye(3)[None].repeat(11, 0), atol=1e-12)
+
+
+def test_the_way_goes_on_evenly_through_a_somersault() -> None:
+    tilt = np.linspace(0.0, 2.0 * np.pi, 37)
+    pelvis = np.tile(np.eye(4), (37, 1, 1))
+    pelvis[:, :3, :3] = axis_rotation(2, np.linspace(0.0, 0.6, 37)) @ axis_rotation(0, tilt)
+    found = way(pelvis, np.eye(4), steady=False)
+    heading = np.arctan2(found[:, 1, 0], found[:, 0, 0])
+    assert heading[-1] == pytest.approx(0.6)
+    assert np.diff(heading).min() > -0.02
+    assert np.diff(heading).max() < 0.06

@@ -1,0 +1,52 @@
+"""What an FBX file says, by the reader of Blender's add-on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from io_scene_fbx import parse_fbx
+
+_DEFAULTS = {
+    b"Lcl Translation": (0.0, 0.0, 0.0),
+    b"Lcl Rotation": (0.0, 0.0, 0.0),
+    b"Lcl Scaling": (1.0, 1.0, 1.0),
+}
+
+
+@dataclass(frozen=True)
+class FbxFile:
+    """unit: centimetres. up: index of the axis. transformations: place, degrees and scale by node.
+    takes: names of its animations."""
+
+    unit: float
+    up: int
+    transformations: dict[str, tuple[float, ...]]
+    takes: tuple[str, ...]
+
+
+def fbx_file(path: Path) -> FbxFile:
+    root = parse_fbx.parse(str(path))[0]
+    settings = _properties(_child(root, b"GlobalSettings"))
+    objects = _child(root, b"Objects").elems
+    nodes = {}
+    for each in objects:
+        if each.id == b"Model":
+            said = {**_DEFAULTS, **_properties(each)}
+            nodes[_name(each)] = tuple(float(v) for key in _DEFAULTS for v in said[key])
+    takes = tuple(_name(each) for each in objects if each.id == b"AnimationStack")
+    return FbxFile(settings[b"UnitScaleFactor"][0], settings[b"UpAxis"][0], nodes, takes)
+
+
+def _name(element: Any) -> str:
+    return str(element.props[1].split(b"\x00")[0].decode())
+
+
+def _child(element: Any, name: bytes) -> Any:
+    return next(each for each in element.elems if each is not None and each.id == name)
+
+
+def _properties(element: Any) -> dict[bytes, tuple[Any, ...]]:
+    listed = _child(element, b"Properties70").elems
+    return {each.props[0]: tuple(each.props[4:]) for each in listed}
