@@ -87,7 +87,7 @@ def write_loop(
     showing = partial(showing_action, armature, recorded)
     frames = loop.track.frames
     first = yield from sample_incrementally(armature, frames[:1], showing)
-    bases = pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
+    bases = yield from pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False
