@@ -7,6 +7,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.actions import (
+    free_name,
     read_recorded_incrementally,
     recorded_action,
     showing_recorded,
@@ -320,7 +321,7 @@ def _write_other(
     """The answer on an armature of its own, for the artist's keeps its proportions."""
     other, track, _ = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
-    action = write_action(other, track, name=f"{recording.name} adapted")
+    action = write_action(other, track, name=free_name(f"{recording.name} adapted"))
     action_settings(action).recording = recorded_action(armature)
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)

@@ -88,6 +88,7 @@ class TakePanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_take"
     bl_parent_id = SolvePanel.bl_idname
     bl_label = "Rest of the Take"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = split(self)
