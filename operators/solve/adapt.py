@@ -372,10 +372,11 @@ def summary(answer: Adapted) -> str:
     worst = max(report.contacts, key=lambda contact: contact.loaded_slide_mm)
     seconds = sum(stage.seconds for stage in report.stages or ())
     peak = max(report.forces.peaks, key=lambda peak: peak.peak_bw)
-    said = "Solved" if answer.fault is None else "Best found, not all is met;"
+    took = f"in {seconds:.1f} s"
+    said = f"Solved {took}" if answer.fault is None else f"Best found {took}; not all is met"
     return "\n".join(
         [
-            f"{said} in {seconds:.1f} s",
+            said,
             f"Loaded points slide {worst.loaded_slide_mm:.1f} mm at most ({worst.name})",
             *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
             *(

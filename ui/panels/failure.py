@@ -57,7 +57,11 @@ def draw_failure(
             )
             choose.name = row.name
             if len(text) > 1:
-                lines(box, "\n".join(text[1:]), icon="BLANK1")
+                rest = box.row()
+                rest.alignment = "LEFT"
+                if found is not None:
+                    rest.label(text="", icon="BLANK1")
+                lines(rest, "\n".join(text[1:]), icon="BLANK1")
         lines(box, wrapped(context, failure.text))
     else:
         lines(box, wrapped(context, failure.text), icon="ERROR")
