@@ -175,7 +175,7 @@ class ResultPanel(ArmaturePanel):
             if action_settings(take.action).warning:
                 end.label(text="", icon="ERROR")
             if take.stale:
-                end.label(text="Stale", icon="FILE_REFRESH")
+                end.label(text="", icon="FILE_REFRESH")
             if action_settings(take.action).accepted:
                 end.label(text="", icon="CHECKMARK")
         for take in takes:
