@@ -25,6 +25,7 @@ class OperatorId(StrEnum):
     DISCARD = "hangtime.discard"
     COMPARE = "hangtime.compare"
     CHOOSE_NAMED = "hangtime.choose_named"
+    TICK_NAMED = "hangtime.tick_named"
     SET_FRAME_RATE = "hangtime.set_frame_rate"
     SCALE_TO_HUMAN = "hangtime.scale_to_human"
     SHOW_REPORT = "hangtime.show_report"

@@ -19,6 +19,15 @@ from .read import recording_of, whole_frames
 from .strips import show_strip, strips_of, without_strips
 
 
+def free_name(wanted: str) -> str:
+    """A name for an action, with a number where one has it already: Blender would add ".001"."""
+    name, number = wanted, 1
+    while name in bpy.data.actions:
+        number += 1
+        name = f"{wanted} {number}"
+    return name
+
+
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     """Recorded action: the armature's own, or the one that this was adapted from.
 

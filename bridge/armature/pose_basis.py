@@ -10,11 +10,15 @@ from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
 from ..accessors import armature_data, current_scene
 from .channels import proper
+from .incremental import Incremental
 from .poses import Poses, metres_per_unit
 
 
-def pose_bases(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> dict[str, FloatArray]:
-    """Basis matrices (T, 4, 4) by bone, for the track's bones and all their ancestors.
+def pose_bases(
+    armature: bpy.types.Object, poses: Poses, track: PoseTrack
+) -> Incremental[dict[str, FloatArray]]:
+    """Basis matrices (T, 4, 4) by bone, for the track's bones and all their ancestors; a bone a
+    slice.
 
     Walks down from the roots: a bone of the track turns to the wanted rotation, any other keeps
     what it had relative to its parent, which may have moved.
@@ -41,6 +45,7 @@ def pose_bases(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> di
             basis[:, :3, :3] = proper(basis_under(bone, parent, target)[:, :3, :3]) @ stretch
         result[name] = basis
         new[name] = place(bone, parent, basis)
+        yield
     return result
 
 

@@ -51,8 +51,7 @@ def write_incrementally(
     showing: lets the armature perform the recording.
     """
     poses = yield from sample_incrementally(armature, track.frames, showing)
-    made = pose_bases(armature, poses, track)
-    yield
+    made = yield from pose_bases(armature, poses, track)
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ...solver.data.recording import Bone
-from ...solver.skeleton.mapping import Evidence, guess_bones, guess_labels
+from ...solver.skeleton.mapping import Evidence, guess_bones, labels_of
 from ...solver.skeleton.parts import LABELS, REQUIRED_KEYS
 from ...solver.skeleton.tree import tree_of
 from ..accessors import armature_data
@@ -21,8 +21,9 @@ def find_parts(armature: bpy.types.Object) -> None:
     chosen = chosen_parts(settings)
     bones = named_bones(armature)
     settings.parts.clear()
-    settings.convention = guess_bones(tree_of(bones)).convention
-    for label, guess in guess_labels(bones).items():
+    found = guess_bones(tree_of(bones))
+    settings.convention = found.convention
+    for label, guess in labels_of(found, bones).items():
         part = settings.parts.add()
         part.name = label
         if guess is not None:

@@ -13,7 +13,7 @@ from ...solver.data.faults import NoRootBone
 from ...solver.data.recording import PoseTrack
 from ..accessors import armature_data, current_scene, pose_of, present
 from ..armature import fcurves
-from ..armature.actions import recorded_action, show, showing_action
+from ..armature.actions import free_name, recorded_action, show, showing_action
 from ..armature.channels import channels, proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
@@ -87,7 +87,7 @@ def write_loop(
     showing = partial(showing_action, armature, recorded)
     frames = loop.track.frames
     first = yield from sample_incrementally(armature, frames[:1], showing)
-    bases = pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
+    bases = yield from pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
     action = recorded.copy()
     action.name = name
     action.use_fake_user = False
@@ -126,7 +126,7 @@ def write_loop_incrementally(
     Before the last slice the armature is as it was.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
-    name = f"{root_of(original).name} loop"
+    name = free_name(f"{root_of(original).name} loop")
     action = yield from write_loop(armature, loop, original, slot, name=name)
     action_settings(action).recording = original
     show(armature, action, slot)

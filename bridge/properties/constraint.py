@@ -32,8 +32,14 @@ from ..rows.stored import choice, frame, text
 KIND_ITEMS = [(kind.name, kind.label, "", kind.number) for kind in KINDS.values()]
 
 
-def _phases(row: HangtimeConstraint, _context: bpy.types.Context, _typed: str) -> tuple[str, ...]:
-    return phases.names(attached(row.id_data))
+def _phases(
+    row: HangtimeConstraint, _context: bpy.types.Context, _typed: str
+) -> tuple[str | tuple[str, str], ...]:
+    """Their names; of stances with what they are called in the list of contacts."""
+    settings = attached(row.id_data)
+    called = phases.roles(settings)
+    names = phases.names(settings)
+    return tuple((name, called[name]) if name in called else name for name in names)
 
 
 class HangtimeConstraint(bpy.types.PropertyGroup):

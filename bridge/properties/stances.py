@@ -183,6 +183,12 @@ def _middle(points: Sequence[Sequence[float]]) -> Vector:
     return sum((Vector(p) for p in points), Vector()) / len(points)
 
 
+def told_along(stance: StanceRow, shift: Sequence[float]) -> tuple[float, float, float]:
+    """How far forward, left and up a shift in the world goes."""
+    told = _axes(stance).transposed() @ Vector(shift)
+    return told.x, told.y, told.z
+
+
 def _axes(stance: StanceRow) -> Matrix:
     """Columns forward, left and up, world."""
     forward, up = Vector(stance.forward_axis), Vector((0.0, 0.0, 1.0))

@@ -68,16 +68,16 @@ def write_take(
         if later is None:
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
     body, rest = _tracks(poses, later, plan, motion)
+    yield
     posed = None
     if rig is None:
-        bases = pose_bases(armature, poses, body)
-        yield
+        bases = yield from pose_bases(armature, poses, body)
     else:
         posed = yield from control_poses(rig, poses, body, showing)
         bases = posed.bases
     if later is not None and rest is not None:
         if rig is None:
-            more = pose_bases(armature, later, rest)
+            more = yield from pose_bases(armature, later, rest)
         else:
             more = yield from carried_controls(rig, later, rest, showing)
         bases |= {c.bone: np.concatenate([bases[c.bone], more[c.bone]]) for c in owned if c.carries}

@@ -8,7 +8,7 @@ import bpy
 
 from ..accessors import ATTRIBUTE, current_action, present
 from ..armature import fcurves
-from ..armature.actions import recorded_action, show, showing_action
+from ..armature.actions import free_name, recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
 from ..armature.strips import lay_strips, strips_of
 from ..armature.write import write_incrementally
@@ -43,7 +43,7 @@ def write_adapted_incrementally(
     Before the last slice the armature is as it was. Returns as `write_result`.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
-    name = f"{root_of(original).name} adapted"
+    name = free_name(f"{root_of(original).name} adapted")
     action, written = yield from _write(armature, motion, original, slot, name)
     action_settings(action).recording = original
     if motion.options.written_as is WrittenAs.STRIP:

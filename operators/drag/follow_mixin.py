@@ -18,6 +18,7 @@ from ..solve.common import required_armature, said
 from ..solve.live import live, redraw_viewports, redraw_views
 from ..solve.session import session
 from ..solve.task import LOOK_EVERY
+from ..words.report_text import deeper, higher
 from .mouse import BACK, CONFIRM, GIVEN, Press
 
 LOST = "no motion follows there; the ghost stays where it last could"
@@ -199,8 +200,8 @@ class FollowedDrag(PolledOperator):
             return f" · fitting the physics, {100.0 * self._share:.0f} %"
         summary = seen.summary
         return (
-            f" · pelvis {summary.deeper_cm:+.1f} cm deeper, {summary.higher_cm:+.1f} cm "
-            f"higher, force up to {summary.peak_bw:.1f} body weights"
+            f" · crouch {deeper(summary.deeper_cm)}, apex {higher(summary.higher_cm)}, "
+            f"force up to {summary.peak_bw:.1f} body weights"
         )
 
 

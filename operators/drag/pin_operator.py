@@ -9,7 +9,7 @@ from ...bridge.armature.poses import metres_per_unit
 from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.contact import HangtimeContact
 from ...bridge.properties.settings import settings_of
-from ...bridge.properties.stances import place, stance_contacts, stand_on
+from ...bridge.properties.stances import place, stance_contacts, stand_on, told_along
 from ...bridge.scene.members import ground_members
 from ..names import OperatorId
 from ..operator_types import OperatorResult
@@ -23,6 +23,7 @@ from .snapping import Snapping
 FLAT = 0.3  # of the view's direction along the vertical: below, the ground is seen edge-on
 FARTHEST = 2.0  # times as far from the viewer as where it began: no farther towards the horizon
 UP = Vector((0.0, 0.0, 1.0))
+SHIFTS = ("Forward", "Left", "Up")  # along a stance's axes
 NO_PIN = "There is no such contact or point"
 BEHIND = "Turn the view so that the pin is in front of you"
 
@@ -140,12 +141,17 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         return (settings.active_contact, settings.active_constraint) != self._was[:2]
 
     def text(self) -> str:
-        x, y, z = self._drag.shift
-        way = "Over the ground" if self._ground else "Across the view"
-        if self._drag.axis is not None:
-            way = f"Along {self._drag.axis.name}"
+        shift, row = self._drag.shift, self._row
+        names: tuple[str, ...] = ("X", "Y", "Z")
+        if isinstance(row, HangtimeContact):
+            stance = settings_of(self._armature).stances.get(row.phase)
+            if stance is not None:
+                names, shift = SHIFTS, told_along(stance, shift)
+        # Without adding zero there would be one with a minus.
+        moved = (f"{name} {round(by, 3) + 0.0:.3f}" for name, by in zip(names, shift, strict=True))
+        way = f"Along {self._drag.axis.name}: " if self._drag.axis is not None else ""
         standing = f" · on {self._standing}" if self._standing else ""
-        return f"{way} {x:+.3f} {y:+.3f} {z:+.3f} m{standing}"
+        return f"{way}{' · '.join(moved)} m{standing}"
 
     # -- where ---------------------------------------------------------------------------------
 

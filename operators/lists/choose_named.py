@@ -2,14 +2,23 @@
 
 import bpy
 
+from ...bridge.properties.constraint import HangtimeConstraint
+from ...bridge.properties.contact import HangtimeContact
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from ..solve.common import chosen_armature, required_armature
+from ..solve.common import chosen_armature, hindrance, required_armature
 from ..solve.live import redraw
 
 NO_ARMATURE = "Select the armature that carries the recording"
 NOT_LISTED = "No contact and no constraint is called “{}” any more"
+
+
+def named_row(settings: HangtimeSettings, name: str) -> HangtimeConstraint | HangtimeContact | None:
+    """The constraint or contact of that name, which may be followed by that of its point."""
+    name = name.partition(": ")[0]
+    row: HangtimeConstraint | HangtimeContact | None = settings.constraints.get(name)
+    return row if row is not None else settings.contacts.get(name)
 
 
 def choose_named(settings: HangtimeSettings, name: str) -> bool:
@@ -44,4 +53,35 @@ class ChooseNamedOperator(PolledOperator, bpy.types.Operator):
         if not choose_named(settings_of(required_armature(context)), self.name):
             return self.refuse(NOT_LISTED.format(self.name), "WARNING")
         redraw("VIEW_3D")
+        return {"FINISHED"}
+
+
+class TickNamedOperator(PolledOperator, bpy.types.Operator):
+    bl_idname = OperatorId.TICK_NAMED
+    bl_label = "Untick"
+    bl_description = (
+        "Leave this contact or constraint out of the next solve, as its tick in the list does; "
+        "press again to let it count"
+    )
+    bl_options = {"UNDO"}
+
+    name: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    # The operator that tries again afterwards; none where it is empty.
+    then: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return hindrance(context)
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        settings = settings_of(required_armature(context))
+        row = named_row(settings, self.name)
+        if row is None:
+            return self.refuse(NOT_LISTED.format(self.name), "WARNING")
+        row.used = not row.used
+        choose_named(settings, self.name)
+        redraw("VIEW_3D")
+        if self.then:
+            category, _, name = self.then.partition(".")
+            getattr(getattr(bpy.ops, category), name)("INVOKE_DEFAULT")
         return {"FINISHED"}

@@ -7,6 +7,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.actions import (
+    free_name,
     read_recorded_incrementally,
     recorded_action,
     showing_recorded,
@@ -320,7 +321,7 @@ def _write_other(
     """The answer on an armature of its own, for the artist's keeps its proportions."""
     other, track, _ = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
-    action = write_action(other, track, name=f"{recording.name} adapted")
+    action = write_action(other, track, name=free_name(f"{recording.name} adapted"))
     action_settings(action).recording = recorded_action(armature)
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
@@ -371,10 +372,11 @@ def summary(answer: Adapted) -> str:
     worst = max(report.contacts, key=lambda contact: contact.loaded_slide_mm)
     seconds = sum(stage.seconds for stage in report.stages or ())
     peak = max(report.forces.peaks, key=lambda peak: peak.peak_bw)
-    said = "Solved" if answer.fault is None else "Best found, not all is met;"
+    took = f"in {seconds:.1f} s"
+    said = f"Solved {took}" if answer.fault is None else f"Best found {took}; not all is met"
     return "\n".join(
         [
-            f"{said} in {seconds:.1f} s",
+            said,
             f"Loaded points slide {worst.loaded_slide_mm:.1f} mm at most ({worst.name})",
             *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
             *(

@@ -88,6 +88,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         armature = required_armature(context)
         settings = settings_of(armature)
         recording = yield from read_wanted(armature)
+        yield None
         bind = _leave_out_bind_pose(settings, recording)
         if bind:
             recording = yield from read_wanted(armature)
@@ -96,10 +97,12 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         if span[0] >= last or span[1] <= first:
             raise OutsideKeys(armature.name, first, last)
         find_parts(armature)
+        yield None
         for missing in missing_parts(settings):
             raise MissingPart(missing)
         problem = problem_of(settings, recording, with_contacts=False)
         yield from require_writable(armature, recording, span_of(settings, recording))
+        yield None
         session().advance(SolveState.SOLVING)
         session().support = None
         try:
@@ -117,6 +120,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
         if odd is not None and not flights:
             raise odd
+        yield None
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
         scene_settings(context.scene).armature = armature

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ...solver.data.row_kinds import RowKind
 from ...solver.worker.protocol import Progress
 
 STAGES = {
@@ -12,6 +13,10 @@ STAGES = {
     "bounds": "checking in between",
     "explicit": "minimizing effort",
 }
+
+
+# What is furthest off has a name of the artist's, or is one of the laws of motion.
+LAWS = {RowKind.BALANCE.label: "the body's travel", RowKind.MOMENT.label: "the body's spin"}
 
 
 class SolveState(Enum):
@@ -89,7 +94,8 @@ class Solving:
         parts = [f"{self.doing}, {100.0 * self.share:.0f} %"]
         if self.progress is not None and self.state is SolveState.SOLVING:
             violation = self.progress.violation
-            parts.append(f"furthest off: {self.progress.worst} ({_times(violation)} allowed)")
+            worst = LAWS.get(self.progress.worst, self.progress.worst)
+            parts.append(f"furthest off: {worst} ({_times(violation)} allowed)")
         return ", ".join(parts)
 
 

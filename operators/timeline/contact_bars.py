@@ -96,11 +96,17 @@ class Bars:
 def lay_out(
     rows: tuple[Row, ...], axis: Axis, height: float, scale: float, *, markers: bool = False
 ) -> Bars | None:
-    """Rows at the foot of an editor; the last alone where it is low, None where it is too low."""
+    """Rows at the foot of an editor; the last alone where it is low, None where it is too low.
+
+    In Blender's usual layout nothing is free: there the last row reaches a little over the strip
+    with the frames' numbers, at whose foot there are none.
+    """
     bottom = (MARKERS if markers else SCROLLER) * scale
     free = height - SCRUBBING * scale - bottom
-    for shown in (rows, rows[-1:]):
-        each = min(TALLEST * scale, free / max(len(shown), 1))
-        if shown and each >= LOWEST * scale:
-            return Bars(shown, axis, bottom, each, scale)
-    return None
+    if not rows or free <= -LOWEST * scale:
+        return None
+    each = min(TALLEST * scale, free / len(rows))
+    if each >= LOWEST * scale:
+        return Bars(rows, axis, bottom, each, scale)
+    alone = min(max(free, LOWEST * scale), TALLEST * scale)
+    return Bars(rows[-1:], axis, bottom, alone, scale)

@@ -220,9 +220,7 @@ def _changes(report: Report) -> Iterator[str]:
             f"{higher(jump.apex_higher_cm)}"
         )
         if jump.crouch_deeper_cm is not None:
-            deeper = jump.crouch_deeper_cm
-            way = "deeper" if deeper >= 0.0 else "less deep"
-            yield f"            the crouch before it is {abs(deeper):.1f} cm {way}"
+            yield f"            the crouch before it is {deeper(jump.crouch_deeper_cm)}"
     for line in joint_lines(report):
         yield f"{'Joints':<11} {line.removeprefix('Joints ')}"
     for phase in retimed(report):
@@ -376,3 +374,8 @@ def _stages(report: Report) -> Iterator[str]:
 def higher(centimetres: float) -> str:
     """A difference of heights, such as "1.3 cm lower"."""
     return f"{abs(centimetres):.1f} cm {'higher' if centimetres >= 0.0 else 'lower'}"
+
+
+def deeper(centimetres: float) -> str:
+    """A difference of a crouch, such as "1.3 cm less deep"."""
+    return f"{abs(centimetres):.1f} cm {'deeper' if centimetres >= 0.0 else 'less deep'}"

@@ -58,11 +58,15 @@ def guess_bones(tree: Tree) -> Guess:
 
 
 def guess_labels(bones: Sequence[Bone]) -> dict[str, tuple[str, Evidence] | None]:
+    """`labels_of` what is guessed of bones."""
+    return labels_of(guess_bones(tree_of(bones)), bones)
+
+
+def labels_of(guess: Guess, bones: Sequence[Bone]) -> dict[str, tuple[str, Evidence] | None]:
     """Bone name and evidence, or None, for the label of every part but spine and neck.
 
     Raises nothing, so that an artist can fill in what is missing.
     """
-    guess = guess_bones(tree_of(bones))
     return {
         label_of(key): (bones[guess.bones[key]].name, guess.evidence[key])
         if key in guess.bones

@@ -7,25 +7,40 @@ from mathutils import Matrix, Vector
 from ...bridge.accessors import present
 from ...operators.drag import rays
 from ...operators.names import OperatorId
+from ..drawing.cache import ContentCache
 from ..overlay.context.figure_cache import FigureCache
 from ..overlay.context.view_context import ViewContext
 from ..overlay.geometry import palette
 from ..overlay.geometry.limit_shapes import limit_frames
-from ..overlay.layers.limits import chosen_limit, limit_pose
+from ..overlay.layers.limits import chosen_limit, chosen_row, limit_pose, posed_bones
 from .places import Knob, LimitHandlePlaces, Tip, handle_places
 from .shown import handled, knob, paint, put
 
 ENDS = ("lower", "upper", "half_angle")
 
 
-def handles(view: ViewContext, figures: FigureCache, sight: rays.Vector) -> LimitHandlePlaces:
-    """Of the limit that is chosen. sight: (3,) unit vector towards the viewer, world."""
-    limit = chosen_limit(view)
-    if limit is None:
-        return LimitHandlePlaces()
-    figure = figures.of(view, view.recorded)
-    placed = limit_frames([limit], figure, limit_pose(view.armature, (limit,)))
-    return handle_places(limit, *placed, np.array(view.armature.matrix_world), sight)
+class PlaceCache:
+    """Places of handles, worked out again where what they depend on has changed."""
+
+    def __init__(self) -> None:
+        self._figures = FigureCache()
+        self._cache: ContentCache[LimitHandlePlaces] = ContentCache()
+
+    def of(self, view: ViewContext, sight: rays.Vector) -> LimitHandlePlaces:
+        """Of the limit that is chosen. sight: (3,) unit vector towards the viewer, world."""
+        limit = chosen_limit(view)
+        if limit is None:
+            return LimitHandlePlaces()
+        stands, shown = np.array(view.armature.matrix_world), view.recorded
+        pose, key = posed_bones(view.armature).tobytes(), shown.key if shown is not None else None
+        content = view.armature.name_full, limit, pose, stands.tobytes(), sight.tobytes(), key
+
+        def places() -> LimitHandlePlaces:
+            figure = self._figures.of(view, shown)
+            placed = limit_frames([limit], figure, limit_pose(view.armature, (limit,)))
+            return handle_places(limit, *placed, stands, sight)
+
+        return self._cache.get("handles", content, places)
 
 
 class LimitHandles(bpy.types.GizmoGroup):
@@ -37,11 +52,12 @@ class LimitHandles(bpy.types.GizmoGroup):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
+        """Blender asks several times a redraw: whether there is a limit, not where."""
         view = handled(context)
-        return view is not None and view.options.limits and chosen_limit(view) is not None
+        return view is not None and view.options.limits and chosen_row(view.settings) is not None
 
     def setup(self, _context: bpy.types.Context) -> None:
-        self._figures = FigureCache()
+        self._places = PlaceCache()
         self._ends = {end: self._new(OperatorId.DRAG_LIMIT) for end in ENDS}
         for end, (_, drag) in self._ends.items():
             drag.end = end
@@ -55,7 +71,7 @@ class LimitHandles(bpy.types.GizmoGroup):
         if view is None:
             return
         sight = present(context.region_data).view_rotation @ Vector((0.0, 0.0, 1.0))
-        found = handles(view, self._figures, np.array(sight))
+        found = self._places.of(view, np.array(sight))
         chosen = view.settings.active_constraint
         for each in found.knobs:
             _show_knob(*self._ends[each.end], each, chosen)

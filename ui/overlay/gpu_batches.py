@@ -57,6 +57,13 @@ def draw(shapes: GpuBatches, scale: float) -> None:
                 _draw(shapes.front[look], look, scale)
 
 
+def draw_nothing(look: Look) -> None:
+    """Draws, in a look with all its states, what is too small to be seen. Only while something is
+    drawn."""
+    points = np.zeros((2 if look.lines else 3, 3), np.float32)
+    draw(upload([Shape(look, points, np.zeros((len(points), 4), np.float32))]), scale=1.0)
+
+
 def _draw(shapes: gpu.types.GPUBatch, look: Look, scale: float) -> None:
     state: Any = gpu.state  # the stubs say that its getters return nothing
     size = state.viewport_get()[2:]

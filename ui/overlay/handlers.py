@@ -8,17 +8,24 @@ from ...operators.solve.live import redraw_viewports
 from ..drawing.editor import ui_scale
 from .context.figure_cache import FigureCache
 from .context.view_context import read_view
-from .geometry.shapes import Label
-from .gpu_batches import GpuBatches, draw, upload
+from .geometry.shapes import Label, Look
+from .gpu_batches import GpuBatches, draw, draw_nothing, upload
 from .layer_selection import layers
 from .layers import labels
 from .picture_cache import PictureCache
 
+WARMING = 0.1  # s from one look to the next
+
 
 class Overlay:
-    """Draws the overlay. Nothing is built again while its content stays."""
+    """Draws the overlay. Nothing is built again while its content stays.
+
+    A driver compiles a shader when it first draws with it, some 50 ms each: that is done while
+    nothing is waited for, a look a redraw, rather than all at once when an analysis is there.
+    """
 
     def __init__(self) -> None:
+        self._cold = list(Look)
         self._figures = FigureCache()
         self._pictures: PictureCache[GpuBatches] = PictureCache(upload)
         self._labels: tuple[Label, ...] = ()
@@ -27,12 +34,18 @@ class Overlay:
         """In the world (POST_VIEW)."""
         self._labels = ()
         context = bpy.context
+        self._warm_up()
         view = read_view(context)
         if view is None:
             return
         batches, named = self._pictures.of(list(layers(view, self._figures)))
         draw(batches, ui_scale(context))
         self._labels = named if view.options.labels else ()
+
+    def _warm_up(self) -> None:
+        if self._cold:
+            draw_nothing(self._cold.pop())
+            bpy.app.timers.register(redraw_viewports, first_interval=WARMING)
 
     def draw_labels(self) -> None:
         """Over the picture (POST_PIXEL), which follows for the same region."""

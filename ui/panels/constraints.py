@@ -22,14 +22,16 @@ class ConstraintsPanel(ArmaturePanel):
     bl_order = 3
 
     def draw(self, context: bpy.types.Context) -> None:
-        side = draw_list(present(self.layout), ConstraintList, settings_in(context), "constraints")
+        settings = settings_in(context)
+        side = draw_list(present(self.layout), ConstraintList, settings, "constraints")
         side.menu(AddConstraintMenu.bl_idname, text="", icon="ADD")
         side.operator(OperatorId.REMOVE_CONSTRAINT, text="", icon="REMOVE")
         side.separator()
         side.menu(ConstraintMoreMenu.bl_idname, text="", icon="DOWNARROW_HLT")
-        side.separator()
-        side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_UP").direction = "UP"
-        side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_DOWN").direction = "DOWN"
+        if len(settings.constraints) > 1:
+            side.separator()
+            side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_UP").direction = "UP"
+            side.operator(OperatorId.MOVE_CONSTRAINT, text="", icon="TRIA_DOWN").direction = "DOWN"
 
 
 class ConstraintPanel(ArmaturePanel):

@@ -65,7 +65,7 @@ class StanceContactsPanel(ArmaturePanel):
     def draw_header(self, context: bpy.types.Context) -> None:
         settings = settings_in(context)
         stance = active_stance(settings)
-        of = f" of {called(settings, stance.name)} ({stance.name})" if stance is not None else ""
+        of = f" of {called(settings, stance.name)}" if stance is not None else ""
         present(self.layout).label(text=f"Contacts{of}")
 
     def draw(self, context: bpy.types.Context) -> None:

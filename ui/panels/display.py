@@ -7,7 +7,7 @@ from ...bridge.properties.settings import scene_settings
 from ...bridge.properties.view import HangtimeView
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from .sidebar import SidebarPanel, split
+from .sidebar import ArmaturePanel, split
 
 _COLUMNS = {
     "Constraints": ("pins", "limits", "all_limits", "poses"),
@@ -16,7 +16,7 @@ _COLUMNS = {
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 
 
-class DisplayPanel(SidebarPanel):
+class DisplayPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_display"
     bl_label = "Display"
     bl_order = 9

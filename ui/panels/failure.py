@@ -5,23 +5,27 @@ from textwrap import fill
 import bpy
 
 from ...bridge.accessors import present
+from ...bridge.properties.settings import HangtimeSettings, settings_of
+from ...bridge.rows.kind import Icon
+from ...operators.lists.choose_named import named_row
 from ...operators.names import OperatorId
 from ...operators.solve.session import session
 from ...operators.words.failure_text import Failure
-from ...solver.data.faults import OddHeight, UnseenSupport
+from ...solver.data.faults import NoSolution, OddHeight, UnseenSupport
 from ..drawing.editor import ui_scale
 from .sidebar import lines
 
 CHARACTER_PX = 6.8  # at an interface scale of 1
-ICON_PX = 60  # an icon, and the panel's margins
+MARGINS_PX = 40  # the panel's
+ICON_PX = 20
 LEAST_LETTERS = 16
 
 
-def wrapped(context: bpy.types.Context, text: str) -> str:
-    """Text in lines that the sidebar has room for, beside an icon."""
+def wrapped(context: bpy.types.Context, text: str, icons: int = 1) -> str:
+    """Text in lines that the sidebar has room for, beside some icons."""
     scale = ui_scale(context)
-    width = (present(context.region).width - ICON_PX * scale) / (CHARACTER_PX * scale)
-    letters = max(LEAST_LETTERS, int(width))
+    room = present(context.region).width / scale - MARGINS_PX - icons * ICON_PX
+    letters = max(LEAST_LETTERS, int(room / CHARACTER_PX))
     return "\n".join(fill(line, letters) for line in text.splitlines())
 
 
@@ -38,26 +42,48 @@ def draw_failure(
     box = layout.box().column()
     if failure.rows:
         lines(box, wrapped(context, failure.head), icon="ERROR")
+        settings = settings_of(armature)
         for row in failure.rows:
             line = box.row()
             line.alignment = "LEFT"
-            text = wrapped(context, row.text).splitlines()
+            found = named_row(settings, row.name)
+            if found is not None:
+                icon: Icon = "CHECKBOX_HLT" if found.used else "CHECKBOX_DEHLT"
+                tick = line.operator(OperatorId.TICK_NAMED, text="", icon=icon, emboss=False)
+                tick.name = row.name
+            text = wrapped(context, row.text, icons=2).splitlines()
             choose = line.operator(
                 OperatorId.CHOOSE_NAMED, text=text[0], icon="RESTRICT_SELECT_OFF", emboss=False
             )
             choose.name = row.name
             if len(text) > 1:
-                lines(box, "\n".join(text[1:]), icon="BLANK1")
+                rest = box.row()
+                rest.alignment = "LEFT"
+                if found is not None:
+                    rest.label(text="", icon="BLANK1")
+                lines(rest, "\n".join(text[1:]), icon="BLANK1")
         lines(box, wrapped(context, failure.text))
     else:
         lines(box, wrapped(context, failure.text), icon="ERROR")
-    _draw_remedy(box, failure)
+    _draw_remedy(box, failure, settings_of(armature))
 
 
-def _draw_remedy(layout: bpy.types.UILayout, failure: Failure) -> None:
+def _draw_remedy(layout: bpy.types.UILayout, failure: Failure, settings: HangtimeSettings) -> None:
     match failure.fault:
         case UnseenSupport(rate=int() as rate):
             button = layout.operator(OperatorId.SET_FRAME_RATE, text=f"Set {rate} fps", icon="TIME")
             button.rate = rate
         case OddHeight(factor=factor):
             layout.operator(OperatorId.SCALE_TO_HUMAN, icon="FULLSCREEN_EXIT").factor = factor
+        case NoSolution():
+            _draw_untick(layout, failure, settings)
+
+
+def _draw_untick(layout: bpy.types.UILayout, failure: Failure, settings: HangtimeSettings) -> None:
+    """A button that leaves out what is furthest off, and tries again."""
+    worst = failure.rows[0].name if failure.rows else ""
+    found = named_row(settings, worst)
+    if found is not None and found.used:
+        text = f"Untick {found.name}, Try Again"
+        button = layout.operator(OperatorId.TICK_NAMED, text=text, icon="CHECKBOX_DEHLT")
+        button.name, button.then = worst, failure.of

@@ -16,8 +16,8 @@ from .failure import draw_failure
 from .menus import BonePresetsMenu
 from .sidebar import ArmaturePanel, SidebarPanel, lines, optional, settings_in, split
 
-FIRST_STEPS = """Select a character that jumps
-Press Analyze
+FIRST_STEPS = """Import a recorded jump, select it
+Press Analyze here
 Drag where it lands"""
 
 
@@ -57,7 +57,7 @@ class CharacterPanel(SidebarPanel):
         row.prop(scene, "pinned", text="", icon="PINNED" if scene.pinned else "UNPINNED")
         settings = settings_of(armature)
         layout.prop(settings, "mass")
-        optional(layout, settings, "use_height", "Custom Height", "height")
+        optional(layout, settings, "use_height", "Height (m)", "height")
         if settings.measured_height > 0.0:
             layout.label(text=f"Measured height: {settings.measured_height:.2f} m")
 

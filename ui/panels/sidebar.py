@@ -9,6 +9,8 @@ from ...bridge.rows.kind import Icon, Row
 from ...operators.names import CATEGORY
 from ...operators.solve.common import chosen_armature
 
+EMPTY_ROWS = 2  # as high as the buttons that fill a list
+
 
 class SidebarPanel(bpy.types.Panel):
     """Base: a panel of the extension's tab. Drawing shows what is stored and computes nothing."""
@@ -70,7 +72,9 @@ def draw_list(
     name: str,
     rows: int = 5,
 ) -> bpy.types.UILayout:
-    """A list of the settings' collection of this name; returns the column of buttons beside it."""
+    """A list of the settings' collection of this name, low while it is empty; returns the column of
+    buttons beside it."""
+    rows = rows if len(getattr(settings, name)) else EMPTY_ROWS
     line = layout.row()
     line.use_property_split = False
     active = f"active_{name.removesuffix('s')}"

@@ -88,6 +88,7 @@ class TakePanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_take"
     bl_parent_id = SolvePanel.bl_idname
     bl_label = "Rest of the Take"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = split(self)
@@ -174,7 +175,7 @@ class ResultPanel(ArmaturePanel):
             if action_settings(take.action).warning:
                 end.label(text="", icon="ERROR")
             if take.stale:
-                end.label(text="Stale", icon="FILE_REFRESH")
+                end.label(text="", icon="FILE_REFRESH")
             if action_settings(take.action).accepted:
                 end.label(text="", icon="CHECKMARK")
         for take in takes:

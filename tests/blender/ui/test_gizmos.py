@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import degrees, radians
 
 import numpy as np
@@ -23,10 +24,9 @@ from hangtime.tests.blender.helpers.overlays import (
     seen,
     shown,
 )
-from hangtime.ui.gizmos.limit_handles import handles as limit_handles
+from hangtime.ui.gizmos.limit_handles import PlaceCache
 from hangtime.ui.gizmos.pin_handles import handles as pin_handles
 from hangtime.ui.gizmos.places import Knob, LimitHandlePlaces
-from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Part
 from hangtime.ui.overlay.geometry.shapes import Look
 from mathutils import Matrix, Vector
@@ -43,8 +43,14 @@ def armature(request: pytest.FixtureRequest) -> bpy.types.Object:
     return adapted(WHERE[request.param])
 
 
+@cache
+def places() -> PlaceCache:
+    """One for all, so that what it keeps must not be another's."""
+    return PlaceCache()
+
+
 def limit_places(armature: bpy.types.Object) -> LimitHandlePlaces:
-    return limit_handles(seen(armature), FigureCache(), SIGHT)
+    return places().of(seen(armature), SIGHT)
 
 
 def knob(armature: bpy.types.Object, end: str) -> Knob:

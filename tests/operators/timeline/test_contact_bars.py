@@ -79,7 +79,10 @@ def test_a_low_editor_shows_the_phases_alone_and_a_lower_one_nothing() -> None:
     low = lay_out(ROWS, axis, 48.0, 1.0)
     assert low is not None
     assert [row.name for row in low.rows] == ["Phases"]
-    assert lay_out(ROWS, axis, 40.0, 1.0) is None
+    usual = lay_out(ROWS, axis, 40.0, 1.0)  # Blender's usual layout
+    assert usual is not None
+    assert (len(usual.rows), usual.row_height) == (1, 5.0)
+    assert lay_out(ROWS, axis, 34.0, 1.0) is None
     assert lay_out((), axis, 400.0, 1.0) is None
 
 

@@ -14,7 +14,6 @@ from ....bridge.properties.constraint import HangtimeConstraint
 from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ....bridge.properties.shown_times import recorded_frame
 from ....bridge.properties.view import HangtimeView
-from ....bridge.rows.bone_keys import current_name
 from ....bridge.rows.choices import Span
 from ....bridge.rows.times import Frames, Spans, interval_of, named_frames
 from ....operators.solve.common import chosen_armature
@@ -103,10 +102,7 @@ class ViewContext:
         """The bone that a single-bone constraint is about, where the armature has it."""
         if not len(row.bones) or self.armature.pose is None:
             return None
-        named, bones = row.bones[0], self.armature.pose.bones
-        found = bones.get(named.name)
-        # it may have been renamed since the name was looked at
-        return found or bones.get(current_name(self.armature, named.key, named.name))
+        return self.armature.pose.bones.get(row.bones[0].name)
 
     def rows(self, *kinds: str) -> Iterator[tuple[HangtimeConstraint, bool]]:
         """The constraints of these kinds, and whether each is the one chosen in the list."""

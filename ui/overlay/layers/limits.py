@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ....bridge.accessors import pose_of
 from ....bridge.properties.constraint import HangtimeConstraint
+from ....bridge.properties.settings import HangtimeSettings
 from ....bridge.rows.choices import Met
 from ....operators.lists.row_lists import is_selected
 from ..context.figure_cache import FigureCache, parent_of
@@ -17,13 +18,15 @@ from ..context.view_context import ViewContext, holds
 from ..geometry.limit_shapes import ANGLE, CONE, TWIST, Limit, Pose, limit_shapes
 from ..geometry.shapes import Label, Shape, Standing
 
+KINDS = (CONE, ANGLE, TWIST)
+
 
 def layer(view: ViewContext, figures: FigureCache) -> Layer:
     """All limits, in the armature's space."""
-    rows = [each for each in view.rows(CONE, ANGLE, TWIST) if _matters(view, *each)]
+    rows = [each for each in view.rows(*KINDS) if _matters(view, *each)]
     limits = tuple(limit for row, chosen in rows for limit in _limit(view, row, chosen))
     shown = view.recorded
-    pose = _posed(view.armature).tobytes() if limits else b""
+    pose = posed_bones(view.armature).tobytes() if limits else b""
     content = limits, pose, shown.key if shown is not None else None
 
     def build() -> Iterator[Shape | Label]:
@@ -39,14 +42,23 @@ def _matters(view: ViewContext, row: HangtimeConstraint, chosen: bool) -> bool:
     """Whether a limit is drawn: a preset has eighteen, which would cover the body."""
     if view.options.all_limits or chosen or row.met == Met.MISSED.name:
         return True
+    if view.armature.mode != "POSE":  # before the bone, which takes longer to find
+        return False
     bone = view.bone(row)
-    return bone is not None and view.armature.mode == "POSE" and is_selected(bone)
+    return bone is not None and is_selected(bone)
+
+
+def chosen_row(settings: HangtimeSettings) -> HangtimeConstraint | None:
+    """The constraint that is chosen in the list, where that is a limit."""
+    rows, chosen = settings.constraints, settings.active_constraint
+    row: HangtimeConstraint | None = rows[chosen] if 0 <= chosen < len(rows) else None
+    return row if row is not None and row.kind in KINDS else None
 
 
 def chosen_limit(view: ViewContext) -> Limit | None:
     """The limit that is chosen in the list; None where it is another kind, or not about a bone."""
-    rows = (row for row, chosen in view.rows(CONE, ANGLE, TWIST) if chosen)
-    return next((limit for row in rows for limit in _limit(view, row, True)), None)
+    row = chosen_row(view.settings)
+    return next(_limit(view, row, True), None) if row is not None else None
 
 
 def _limit(view: ViewContext, row: HangtimeConstraint, chosen: bool) -> Iterator[Limit]:
@@ -85,7 +97,7 @@ def _own_axis(view: ViewContext, row: HangtimeConstraint) -> tuple[float, float,
     return xyz(turn @ Vector(row.axis))
 
 
-def _posed(armature: bpy.types.Object) -> NDArray[np.float32]:
+def posed_bones(armature: bpy.types.Object) -> NDArray[np.float32]:
     """(N * 16,) all bones' matrices, as Blender stores them."""
     flat = np.empty(16 * len(pose_of(armature).bones), np.float32)
     pose_of(armature).bones.foreach_get("matrix", flat)
@@ -95,7 +107,7 @@ def _posed(armature: bpy.types.Object) -> NDArray[np.float32]:
 def limit_pose(armature: bpy.types.Object, limits: tuple[Limit, ...]) -> Pose:
     """The bones that limits are about."""
     # Blender stores columns, numpy rows
-    posed = _posed(armature).reshape(-1, 4, 4).transpose(0, 2, 1).astype(float)
+    posed = posed_bones(armature).reshape(-1, 4, 4).transpose(0, 2, 1).astype(float)
     bones = pose_of(armature).bones
     names = {name for limit in limits for name in (limit.bone, limit.parent_bone)}
     return Pose(

@@ -46,11 +46,10 @@ def _standing_of(row: HangtimeContact, frame: float) -> Standing:
 
 def _labels(view: ViewContext) -> Iterator[Label]:
     """The distance by which each stance has been moved."""
-    called = roles(view.settings)
-    for stance in view.settings.stances:
-        shift = Vector(stance.shifted).length
-        if shift <= SHIFTED:
-            continue
+    shifts = [(stance, Vector(stance.shifted).length) for stance in view.settings.stances]
+    shifted = [each for each in shifts if each[1] > SHIFTED]
+    called = roles(view.settings) if shifted else {}
+    for stance, shift in shifted:
         places = [Vector(c.at) for c in view.settings.contacts if c.phase == stance.name and c.used]
         if places:
             middle = sum(places, Vector()) / len(places)

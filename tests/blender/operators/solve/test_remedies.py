@@ -88,3 +88,12 @@ def test_a_row_of_a_failure_leads_to_its_list(analysed: bpy.types.Object) -> Non
     assert bpy.ops.hangtime.choose_named(name="ground 2") == {"FINISHED"}
     assert active_stance(settings).name == "ground 2"
     assert bpy.ops.hangtime.choose_named(name="Nobody") == {"CANCELLED"}
+
+
+def test_what_a_failure_names_is_unticked_and_ticked_again(analysed: bpy.types.Object) -> None:
+    row = analysed.hangtime.contacts["Left heel 1"]
+    assert bpy.ops.hangtime.tick_named(name="Left heel 1: Left heel 1") == {"FINISHED"}
+    assert not row.used
+    assert bpy.ops.hangtime.tick_named(name="Left heel 1") == {"FINISHED"}
+    assert row.used
+    assert bpy.ops.hangtime.tick_named(name="Nobody") == {"CANCELLED"}
