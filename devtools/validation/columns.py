@@ -1,7 +1,9 @@
 """What the tables tell of each trial: a column's name and its words, and the notes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from statistics import mean
 
+from .causes.landings import RecordedLanding
 from .contacts import EventKind
 from .forces import FORWARD, LEFT, UP, RmsError
 from .motions import MotionMeasures
@@ -100,6 +102,40 @@ MOTION: tuple[tuple[str, Callable[[MotionMeasures], str]], ...] = (
     ("ankle", lambda m: f"{m.torques_per_kg.ankle:.1f}"),
     ("landing knee", lambda m: f"{m.landing_knee:.1f}" if m.landing_knee else "–"),
 )
+
+
+def _most(of: Callable[[RecordedLanding], float]) -> Callable[[MotionMeasures], str]:
+    """Mean and largest over the landings, in cm."""
+
+    def cell(m: MotionMeasures) -> str:
+        values = [100.0 * of(landing) for landing in m.recorded_landings]
+        return f"{mean(values):.1f} ({max(values):.1f})" if values else "–"
+
+    return cell
+
+
+LANDINGS: tuple[tuple[str, Callable[[MotionMeasures], str]], ...] = (
+    ("landings", lambda m: f"{len(m.recorded_landings)}"),
+    ("height (cm)", _most(lambda landing: landing.height)),
+    ("leg too short by (cm)", _most(lambda landing: landing.short)),
+    (
+        "speed (m/s)",
+        lambda m: (
+            f"{mean(x.speed for x in m.recorded_landings):.2f}" if m.recorded_landings else "–"
+        ),
+    ),
+)
+
+
+def smoothing(measured: Sequence[Measured]) -> tuple[tuple[str, ...], ...]:
+    """A row for each width: mean errors over the trials, vertical, forward, sideways."""
+    rows = []
+    for same in zip(*(m.smoothed for m in measured), strict=True):
+        errors = (mean(each.error[axis] for each in same) for axis in (UP, FORWARD, LEFT))
+        rows.append((f"{1e3 * same[0].width:.0f} ms", *(f"{error:.3f}" for error in errors)))
+    return tuple(rows)
+
+
 ERRORS = """Summed contact force, rms error in body weights. *plain* is the recording's centre
 of mass differentiated twice, *(its file)* what the trial's own file has of that. *in stances*
 leaves out the flights, where ours is zero by construction."""
@@ -119,6 +155,14 @@ MOTIONS = """Joint centres of the fit against the recording, rms; jerk of the wr
 s of landings, fit over recording; worst of any point while it carries more than 5 % of the
 weight, against the place that its contact has, first and last instant included; peak torques, the
 knee's also within 0.3 s after the body's landings. Below the trials: recordings without plates."""
+LANDED = """Feet as they were recorded when their contact begins, means (most). *height*: of
+the point that lands first above the place where it then stands. *leg too short*: by how much the
+straight leg does not reach that place from the recorded hip, with a sole's give taken off; negative
+where it does. *speed*: of the point, downwards."""
+SMOOTHED = """What the fit is told of the centre of mass's acceleration, before it fits: a local
+regression of the recording, by the width of its weights. Rms error of the load that it tells, BW,
+at 15 Hz, mean over the trials but walks. The fit takes 18 ms for the vertical part and 30 ms for
+the level ones (`SMOOTHING_TIME`, `LEVEL_SMOOTHING_TIME`)."""
 TABLES = (
     ("Forces at 15 Hz", ERRORS, _of_error(15.0)),
     ("Forces at 10 Hz", "", _of_error(10.0)),

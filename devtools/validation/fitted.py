@@ -7,8 +7,9 @@ import numpy as np
 
 from ...operators.headless.clip import Clip, load
 from ...operators.headless.stages import Stages
+from ...solver.analysis.accelerations import com_acceleration
 from ...solver.arrays import FloatArray
-from ...solver.data.constants import STANDARD_GRAVITY
+from ...solver.data.constants import STANDARD_GRAVITY, UP
 from ...solver.data.problem import MotionProblem
 from ...solver.stages.fit import Fit
 from ...solver.worker.pipeline import fit_subject, no_fit
@@ -78,6 +79,16 @@ def ground_forces(fitted: FittedTrial) -> GroundForces:
         feet[:, side] = forces[:, mine].sum(axis=1)
         pressure[:, side] = _centre(forces[:, mine, 2], places[:, mine, :2])
     return GroundForces(fitted.start + times, feet, pressure)
+
+
+def told_forces(fitted: FittedTrial, width: float) -> GroundForces:
+    """The summed force that the recording alone tells, smoothed over `width` s; 0 in flight."""
+    performance = fitted.fit.performance
+    times = np.arange(int(performance.times[-1] * RATE + 1e-6) + 1) / RATE
+    told = com_acceleration(performance, fitted.fit.schedule, times, (width, width))
+    feet = np.zeros((len(times), 2, 3))
+    feet[:, 0] = (told / STANDARD_GRAVITY + UP) @ TO_TRIAL.T  # the sum counts alone
+    return GroundForces(fitted.start + times, feet, np.zeros((len(times), 2, 2)))
 
 
 def points_of_sides(fit: Fit) -> list[list[int]]:

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from ..environment.virtual_environment import ROOT
 from ..processes import run_module, undump
+from .causes.vary import unknown
 from .limits import figures
 from .recorded import RECORDINGS
 from .result import TrialResult
@@ -38,19 +39,30 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="trials at once")
     parser.add_argument("--no-curves", action="store_true", help="leave out the pictures")
+    parser.add_argument(
+        "--vary", nargs="+", default=[], metavar="NAME=VALUE", help="constants with other values"
+    )
     parser.add_argument("--page", action="store_true", help="write docs/validation.md anew")
     options = parser.parse_args(argv)
     trials = names(options.folder)
     known = [*trials, *RECORDINGS]
     chosen = options.only or known
-    unknown = [name for name in chosen if name not in known]
-    if unknown or not trials:
-        what = f"trial '{unknown[0]}'" if unknown else "trial"
+    missing = [name for name in chosen if name not in known]
+    if missing or not trials:
+        what = f"trial '{missing[0]}'" if missing else "trial"
         there = ", ".join(known) if trials else "none"
         print(f"No {what} in {options.folder}; there are: {there}.")
         return 2
+    if wrong := unknown(options.vary):
+        print(wrong)
+        return 2
+    if options.vary and options.page:
+        print("The page tells of the constants as they are; leave out --vary or --page.")
+        return 2
     options.out.mkdir(parents=True, exist_ok=True)
-    work = partial(solve, options.folder, options.out, curves=not options.no_curves)
+    curves = [] if options.no_curves else ["--curves"]
+    said = [*curves, *options.vary]
+    work = partial(solve, options.folder, options.out, options=said)
     with ThreadPoolExecutor(options.jobs) as pool:
         results = tuple(pool.map(work, chosen))
     return tell(results, options.out, write_page=options.page)
@@ -78,11 +90,10 @@ def tell(results: Sequence[TrialResult], out: Path, *, write_page: bool) -> int:
     return 1 if wrong else 0
 
 
-def solve(folder: Path, out: Path, name: str, *, curves: bool) -> TrialResult:
+def solve(folder: Path, out: Path, name: str, *, options: Sequence[str]) -> TrialResult:
     """Measures one trial in a process of its own, for a crash is its own too."""
     path = out / f"{name}.pickle"
     path.unlink(missing_ok=True)
-    options = [] if curves else ["--no-curves"]
     said = run_module(SOLVE, [str(folder), name, str(out), *options], LONGEST)
     if said is not None:
         return TrialResult(name, refused=said, crashed=True)

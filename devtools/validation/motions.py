@@ -10,6 +10,7 @@ from ...solver.results.certificate import loaded_drifts
 from ...solver.stages.fit import Fit
 from ...solver.transcription.motion import Motion, motion_inverse_dynamics
 from ...solver.worker.pipeline import dynamics_of
+from .causes.landings import RecordedLanding, recorded_landings
 
 RATE = 1000.0  # Hz
 END_FRAMES = 10
@@ -112,13 +113,17 @@ def leg_torques(motion: Motion, times: FloatArray) -> LegTorques:
 
 @dataclass(frozen=True)
 class MotionMeasures:
-    """What is told of a fit's motion. landing_knee: N·m/kg, within 0.3 s after the body lands."""
+    """What is told of a fit's motion. landing_knee: N·m/kg, within 0.3 s after the body lands.
+
+    recorded_landings: of the feet, before the fit.
+    """
 
     closeness: Closeness
     hand_jerk: HandJerk | None
     hold: Hold
     torques_per_kg: LegTorques
     landing_knee: float | None
+    recorded_landings: tuple[RecordedLanding, ...] = ()
 
 
 def motion_measures(fit: Fit) -> MotionMeasures:
@@ -133,6 +138,7 @@ def motion_measures(fit: Fit) -> MotionMeasures:
         hold(fit.motion),
         leg_torques(fit.motion, times),
         leg_torques(fit.motion, times[landing]).knee if landing.any() else None,
+        recorded_landings(fit),
     )
 
 

@@ -9,11 +9,19 @@ from .motions import MotionMeasures
 
 
 @dataclass(frozen=True)
+class SmoothedError:
+    """Rms error at 15 Hz of the load that the recording tells, smoothed over `width` s: BW."""
+
+    width: float
+    error: Vector
+
+
+@dataclass(frozen=True)
 class Measured:
     """What was measured of a trial's forces. Pairs are ours, then the plates'.
 
     seconds: the fit's. compared: s, in which the forces are. foot_errors: at 15 Hz, of the left
-    and the right foot.
+    and the right foot. smoothed: of what the recording alone tells.
     """
 
     seconds: float
@@ -26,6 +34,7 @@ class Measured:
     events: tuple[Event, ...]
     pressure: Pressure | None
     friction: tuple[Friction, Friction]
+    smoothed: tuple[SmoothedError, ...]
 
     def error(self, cut_off: float = 15.0) -> RmsError:
         """The rms error at a cut-off, Hz."""

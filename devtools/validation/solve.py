@@ -5,10 +5,12 @@ from pathlib import Path
 from ...operators.words.messages import sentence
 from ...solver.data.faults import Fault
 from ..processes import dump
+from .causes.vary import vary
 from .contacts import events, friction, pressure
 from .curves import picture
-from .fitted import FittedTrial, fit_trial, ground_forces
+from .fitted import FittedTrial, fit_trial, ground_forces, told_forces
 from .forces import (
+    PEAK_CUT_OFF,
     foot_errors,
     largest_step,
     measured_flights,
@@ -18,18 +20,23 @@ from .forces import (
 )
 from .motions import motion_measures
 from .recorded import RECORDINGS, fit_recording
-from .result import Measured, TrialResult
+from .result import Measured, SmoothedError, TrialResult
 from .trials import GroundForces, Trial, read
+
+WIDTHS = (0.012, 0.015, 0.018, 0.021, 0.025, 0.03)  # s, of smoothing
 
 
 def main(argv: list[str]) -> int:
+    """argv: folder, clip, DIR, then --curves where a picture is wanted, then NAME=VALUE."""
     folder, name, out = Path(argv[0]), argv[1], Path(argv[2])
+    curves = argv[3:4] == ["--curves"]
+    vary(argv[4:] if curves else argv[3:])
     try:
         if name in RECORDINGS:
             motion = motion_measures(fit_recording(RECORDINGS[name]))
             result = TrialResult(name, motion=motion)
         else:
-            result = solve_trial(read(folder, name), out, curves="--no-curves" not in argv)
+            result = solve_trial(read(folder, name), out, curves=curves)
     except Fault as fault:
         result = TrialResult(name, refused=sentence(fault))
     dump(result, out / f"{name}.pickle")
@@ -66,4 +73,12 @@ def measured(fitted: FittedTrial, ours: GroundForces) -> Measured:
         events=tuple(events(trial, ours, fitted.contacts)),
         pressure=pressure(trial, ours),
         friction=(friction(trial, ours), friction(trial, trial.plates)),
+        smoothed=smoothed_errors(fitted),
     )
+
+
+def smoothed_errors(fitted: FittedTrial) -> tuple[SmoothedError, ...]:
+    """Of what the recording alone tells, by the width of smoothing."""
+    errors = [rms_errors(fitted.trial, told_forces(fitted, width)) for width in WIDTHS]
+    at_15 = [next(e for e in each if e.cut_off == PEAK_CUT_OFF) for each in errors]
+    return tuple(SmoothedError(width, e.ours) for width, e in zip(WIDTHS, at_15, strict=True))

@@ -32,14 +32,18 @@ def velocities(performance: Performance, at: FloatArray) -> tuple[FloatArray, Fl
 
 
 def com_acceleration(
-    performance: Performance, schedule: ContactSchedule, at: FloatArray
+    performance: Performance,
+    schedule: ContactSchedule,
+    at: FloatArray,
+    widths: tuple[float, float] | None = None,
 ) -> FloatArray:
     """(N, 3) acceleration of the centre of mass, m/s², world, at instants (N,) s.
 
-    In flight it is gravity, whatever the recording's noise says.
+    In flight it is gravity, whatever the recording's noise says. widths: of the smoothing, s, of
+    the level and of the vertical part; None for those that the fit is made with.
     """
     take, width = performance.take, smoothing_width(performance)
-    level = max(LEVEL_SMOOTHING_TIME, width)
+    level, width = widths or (max(LEVEL_SMOOTHING_TIME, width), width)
     found = np.concatenate(
         [
             derivative(take.times, take.com[:, axes], at, smoothed, 2)

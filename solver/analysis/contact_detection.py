@@ -68,7 +68,9 @@ def detect_contacts(
         if p.hip is not None
     }
     touches = timed_by_forces(clock, touches, heights, legs)
-    contacts = _closed(_within(touches, duration), duration, shortest_flight_s)
+    contacts = _within(touches, duration)
+    contacts = _kept_off_ends(contacts, duration, shortest_flight_s, times, com)
+    contacts = _closed(contacts, duration, shortest_flight_s)
     carried = ((c.start, c.end) for c in contacts)
     unseen = tuple(gap for gap in gaps(carried, duration) if not _falls(times, com, gap))
     return ContactSchedule(numbered(contacts), duration, floor_m, unseen)
@@ -195,11 +197,38 @@ def _within(contacts: Iterable[Contact], duration: float) -> list[Contact]:
     return pieces
 
 
+def _kept_off_ends(
+    contacts: Sequence[Contact],
+    duration: float,
+    shortest: float,
+    times: FloatArray,
+    com: FloatArray | None,
+) -> list[Contact]:
+    """The contacts, where the body lands just after the clip's beginning, or leaves just before its
+    end, with a flight of `shortest` s there.
+
+    Closed like other short gaps, a foot would stand while it is recorded centimetres up, and fast.
+    """
+    kept = list(contacts)
+    for gap in gaps(((c.start, c.end) for c in contacts), duration):
+        first = gap.start == 0.0
+        if gap.end - gap.start >= shortest or first == (gap.end == duration):
+            continue
+        flight = Interval(0.0, shortest) if first else Interval(duration - shortest, duration)
+        if not _falls(times, com, flight):
+            continue
+        if first:
+            kept = [replace(c, start=max(c.start, flight.end)) for c in kept]
+        else:
+            kept = [replace(c, end=min(c.end, flight.start)) for c in kept]
+    return [c for c in kept if c.end - c.start >= MIN_PIECE or c in contacts]
+
+
 def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> list[Contact]:
     """The contacts with every gap shorter than `shortest`, s, closed by those on either side."""
     closed = list(contacts)
     for gap in gaps(((c.start, c.end) for c in contacts), duration):
-        if gap.end - gap.start >= shortest:
+        if gap.end - gap.start >= shortest - 1e-9:
             continue
         meet = (gap.start + gap.end) / 2
         if gap.start == 0.0 or gap.end == duration:

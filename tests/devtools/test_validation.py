@@ -311,6 +311,25 @@ def test_a_name_that_is_not_there_is_told(
     assert main([str(tmp_path), "--out", str(tmp_path)]) == 2
 
 
+def test_only_constants_that_there_are_can_be_varied(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for change in ("PI=3", "SOLE_COMPLIANCE=soft"):
+        assert main(["--out", str(tmp_path), "--vary", change]) == 2
+        assert change.partition("=")[0] in capsys.readouterr().out
+    assert main(["--out", str(tmp_path), "--page", "--vary", "friction=0"]) == 2
+
+
+@pytest.mark.slow
+def test_a_varied_constant_changes_the_fit(tmp_path: Path) -> None:
+    above = []
+    for vary in ([], ["--vary", "SOLE_COMPLIANCE=0.004"]):
+        main(["--only", "BMC_run", "--no-curves", "--out", str(tmp_path), *vary])
+        content = json.loads((tmp_path / "figures.json").read_text(encoding="utf-8"))
+        above.append(content["trials"][0]["motion"]["hold"]["above_mm"])
+    assert above[1] < 4.5 < above[0]
+
+
 @pytest.mark.slow
 def test_the_held_trial_goes_all_the_way(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

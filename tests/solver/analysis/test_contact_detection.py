@@ -204,6 +204,20 @@ def test_a_gap_too_short_to_be_a_flight_is_closed() -> None:
     assert s.contacts[0].end == s.contacts[1].start
 
 
+def test_a_clip_that_begins_as_a_foot_lands_begins_with_a_short_flight() -> None:
+    height = leap(-0.4, 0.02)  # in the air in the first frames alone
+    falling = 0.9 - 9.81 * TIMES**2 / 2
+    body = np.stack([np.zeros_like(TIMES), np.zeros_like(TIMES), falling], axis=1)
+    for reverse in (slice(None), slice(None, None, -1)):  # and one that ends as it lifts
+        feet = {"Left toe": point(height[reverse])}
+        s = detect_contacts(TIMES, feet, com=body[reverse])
+        (flight,) = s.flights
+        assert flight.end - flight.start == pytest.approx(0.03)
+        assert flight.start == 0.0 or flight.end == TIMES[-1]
+        hanging = np.broadcast_to([0.0, 0.0, 0.9], body.shape)
+        assert detect_contacts(TIMES, feet, com=hanging).flights == ()
+
+
 # ---- recordings ----
 
 

@@ -1,0 +1,1 @@
+"""What explains the figures: constants changed, and landings as they were recorded."""
