@@ -28,6 +28,13 @@ def attached(owner: bpy.types.bpy_struct | None) -> Any:
     return getattr(owner, ATTRIBUTE)
 
 
+def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
+    """The take that a result was made from, where there still is one; None of other actions."""
+    recording: bpy.types.Action | None = attached(action).recording
+    # Blender 5.0 leaves pointers from an action to a deleted data-block as they were.
+    return recording if recording in bpy.data.actions.values() else None
+
+
 def armature_data(armature: bpy.types.Object) -> bpy.types.Armature:
     """The armature's bones at rest, and how they are shown."""
     assert isinstance(armature.data, bpy.types.Armature)

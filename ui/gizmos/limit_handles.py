@@ -25,7 +25,7 @@ def handles(view: ViewContext, figures: FigureCache, sight: rays.Vector) -> Limi
         return LimitHandlePlaces()
     figure = figures.of(view, view.recorded)
     placed = limit_frames([limit], figure, limit_pose(view.armature, (limit,)))
-    return handle_places(limit, *placed, np.array(view.armature.matrix_world), sight)
+    return handle_places(limit, *placed, np.array(view.armature.matrix_world, float), sight)
 
 
 class LimitHandles(bpy.types.GizmoGroup):
