@@ -29,10 +29,12 @@ def attached(owner: bpy.types.bpy_struct | None) -> Any:
 
 
 def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
-    """The take that a result was made from, where there still is one; None of other actions."""
+    """The take that a result was made from; None of an action that is no result.
+
+    Blender 5.0.1 leaves it as it was where the take is deleted, and reading it then may crash.
+    """
     recording: bpy.types.Action | None = attached(action).recording
-    # Blender 5.0 leaves pointers from an action to a deleted data-block as they were.
-    return recording if recording in bpy.data.actions.values() else None
+    return recording
 
 
 def armature_data(armature: bpy.types.Object) -> bpy.types.Armature:
