@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
 from ..transcription.constraint import DenseViolation
-from ..transcription.guard_rows import GuardRows, chosen, instants_to_check, named
+from ..transcription.guard_rows import GuardRows, chosen, named
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
 from .ranges import JointRange, joint_ranges
@@ -105,7 +105,7 @@ class HumanGuard:
     @cached_property
     def ranges(self) -> tuple[JointRange, ...]:
         """As wide as the reference and its rest pose ask for; endless where the artist limits."""
-        turned = self.reference.joint_rotations(instants_to_check(self.reference.duration, SPACING))
+        turned = self.reference.joint_rotations(_grid(self.reference.duration))
         turned = np.concatenate([turned, np.broadcast_to(np.eye(3), (1, *turned.shape[1:]))])
         bodies = self.reference.transcription.character.bodies
         return tuple(
@@ -154,7 +154,7 @@ def recorded_ranges(reference: Motion) -> tuple[JointRange, ...]:
 
 def _beyond(ranges: tuple[JointRange, ...], motion: Motion) -> BeyondRange:
     """Where a motion's joints are beyond their ranges, by MOST_NEW."""
-    times = instants_to_check(motion.duration, SPACING)
+    times = _grid(motion.duration)
     turned = motion.joint_rotations(times)
     found = [each.measure.of(turned[:, each.body]) for each in ranges]
     high = np.stack([f - each.upper for f, each in zip(found, ranges, strict=True)], axis=1)
@@ -163,3 +163,7 @@ def _beyond(ranges: tuple[JointRange, ...], motion: Motion) -> BeyondRange:
     instants, items = np.nonzero(over > MOST_NEW)
     upper = high[instants, items] >= low[instants, items]
     return BeyondRange(items, times[instants], over[instants, items], upper)
+
+
+def _grid(duration: float) -> FloatArray:
+    return np.linspace(0.0, duration, 1 + int(np.ceil(duration / SPACING)))

@@ -20,7 +20,7 @@ from ..data.scene import CLEARANCE, SceneObject, SceneRole
 from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import mesh_of
 from ..transcription.constraint import DenseViolation
-from ..transcription.guard_rows import GuardRows, chosen, instants_to_check
+from ..transcription.guard_rows import GuardRows, chosen
 from ..transcription.motion import Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
 from .mesh_surface import MeshSurface, scene_shapes
@@ -113,7 +113,7 @@ class SolidWorld:
     @cached_property
     def recorded(self) -> Penetrations:
         """What the fit itself has in each other; it is allowed."""
-        placed = placed_at(self.fitted, instants_to_check(self.fitted.duration, SPACING))
+        placed = placed_at(self.fitted, _grid(self.fitted.duration))
         own = Surfaces(self.fitted_surfaces.parts[:OWN])
         instants, items = own.near(placed)
         distance = own.closest(placed, instants, items).distance
@@ -124,7 +124,7 @@ class SolidWorld:
 
     def penetrations(self, motion: Motion) -> Penetrations:
         """Where a motion's solids are deeper in each other than the fit's, by MOST_NEW."""
-        placed = placed_at(motion, instants_to_check(motion.duration, SPACING))
+        placed = placed_at(motion, _grid(motion.duration))
         instants, items = self.surfaces.near(placed)
         deep = self.surfaces.closest(placed, instants, items).distance < -MOST_NEW
         instants, items = instants[deep], items[deep]
@@ -182,6 +182,10 @@ def _few(found: Penetrations) -> IntArray:
 def _penetrations(rows: GuardRows) -> Penetrations:
     assert isinstance(rows.function, SolidDistance)
     return rows.function.found
+
+
+def _grid(duration: float) -> FloatArray:
+    return np.linspace(0.0, duration, 1 + int(np.ceil(duration / SPACING)))
 
 
 # ---------------------------------------------------------------- the body and its floor

@@ -68,12 +68,6 @@ class Violations(Protocol):
     def over(self) -> FloatArray: ...
 
 
-def instants_to_check(duration: float, spacing: float) -> FloatArray:
-    """(T,) s, `spacing` apart from the start on, and the end: where motions last a hair longer, the
-    rest are the same, and so are the rows there."""
-    return np.append(np.arange(0.0, duration - 0.25 * spacing, spacing), duration)
-
-
 def chosen(found: Violations, spacing: float, apart: float) -> IntArray:
     """Indices of the violations that get rows: of every run the worst, and others `apart` s away.
 
