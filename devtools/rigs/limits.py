@@ -36,8 +36,8 @@ CONVENTIONS, LANGUAGES = 14, 3
 DIFFERENCE_MM, DIFFERENCE_AIM_MM = 10.0, 2.0
 FILE_MM, FILE_AIM_MM = 1.0, 0.1
 FILE_DEGREES, FILE_AIM_DEGREES = 0.1, 0.01
-# Which rows keep a hand out of a thigh differs where motions do by a millimetre: three rigs end 12 mm
-# from the others there.
+# Which rows keep a hand out of a thigh differs where motions do by a millimetre: three rigs end
+# 12 mm from the others there.
 KNOWN_DIFFERENCE_MM = 15.0
 
 
