@@ -28,6 +28,15 @@ def attached(owner: bpy.types.bpy_struct | None) -> Any:
     return getattr(owner, ATTRIBUTE)
 
 
+def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
+    """The take that a result was made from; None of an action that is no result.
+
+    Blender 5.0.1 leaves it as it was where the take is deleted, and reading it then may crash.
+    """
+    recording: bpy.types.Action | None = attached(action).recording
+    return recording
+
+
 def armature_data(armature: bpy.types.Object) -> bpy.types.Armature:
     """The armature's bones at rest, and how they are shown."""
     assert isinstance(armature.data, bpy.types.Armature)

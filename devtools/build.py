@@ -12,6 +12,7 @@ from pathlib import Path
 from .environment.virtual_environment import REQUIREMENTS, ROOT
 
 PINS = REQUIREMENTS / "casadi.txt"
+MOST_BYTES = 200_000_000  # of a zip that extensions.blender.org takes
 
 
 class BuildError(Exception):
@@ -46,6 +47,8 @@ def build(out: Path) -> list[Path]:
         raise BuildError(f"Expected a zip for each of {manifest['platforms']}, got {zips}.")
     for zipped in zips:
         builder("validate", str(zipped))
+        if zipped.stat().st_size > MOST_BYTES:
+            raise BuildError(f"{zipped} is beyond the {MOST_BYTES / 1e6:.0f} MB that are taken.")
     return zips
 
 

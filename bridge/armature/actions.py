@@ -10,8 +10,8 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
-from ..accessors import current_action, current_scene
-from ..properties.settings import action_settings, settings_of
+from ..accessors import current_action, current_scene, source_of
+from ..properties.settings import settings_of
 from . import fcurves
 from .incremental import Incremental, complete, sample_incrementally
 from .poses import Poses, sample
@@ -36,7 +36,7 @@ def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     action = current_action(armature)
     if action is None or action == settings_of(armature).source:
         return action
-    return action_settings(action).recording or action
+    return source_of(action) or action
 
 
 def read_recorded(

@@ -53,7 +53,7 @@ def _add_keys(
     curves = fcurves.new_holder(armature, clip.name)
     frames = np.arange(len(clip.positions), dtype=np.float64) + FIRST_FRAME
     for j, (joint, name) in enumerate(zip(clip.joints, names, strict=True)):
-        rest = np.array(armature_data(armature).bones[name].matrix_local.to_3x3())
+        rest = np.array(armature_data(armature).bones[name].matrix_local.to_3x3(), float)
         path = f'pose.bones["{bpy.utils.escape_identifier(name)}"]'
         rotation = turn @ clip.rotations[:, j] @ turn.T
         if np.ptp(rotation, axis=0).any() or not np.allclose(rotation[0], np.eye(3)):

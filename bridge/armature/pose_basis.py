@@ -89,7 +89,7 @@ def basis_under(bone: bpy.types.Bone, parent: FloatArray | None, pose: FloatArra
 def _convert(
     bone: bpy.types.Bone, parent: FloatArray | None, matrices: FloatArray, *, invert: bool
 ) -> FloatArray:
-    rest = np.array(bone.matrix_local)
+    rest = np.array(bone.matrix_local, float)
     above = bone.parent.matrix_local if bone.parent is not None else None
     if _inherits_all(bone):
         frame = rest

@@ -94,7 +94,7 @@ def rest_bones(armature: bpy.types.Object, poses: Poses) -> tuple[Bone, ...]:
 
     def bone(name: str, parent: int) -> Bone:
         rest = armature_data(armature).bones[name]
-        rotation = proper(world[:3, :3] @ np.array(rest.matrix_local)[:3, :3])
+        rotation = proper(world[:3, :3] @ np.array(rest.matrix_local, float)[:3, :3])
         return Bone(name, parent, place(rest.head_local), place(rest.tail_local), rotation)
 
     return tuple(map(bone, poses.bones, poses.parents))

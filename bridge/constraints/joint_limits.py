@@ -41,7 +41,7 @@ def joint_limits(armature: bpy.types.Object) -> JointLimits:
     A row that the recording does not keep to says so in its status; it is no wider for it.
     """
     looks = recorded_looks(armature)
-    world = np.array(armature.matrix_world) if looks is None else looks.object_to_world[0]
+    world = np.array(armature.matrix_world, float) if looks is None else looks.object_to_world[0]
     figure = rest_figure(armature, parts_of(armature), world)
     if figure is None:
         return JointLimits((), (), {}, checked=False)

@@ -74,7 +74,7 @@ def rest_figure(armature: bpy.types.Object, parts: Parts, world: FloatArray) -> 
     bones = armature_data(armature).bones
     mapped = {bone for several in parts.values() for bone in several}
     turn = proper(world[:3, :3])
-    left, right = (np.array(bones[side[0]].head_local) for side in sides)
+    left, right = (np.array(bones[side[0]].head_local, float) for side in sides)
     across = turn @ (left - right)
     across[2] = 0.0
     parents = {name: above for name in mapped if (above := _mapped_above(bones[name], mapped))}
@@ -112,7 +112,7 @@ def recorded_looks(armature: bpy.types.Object) -> Poses | None:
 
 def rest_rotations(armature: bpy.types.Object) -> dict[str, FloatArray]:
     """(3, 3) of each bone at rest, to the armature."""
-    return {b.name: np.array(b.matrix_local.to_3x3()) for b in armature_data(armature).bones}
+    return {b.name: np.array(b.matrix_local.to_3x3(), float) for b in armature_data(armature).bones}
 
 
 def _mapped_above(bone: bpy.types.Bone, mapped: set[str]) -> str | None:
@@ -134,7 +134,7 @@ def _along(
 ) -> FloatArray:
     """(3,) unit, the armature's axes."""
     end = bone.tail_local if following is None else bones[following].head_local
-    span = np.array(end - bone.head_local)
+    span = np.array(end - bone.head_local, float)
     if np.linalg.norm(span) < 1e-6:
-        span = np.array(bone.tail_local - bone.head_local)
+        span = np.array(bone.tail_local - bone.head_local, float)
     return unit(span)

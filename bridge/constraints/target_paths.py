@@ -56,11 +56,11 @@ def _moves_by_keys_alone(target: bpy.types.Object) -> bool:
 
 def _keyed(target: bpy.types.Object, frames: FloatArray) -> FloatArray:
     """(T, 3) places of an object that is moved by keys alone, Blender units."""
-    places = np.tile(np.array(target.location), (len(frames), 1))
+    places = np.tile(np.array(target.location, float), (len(frames), 1))
     for curve in fcurves.curves_of(target):
         if curve.data_path == "location" and not curve.mute:
             places[:, curve.array_index] = [curve.evaluate(frame) for frame in frames]
-    return np.asarray(places + np.array(target.delta_location))
+    return np.asarray(places + np.array(target.delta_location, float))
 
 
 def _sampled(

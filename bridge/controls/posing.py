@@ -50,7 +50,7 @@ class Posing:
             above = rest[name].parent
             if name in moved and above is not None:
                 offset = np.linalg.solve(
-                    np.array(above.matrix_local), np.array(rest[name].matrix_local)
+                    np.array(above.matrix_local, float), np.array(rest[name].matrix_local, float)
                 )
                 self._parents[index] = bones.find(above.name), offset
 
@@ -81,7 +81,7 @@ class Posing:
     def bases(self) -> FloatArray:
         """(C, 4, 4) pose bases of the controls now."""
         bones = pose_of(self.armature).bones
-        return np.array([bones[name].matrix_basis for name in self.controls])
+        return np.array([bones[name].matrix_basis for name in self.controls], float)
 
     def pose(self, control: int, basis: FloatArray) -> None:
         """Give a control a pose basis (4, 4)."""
@@ -103,4 +103,4 @@ class Posing:
     def object_to_world(self) -> FloatArray:
         """(4, 4) of the armature now."""
         posed = self.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        return np.array(posed.matrix_world)
+        return np.array(posed.matrix_world, float)

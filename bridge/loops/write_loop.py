@@ -218,10 +218,10 @@ def _write_root(
     there = first.matrices[0, first.bones.index(root.name)]
     to_bone = first.object_to_world[0, :3, :3]
     if root.use_local_location:
-        to_bone = to_bone @ np.array(root.matrix_local)[:3, :3]
-    rest = np.linalg.solve(np.array(root.matrix_local), there)[:3, 3]
+        to_bone = to_bone @ np.array(root.matrix_local, float)[:3, :3]
+    rest = np.linalg.solve(np.array(root.matrix_local, float), there)[:3, 3]
     if not root.use_local_location:
-        rest = there[:3, 3] - np.array(root.matrix_local)[:3, 3]
+        rest = there[:3, 3] - np.array(root.matrix_local, float)[:3, 3]
     along = np.linalg.solve(to_bone, loop.travel / metres_per_unit(current_scene()))
     values = rest + np.linspace(0.0, 1.0, len(frames))[:, None] * along
     _write(curves, pose_of(armature).bones[root.name], "location", frames, values, goes_on=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...solver.data.contacts import PhaseKind, gaps
+from ..accessors import source_of
 from .choices import HOLD
 from .protocols import Settings
 
@@ -70,8 +71,8 @@ def recorded_span(settings: Settings) -> tuple[float, float] | None:
     action = data.action if data is not None else None
     if action is None:
         return None
-    first, last = (action.hangtime.recording or action).frame_range
-    return float(first), float(last)
+    ends = (source_of(action) or action).frame_range
+    return float(ends[0]), float(ends[1])
 
 
 def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:

@@ -74,7 +74,7 @@ def _placed(evaluated: bpy.types.Object) -> tuple[BVHTree, float] | None:
         shape: Triangles = read_triangles(evaluated)
     except SceneFault:
         return None
-    matrix = np.array(evaluated.matrix_world)
+    matrix = np.array(evaluated.matrix_world, float)
     vertices = shape.vertices @ matrix[:3, :3].T + matrix[:3, 3]
     faces = vertices.tolist(), shape.corners.tolist()
     # a tree, whatever the stubs say

@@ -140,7 +140,7 @@ def _reshaped(
 
 def _worlds(objects: Sequence[bpy.types.Object], frames: FloatArray) -> FloatArray:
     """(T, N, 4, 4) matrices of N objects, Blender units."""
-    return np.array(seen_at(objects, frames, lambda seen: np.array(seen.matrix_world)))
+    return np.array(seen_at(objects, frames, lambda seen: np.array(seen.matrix_world, float)))
 
 
 def _shapes(objects: Sequence[bpy.types.Object], frames: FloatArray) -> list[list[Triangles]]:

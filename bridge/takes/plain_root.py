@@ -32,7 +32,7 @@ def plain_poses(
         basis = _bases(pose_of(armature).bones[name], curves, frames)
         above = posed[-1] if posed else None
         posed.append(place(armature_data(armature).bones[name], above, basis))
-    world = np.tile(np.array(armature.matrix_world), (len(frames), 1, 1))
+    world = np.tile(np.array(armature.matrix_world, float), (len(frames), 1, 1))
     parents = tuple(range(-1, len(chain) - 1))
     return Poses(tuple(chain), parents, world, np.stack(posed, axis=1))
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..accessors import current_action
+from ..accessors import current_action, source_of
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
@@ -43,12 +43,6 @@ class ListedTake:
     shown: bool
     stale: str
     polished: bool
-
-
-def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
-    """The take that a result was made from; None of an action that is no result."""
-    source: bpy.types.Action | None = action_settings(action).recording
-    return source
 
 
 def root_of(action: bpy.types.Action) -> bpy.types.Action:

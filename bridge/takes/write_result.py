@@ -6,7 +6,7 @@ from functools import partial
 
 import bpy
 
-from ..accessors import ATTRIBUTE, current_action, present
+from ..accessors import ATTRIBUTE, current_action, present, source_of
 from ..armature import fcurves
 from ..armature.actions import free_name, recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
@@ -56,7 +56,7 @@ def write_adapted_incrementally(
 def combine(armature: bpy.types.Object, action: bpy.types.Action, after: After) -> None:
     """Lay a result that is shown, with the keys that it is to have, as its difference from what it
     was made from into a strip on top of that."""
-    take, slot = action_settings(action).recording, fcurves.slot_identifier(armature)
+    take, slot = source_of(action), fcurves.slot_identifier(armature)
     more = difference_of(armature, present(take), action, slot)
     lay_strips(armature, present(take), action, slot, more)
     if after is After.CUT:  # nothing of it is left beside the adapted frames

@@ -14,13 +14,19 @@ from .problem import SetUpError
 
 @dataclass(frozen=True)
 class Blender:
-    """A Blender with long-term support and the one Python minor that its module runs on."""
+    """A Blender and the one Python minor that its module runs on."""
 
     version: str
     python: str
 
 
-BLENDERS = (Blender("5.2.3", "3.13"), Blender("4.5.15", "3.11"), Blender("4.2.23", "3.11"))
+# Those with long-term support first, the newest first: what nobody names is one of them.
+BLENDERS = (
+    Blender("5.2.3", "3.13"),
+    Blender("4.5.15", "3.11"),
+    Blender("4.2.23", "3.11"),
+    Blender("5.0.1", "3.11"),
+)
 
 # Where pyenv, uv and the installers of macOS and Windows put a Python without telling PATH.
 INSTALLED = (

@@ -2,11 +2,11 @@
 
 import bpy
 
-from ...bridge.accessors import current_action, present
+from ...bridge.accessors import current_action, present, source_of
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
-from ...bridge.takes.takes import bake_shown, results_from, source_of
+from ...bridge.takes.takes import bake_shown, results_from
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import TWEAK_MODE, chosen_armature, required_armature, tweaked

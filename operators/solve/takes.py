@@ -2,13 +2,12 @@
 
 import bpy
 
-from ...bridge.accessors import current_action
+from ...bridge.accessors import current_action, source_of
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.properties.settings import action_settings
 from ...bridge.takes.takes import (
     look_again,
     show_take,
-    source_of,
     start_from_recording,
     start_from_result,
 )

@@ -62,22 +62,36 @@ def _corrected_step(
 ) -> tuple[FloatArray, float, float] | None:
     """Line search with second-order corrections: unknowns, objective and length.
 
-    Lengths are halved for as long as that gains: the first that lowers the objective may be one
-    that barely does, or that a hair's breadth keeps from being brought back, so that recordings
-    that differ by rounding would end millimetres apart. None where no length lowers the objective.
-    begin: the objective at x, and the first length.
+    Of a length that can be brought back, its half, and where the parabola through both and the
+    start is lowest, the best. Lengths that are only halved tie, and recordings that differ by
+    rounding would end millimetres apart. None where no length lowers the objective. begin: the
+    objective at x, and the first length.
     """
     value, length = begin
-    best: tuple[FloatArray, float, float] | None = None
-    while length > MIN_STEP_LENGTH:
+
+    def reached(length: float) -> tuple[FloatArray, float, float] | None:
         trial = _corrected(feasible, linearised, x + length * d)
-        reached = np.inf if trial is None else objective.value(trial)
-        if trial is not None and reached < value:
-            value, best = reached, (trial, reached, length)
-        elif best is not None:
-            break
+        return None if trial is None else (trial, objective.value(trial), length)
+
+    while length > MIN_STEP_LENGTH:
+        whole, half = reached(length), None
+        if whole is not None:
+            half = reached(0.5 * length)
+        if whole is not None and half is not None:
+            low = length * _lowest(value, half[1], whole[1])
+            found = [each for each in (whole, half, reached(low)) if each and each[1] < value]
+            if found:
+                return min(found, key=lambda each: each[1])
         length *= 0.5
-    return best
+    return None
+
+
+def _lowest(start: float, half: float, whole: float) -> float:
+    """Where in [0, 1] the parabola through values at 0, 1/2 and 1 is lowest."""
+    slope, bend = 4.0 * half - 3.0 * start - whole, 4.0 * (start - 2.0 * half + whole)
+    if bend <= 0.0:
+        return float(whole < start)
+    return float(np.clip(-slope / bend, 0.0, 1.0))
 
 
 def _corrected(

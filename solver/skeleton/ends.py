@@ -27,6 +27,7 @@ BOUNDS: Mapping[Part, tuple[float, float]] = {
 }  # on the length, shares of the stature: what files tell of it is often wrong
 ENDS = {*USUAL, *BOUNDS}
 TOES = 0.28 / (1.0 - 0.28) / 0.77  # of the level distance from ankle to ball
+ALIKE = 0.1  # of the usual length: an end that is told no further from the usual one is that one
 ASTRAY = np.cos(np.radians(60.0))  # what leads off further is no end of the body
 
 
@@ -54,7 +55,10 @@ def end_span(
     length = _length(longest)
     if length == 0.0 or (length < low and not _leads(tail - head, ahead)):
         return np.asarray(usual * ahead)
-    return np.asarray(longest / length * (np.clip(length, low, high) if part in BOUNDS else usual))
+    told = part in BOUNDS and length >= low  # a stub has a direction at most
+    span = longest / length * (min(length, high) if told else usual)
+    alike = _length(span - usual * ahead) < ALIKE * usual
+    return np.asarray(usual * ahead if alike else span)
 
 
 def _length(span: FloatArray) -> float:

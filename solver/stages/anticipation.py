@@ -163,7 +163,9 @@ def _jumps(motion: Motion, schedule: ContactSchedule) -> Iterator[Jump]:
         if landed > 0.0 and not sank.any():
             continue
         last = int(np.argmax(sank)) if sank.any() else len(height) - 1
-        stood = times[np.argmax(height >= top[last] - STANDING_SHARE * depth[last])]
+        level = top[last] - STANDING_SHARE * depth[last]
+        i = max(int(np.argmax(height >= level)), 1)
+        stood = np.interp(level, height[i - 1 : i + 1], times[i - 1 : i + 1])
         speed = np.linalg.norm(motion.com(np.array([stood]), 1)[0, :2])
         if speed < MAX_STANDING_SPEED:
             yield Jump(float(stood), flight.start, flight.end)

@@ -31,7 +31,7 @@ class PlaceCache:
         limit = chosen_limit(view)
         if limit is None:
             return LimitHandlePlaces()
-        stands, shown = np.array(view.armature.matrix_world), view.recorded
+        stands, shown = np.array(view.armature.matrix_world, float), view.recorded
         pose, key = posed_bones(view.armature).tobytes(), shown.key if shown is not None else None
         content = view.armature.name_full, limit, pose, stands.tobytes(), sight.tobytes(), key
 

@@ -49,7 +49,7 @@ class PictureCache(Generic[T]):
         shapes, labels = [], []
         for layer in layers:
             made, named = self._layers.get(layer.part, layer.content, partial(build, layer))
-            matrix = np.array(layer.matrix.copy())  # numpy cannot look into frozen ones
+            matrix = np.array(layer.matrix.copy(), float)  # numpy cannot look into frozen ones
             shapes += [placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in made]
             labels += [replace(n, place=xyz(layer.matrix @ Vector(n.place))) for n in named]
         return self._upload(merged(shapes)), tuple(labels)

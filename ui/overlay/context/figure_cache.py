@@ -39,7 +39,7 @@ def figure_of(view: ViewContext, shown: ShownMotion) -> TracedFigure | None:
     parents = tuple(_parent(bones[name], traces) for name in traces.bones)
     if any(parent >= body for body, parent in enumerate(parents)):
         return None  # the bones have been joined in another order since
-    rest = np.array([bones[name].head_local for name in traces.bones])
+    rest = np.array([bones[name].head_local for name in traces.bones], float)
     back = np.array(shown.stood.inverted_safe())
     back[:3, :3] /= view.metres
     heads, tails = (p @ back[:3, :3].T + back[:3, 3] for p in (traces.heads, traces.tails))

@@ -112,5 +112,5 @@ def limit_pose(armature: bpy.types.Object, limits: tuple[Limit, ...]) -> Pose:
     names = {name for limit in limits for name in (limit.bone, limit.parent_bone)}
     return Pose(
         {name: posed[bones.find(name)] for name in names},
-        {name: np.array(bones[name].bone.matrix_local) for name in names},
+        {name: np.array(bones[name].bone.matrix_local, float) for name in names},
     )
