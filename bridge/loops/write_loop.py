@@ -20,9 +20,9 @@ from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.write import remove, remove_other_rotations, rotation_channel
 from ..keys.bezier_keys import splice_bezier
-from ..properties.settings import action_settings, settings_of
+from ..properties.settings import settings_of
 from ..rows.choices import LoopRoot
-from ..takes.takes import root_of
+from ..takes.takes import derive, free_name, root_of
 from ..takes.write_result import forget_copied
 from .cyclic_keys import cyclic_keys
 
@@ -126,9 +126,9 @@ def write_loop_incrementally(
     Before the last slice the armature is as it was.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
-    name = f"{root_of(original).name} loop"
+    name = free_name(root_of(original).name, "loop")
     action = yield from write_loop(armature, loop, original, slot, name=name)
-    action_settings(action).recording = original
+    derive(action, original, armature)
     show(armature, action, slot)
     settings_of(armature).adapted = action
     return action

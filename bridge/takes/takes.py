@@ -7,6 +7,7 @@ armature's; the others wait with their actions.
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import dataclass
 
@@ -17,10 +18,15 @@ from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
 from ..armature.traces_store import forget, put_by, take_up
-from ..properties.settings import HangtimeSettings, action_settings, settings_of
+from ..properties.settings import (
+    HangtimeAction,
+    HangtimeSettings,
+    action_settings,
+    settings_of,
+)
 from ..properties.stances import move_empties
 from ..rows.choices import Span
-from ..rows.copying import copy_settings, settings_digest
+from ..rows.copying import copy_settings, settings_digest, settings_targets
 from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
@@ -30,6 +36,7 @@ _NOT_ASKED = (  # of the next result
     "active_body_change",
 )
 _NOT_KEPT = ("marks", "adapted", "source")
+_LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
 
 
 @dataclass(frozen=True)
@@ -59,27 +66,62 @@ def root_of(action: bpy.types.Action) -> bpy.types.Action:
     return action
 
 
+def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.types.Object) -> None:
+    """Note that an armature's settings made an action from a take: it is a result now."""
+    made = action_settings(action)
+    made.recording, made.maker = source, armature
+    made.count = 1 + max(action_settings(other).count for other in bpy.data.actions)
+
+
+def free_name(root: str, word: str) -> str:
+    """A name for a new action that is made from a recording: "jump adapted", then "jump adapted 2".
+
+    Of a long name the end goes, as Blender would cut the word off instead.
+    """
+    root = root.encode()[:_LONGEST].decode(errors="ignore")
+    first = f"{root} {word}"
+    names = (first if count == 1 else f"{first} {count}" for count in itertools.count(1))
+    return next(name for name in names if name not in bpy.data.actions)
+
+
 def takes_of(armature: bpy.types.Object) -> tuple[ListedTake, ...]:
-    """The recording that an armature shows a take of, and all of its results."""
+    """The recording that an armature shows a take of, and the results that were made for it; of
+    those for another armature only the shown one, and what that was made from."""
     shown = current_action(armature)
     if shown is None:
         return ()
-    return tuple(_branch(root_of(shown), shown, 0))
+    line = [shown]
+    while (source := source_of(line[-1])) is not None:
+        line.append(source)
+    return tuple(_branch(armature, line, line[-1], 0))
 
 
-def _branch(action: bpy.types.Action, shown: bpy.types.Action, depth: int) -> list[ListedTake]:
-    kept = action_settings(action)
+def _branch(
+    armature: bpy.types.Object, line: list[bpy.types.Action], action: bpy.types.Action, depth: int
+) -> list[ListedTake]:
+    """A take and what was made from it. line: the shown one and what that was made from."""
+    kept, shown = action_settings(action), line[0]
     found = [
         ListedTake(action, source_of(action), depth, action == shown, kept.stale, kept.polished)
     ]
+    own = results_from(action, armature)
     for other in results_from(action):
-        found += _branch(other, shown, depth + 1)
+        if other in own or other in line:
+            found += _branch(armature, line, other, depth + 1)
     return found
 
 
-def results_from(action: bpy.types.Action) -> list[bpy.types.Action]:
-    """The results that were made from a take."""
-    return [other for other in bpy.data.actions if source_of(other) == action]
+def results_from(
+    action: bpy.types.Action, armature: bpy.types.Object | None = None
+) -> list[bpy.types.Action]:
+    """The results that were made from a take, the newest last. armature: for which; None for any.
+
+    Those of earlier versions do not tell for which.
+    """
+    found = [other for other in bpy.data.actions if source_of(other) == action]
+    if armature is not None:
+        found = [o for o in found if action_settings(o).maker in (None, armature)]
+    return sorted(found, key=lambda other: int(action_settings(other).count))
 
 
 def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:
@@ -109,7 +151,7 @@ def keep_edit(armature: bpy.types.Object) -> None:
 def _take_up(armature: bpy.types.Object, action: bpy.types.Action) -> None:
     """Make the edit of a take the one at work."""
     settings, source = settings_of(armature), source_of(action)
-    made = results_from(action)
+    made = results_from(action, armature)
     if source is None and made:  # the recording: with what was last made from it
         action, source = made[-1], action
     take_up(armature, action)
@@ -169,6 +211,9 @@ def note_made(
     assert source is not None
     copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
     made.asked_key = settings_digest(settings_of(armature), _NOT_ASKED)
+    made.asked_targets.clear()
+    for target in settings_targets(settings_of(armature), _NOT_ASKED):
+        made.asked_targets.add().target = target
     made.take_key, made.own_key = _digest(source), _digest(action)
     made.stale, made.polished = "", False
     spans = []
@@ -209,13 +254,21 @@ def look_again(armature: bpy.types.Object) -> bool:
         stale = ""
         if keys[take.source] != kept.take_key:
             stale = TAKE_CHANGED
-        elif settings_digest(edit, _NOT_ASKED) != kept.asked_key:
+        elif not _asks_the_same(edit, kept):
             stale = EDIT_CHANGED
         polished = keys[take.action] != kept.own_key
         if (kept.stale, kept.polished) != (stale, polished):
             kept.stale, kept.polished = stale, polished
             new = True
     return new
+
+
+def _asks_the_same(edit: HangtimeSettings, kept: HangtimeAction) -> bool:
+    """Whether an edit is what a result was made with."""
+    targets = [row.target for row in kept.asked_targets]
+    if settings_targets(edit, _NOT_ASKED) != targets:
+        return False
+    return settings_digest(edit, _NOT_ASKED) == str(kept.asked_key)
 
 
 def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:

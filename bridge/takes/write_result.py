@@ -18,7 +18,7 @@ from ..rows.choices import After, WrittenAs
 from .difference import difference_of
 from .plan import AdaptedMotion
 from .span import WrittenTake
-from .takes import root_of
+from .takes import derive, free_name, root_of
 from .whole_take import write_take
 
 
@@ -43,9 +43,9 @@ def write_adapted_incrementally(
     Before the last slice the armature is as it was. Returns as `write_result`.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
-    name = f"{root_of(original).name} adapted"
+    name = free_name(root_of(original).name, "adapted")
     action, written = yield from _write(armature, motion, original, slot, name)
-    action_settings(action).recording = original
+    derive(action, original, armature)
     if motion.options.written_as is WrittenAs.STRIP:
         lay_strips(armature, original, action, slot)
     show(armature, action, slot)

@@ -38,7 +38,14 @@ from ...bridge.recipe.result import require_return_after
 from ...bridge.rows.choices import LoopRoot, WrittenAs
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
-from ...bridge.takes.takes import adapted_spans, note_made, polished_result
+from ...bridge.takes.takes import (
+    adapted_spans,
+    derive,
+    free_name,
+    note_made,
+    polished_result,
+    root_of,
+)
 from ...bridge.takes.write_result import combine, write_adapted_incrementally
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
@@ -320,8 +327,9 @@ def _write_other(
     """The answer on an armature of its own, for the artist's keeps its proportions."""
     other, track, _ = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
-    action = write_action(other, track, name=f"{recording.name} adapted")
-    action_settings(action).recording = recorded_action(armature)
+    source = present(recorded_action(armature))
+    action = write_action(other, track, name=free_name(root_of(source).name, "adapted"))
+    derive(action, source, armature)
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
     _note(armature, other, action, answer)
