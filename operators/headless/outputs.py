@@ -184,14 +184,19 @@ class Outputs:
 
     def _motion(self) -> AdaptedMotion:
         """The motion, to be put into the take."""
+        from ...bridge.accessors import current_action, present
+        from ...bridge.properties.attached_groups import ensure_groups
         from ...bridge.takes.plan import AdaptedMotion
+        from ...bridge.takes.takes import adapted_spans
 
+        ensure_groups()
         return AdaptedMotion(
             self.result.track,
             self.result.times,
             self.result.moved,
             self.options,
             ends=any(hold.ends for hold in self.problem.requests.holds),
+            kept=adapted_spans(present(current_action(self.clip.armature))),
         )
 
     def _recorded_curves(self) -> CurveHolder | None:

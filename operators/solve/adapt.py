@@ -35,7 +35,7 @@ from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
-from ...bridge.rows.choices import LoopRoot, WrittenAs
+from ...bridge.rows.choices import After, LoopRoot, WrittenAs
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.takes import (
@@ -79,6 +79,7 @@ from .solving import SolveState
 from .takes import LEFT_BEHIND
 from .task import Task, TaskOperator, answered, take_best
 
+ALONE = "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
 
@@ -332,8 +333,11 @@ def _write_other(
     derive(action, source, armature)
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
-    _note(armature, other, action, answer)
+    options = result_options(settings_of(armature))
+    left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]
+    _note(armature, other, action, answer, left_out)
     yield from write_keys(armature, other, action, answer)
+    mark_contacts(other, action, answer, options)
     return f"Made the armature {other.name}, which performs the adapted motion"
 
 
