@@ -303,7 +303,8 @@ class HangtimeAction(bpy.types.PropertyGroup):
     spans: declared(text(), options=HIDDEN)
     warning: declared(text(), options=HIDDEN)  # what is beyond reason in it: lines
     stale: declared(text(), options=HIDDEN)  # why it is not what would be made now
-    polished: declared(boolean(), options=HIDDEN)  # edited by hand since
+    polished: declared(boolean(), options=HIDDEN)  # edited by hand
+    holds_polish: declared(boolean(), options=HIDDEN)  # not since, but of the one before it
     performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text

@@ -34,6 +34,7 @@ _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
     *("whole_stance", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
+    "keep_polish",
 )
 _NOT_KEPT = ("marks", "adapted", "source")
 _LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
@@ -215,7 +216,7 @@ def note_made(
     for target in settings_targets(settings_of(armature), _NOT_ASKED):
         made.asked_targets.add().target = target
     made.take_key, made.own_key = _digest(source), _digest(action)
-    made.stale, made.polished = "", False
+    made.stale, made.polished, made.holds_polish = "", False, False
     spans = []
     if span is not None:
         for first, last in adapted_spans(source):
@@ -256,7 +257,7 @@ def look_again(armature: bpy.types.Object) -> bool:
             stale = TAKE_CHANGED
         elif not _asks_the_same(edit, kept):
             stale = EDIT_CHANGED
-        polished = keys[take.action] != kept.own_key
+        polished = kept.holds_polish or keys[take.action] != kept.own_key
         if (kept.stale, kept.polished) != (stale, polished):
             kept.stale, kept.polished = stale, polished
             new = True
@@ -272,11 +273,12 @@ def _asks_the_same(edit: HangtimeSettings, kept: HangtimeAction) -> bool:
 
 
 def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The last result, where it was edited by hand since it was made."""
+    """The last result, where it has hand polish: was edited since it was made, or took it over."""
     result: bpy.types.Action | None = settings_of(armature).adapted
     if result is None or not action_settings(result).own_key:
         return None
-    return result if _digest(result) != action_settings(result).own_key else None
+    kept = action_settings(result)
+    return result if kept.holds_polish or _digest(result) != kept.own_key else None
 
 
 def _digest(action: bpy.types.Action) -> str:
@@ -292,6 +294,9 @@ def bake_shown(armature: bpy.types.Object, result: bpy.types.Action) -> None:
     made, source = action_settings(result), source_of(result)
     if source is None or difference_shown(result) is None:
         return
-    if (_digest(source), _digest(result)) != (made.take_key, made.own_key):
+    now = _digest(result)
+    if (_digest(source), now) != (made.take_key, made.own_key):
+        _, _, difference = now.partition(" ")
+        made.holds_polish |= difference != made.own_key.partition(" ")[2]
         bake_combined(result, slot_identifier(armature))
         made.own_key = _digest(result)

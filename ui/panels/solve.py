@@ -100,6 +100,7 @@ class TakePanel(ArmaturePanel):
         optional(column, options, "use_blend", "Custom Blend", "blend_in", "blend_out")
         column.prop(options, "lock_others")
         layout.prop(options, "written_as")
+        layout.prop(options, "keep_polish")
         layout.prop(options, "markers")
         layout.prop(options, "contact_channels")
 

@@ -11,6 +11,8 @@ from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import read_recorded, recorded_action
 from hangtime.bridge.armature.read import read_recording
+from hangtime.tests.blender.helpers import rigs
+from mathutils import Matrix
 
 FIRST, LAST = 110, 260
 BLEND = 30  # frames, a quarter of a second
@@ -105,12 +107,60 @@ def test_a_return_before_the_last_adapted_frame_is_refused(analysed: bpy.types.O
 def test_edits_made_by_hand_are_told_before_they_stay_behind(
     analysed: bpy.types.Object, capfd: pytest.CaptureFixture[str]
 ) -> None:
+    analysed.hangtime.result.keep_polish = False
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     first = current_action(analysed)
     fcurves.curves_of(analysed)[0].keyframe_points[50].co.y += 1.0
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     assert f"Keys of {first.name} were edited by hand" in capfd.readouterr().out
     assert first.use_fake_user
+
+
+def turn(armature: bpy.types.Object, bone: str, frames: range, angle: float) -> None:
+    """Turn a bone about its own X on some frames of what is shown, as an artist does by keys."""
+    posed = armature.pose.bones[bone]
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        more = Matrix.Rotation(angle, 3, "X")
+        rigs.set_rotation(posed, (posed.matrix_basis.to_3x3() @ more).to_quaternion())
+        posed.keyframe_insert(rigs.rotation_path(posed), frame=frame)
+
+
+def basis(armature: bpy.types.Object, bone: str, frame: float) -> np.ndarray:
+    bpy.context.scene.frame_set(int(frame))
+    return np.array(armature.pose.bones[bone].matrix_basis.to_3x3())
+
+
+def test_hand_polish_is_kept_when_the_landing_is_moved_again(analysed: bpy.types.Object) -> None:
+    scene, stance = bpy.context.scene, analysed.hangtime.stances["ground 2"]
+    analysed.hangtime.keep_times = True
+    stance.forward = 0.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    solved = basis(analysed, "Head", 200)
+    turn(analysed, "Head", range(190, 211), 0.3)  # in flight, and of no pinned point
+    stance.forward = 0.2
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    second = current_action(analysed)
+    assert second.hangtime.polished
+    assert "Hand polish of" in analysed.hangtime.status
+    assert not second.hangtime.warning
+    polished = basis(analysed, "Head", 200)
+    analysed.hangtime.result.keep_polish = False
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    clean = basis(analysed, "Head", 200)
+    turned = np.array(Matrix.Rotation(0.3, 3, "X"))
+    np.testing.assert_allclose(clean.T @ polished, turned, atol=1e-4)
+    assert np.abs(clean - solved).max() > 1e-4  # it was solved anew beneath
+    assert scene.frame_current == 200
+
+
+def test_hand_polish_that_moves_a_pinned_foot_is_warned_about(analysed: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    turn(analysed, "LeftFoot", range(250, 256), 0.2)
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    result = current_action(analysed)
+    assert "Hand polish moves Left toe 2 by" in result.hangtime.warning
+    assert "Hand polish moves Left toe 2 by" in result.hangtime.report
 
 
 def test_contacts_are_marked_and_told_to_engines(analysed: bpy.types.Object) -> None:
