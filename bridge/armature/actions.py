@@ -10,10 +10,11 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
-from ..accessors import current_action, current_scene
+from ..accessors import current_action, current_scene, mapped_strip
 from ..properties.settings import action_settings, settings_of
 from . import fcurves
 from .incremental import Incremental, complete, sample_incrementally
+from .played import playing_strip
 from .poses import Poses, sample
 from .read import recording_of, whole_frames
 from .strips import show_strip, strips_of, without_strips
@@ -90,13 +91,20 @@ def _evaluate() -> None:
 
 @contextmanager
 def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
-    """Context in which the armature performs `action`; afterwards what it performed before."""
+    """Context in which the armature performs `action`, where a strip plays it elsewhere than at its
+    own frames in that strip; afterwards what it performed before."""
     data = armature.animation_data
     assigned = data.action if data is not None else None
     if action == assigned and assigned is not None:
         yield
         return
     slot = fcurves.slot_identifier(armature)
+    strip = mapped_strip(armature, action) if action is not None else None
+    if strip is not None:
+        with playing_strip(armature, strip):
+            yield
+        _evaluate()
+        return
     with without_strips(armature):
         fcurves.assign(armature, action, slot)
         try:

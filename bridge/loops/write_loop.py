@@ -16,6 +16,7 @@ from ..armature import fcurves
 from ..armature.actions import recorded_action, show, showing_action
 from ..armature.channels import channels, proper
 from ..armature.incremental import Incremental, sample_incrementally
+from ..armature.played import scene_copy
 from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.write import remove, remove_other_rotations, rotation_channel
@@ -88,9 +89,7 @@ def write_loop(
     frames = loop.track.frames
     first = yield from sample_incrementally(armature, frames[:1], showing)
     bases = pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
-    action = recorded.copy()
-    action.name = name
-    action.use_fake_user = False
+    action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
     try:

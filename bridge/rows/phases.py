@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...solver.data.contacts import PhaseKind, gaps
+from ..accessors import attached, current_action, shown_range
 from .choices import HOLD
 from .protocols import Settings
 
@@ -66,12 +67,10 @@ def clip_ends(settings: Settings) -> tuple[float, float] | None:
 
 def recorded_span(settings: Settings) -> tuple[float, float] | None:
     """First and last frame of the recording's action, where there is one."""
-    data = settings.id_data.animation_data
-    action = data.action if data is not None else None
+    action = current_action(settings.id_data)
     if action is None:
         return None
-    first, last = (action.hangtime.recording or action).frame_range
-    return float(first), float(last)
+    return shown_range(settings.id_data, attached(action).recording or action)
 
 
 def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:

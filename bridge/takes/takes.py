@@ -17,6 +17,7 @@ from ..accessors import current_action
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
+from ..armature.played import adopt_strip, in_scene_time, strip_time
 from ..armature.traces_store import forget, put_by, take_up
 from ..properties.settings import (
     HangtimeAction,
@@ -71,6 +72,7 @@ def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.typ
     """Note that an armature's settings made an action from a take: it is a result now."""
     made = action_settings(action)
     made.recording, made.maker = source, armature
+    adopt_strip(armature, source)
     made.count = 1 + max(action_settings(other).count for other in bpy.data.actions)
 
 
@@ -215,7 +217,7 @@ def note_made(
     made.asked_targets.clear()
     for target in settings_targets(settings_of(armature), _NOT_ASKED):
         made.asked_targets.add().target = target
-    made.take_key, made.own_key = _digest(source), _digest(action)
+    made.take_key, made.own_key = _take_digest(armature, source), _digest(action)
     made.stale, made.polished, made.holds_polish = "", False, False
     spans = []
     if span is not None:
@@ -245,15 +247,18 @@ def look_again(armature: bpy.types.Object) -> bool:
     """
     settings, new = settings_of(armature), False
     keys: dict[bpy.types.Action, str] = {}
+    sources: dict[bpy.types.Action, str] = {}
     for take in takes_of(armature):
         kept = action_settings(take.action)
         if take.source is None or not kept.own_key:
             continue
-        for action in (take.action, take.source):
-            keys.setdefault(action, _digest(action))
+        if take.action not in keys:
+            keys[take.action] = _digest(take.action)
+        if take.source not in sources:
+            sources[take.source] = _take_digest(armature, take.source)
         edit = settings if take.action == settings.adapted else kept.edit
         stale = ""
-        if keys[take.source] != kept.take_key:
+        if sources[take.source] != kept.take_key:
             stale = TAKE_CHANGED
         elif not _asks_the_same(edit, kept):
             stale = EDIT_CHANGED
@@ -281,6 +286,12 @@ def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:
     return result if kept.holds_polish or _digest(result) != kept.own_key else None
 
 
+def _take_digest(armature: bpy.types.Object, take: bpy.types.Action) -> str:
+    """Of the keys of what results are made from, and of when a strip plays it."""
+    time, found = strip_time(armature, take), _digest(take)
+    return found if time is None else f"{found} {time}"
+
+
 def _digest(action: bpy.types.Action) -> str:
     """Of a take's keys, and of the difference that is edited in its stead."""
     difference = difference_shown(action)
@@ -295,8 +306,9 @@ def bake_shown(armature: bpy.types.Object, result: bpy.types.Action) -> None:
     if source is None or difference_shown(result) is None:
         return
     now = _digest(result)
-    if (_digest(source), now) != (made.take_key, made.own_key):
+    if (_take_digest(armature, source), now) != (made.take_key, made.own_key):
         _, _, difference = now.partition(" ")
         made.holds_polish |= difference != made.own_key.partition(" ")[2]
-        bake_combined(result, slot_identifier(armature))
+        with in_scene_time(armature, source) as take:
+            bake_combined(result, take, slot_identifier(armature))
         made.own_key = _digest(result)

@@ -10,6 +10,7 @@ from ..accessors import ATTRIBUTE, current_action, present
 from ..armature import fcurves
 from ..armature.actions import recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
+from ..armature.played import in_scene_time, scene_copy
 from ..armature.strips import lay_strips, strips_of
 from ..armature.write import write_incrementally
 from ..controls.driven import is_driven
@@ -57,7 +58,8 @@ def combine(armature: bpy.types.Object, action: bpy.types.Action, after: After) 
     """Lay a result that is shown, with the keys that it is to have, as its difference from what it
     was made from into a strip on top of that."""
     take, slot = action_settings(action).recording, fcurves.slot_identifier(armature)
-    more = difference_of(armature, present(take), action, slot)
+    with in_scene_time(armature, present(take)) as played:
+        more = difference_of(armature, played, action, slot)
     lay_strips(armature, present(take), action, slot, more)
     if after is After.CUT:  # nothing of it is left beside the adapted frames
         for _, strip in strips_of(armature, action):
@@ -80,9 +82,7 @@ def _write(
         )
         forget_copied(cut)
         return cut, None
-    action = recorded.copy()
-    action.name = name
-    action.use_fake_user = False
+    action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
     try:

@@ -175,11 +175,14 @@ class Outputs:
         if written_as is WrittenAs.ACTION or performer != self.clip.armature:
             return
         from ...bridge.armature.fcurves import slot_identifier
+        from ...bridge.armature.played import adopt_strip, in_scene_time
         from ...bridge.armature.strips import lay_strips
         from ...bridge.takes.difference import difference_of
 
         slot, combined = slot_identifier(performer), written_as is WrittenAs.COMBINE
-        more = difference_of(performer, take, adapted, slot) if combined else None
+        adopt_strip(performer, take)
+        with in_scene_time(performer, take) as played:
+            more = difference_of(performer, played, adapted, slot) if combined else None
         lay_strips(performer, take, adapted, slot, more)
 
     def _motion(self) -> AdaptedMotion:

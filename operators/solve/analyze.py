@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...bridge.accessors import present
+from ...bridge.accessors import present, shown_range
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
@@ -91,7 +91,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         bind = _leave_out_bind_pose(settings, recording)
         if bind:
             recording = yield from read_wanted(armature)
-        first, last = present(recorded_action(armature)).frame_range.to_tuple()
+        first, last = shown_range(armature, present(recorded_action(armature)))
         span = span_of(settings, recording)
         if span[0] >= last or span[1] <= first:
             raise OutsideKeys(armature.name, first, last)

@@ -97,6 +97,29 @@ def test_a_result_in_a_strip_is_switched_off(analysed: bpy.types.Object) -> None
     assert len(analysed.animation_data.nla_tracks) == 2
 
 
+def test_a_jump_in_a_strip_of_the_artist_s_is_adapted_where_it_plays(
+    jump: bpy.types.Object,
+) -> None:
+    data, later = jump.animation_data, 50
+    take, before = data.action, read_recording(jump)
+    strip = data.nla_tracks.new().strips.new("Jump", 1 + later, take)
+    data.action = None
+    strip.action_frame_start, strip.action_frame_end = take.frame_range
+    jump.hangtime.first_frame, jump.hangtime.last_frame = FIRST + later, LAST + later
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    jump.hangtime.stances["ground 2"].up = 0.05
+    jump.hangtime.keep_times = True
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    now = read_recording(jump)
+    assert now.frames.tolist() == (before.frames + later).tolist()
+    up = now.heads[:, 0, 2] - before.heads[:, 0, 2]
+    np.testing.assert_allclose(up[before.frames > LAST + BLEND], 0.05, atol=1e-5)
+    np.testing.assert_allclose(up[before.frames < FIRST - BLEND], 0.0, atol=1e-5)
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert data.action is None
+    assert recorded_action(jump) == current_action(jump) == take
+
+
 def test_a_return_before_the_last_adapted_frame_is_refused(analysed: bpy.types.Object) -> None:
     result = analysed.hangtime.result
     result.after, result.use_return_frame, result.return_frame = "RETURN", True, 200
