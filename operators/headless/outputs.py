@@ -126,8 +126,8 @@ class Outputs:
         from ...bridge.accessors import current_action, present
         from ...bridge.armature.fcurves import slot_identifier
         from ...bridge.armature.incremental import complete
-        from ...bridge.armature.reproportioned import build_reproportioned
         from ...bridge.armature.write import side_by_side, write_action
+        from ...bridge.files.reproportioned import build_reproportioned
         from ...bridge.loops.write_loop import Loop, write_loop
         from ...bridge.takes.write_result import write_result
 

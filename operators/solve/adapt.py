@@ -12,7 +12,6 @@ from ...bridge.armature.actions import (
     showing_recorded,
 )
 from ...bridge.armature.incremental import Incremental
-from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.bone_mapping import chosen_parts
@@ -25,6 +24,7 @@ from ...bridge.constraints.motion_problem import (
 from ...bridge.constraints.status import write_status
 from ...bridge.controls.driven import constrained
 from ...bridge.controls.refusals import require_posable
+from ...bridge.files.reproportioned import build_reproportioned
 from ...bridge.loops.write_loop import (
     Loop,
     root_bone,
