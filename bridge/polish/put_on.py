@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import bpy
@@ -55,18 +56,23 @@ def placed(
 
 
 def put_on(
-    action: bpy.types.Action, slot: str | None, place: PlacedPolish, before: Written
+    action: bpy.types.Action,
+    slot: str | None,
+    place: PlacedPolish,
+    before: Written,
+    owned: Collection[str] | None,
 ) -> None:
-    """Put polish on a new result's slot; channels that physics leaves as they were get the edited
-    keys themselves. before: the polished result as it was made."""
+    """Put polish on a new result's slot; channels that physics does not own get the edited keys
+    themselves. before: the polished result as it was made. owned: paths of those that it does,
+    None for all."""
     polish, new = place.polish, place.new
     holder, edited = fcurves.holder_in(action, slot), edited_action(polish.result)
     source = fcurves.holder_in(edited, slot) if edited == polish.result else None
     assert holder is not None
     for offset in polish.offsets:
         moved = None
-        if source is not None:
-            moved = _moved_alone(offset, before, new, polish.time, place.time)
+        if source is not None and owned is not None and offset.path not in owned:
+            moved = _moved_alone(offset, place, before)
         if moved is None or not _copied(holder, source, offset, moved):
             _bake(holder, offset, new, offset.at(polish.frames, place.at))
     action.update_tag()
@@ -102,29 +108,29 @@ def _runs(where: BoolArray) -> list[slice]:
 
 
 def _moved_alone(
-    offset: HandOffset, before: Written, new: CurveSamples, old_time: TakeTime, time: TakeTime
+    offset: HandOffset, place: PlacedPolish, before: Written
 ) -> tuple[FloatArray, FloatArray] | None:
-    """Corners of the map from the polished result's frames to the new one's, where all that
-    happened to a property since is that its keys came later or earlier; None else."""
-    was = before.samples
+    """Corners of the map from the polished result's frames to the new one's, of a property that is
+    not owned: its keys went with the body, or stayed. None where the new one lacks some of them."""
+    was, new = before.samples, place.new
+    old = place.polish.time
+    corners = np.union1d(old.result, old.to_result(place.time.recorded))
+    went = place.time.to_result(old.to_recorded(corners))
     if not len(was.frames):
-        return None
-    corners = np.union1d(old_time.result, old_time.to_result(time.recorded))
-    maps = ((corners, corners), (corners, time.to_result(old_time.to_recorded(corners))))
-    for one, other in maps:
-        inside = mapped(was.frames, one, other)
-        kept = (inside >= new.frames[0]) & (inside <= new.frames[-1])
-        same = all(
-            np.allclose(
-                new.at((offset.path, i), inside[kept], default_of((offset.path, i))),
-                was.at((offset.path, i), was.frames[kept], default_of((offset.path, i))),
-                atol=1e-6,
-            )
+        return corners, went
+    missed = {}
+    for name, there in (("stayed", corners), ("went", went)):
+        frames = mapped(was.frames, corners, there)
+        if frames[0] < new.frames[0] - 1.0 or frames[-1] > new.frames[-1] + 1.0:
+            return None
+        missed[name] = max(
+            np.abs(
+                new.at((offset.path, i), frames, default_of((offset.path, i)))
+                - was.at((offset.path, i), was.frames, default_of((offset.path, i)))
+            ).max()
             for i in offset.indices
         )
-        if same and kept.all():
-            return one, other
-    return None
+    return corners, corners if missed["stayed"] < missed["went"] else went
 
 
 def _copied(

@@ -11,9 +11,11 @@ from ...solver.data.contacts import ContactSchedule
 from ..armature import fcurves
 from ..armature.incremental import Incremental
 from ..constraints.motion_problem import wanted_range
+from ..controls.driven import is_driven
 from ..properties.settings import action_settings, settings_of
 from ..rows.choices import BodyKind
 from ..takes.options import loop_options
+from ..takes.owned import owned_channels
 from ..takes.take_time import TakeTime
 from ..takes.takes import polished_result
 from .hand_offsets import Polish, polish_of, without
@@ -44,12 +46,17 @@ class Renewal:
         return Renewal(armature, (polish_of(armature, result, written), written))
 
     def put_on(
-        self, action: bpy.types.Action, time: TakeTime, schedule: ContactSchedule, rate: float
+        self,
+        action: bpy.types.Action,
+        bones: tuple[str, ...],
+        time: TakeTime,
+        schedule: ContactSchedule,
+        rate: float,
     ) -> Incremental[tuple[MovedPin, ...]]:
         """Put the polish on a new result, which the armature shows; tells which pins that moves.
 
-        time: where the take's frames are in it. schedule, rate (frames a s): its contacts, from
-        its first adapted frame on.
+        bones: the bodies', the pelvis first. time: where the take's frames are in it. schedule,
+        rate (frames a s): its contacts, from its first adapted frame on.
         """
         if self.polish is None:
             return ()
@@ -58,7 +65,10 @@ class Renewal:
         first = float(time.result[0])
         pinned = PinnedFrames.of(schedule, first, rate, place.frames)
         was = yield from pinned.poses(self.armature)
-        put_on(action, slot, place, before)
+        owned = None
+        if not is_driven(self.armature, bones):  # else it is not known which controls were written
+            owned = {channel.path for channel in owned_channels(self.armature, bones)}
+        put_on(action, slot, place, before, owned)
         self.put = place
         now = yield from pinned.poses(self.armature)
         return pinned.moved(was, now)

@@ -301,7 +301,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     span = written.span if written is not None else None
     try:
         rate = answer.report.recording.frames_per_second
-        moved = yield from renewal.put_on(action, time, answer.schedule, rate)
+        moved = yield from renewal.put_on(action, answer.track.bones, time, answer.schedule, rate)
         _tell_polish(armature, action, renewal, moved)
         yield from write_keys(armature, armature, action, answer)
     finally:  # cancelled it has a key on every frame

@@ -72,7 +72,7 @@ def adapt(
     motion = AdaptedMotion(track, times, None, chosen)
     action, written = complete(write_adapted_incrementally(armature, motion))
     time = written.time if written is not None else TakeTime.of(times, 1.0)
-    complete(renewal.put_on(action, time, ContactSchedule((), 1.0, 0.0), 24.0))
+    complete(renewal.put_on(action, rigs.MOVING, time, ContactSchedule((), 1.0, 0.0), 24.0))
     if chosen.written_as is WrittenAs.COMBINE:
         combine(armature, action, chosen.after)
     note_made(armature, action, written.span if written is not None else None, time.later)
@@ -160,6 +160,10 @@ def test_a_finger_keyed_by_hand_keeps_its_few_keys_bit_by_bit() -> None:
     adapt(armature, 0.2)
     after = fcurves.table(curve_of(armature, path))
     assert all(after[name].tobytes() == column.tobytes() for name, column in before.items())
+    adapt(armature, 0.2, ends=LAST + 4)  # what follows comes later, and the last key with it
+    np.testing.assert_allclose(
+        fcurves.keys(curve_of(armature, path)), [[12.0, 0.0], [32.0, 0.7], [54.0, 0.1]], atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ"])
