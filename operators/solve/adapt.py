@@ -86,8 +86,8 @@ def unanalysed(context: bpy.types.Context) -> str | None:
     return why
 
 
-class _Adapting(TaskOperator):
-    """Base of Adapt and Refine."""
+class Adapting(TaskOperator):
+    """Base of Adapt, Refine and Update."""
 
     # Whether the artist knows that edits made by hand in the last result do not go along.
     leave_edits: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
@@ -137,7 +137,14 @@ class _Adapting(TaskOperator):
         return replace(asked, problem=replace(asked.problem, requests=requests))
 
 
-class AdaptOperator(_Adapting, bpy.types.Operator):
+def quick_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+    """Solver options by the method that is chosen, or that a recipe asks for."""
+    if asked.method is not Method.IMPLICIT:  # a recipe's own choice
+        return asked
+    return replace(asked, method=Method[settings.method])
+
+
+class AdaptOperator(Adapting, bpy.types.Operator):
     bl_idname = OperatorId.ADAPT
     bl_label = "Adapt"
     bl_description = (
@@ -147,12 +154,10 @@ class AdaptOperator(_Adapting, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
-        if asked.method is not Method.IMPLICIT:  # a recipe's own choice
-            return asked
-        return replace(asked, method=Method[settings.method])
+        return quick_solution(settings, asked)
 
 
-class RefineOperator(_Adapting, bpy.types.Operator):
+class RefineOperator(Adapting, bpy.types.Operator):
     bl_idname = OperatorId.REFINE
     bl_label = "Refine"
     bl_description = (

@@ -11,6 +11,7 @@ from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import read_recorded, recorded_action
 from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.takes.takes import TAKE_CHANGED, look_again
 from hangtime.tests.blender.helpers import rigs
 from mathutils import Matrix
 
@@ -77,6 +78,28 @@ def test_a_second_edit_builds_on_the_first(analysed: bpy.types.Object) -> None:
     assert np.linalg.norm(carried) == pytest.approx(0.2, abs=1e-3)
     assert bpy.ops.hangtime.show_take(action=first.name) == {"FINISHED"}
     assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1)
+
+
+def test_update_solves_again_when_the_take_below_was_edited(analysed: bpy.types.Object) -> None:
+    take, slot = current_action(analysed), fcurves.slot_identifier(analysed)
+    analysed.hangtime.stances["ground 2"].forward = 0.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    first = current_action(analysed)
+    path = analysed.pose.bones["LeftArm"].path_from_id("rotation_quaternion")
+    if fcurves.holder_in(take, slot).fcurves.find(path, index=1) is None:
+        path = analysed.pose.bones["LeftArm"].path_from_id("rotation_euler")
+    for key in fcurves.holder_in(take, slot).fcurves.find(path, index=1).keyframe_points:
+        key.co.y += 0.05
+    look_again(analysed)
+    assert first.hangtime.stale == TAKE_CHANGED
+    with pytest.raises(RuntimeError, match="Analyze"):  # these contacts are another motion's
+        bpy.ops.hangtime.adapt()
+    assert bpy.ops.hangtime.update() == {"FINISHED"}
+    second = current_action(analysed)
+    assert second != first
+    look_again(analysed)
+    assert second.hangtime.stale == ""
+    assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1, abs=1e-5)
 
 
 def test_a_result_in_a_strip_is_switched_off(analysed: bpy.types.Object) -> None:
