@@ -10,7 +10,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ..armature import fcurves
-from ..takes.key_splice import FullTurns, anchor, splice
+from ..takes.key_splice import FullTurns, anchor, key_span, splice
 from ..takes.take_time import TakeTime, mapped
 from .hand_offsets import HandOffset, Polish, acting, default_of
 from .samples import CurveSamples, Written, edited_action, sampled
@@ -70,10 +70,8 @@ def put_on(
     source = fcurves.holder_in(edited, slot) if edited == polish.result else None
     assert holder is not None
     for offset in polish.offsets:
-        moved = None
-        if source is not None and owned is not None and offset.path not in owned:
-            moved = _moved_alone(offset, place, before)
-        if moved is None or not _copied(holder, source, offset, moved):
+        alone = source is not None and owned is not None and offset.path not in owned
+        if not (alone and _copied(holder, source, offset, place, before)):
             _bake(holder, offset, new, offset.at(polish.frames, place.at))
     action.update_tag()
 
@@ -109,41 +107,48 @@ def _runs(where: BoolArray) -> list[slice]:
 
 def _moved_alone(
     offset: HandOffset, place: PlacedPolish, before: Written
-) -> tuple[FloatArray, FloatArray] | None:
+) -> tuple[FloatArray, FloatArray]:
     """Corners of the map from the polished result's frames to the new one's, of a property that is
-    not owned: its keys went with the body, or stayed. None where the new one lacks some of them."""
-    was, new = before.samples, place.new
+    not owned: its keys stayed, or went with the body, whichever is nearer to what there is."""
     old = place.polish.time
     corners = np.union1d(old.result, old.to_result(place.time.recorded))
     went = place.time.to_result(old.to_recorded(corners))
-    if not len(was.frames):
-        return corners, went
-    missed = {}
-    for name, there in (("stayed", corners), ("went", went)):
-        frames = mapped(was.frames, corners, there)
-        if frames[0] < new.frames[0] - 1.0 or frames[-1] > new.frames[-1] + 1.0:
-            return None
-        missed[name] = max(
-            np.abs(
-                new.at((offset.path, i), frames, default_of((offset.path, i)))
-                - was.at((offset.path, i), was.frames, default_of((offset.path, i)))
-            ).max()
-            for i in offset.indices
-        )
-    return corners, corners if missed["stayed"] < missed["went"] else went
+    missed = [
+        _missed(offset, place.new, before.samples, corners, there) for there in (corners, went)
+    ]
+    return corners, corners if missed[0] < missed[1] else went
+
+
+def _missed(
+    offset: HandOffset, new: CurveSamples, was: CurveSamples, one: FloatArray, other: FloatArray
+) -> float:
+    """By how much a property that was written is not what there is now, its frames mapped."""
+    there = mapped(was.frames, one, other)
+    inside = (there >= new.frames[0]) & (there <= new.frames[-1])
+    apart = [0.0]
+    for index in offset.indices if inside.any() else ():
+        default = default_of((offset.path, index))
+        values = was.at((offset.path, index), was.frames[inside], default)
+        apart.append(np.abs(new.at((offset.path, index), there[inside], default) - values).max())
+    return float(max(apart))
 
 
 def _copied(
     holder: fcurves.CurveHolder,
     source: fcurves.CurveHolder | None,
     offset: HandOffset,
-    moved: tuple[FloatArray, FloatArray],
+    place: PlacedPolish,
+    before: Written,
 ) -> bool:
     """Give a property the edited keys, in their new places; False where that is not all there is
-    to its curves."""
+    to its curves, or the new result lacks some of the frames."""
     found = [source.fcurves.find(offset.path, index=i) for i in offset.indices] if source else []
     curves = [curve for curve in found if curve is not None]
     if not curves or any(len(curve.modifiers) for curve in curves):
+        return False
+    moved = _moved_alone(offset, place, before)
+    first, last = mapped(np.array(key_span(curves)), *moved)
+    if first < place.new.frames[0] - 1.0 or last > place.new.frames[-1] + 1.0:
         return False
     for curve in curves:
         keys = fcurves.table(curve)

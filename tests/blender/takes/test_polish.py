@@ -164,6 +164,8 @@ def test_a_finger_keyed_by_hand_keeps_its_few_keys_bit_by_bit() -> None:
     np.testing.assert_allclose(
         fcurves.keys(curve_of(armature, path)), [[12.0, 0.0], [32.0, 0.7], [54.0, 0.1]], atol=1e-6
     )
+    adapt(armature, 0.2)  # and earlier again
+    np.testing.assert_allclose(fcurves.keys(curve_of(armature, path)), before["co"], atol=1e-5)
 
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "XYZ"])
