@@ -19,7 +19,7 @@ from ..takes.owned import owned_channels
 from ..takes.take_time import TakeTime
 from ..takes.takes import polished_result
 from .hand_offsets import Polish, polish_of, without
-from .pins import MovedPin, PinnedFrames
+from .pins import MovedPin, PinnedFrames, contact_pins, point_pins
 from .put_on import PlacedPolish, placed, put_on
 from .samples import CurveSamples, Written, edited_action, keep_written, sampled, written_of
 
@@ -63,7 +63,8 @@ class Renewal:
         slot, (polish, before) = fcurves.slot_identifier(self.armature), self.polish
         place = placed(action, slot, polish, time)
         first = float(time.result[0])
-        pinned = PinnedFrames.of(schedule, first, rate, place.frames)
+        points = [*contact_pins(schedule, first, rate), *point_pins(self.armature, time)]
+        pinned = PinnedFrames.of(points, place.frames)
         was = yield from pinned.poses(self.armature)
         owned = None
         if not is_driven(self.armature, bones):  # else it is not known which controls were written

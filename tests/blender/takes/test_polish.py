@@ -13,6 +13,7 @@ from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import read_recorded, showing_action
 from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.polish.pins import MovedPin
 from hangtime.bridge.polish.renewal import Renewal
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import After, WrittenAs
@@ -44,6 +45,7 @@ def rig(mode: str = "QUATERNION") -> bpy.types.Object:
 class Made:
     action: bpy.types.Action
     told: list[str]
+    moved: tuple[MovedPin, ...]
 
 
 def adapt(
@@ -72,12 +74,12 @@ def adapt(
     motion = AdaptedMotion(track, times, None, chosen)
     action, written = complete(write_adapted_incrementally(armature, motion))
     time = written.time if written is not None else TakeTime.of(times, 1.0)
-    complete(renewal.put_on(action, rigs.MOVING, time, ContactSchedule((), 1.0, 0.0), 24.0))
+    moved = complete(renewal.put_on(action, rigs.MOVING, time, ContactSchedule((), 1.0, 0.0), 24.0))
     if chosen.written_as is WrittenAs.COMBINE:
         combine(armature, action, chosen.after)
     note_made(armature, action, written.span if written is not None else None, time.later)
     renewal.note(action, time, (float(first), float(last)))
-    return Made(action, polish_lines(renewal.put))
+    return Made(action, polish_lines(renewal.put), moved)
 
 
 def curve_of(armature: bpy.types.Object, path: str, index: int = 0) -> bpy.types.FCurve:
@@ -193,6 +195,22 @@ def test_polish_of_a_difference_is_kept_and_edits_of_the_take_count_once(mode: s
     lifted = np.array(polished) - [height(frame) for frame in range(1, 61)]
     np.testing.assert_allclose(lifted[24:30], 0.5, atol=1e-5)
     np.testing.assert_allclose(np.delete(lifted, range(24, 30)), 0.0, atol=1e-5)
+
+
+def test_polish_that_moves_a_point_which_the_artist_pinned_is_told() -> None:
+    armature = rig()
+    adapt(armature, 0.1)
+    turn_head(armature, range(25, 31))
+    for name, bone in (("Crown", "head"), ("Ankle", "foot")):
+        row = armature.hangtime.constraints.add()
+        row.name, row.kind, row.span = name, "POINT", "FRAMES"
+        row.first_frame, row.last_frame = 28, 35
+        row.bones.add().name = bone
+        row.use_offset, row.offset = True, (0.1, 0.0, 0.0)
+    (moved,) = adapt(armature, 0.1).moved
+    assert moved.name == "Crown"
+    assert 28 <= moved.frame <= 30
+    assert moved.distance == pytest.approx(2.0 * 0.1 * np.sin(0.2), rel=1e-2)
 
 
 def test_another_jump_of_the_take_does_not_get_the_polish_of_the_first() -> None:
