@@ -54,7 +54,7 @@ def clip() -> Path:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _quick_jobs():
+def _quick_jobs(_enabled):
     """A picture as large as the artist's takes half a minute on a slow machine, a fit seconds:
     what is to be fitted is fitted by the first job that needs it, and remembered."""
     fits = KeptFits()
