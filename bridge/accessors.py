@@ -9,6 +9,8 @@ from typing import Any, TypeVar
 
 import bpy
 
+from .played_strips import played_strip, time_of
+
 SHOWS = "hangtime_shows"  # of the action that holds a result's difference: the result, and
 BESIDE = "hangtime_beside"  # what it is the difference from
 ATTRIBUTE = "hangtime"  # under which scenes, objects, actions and bones carry what is stored
@@ -49,12 +51,32 @@ def pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
 
 
 def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The action that animates the armature now, in a strip that Hangtime made or without."""
+    """The action that animates the armature now: assigned, in a strip that Hangtime made, or in the
+    only one of the artist's."""
     data = armature.animation_data
     if data is None or data.action is not None:
         return data.action if data is not None else None
     seen = [strip for track, strip in take_strips(armature) if not (track.mute or strip.mute)]
-    return shown_by(seen[-1]) if seen else None
+    if seen:
+        return shown_by(seen[-1])
+    strip = played_strip(armature)
+    return strip.action if strip is not None else None
+
+
+def shown_range(armature: bpy.types.Object, action: bpy.types.Action) -> tuple[float, float]:
+    """First and last scene frame on which an armature shows a take."""
+    first, last = action.frame_range.to_tuple()
+    strip = mapped_strip(armature, action)
+    return (first, last) if strip is None else time_of(strip).clipped(first, last)
+
+
+def mapped_strip(armature: bpy.types.Object, action: bpy.types.Action) -> bpy.types.NlaStrip | None:
+    """The strip that plays an action for an armature elsewhere than each frame at that frame."""
+    strips = [strip for _, strip in take_strips(armature) if strip.action == action]
+    alone = played_strip(armature)
+    if alone is not None and alone.action == action:
+        strips.append(alone)
+    return next((strip for strip in strips if not time_of(strip).whole), None)
 
 
 def shown_by(strip: bpy.types.NlaStrip) -> bpy.types.Action | None:
@@ -66,7 +88,8 @@ def shown_by(strip: bpy.types.NlaStrip) -> bpy.types.Action | None:
 def take_strips(
     armature: bpy.types.Object,
 ) -> list[tuple[bpy.types.NlaTrack, bpy.types.NlaStrip]]:
-    """The strips that Hangtime made for an armature, with their tracks; the take's comes first."""
+    """The strips that Hangtime made for an armature, with their tracks. The take's comes first,
+    which may be the artist's own (see `adopt_strip`)."""
     data = armature.animation_data
     if data is None:
         return []

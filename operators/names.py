@@ -11,6 +11,7 @@ class OperatorId(StrEnum):
 
     ANALYZE = "hangtime.analyze"
     ADAPT = "hangtime.adapt"
+    UPDATE = "hangtime.update"
     FIND_BONES = "hangtime.find_bones"
     SAVE_BONE_PRESET = "hangtime.save_bone_preset"
     APPLY_BONE_PRESET = "hangtime.apply_bone_preset"

@@ -10,22 +10,14 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
-from ..accessors import current_action, current_scene, source_of
+from ..accessors import current_action, current_scene, mapped_strip, source_of
 from ..properties.settings import settings_of
 from . import fcurves
 from .incremental import Incremental, complete, sample_incrementally
+from .played import playing_strip
 from .poses import Poses, sample
 from .read import recording_of, whole_frames
 from .strips import show_strip, strips_of, without_strips
-
-
-def free_name(wanted: str) -> str:
-    """A name for an action, with a number where one has it already: Blender would add ".001"."""
-    name, number = wanted, 1
-    while name in bpy.data.actions:
-        number += 1
-        name = f"{wanted} {number}"
-    return name
 
 
 def recorded_action(armature: bpy.types.Object) -> bpy.types.Action | None:
@@ -99,13 +91,20 @@ def _evaluate() -> None:
 
 @contextmanager
 def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
-    """Context in which the armature performs `action`; afterwards what it performed before."""
+    """Context in which the armature performs `action`, where a strip plays it elsewhere than at its
+    own frames in that strip; afterwards what it performed before."""
     data = armature.animation_data
     assigned = data.action if data is not None else None
     if action == assigned and assigned is not None:
         yield
         return
     slot = fcurves.slot_identifier(armature)
+    strip = mapped_strip(armature, action) if action is not None else None
+    if strip is not None:
+        with playing_strip(armature, strip):
+            yield
+        _evaluate()
+        return
     with without_strips(armature):
         fcurves.assign(armature, action, slot)
         try:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...solver.arrays import FloatArray
 from ..accessors import current_action, take_strips
+from ..played_strips import played_strip
 
 CurveHolder: TypeAlias = "bpy.types.Action | bpy.types.ActionChannelbag"  # 4.2 has no channelbags
 
@@ -98,7 +99,8 @@ def slot_identifier(owner: bpy.types.Object) -> str | None:
     """Identifier of the slot that `owner` uses; None without one and before Blender 4.4."""
     slot = getattr(owner.animation_data, "action_slot", None)
     if slot is None:
-        slots = (getattr(strip, "action_slot", None) for _, strip in take_strips(owner))
+        strips = [*(strip for _, strip in take_strips(owner)), played_strip(owner)]
+        slots = (getattr(strip, "action_slot", None) for strip in strips)
         slot = next((each for each in slots if each is not None), None)
     return slot.identifier if slot is not None else None
 

@@ -7,24 +7,51 @@ from zlib import crc32
 import bpy
 import numpy as np
 
-from .fcurves import all_curves, table
+from .fcurves import KeyTable, all_curves, table
 
-_BEZIER = 2  # of Blender's enum
+_BEZIER = 2  # of Blender's enum; what is above are named easings, such as Elastic
 _HANDLES = ("handle_left", "handle_right")
+_EASINGS = ("easing", "amplitude", "back", "period")
+_NOT_STORED = {"rna_type", "is_valid", "active", "show_expanded"}
 
 
 def keys_digest(action: bpy.types.Action) -> str:
-    """A number for all keys of an action, and the handles that shape its curves; another where
-    something differs."""
+    """A number for all that shapes an action's curves: keys, the handles and easings that count
+    between them, modifiers, and how curves go on beyond their keys; another where something
+    differs."""
     found = 0
     for curve in all_curves(action):
-        keys = table(curve)
         found = crc32(f"{curve.data_path}[{curve.array_index}]{curve.mute}".encode(), found)
-        found = crc32(keys["co"].tobytes(), found)
-        interpolation = keys["interpolation"][:, 0]
-        found = crc32(interpolation.tobytes(), found)
-        bent = interpolation == _BEZIER
-        after_bent = np.concatenate([[False], bent[:-1]]) if len(bent) else bent
-        for name, used in zip(_HANDLES, (after_bent, bent), strict=True):
-            found = crc32(keys[name][used].tobytes(), found)
+        found = _keys(table(curve), found)
+        found = crc32(curve.extrapolation.encode(), found)
+        for modifier in curve.modifiers:
+            found = crc32(repr(_stored(modifier)).encode(), found)
     return str(found)
+
+
+def _keys(keys: KeyTable, found: int) -> int:
+    found = crc32(keys["co"].tobytes(), found)
+    interpolation = keys["interpolation"][:, 0]
+    found = crc32(interpolation.tobytes(), found)
+    bent = interpolation == _BEZIER
+    after_bent = np.concatenate([[False], bent[:-1]]) if len(bent) else bent
+    for name, used in zip(_HANDLES, (after_bent, bent), strict=True):
+        found = crc32(keys[name][used].tobytes(), found)
+    eased = interpolation > _BEZIER
+    for name in _EASINGS if eased.any() else ():
+        found = crc32(keys[name][eased].tobytes(), found)
+    return found
+
+
+def _stored(modifier: bpy.types.bpy_struct) -> list[object]:
+    """What a modifier, or a point of its envelope, holds."""
+    found: list[object] = []
+    for each in modifier.bl_rna.properties:
+        value = getattr(modifier, each.identifier)
+        if each.identifier in _NOT_STORED:
+            continue
+        if each.type == "COLLECTION":
+            found += [_stored(row) for row in value]
+        else:
+            found.append(tuple(value) if getattr(each, "is_array", False) else value)
+    return found

@@ -7,11 +7,12 @@ import numpy as np
 from mathutils import Vector
 
 from ...solver.arrays import FloatArray
-from ...solver.data.faults import BadScale, NoAction, NoArmature, NoBones, NonFiniteKey
+from ...solver.data.faults import BadScale, NoArmature, NoBones, NonFiniteKey
 from ...solver.data.recording import Bone, Recording
 from ..accessors import armature_data, current_action, current_scene, present
 from . import fcurves
 from .channels import proper
+from .played import strip_time, why_no_action
 from .poses import Poses, frames_per_second, metres_per_unit, sample
 
 _SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
@@ -32,7 +33,7 @@ def read_recording(
     it was. The recording is called what the action is called.
 
     Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
-    this armature), NonFiniteKey, BadScale.
+    this armature), UnreadStrips, NonFiniteKey, BadScale.
     """
     frames = whole_frames(armature, first, last, beyond)
     return record(present(armature), frames)
@@ -53,6 +54,9 @@ def whole_frames(
         spans = np.array([action.frame_range])
     else:
         spans = np.array([curve.range() for curve in curves])
+    time = strip_time(armature, action)
+    if time is not None:
+        spans = np.array([time.clipped(spans.min(), spans.max())])
     start = np.ceil((spans.min() if first is None else first) - _EPSILON)
     end = max(start, np.floor((spans.max() if last is None else last) + _EPSILON))
     reach = np.floor(beyond * frames_per_second(current_scene()))
@@ -110,7 +114,7 @@ def _require_animated(
         raise NoBones(armature.name)
     curves = fcurves.curves_of(armature)
     if not curves:
-        raise NoAction(armature.name)
+        raise why_no_action(armature)
     return armature, curves
 
 

@@ -11,10 +11,11 @@ from mathutils import Matrix, Vector
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
-from ..accessors import armature_data, current_action, current_scene, pose_of, present
+from ..accessors import armature_data, current_action, current_scene, mapped_strip, pose_of, present
 from . import fcurves
 from .channels import channels, proper
 from .incremental import Incremental, complete, sample_incrementally
+from .played import scene_copy
 from .pose_basis import carrier_of, pose_bases
 from .poses import metres_per_unit
 
@@ -52,9 +53,7 @@ def write_incrementally(
     """
     poses = yield from sample_incrementally(armature, track.frames, showing)
     made = yield from pose_bases(armature, poses, track)
-    action = recorded.copy()
-    action.name = name
-    action.use_fake_user = False
+    action = scene_copy(armature, recorded, name)
     whole = False
     try:
         yield from _write_bases(armature, track, made, fcurves.holder_in(action, slot))
@@ -138,7 +137,8 @@ def side_by_side(
     copy.name = f"{armature.name} recording"
     for collection in armature.users_collection:
         collection.objects.link(copy)
-    fcurves.assign(copy, recording, slot)
+    played = mapped_strip(armature, recording) is not None  # and the copy has that strip too
+    fcurves.assign(copy, None if played else recording, slot)
     units = Vector(offset) / metres_per_unit(current_scene())
     # A delta, because the location itself may be animated; it counts in the parent's space.
     to_parent = _parent_space(armature).inverted()

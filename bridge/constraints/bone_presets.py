@@ -5,6 +5,7 @@ A preset is a recipe that has nothing but the table `[bones]`.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -40,6 +41,21 @@ def preset_names() -> list[str]:
 def preset_path(name: str) -> Path:
     """The file of a preset, there or not."""
     return preset_folder() / f"{_NOT_IN_FILES.sub('_', name.strip())}{SUFFIX}"
+
+
+def free_preset_name(name: str, bones: Mapping[str, str]) -> str:
+    """The name, where no preset of that name says anything else; else the next that is free:
+    "My Rig 2"."""
+    names = (name if count == 1 else f"{name} {count}" for count in itertools.count(1))
+    return next(each for each in names if not preset_path(each).exists() or _says(each, bones))
+
+
+def _says(name: str, bones: Mapping[str, str]) -> bool:
+    """Whether a preset that is there holds just these bones."""
+    try:
+        return dict(read_preset(preset_path(name))) == dict(bones)
+    except BadRecipe:  # somebody edited it
+        return False
 
 
 def mapped_bones(settings: HangtimeSettings) -> dict[str, str]:

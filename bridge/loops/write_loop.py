@@ -13,16 +13,17 @@ from ...solver.data.faults import NoRootBone
 from ...solver.data.recording import PoseTrack
 from ..accessors import armature_data, current_scene, pose_of, present
 from ..armature import fcurves
-from ..armature.actions import free_name, recorded_action, show, showing_action
+from ..armature.actions import recorded_action, show, showing_action
 from ..armature.channels import channels, proper
 from ..armature.incremental import Incremental, sample_incrementally
+from ..armature.played import scene_copy
 from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.write import remove, remove_other_rotations, rotation_channel
 from ..keys.bezier_keys import splice_bezier
-from ..properties.settings import action_settings, settings_of
+from ..properties.settings import settings_of
 from ..rows.choices import LoopRoot
-from ..takes.takes import root_of
+from ..takes.takes import derive, free_name, root_of
 from ..takes.write_result import forget_copied
 from .cyclic_keys import cyclic_keys
 
@@ -88,9 +89,7 @@ def write_loop(
     frames = loop.track.frames
     first = yield from sample_incrementally(armature, frames[:1], showing)
     bases = yield from pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
-    action = recorded.copy()
-    action.name = name
-    action.use_fake_user = False
+    action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
     try:
@@ -126,9 +125,9 @@ def write_loop_incrementally(
     Before the last slice the armature is as it was.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
-    name = free_name(f"{root_of(original).name} loop")
+    name = free_name(root_of(original).name, "loop")
     action = yield from write_loop(armature, loop, original, slot, name=name)
-    action_settings(action).recording = original
+    derive(action, original, armature)
     show(armature, action, slot)
     settings_of(armature).adapted = action
     return action

@@ -80,6 +80,14 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
         ],
         override=OVERRIDABLE,
     )
+    keep_polish: chosen(
+        boolean(
+            "Keep Polish",
+            "What you changed by hand in the last result is put on the next one, as offsets from "
+            "what was solved. Off: it stays behind with that result",
+            default=True,
+        )
+    )
     markers: bpy.props.EnumProperty(
         name="Contact Markers",
         description="Mark where each foot or hand comes down and goes up",

@@ -275,24 +275,36 @@ class HangtimeScene(bpy.types.PropertyGroup):
     )
 
 
+class HangtimeAskedFor(bpy.types.PropertyGroup):
+    """A data-block that settings point to."""
+
+    target: declared(target(type=bpy.types.ID), options=HIDDEN)
+
+
 class HangtimeAction(bpy.types.PropertyGroup):
     """Of an adapted action: the take that it was made from, how, and what was found.
 
-    edit: what was asked for, and the artist's changes to that since. next_edit: of a take from
-    which nothing is made yet. asked_key, take_key, own_key: digests of the settings, of the take's
-    keys and of its own when it was made. spans: the frames of all adaptations that it holds.
+    maker: the armature whose settings asked for it. count: how many results there were, itself
+    included, when it was made. edit: what was asked for, and the artist's changes to that since.
+    next_edit: of a take from which nothing is made yet. asked_key, take_key, own_key: digests of
+    the settings, of the take's keys and of its own when it was made. asked_targets: the data-blocks
+    that the settings pointed to then. spans: the frames of all adaptations that it holds.
     """
 
     recording: declared(target(type=bpy.types.Action), options=HIDDEN)
+    maker: declared(target(), options=HIDDEN)
+    count: declared(whole(), options=HIDDEN)
     edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)
     next_edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)
     asked_key: declared(text(), options=HIDDEN)
+    asked_targets: bpy.props.CollectionProperty(type=HangtimeAskedFor, options=HIDDEN)
     take_key: declared(text(), options=HIDDEN)
     own_key: declared(text(), options=HIDDEN)
     spans: declared(text(), options=HIDDEN)
     warning: declared(text(), options=HIDDEN)  # what is beyond reason in it: lines
     stale: declared(text(), options=HIDDEN)  # why it is not what would be made now
-    polished: declared(boolean(), options=HIDDEN)  # edited by hand since
+    polished: declared(boolean(), options=HIDDEN)  # edited by hand
+    holds_polish: declared(boolean(), options=HIDDEN)  # not since, but of the one before it
     performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text
@@ -331,6 +343,7 @@ CLASSES = (
     *CONTACT_CLASSES,
     HangtimeSettings,
     HangtimeScene,
+    HangtimeAskedFor,
     HangtimeAction,
 )
 CARRIERS = {

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ...solver.data.reports.jumps import TimeMap
+from ..accessors import current_action
 from .settings import action_settings
 
 
@@ -31,8 +32,7 @@ def recorded_frame(armature: bpy.types.Object, frame: float) -> float:
 
 def _corners(armature: bpy.types.Object) -> tuple[list[float], list[float]]:
     """Recorded and adapted frames; the same where the shown action is none that was adapted."""
-    animation = armature.animation_data
-    action = animation.action if animation is not None else None
+    action = current_action(armature)
     times = action_settings(action).times if action is not None else ""
     recorded, adapted = json.loads(times) if times else ([0.0], [0.0])
     return recorded, adapted

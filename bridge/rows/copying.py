@@ -21,8 +21,25 @@ def copy_settings(
 
 def settings_digest(group: bpy.types.PropertyGroup, skip: Collection[str] = ()) -> str:
     """A number for everything that is stored in a group, and what its texts say; another where
-    something differs."""
+    something differs. Of a data-block that it points to counts only whether there is one: which,
+    `settings_targets` tells."""
     return str(crc32(repr(_stored(group, skip)).encode()))
+
+
+def settings_targets(
+    group: bpy.types.PropertyGroup, skip: Collection[str] = ()
+) -> list[bpy.types.ID]:
+    """The data-blocks that a group points to, texts aside, in an order that is always the same."""
+    found: list[bpy.types.ID] = []
+    for name in _names(group, skip):
+        what, value = group.bl_rna.properties[name], getattr(group, name)
+        if what.type == "COLLECTION":
+            found += [each for row in value for each in settings_targets(row, skip)]
+        elif _is_group(group, what):
+            found += settings_targets(value, skip)
+        elif what.type == "POINTER" and not isinstance(value, bpy.types.Text | None):
+            found.append(value)
+    return found
 
 
 def _copy(source: Any, target: Any, what: bpy.types.Property) -> None:
@@ -69,7 +86,7 @@ def _stored(group: Any, skip: Collection[str]) -> list[tuple[str, object]]:
         elif isinstance(value, bpy.types.Text):
             found.append((name, value.as_string()))
         elif what.type == "POINTER":
-            found.append((name, value.name if value is not None else None))
+            found.append((name, value is not None))  # whatever the artist calls it
         elif group.is_property_set(name):
             many = getattr(what, "is_array", False)
             value = tuple(getattr(group, name)) if many else getattr(group, name)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...solver.data.contacts import PhaseKind, gaps
-from ..accessors import source_of
+from ..accessors import current_action, shown_range, source_of
 from .choices import HOLD
 from .protocols import Settings
 
@@ -67,12 +67,10 @@ def clip_ends(settings: Settings) -> tuple[float, float] | None:
 
 def recorded_span(settings: Settings) -> tuple[float, float] | None:
     """First and last frame of the recording's action, where there is one."""
-    data = settings.id_data.animation_data
-    action = data.action if data is not None else None
+    action = current_action(settings.id_data)
     if action is None:
         return None
-    ends = (source_of(action) or action).frame_range
-    return float(ends[0]), float(ends[1])
+    return shown_range(settings.id_data, source_of(action) or action)
 
 
 def phases_of(settings: Settings) -> tuple[PhaseSpan, ...]:

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ..accessors import BESIDE, SHOWS, pose_of
+from ..accessors import SHOWS, pose_of
 from ..armature import fcurves
 from ..armature.fcurves import CurveHolder, ensured, linear_keys, put, table
 from ..armature.write import rotation_channel
@@ -81,12 +81,11 @@ def _write_difference(
         put(curve, linear_keys(table(curve), frames[kept], column))
 
 
-def bake_combined(result: bpy.types.Action, slot: str | None) -> None:
+def bake_combined(result: bpy.types.Action, take: bpy.types.Action, slot: str | None) -> None:
     """Make a result what its strip shows: the take below as it is now, combined with the difference
     as it is now. Nothing changes where it has no difference."""
     difference = difference_shown(result)
-    take = difference.get(BESIDE) if difference is not None else None
-    if difference is None or take is None:
+    if difference is None:
         return
     below, above, made = (fcurves.holder_in(each, slot) for each in (take, difference, result))
     assert below is not None

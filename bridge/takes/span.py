@@ -9,6 +9,7 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.stance_move import StanceMove
 from ..controls.control_rig import KeptByControls
+from .take_time import TakeTime
 
 BLEND = 0.25  # s, the usual blend
 RETURN = 1.0  # s after the adapted frames, by which a take is usually back
@@ -61,7 +62,7 @@ class ResultSpan:
 class WrittenTake:
     """What was done to a take. back: the frame by which it is where it was; None where it is not.
 
-    later: frames by which what follows comes later. applied: bones whose curves had modifiers, or
+    time: where the take's frames are in the result. applied: bones whose curves had modifiers, or
     were muted, and are keys now. controls: how near the bodies are that controls pose; None where
     bodies have keys of their own.
     """
@@ -69,6 +70,11 @@ class WrittenTake:
     span: ResultSpan
     moved: StanceMove | None
     back: float | None
-    later: int
+    time: TakeTime
     applied: tuple[str, ...] = ()
     controls: KeptByControls | None = None
+
+    @property
+    def later(self) -> int:
+        """Frames by which what follows comes later; negative is earlier."""
+        return self.time.later

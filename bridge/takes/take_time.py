@@ -49,14 +49,15 @@ class TakeTime:
 
     def to_result(self, frames: FloatArray) -> FloatArray:
         """Frames (T,) of the result at which the take's are shown."""
-        return _mapped(frames, self.recorded, self.result)
+        return mapped(frames, self.recorded, self.result)
 
     def to_recorded(self, frames: FloatArray) -> FloatArray:
         """Frames (T,) of the take that the result's show."""
-        return _mapped(frames, self.result, self.recorded)
+        return mapped(frames, self.result, self.recorded)
 
 
-def _mapped(frames: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+def mapped(frames: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+    """Frames (T,) where corners (N,) are elsewhere; outside of these as far from them."""
     frames = np.asarray(frames, dtype=float)
     outside = frames - np.clip(frames, before[0], before[-1])
     return np.asarray(np.interp(frames - outside, before, after) + outside)

@@ -7,6 +7,7 @@ armature's; the others wait with their actions.
 
 from __future__ import annotations
 
+import itertools
 import json
 from dataclasses import dataclass
 
@@ -16,11 +17,17 @@ from ..accessors import current_action, source_of
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
+from ..armature.played import adopt_strip, in_scene_time, strip_time
 from ..armature.traces_store import forget, put_by, take_up
-from ..properties.settings import HangtimeSettings, action_settings, settings_of
+from ..properties.settings import (
+    HangtimeAction,
+    HangtimeSettings,
+    action_settings,
+    settings_of,
+)
 from ..properties.stances import move_empties
 from ..rows.choices import Span
-from ..rows.copying import copy_settings, settings_digest
+from ..rows.copying import copy_settings, settings_digest, settings_targets
 from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
@@ -28,8 +35,10 @@ _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
     *("whole_stance", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
+    "keep_polish",
 )
 _NOT_KEPT = ("marks", "adapted", "source")
+_LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
 
 
 @dataclass(frozen=True)
@@ -53,27 +62,63 @@ def root_of(action: bpy.types.Action) -> bpy.types.Action:
     return action
 
 
+def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.types.Object) -> None:
+    """Note that an armature's settings made an action from a take: it is a result now."""
+    made = action_settings(action)
+    made.recording, made.maker = source, armature
+    adopt_strip(armature, source)
+    made.count = 1 + max(action_settings(other).count for other in bpy.data.actions)
+
+
+def free_name(root: str, word: str) -> str:
+    """A name for a new action that is made from a recording: "jump adapted", then "jump adapted 2".
+
+    Of a long name the end goes, as Blender would cut the word off instead.
+    """
+    root = root.encode()[:_LONGEST].decode(errors="ignore")
+    first = f"{root} {word}"
+    names = (first if count == 1 else f"{first} {count}" for count in itertools.count(1))
+    return next(name for name in names if name not in bpy.data.actions)
+
+
 def takes_of(armature: bpy.types.Object) -> tuple[ListedTake, ...]:
-    """The recording that an armature shows a take of, and all of its results."""
+    """The recording that an armature shows a take of, and the results that were made for it; of
+    those for another armature only the shown one, and what that was made from."""
     shown = current_action(armature)
     if shown is None:
         return ()
-    return tuple(_branch(root_of(shown), shown, 0))
+    line = [shown]
+    while (source := source_of(line[-1])) is not None:
+        line.append(source)
+    return tuple(_branch(armature, line, line[-1], 0))
 
 
-def _branch(action: bpy.types.Action, shown: bpy.types.Action, depth: int) -> list[ListedTake]:
-    kept = action_settings(action)
+def _branch(
+    armature: bpy.types.Object, line: list[bpy.types.Action], action: bpy.types.Action, depth: int
+) -> list[ListedTake]:
+    """A take and what was made from it. line: the shown one and what that was made from."""
+    kept, shown = action_settings(action), line[0]
     found = [
         ListedTake(action, source_of(action), depth, action == shown, kept.stale, kept.polished)
     ]
+    own = results_from(action, armature)
     for other in results_from(action):
-        found += _branch(other, shown, depth + 1)
+        if other in own or other in line:
+            found += _branch(armature, line, other, depth + 1)
     return found
 
 
-def results_from(action: bpy.types.Action) -> list[bpy.types.Action]:
-    """The results that were made from a take."""
-    return [other for other in bpy.data.actions if source_of(other) == action]
+def results_from(
+    action: bpy.types.Action, armature: bpy.types.Object | None = None
+) -> list[bpy.types.Action]:
+    """The results that were made from a take, the newest last. armature: for which; None for any.
+
+    Those of earlier versions do not tell for which.
+    """
+    found = [other for other in bpy.data.actions if source_of(other) == action]
+    if armature is not None:
+        found = [o for o in found if action_settings(o).maker in (None, armature)]
+    return sorted(found, key=lambda other: int(action_settings(other).count))
 
 
 def show_take(armature: bpy.types.Object, action: bpy.types.Action) -> None:
@@ -103,7 +148,7 @@ def keep_edit(armature: bpy.types.Object) -> None:
 def _take_up(armature: bpy.types.Object, action: bpy.types.Action) -> None:
     """Make the edit of a take the one at work."""
     settings, source = settings_of(armature), source_of(action)
-    made = results_from(action)
+    made = results_from(action, armature)
     if source is None and made:  # the recording: with what was last made from it
         action, source = made[-1], action
     take_up(armature, action)
@@ -163,8 +208,11 @@ def note_made(
     assert source is not None
     copy_settings(settings_of(armature), made.edit, _NOT_KEPT)
     made.asked_key = settings_digest(settings_of(armature), _NOT_ASKED)
-    made.take_key, made.own_key = _digest(source), _digest(action)
-    made.stale, made.polished = "", False
+    made.asked_targets.clear()
+    for target in settings_targets(settings_of(armature), _NOT_ASKED):
+        made.asked_targets.add().target = target
+    made.take_key, made.own_key = _take_digest(armature, source), _digest(action)
+    made.stale, made.polished, made.holds_polish = "", False, False
     spans = []
     if span is not None:
         for first, last in adapted_spans(source):
@@ -193,31 +241,49 @@ def look_again(armature: bpy.types.Object) -> bool:
     """
     settings, new = settings_of(armature), False
     keys: dict[bpy.types.Action, str] = {}
+    sources: dict[bpy.types.Action, str] = {}
     for take in takes_of(armature):
         kept = action_settings(take.action)
         if take.source is None or not kept.own_key:
             continue
-        for action in (take.action, take.source):
-            keys.setdefault(action, _digest(action))
+        if take.action not in keys:
+            keys[take.action] = _digest(take.action)
+        if take.source not in sources:
+            sources[take.source] = _take_digest(armature, take.source)
         edit = settings if take.action == settings.adapted else kept.edit
         stale = ""
-        if keys[take.source] != kept.take_key:
+        if sources[take.source] != kept.take_key:
             stale = TAKE_CHANGED
-        elif settings_digest(edit, _NOT_ASKED) != kept.asked_key:
+        elif not _asks_the_same(edit, kept):
             stale = EDIT_CHANGED
-        polished = keys[take.action] != kept.own_key
+        polished = kept.holds_polish or keys[take.action] != kept.own_key
         if (kept.stale, kept.polished) != (stale, polished):
             kept.stale, kept.polished = stale, polished
             new = True
     return new
 
 
+def _asks_the_same(edit: HangtimeSettings, kept: HangtimeAction) -> bool:
+    """Whether an edit is what a result was made with."""
+    targets = [row.target for row in kept.asked_targets]
+    if settings_targets(edit, _NOT_ASKED) != targets:
+        return False
+    return settings_digest(edit, _NOT_ASKED) == str(kept.asked_key)
+
+
 def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The last result, where it was edited by hand since it was made."""
+    """The last result, where it has hand polish: was edited since it was made, or took it over."""
     result: bpy.types.Action | None = settings_of(armature).adapted
     if result is None or not action_settings(result).own_key:
         return None
-    return result if _digest(result) != action_settings(result).own_key else None
+    kept = action_settings(result)
+    return result if kept.holds_polish or _digest(result) != kept.own_key else None
+
+
+def _take_digest(armature: bpy.types.Object, take: bpy.types.Action) -> str:
+    """Of the keys of what results are made from, and of when a strip plays it."""
+    time, found = strip_time(armature, take), _digest(take)
+    return found if time is None else f"{found} {time}"
 
 
 def _digest(action: bpy.types.Action) -> str:
@@ -233,6 +299,10 @@ def bake_shown(armature: bpy.types.Object, result: bpy.types.Action) -> None:
     made, source = action_settings(result), source_of(result)
     if source is None or difference_shown(result) is None:
         return
-    if (_digest(source), _digest(result)) != (made.take_key, made.own_key):
-        bake_combined(result, slot_identifier(armature))
+    now = _digest(result)
+    if (_take_digest(armature, source), now) != (made.take_key, made.own_key):
+        _, _, difference = now.partition(" ")
+        made.holds_polish |= difference != made.own_key.partition(" ")[2]
+        with in_scene_time(armature, source) as take:
+            bake_combined(result, take, slot_identifier(armature))
         made.own_key = _digest(result)

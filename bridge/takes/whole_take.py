@@ -89,7 +89,7 @@ def write_take(
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
     kept = None if posed is None else kept_by(posed, plan.body_frames)
-    return WrittenTake(plan.span, plan.moved, plan.back, plan.time.later, done, kept)
+    return WrittenTake(plan.span, plan.moved, plan.back, plan.time, done, kept)
 
 
 def _controls(

@@ -8,17 +8,18 @@ import bpy
 
 from ..accessors import ATTRIBUTE, current_action, present, source_of
 from ..armature import fcurves
-from ..armature.actions import free_name, recorded_action, show, showing_action
+from ..armature.actions import recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
+from ..armature.played import in_scene_time, scene_copy
 from ..armature.strips import lay_strips, strips_of
 from ..armature.write import write_incrementally
 from ..controls.driven import is_driven
-from ..properties.settings import action_settings, settings_of
+from ..properties.settings import settings_of
 from ..rows.choices import After, WrittenAs
 from .difference import difference_of
 from .plan import AdaptedMotion
 from .span import WrittenTake
-from .takes import root_of
+from .takes import derive, free_name, root_of
 from .whole_take import write_take
 
 
@@ -43,9 +44,9 @@ def write_adapted_incrementally(
     Before the last slice the armature is as it was. Returns as `write_result`.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
-    name = free_name(f"{root_of(original).name} adapted")
+    name = free_name(root_of(original).name, "adapted")
     action, written = yield from _write(armature, motion, original, slot, name)
-    action_settings(action).recording = original
+    derive(action, original, armature)
     if motion.options.written_as is WrittenAs.STRIP:
         lay_strips(armature, original, action, slot)
     show(armature, action, slot)
@@ -57,7 +58,8 @@ def combine(armature: bpy.types.Object, action: bpy.types.Action, after: After) 
     """Lay a result that is shown, with the keys that it is to have, as its difference from what it
     was made from into a strip on top of that."""
     take, slot = source_of(action), fcurves.slot_identifier(armature)
-    more = difference_of(armature, present(take), action, slot)
+    with in_scene_time(armature, present(take)) as played:
+        more = difference_of(armature, played, action, slot)
     lay_strips(armature, present(take), action, slot, more)
     if after is After.CUT:  # nothing of it is left beside the adapted frames
         for _, strip in strips_of(armature, action):
@@ -80,9 +82,7 @@ def _write(
         )
         forget_copied(cut)
         return cut, None
-    action = recorded.copy()
-    action.name = name
-    action.use_fake_user = False
+    action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
     try:

@@ -5,9 +5,9 @@ from pathlib import Path
 import bpy
 
 from ...bridge.armature.read import read_recording, record
-from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.write import write_action
 from ...bridge.files.import_clip import import_clip
+from ...bridge.files.reproportioned import build_reproportioned
 from ...operators.headless.quiet import quiet
 from ...solver.data.faults import Fault
 from ...solver.data.recording import BEYOND, Recording

@@ -97,7 +97,7 @@ def _open(path: Path) -> bpy.types.Object:
     """The armature of a .blend: the active one, else the only one that carries an action."""
     import bpy
 
-    from ...bridge.accessors import current_scene, present
+    from ...bridge.accessors import current_action, current_scene, present
     from ...bridge.properties.attached_groups import ensure_groups
 
     ensure_groups()  # else it is not known which action is the recording
@@ -111,7 +111,7 @@ def _open(path: Path) -> bpy.types.Object:
     if active is not None and active.type == "ARMATURE":
         return _recorded(active)
     armatures = [o for o in current_scene().objects if o.type == "ARMATURE"]
-    animated = [o for o in armatures if o.animation_data and o.animation_data.action]
+    animated = [o for o in armatures if current_action(o) is not None]
     if len(animated) != 1:
         raise NoArmature(path.name)
     return _recorded(animated[0])
@@ -138,10 +138,10 @@ def _recorded_frames(
     armature: bpy.types.Object, problem: MotionProblem
 ) -> tuple[float | None, float | None]:
     """The problem's frames as far as the recording goes: beyond, Blender holds the last pose."""
-    from ...bridge.accessors import current_action
+    from ...bridge.accessors import current_action, shown_range
 
     action = current_action(armature)
     if problem.frames is None or action is None:
         return None, None
-    start, end = (action.frame_range[k] for k in (0, 1))
+    start, end = shown_range(armature, action)
     return max(problem.frames[0], start), min(problem.frames[1], end)

@@ -132,8 +132,8 @@ class Outputs:
         from ...bridge.accessors import current_action, present
         from ...bridge.armature.fcurves import slot_identifier
         from ...bridge.armature.incremental import complete
-        from ...bridge.armature.reproportioned import build_reproportioned
         from ...bridge.armature.write import side_by_side, write_action
+        from ...bridge.files.reproportioned import build_reproportioned
         from ...bridge.loops.write_loop import Loop, write_loop
         from ...bridge.takes.write_result import write_result
 
@@ -181,23 +181,31 @@ class Outputs:
         if written_as is WrittenAs.ACTION or performer != self.clip.armature:
             return
         from ...bridge.armature.fcurves import slot_identifier
+        from ...bridge.armature.played import adopt_strip, in_scene_time
         from ...bridge.armature.strips import lay_strips
         from ...bridge.takes.difference import difference_of
 
         slot, combined = slot_identifier(performer), written_as is WrittenAs.COMBINE
-        more = difference_of(performer, take, adapted, slot) if combined else None
+        adopt_strip(performer, take)
+        with in_scene_time(performer, take) as played:
+            more = difference_of(performer, played, adapted, slot) if combined else None
         lay_strips(performer, take, adapted, slot, more)
 
     def _motion(self) -> AdaptedMotion:
         """The motion, to be put into the take."""
+        from ...bridge.accessors import current_action, present
+        from ...bridge.properties.attached_groups import ensure_groups
         from ...bridge.takes.plan import AdaptedMotion
+        from ...bridge.takes.takes import adapted_spans
 
+        ensure_groups()
         return AdaptedMotion(
             self.result.track,
             self.result.times,
             self.result.moved,
             self.options,
             ends=any(hold.ends for hold in self.clip.problem.requests.holds),
+            kept=adapted_spans(present(current_action(self.clip.armature))),
         )
 
     def _recorded_curves(self) -> CurveHolder | None:

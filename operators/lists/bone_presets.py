@@ -10,6 +10,7 @@ from ...bridge.accessors import present
 from ...bridge.constraints.bone_mapping import choose_parts, find_parts
 from ...bridge.constraints.bone_presets import (
     SUFFIX,
+    free_preset_name,
     mapped_bones,
     preset_path,
     read_preset,
@@ -21,6 +22,7 @@ from ..operator_types import OperatorResult
 from ..solve.common import FaultyOperator, chosen_armature, required_armature
 
 NO_ARMATURE = "Choose or select an armature first"
+THERE_ALREADY = "There is a bone preset “{}” already: choose another name, or tick Replace"
 NO_BONES = "No bones are mapped: press Find Bones, or choose them"
 MOST_NAMED = 4  # in a message
 
@@ -49,14 +51,29 @@ class SaveBonePresetOperator(_BonePreset, bpy.types.Operator):
     bl_description = "Keep which bone moves which part of the body, for other armatures like this"
 
     name: bpy.props.StringProperty(name="Name", default="My Rig")
+    replace: bpy.props.BoolProperty(
+        name="Replace", description="Overwrite the preset of that name", options={"SKIP_SAVE"}
+    )
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         return present(context.window_manager).invoke_props_dialog(self)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = present(self.layout)
+        layout.prop(self, "name")
+        if self._is_there():
+            layout.label(text=f"There is a preset “{self.name}” already", icon="ERROR")
+            layout.prop(self, "replace")
+
+    def _is_there(self) -> bool:
+        return bool(self.name.strip()) and preset_path(self.name).exists()
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
         bones = _mapped(context)
         if not bones or not self.name.strip():
             return self.refuse(NO_BONES if not bones else "A preset needs a name")
+        if self._is_there() and not self.replace:
+            return self.refuse(THERE_ALREADY.format(self.name))
         write_preset(preset_path(self.name), bones)
         self.report({"INFO"}, f"Saved the bone preset “{self.name}”")
         return {"FINISHED"}
@@ -106,8 +123,9 @@ class ImportBonePresetOperator(_BonePreset, bpy.types.Operator, ImportHelper):  
     def run(self, context: bpy.types.Context) -> OperatorResult:
         path = Path(bpy.path.abspath(self.filepath))
         bones = read_preset(path)
-        write_preset(preset_path(path.stem), bones)
-        self.apply(context, bones, path.stem)
+        name = free_preset_name(path.stem, bones)
+        write_preset(preset_path(name), bones)
+        self.apply(context, bones, name)
         return {"FINISHED"}
 
 

@@ -1,7 +1,7 @@
 """Presets: several constraints at once, with sensible numbers, to be adjusted in the list.
 
 Where the ranges and the torques come from is said in solver/body/human_limits.py and
-solver/body/human_strength.py.
+solver/human/strength.py.
 """
 
 from collections.abc import Iterable, Sequence
@@ -78,7 +78,7 @@ class JointStrengthOperator(AddingOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         from ...bridge.constraints.rest_figure import parts_of  # loads parts of the solver
         from ...solver.body.anatomy import Side
-        from ...solver.body.human_strength import LEG_JOINTS, peak_torque
+        from ...solver.human.strength import LEG_JOINTS, peak_torque
 
         armature = required_armature(context)
         settings, parts = settings_of(armature), parts_of(armature)

@@ -7,13 +7,11 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.actions import (
-    free_name,
     read_recorded_incrementally,
     recorded_action,
     showing_recorded,
 )
 from ...bridge.armature.incremental import Incremental
-from ...bridge.armature.reproportioned import build_reproportioned
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.bone_mapping import chosen_parts
@@ -26,43 +24,44 @@ from ...bridge.constraints.motion_problem import (
 from ...bridge.constraints.status import write_status
 from ...bridge.controls.driven import constrained
 from ...bridge.controls.refusals import require_posable
+from ...bridge.files.reproportioned import build_reproportioned
 from ...bridge.loops.write_loop import (
     Loop,
     root_bone,
     write_loop_incrementally,
 )
+from ...bridge.polish.pins import MovedPin
+from ...bridge.polish.renewal import Renewal
 from ...bridge.properties.settings import HangtimeSettings, action_settings, settings_of
 from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
-from ...bridge.rows.choices import LoopRoot, WrittenAs
+from ...bridge.rows.choices import After, LoopRoot, WrittenAs
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
-from ...bridge.takes.takes import adapted_spans, note_made, polished_result
+from ...bridge.takes.take_time import TakeTime
+from ...bridge.takes.takes import (
+    adapted_spans,
+    derive,
+    free_name,
+    note_made,
+    root_of,
+)
 from ...bridge.takes.write_result import combine, write_adapted_incrementally
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault, NotInLoop
 from ...solver.data.recording import BEYOND, Recording, same_motion
-from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..words.report_text import (
-    amount,
-    as_text,
-    certificate_lines,
-    durations_lines,
-    given_up_lines,
-    joint_lines,
-    loop_lines,
-    retimed,
-)
-from ..words.take_text import take_lines
+from ..words.report_text import as_text
+from ..words.summary_text import summary
+from ..words.take_text import pin_lines, polish_lines, take_lines
 from ..words.warning_text import warnings_of
 from .common import hindrance, required_armature
 from .keys import key_options, mark_contacts, write_keys
@@ -70,9 +69,12 @@ from .live import live
 from .scene import note_surfaces, read_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
-from .takes import LEFT_BEHIND
+from .takes import left_behind
 from .task import Task, TaskOperator, answered, take_best
 
+ALONE = (
+    "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
+)
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
 
@@ -84,8 +86,8 @@ def unanalysed(context: bpy.types.Context) -> str | None:
     return why
 
 
-class _Adapting(TaskOperator):
-    """Base of Adapt and Refine."""
+class Adapting(TaskOperator):
+    """Base of Adapt, Refine and Update."""
 
     # Whether the artist knows that edits made by hand in the last result do not go along.
     leave_edits: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
@@ -135,7 +137,14 @@ class _Adapting(TaskOperator):
         return replace(asked, problem=replace(asked.problem, requests=requests))
 
 
-class AdaptOperator(_Adapting, bpy.types.Operator):
+def quick_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+    """Solver options by the method that is chosen, or that a recipe asks for."""
+    if asked.method is not Method.IMPLICIT:  # a recipe's own choice
+        return asked
+    return replace(asked, method=Method[settings.method])
+
+
+class AdaptOperator(Adapting, bpy.types.Operator):
     bl_idname = OperatorId.ADAPT
     bl_label = "Adapt"
     bl_description = (
@@ -145,12 +154,10 @@ class AdaptOperator(_Adapting, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
-        if asked.method is not Method.IMPLICIT:  # a recipe's own choice
-            return asked
-        return replace(asked, method=Method[settings.method])
+        return quick_solution(settings, asked)
 
 
-class RefineOperator(_Adapting, bpy.types.Operator):
+class RefineOperator(Adapting, bpy.types.Operator):
     bl_idname = OperatorId.REFINE
     bl_label = "Refine"
     bl_description = (
@@ -191,17 +198,6 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
         done = yield from write_answer(*present(session().best))
         session().best = None
         return done
-
-
-def left_behind(armature: bpy.types.Object) -> str:
-    """What is to be said before edits made by hand in the last result do not go along; empty where
-    there are none."""
-    result = polished_result(armature)
-    if result is None:
-        return ""
-    result.use_fake_user = True
-    source = present(recorded_action(armature))
-    return LEFT_BEHIND.format(result.name, source.name, result.name)
 
 
 def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
@@ -293,6 +289,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         mark_contacts(armature, action, answer, options)
         note_made(armature, action, None, 0)
         return f"Wrote the loop {action.name}"
+    renewal = Renewal.of(armature)
     motion = AdaptedMotion(
         answer.track,
         answer.report.times,
@@ -304,15 +301,35 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     action, written = yield from write_adapted_incrementally(armature, motion)
     keep(action, answer.traces, stood)
     _note(armature, armature, action, answer, take_lines(written))
-    span, later = (written.span, written.later) if written is not None else (None, 0)
+    times = answer.report.times
+    time = written.time if written is not None else TakeTime.of(times, 1.0)
+    span = written.span if written is not None else None
     try:
+        rate = answer.report.recording.frames_per_second
+        moved = yield from renewal.put_on(action, answer.track.bones, time, answer.schedule, rate)
+        _tell_polish(armature, action, renewal, moved)
         yield from write_keys(armature, armature, action, answer)
     finally:  # cancelled it has a key on every frame
         mark_contacts(armature, action, answer, options)
         if options.written_as is WrittenAs.COMBINE:
             combine(armature, action, options.after)
-        note_made(armature, action, span, later)
+        note_made(armature, action, span, time.later)
+        renewal.note(action, time, (times.recorded_frame[0], times.recorded_frame[-1]))
     return f"Wrote the action {action.name}"
+
+
+def _tell_polish(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    renewal: Renewal,
+    moved: Sequence[MovedPin],
+) -> None:
+    """What became of hand polish: in the sidebar, the report, and among the warnings."""
+    settings, made = settings_of(armature), action_settings(action)
+    told, warned = polish_lines(renewal.put), pin_lines(moved)
+    settings.status = "\n".join([settings.status, *told, *warned])
+    made.report = "\n".join([made.report, *told, *warned])
+    made.warning = "\n".join([line for line in (made.warning, *warned) if line])
 
 
 def _write_other(
@@ -321,12 +338,16 @@ def _write_other(
     """The answer on an armature of its own, for the artist's keeps its proportions."""
     other, track, _ = build_reproportioned(recording, answer.track)
     other.name = f"{armature.name} changed"
-    action = write_action(other, track, name=free_name(f"{recording.name} adapted"))
-    action_settings(action).recording = recorded_action(armature)
+    source = present(recorded_action(armature))
+    action = write_action(other, track, name=free_name(root_of(source).name, "adapted"))
+    derive(action, source, armature)
     settings_of(armature).adapted = action
     keep(action, answer.traces, armature.matrix_world)
-    _note(armature, other, action, answer)
+    options = result_options(settings_of(armature))
+    left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]
+    _note(armature, other, action, answer, left_out)
     yield from write_keys(armature, other, action, answer)
+    mark_contacts(other, action, answer, options)
     return f"Made the armature {other.name}, which performs the adapted motion"
 
 
@@ -364,37 +385,3 @@ def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
         if same_motion(now, asked.recording):
             return armature
     raise ChangedMeanwhile(asked.armature, while_solving=True)
-
-
-def summary(answer: Adapted) -> str:
-    """Lines for the sidebar: how well it holds, how long it took, how hard the ground pushes."""
-    report = answer.report
-    worst = max(report.contacts, key=lambda contact: contact.loaded_slide_mm)
-    seconds = sum(stage.seconds for stage in report.stages or ())
-    peak = max(report.forces.peaks, key=lambda peak: peak.peak_bw)
-    took = f"in {seconds:.1f} s"
-    said = f"Solved {took}" if answer.fault is None else f"Best found {took}; not all is met"
-    return "\n".join(
-        [
-            said,
-            f"Loaded points slide {worst.loaded_slide_mm:.1f} mm at most ({worst.name})",
-            *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
-            *(
-                f"{p.phase.capitalize()}: {p.adapted_s:.2f} s, was {p.recorded_s:.2f} s"
-                for p in retimed(report)
-            ),
-            *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
-            f"Peak force: {peak.peak_bw:.1f} body weights (frame {peak.frame:.0f}), "
-            f"in the recording {report.forces.recorded_peak_bw:.1f}",
-            *given_up_lines(report),
-            *loop_lines(report),
-            *joint_lines(report),
-            *certificate_lines(report),
-        ]
-    )
-
-
-def _held(constraint: ConstraintReport) -> str:
-    if constraint.met:
-        return "held"
-    return f"missed by {amount(constraint)}"

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import bpy
 
-from ...bridge.accessors import present
+from ...bridge.accessors import present, shown_range
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
-from ...bridge.constraints.motion_problem import problem_of, span_of, write_analysis
+from ...bridge.constraints.motion_problem import analysis_key, problem_of, span_of, write_analysis
 from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import (
@@ -25,13 +25,14 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.reports.report import FitQuality
 from ...solver.data.scene import SceneRole
+from ...solver.data.solver_options import SolverOptions
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.skeleton.mapping import UNSURE
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import higher
-from .adapt import ask_for, read_wanted, require_writable
+from .adapt import Adapting, ask_for, quick_solution, read_wanted, require_writable
 from .common import FaultyOperator, chosen_armature, required_armature, said
 from .scene import read_surfaces
 from .session import session
@@ -85,50 +86,74 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def task(self, context: bpy.types.Context) -> Task:
+        return (yield from analysis(context))
+
+
+class UpdateOperator(Adapting, bpy.types.Operator):
+    bl_idname = OperatorId.UPDATE
+    bl_label = "Update"
+    bl_description = (
+        "Make the result anew from the take as it is now, with the settings it was made with: "
+        "analyzes where the take below has changed, and adapts"
+    )
+    bl_options = {"UNDO"}
+
+    def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+        return quick_solution(settings, asked)
+
+    def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
-        settings = settings_of(armature)
         recording = yield from read_wanted(armature)
-        yield None
-        bind = _leave_out_bind_pose(settings, recording)
-        if bind:
+        if analysis_key(settings_of(armature), recording) != settings_of(armature).analysed:
+            yield from analysis(context)
+            present(session().solving).again()
+        return (yield from super().task(context))
+
+
+def analysis(context: bpy.types.Context) -> Task:
+    """Finds contacts, and keeps them with the armature. Raises any Fault of a recording."""
+    armature = required_armature(context)
+    settings = settings_of(armature)
+    recording = yield from read_wanted(armature)
+    yield None
+    bind = _leave_out_bind_pose(settings, recording)
+    if bind:
+        recording = yield from read_wanted(armature)
+    first, last = shown_range(armature, present(recorded_action(armature)))
+    span = span_of(settings, recording)
+    if span[0] >= last or span[1] <= first:
+        raise OutsideKeys(armature.name, first, last)
+    find_parts(armature)
+    yield None
+    for missing in missing_parts(settings):
+        raise MissingPart(missing)
+    problem = problem_of(settings, recording, with_contacts=False)
+    yield from require_writable(armature, recording, span_of(settings, recording))
+    yield None
+    session().advance(SolveState.SOLVING)
+    session().support = None
+    try:
+        answer = yield from _analysed(armature, recording, problem)
+        for _ in range(MOST_SNAPS):
+            if answer.cycle is None or answer.cycle.as_asked:
+                break
+            _take_cycle(settings, answer.cycle)
             recording = yield from read_wanted(armature)
-        first, last = present(recorded_action(armature)).frame_range.to_tuple()
-        span = span_of(settings, recording)
-        if span[0] >= last or span[1] <= first:
-            raise OutsideKeys(armature.name, first, last)
-        find_parts(armature)
-        yield None
-        for missing in missing_parts(settings):
-            raise MissingPart(missing)
-        problem = problem_of(settings, recording, with_contacts=False)
-        yield from require_writable(armature, recording, span_of(settings, recording))
-        yield None
-        session().advance(SolveState.SOLVING)
-        session().support = None
-        try:
+            problem = problem_of(settings, recording, with_contacts=False)
             answer = yield from _analysed(armature, recording, problem)
-            for _ in range(MOST_SNAPS):
-                if answer.cycle is None or answer.cycle.as_asked:
-                    break
-                _take_cycle(settings, answer.cycle)
-                recording = yield from read_wanted(armature)
-                problem = problem_of(settings, recording, with_contacts=False)
-                answer = yield from _analysed(armature, recording, problem)
-        except Fault as fault:
-            raise _telling(fault, armature, recording, problem) from None
-        contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
-        odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
-        if odd is not None and not flights:
-            raise odd
-        yield None
-        write_analysis(settings, recording, answer)
-        keep(armature, answer.traces, armature.matrix_world)
-        scene_settings(context.scene).armature = armature
-        found = (
-            f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
-        )
-        found = f"{found}{bind}{_snapped(settings, span)}"
-        return f"{found}; but {said(odd)}" if odd is not None else found
+    except Fault as fault:
+        raise _telling(fault, armature, recording, problem) from None
+    contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
+    odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
+    if odd is not None and not flights:
+        raise odd
+    yield None
+    write_analysis(settings, recording, answer)
+    keep(armature, answer.traces, armature.matrix_world)
+    scene_settings(context.scene).armature = armature
+    found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
+    found = f"{found}{bind}{_snapped(settings, span)}"
+    return f"{found}; but {said(odd)}" if odd is not None else found
 
 
 def _leave_out_bind_pose(settings: HangtimeSettings, recording: Recording) -> str:

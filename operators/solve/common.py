@@ -3,9 +3,10 @@
 import bpy
 
 from ...bridge.accessors import current_action, present
+from ...bridge.armature.played import why_no_action
 from ...bridge.properties.settings import action_settings, scene_settings, settings_of
 from ...bridge.worker_client import shared
-from ...solver.data.faults import Fault, NoAction, NoArmature
+from ...solver.data.faults import Fault, NoArmature
 from ..operator_types import OperatorResult, PolledOperator
 from ..words.failure_text import Failure, failure_of
 from ..words.messages import sentence
@@ -61,7 +62,7 @@ def hindrance(context: bpy.types.Context) -> str | None:
     if tweaked(armature):
         return TWEAK_MODE
     if current_action(armature) is None:
-        return said(NoAction(armature.name))
+        return said(why_no_action(armature))
     return None
 
 

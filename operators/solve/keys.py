@@ -6,6 +6,7 @@ from ...bridge.accessors import present
 from ...bridge.armature import fcurves
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.played import in_scene_time
 from ...bridge.controls.driven import is_driven
 from ...bridge.keys.contact_marks import limb_contacts, write_contact_channels, write_markers
 from ...bridge.keys.events import events_of
@@ -58,14 +59,16 @@ def write_keys(
     if options.on is KeyChoice.EVERY_FRAME:
         return
     track, rate = answer.track, answer.report.recording.frames_per_second
-    take = fcurves.holder_in(present(recorded_action(armature)), fcurves.slot_identifier(armature))
     slot = fcurves.slot_identifier(performer)
-    keyed = KeyedAction(action, slot, track.bones, track.frames, take)
     events = events_of(answer.schedule, float(track.frames[0]), rate)
     if is_driven(performer, track.bones):
         line = "Keys: on every frame, as on all rigs that are posed through controls"
     else:
-        line = f"Keys: {keys_line((yield from choose_keys(performer, keyed, options, events)))}"
+        with in_scene_time(armature, present(recorded_action(armature))) as recording:
+            take = fcurves.holder_in(recording, fcurves.slot_identifier(armature))
+            keyed = KeyedAction(action, slot, track.bones, track.frames, take)
+            report = yield from choose_keys(performer, keyed, options, events)
+        line = f"Keys: {keys_line(report)}"
     settings.status = f"{settings.status}\n{line}"
     stored = action_settings(action)
     stored.report = f"{stored.report}\n{line}\n"

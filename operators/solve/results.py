@@ -34,7 +34,7 @@ def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
         return shown
     if adapted is not None or shown is None:
         return adapted
-    left = results_from(shown)
+    left = results_from(shown, armature)
     return left[-1] if left else None
 
 

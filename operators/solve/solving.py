@@ -49,6 +49,10 @@ class Solving:
             raise ValueError(f"{to.name} after {self.state.name}")
         self.state = to
 
+    def again(self) -> None:
+        """Another solve begins after this one."""
+        self.state, self.progress = SolveState.READING, None
+
     def heard(self, progress: Progress) -> None:
         """The worker told of a step."""
         if self.state not in (SolveState.SOLVING, SolveState.STOPPING):

@@ -2,11 +2,13 @@
 
 import bpy
 
-from ...bridge.accessors import current_action, source_of
+from ...bridge.accessors import current_action, present, source_of
 from ...bridge.armature.actions import recorded_action, show
-from ...bridge.properties.settings import action_settings
+from ...bridge.polish.renewal import is_kept
+from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.takes.takes import (
     look_again,
+    polished_result,
     show_take,
     start_from_recording,
     start_from_result,
@@ -20,8 +22,22 @@ BESIDE = "The armature {} performs {}, as its limbs are others"
 GONE = "The action {} is not there any more"
 LEFT_BEHIND = (
     "Keys of {} were edited by hand. The next result starts from {} again, without these edits; "
-    "{} is kept. To build on them, choose Start From: This Result"
+    "{} is kept. {}"
 )
+TO_KEEP = "To take them along, tick Keep Polish under Rest of the Take"
+TO_BUILD_ON = "To build on them, choose Start From: This Result"
+
+
+def left_behind(armature: bpy.types.Object) -> str:
+    """What is to be said before edits made by hand in the last result do not go along; empty where
+    they do, or there are none."""
+    result = polished_result(armature)
+    if result is None or is_kept(armature, result):
+        return ""
+    result.use_fake_user = True
+    source, chosen = present(recorded_action(armature)), settings_of(armature).result.keep_polish
+    way = TO_BUILD_ON if chosen else TO_KEEP
+    return LEFT_BEHIND.format(result.name, source.name, result.name, way)
 
 
 class ShowTakeOperator(PolledOperator, bpy.types.Operator):

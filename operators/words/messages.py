@@ -33,7 +33,10 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "“{object_name}” is or holds no armature; choose one with a recording.",
     ),
     faults.NoAction: "The armature “{armature}” has no keyframes; assign it the action that holds "
-    "the recording, also where a strip of the NLA plays it.",
+    "the recording.",
+    faults.UnreadStrips: "The NLA strips that “{armature}” performs cannot be read: {strips:names} "
+    "{why}. Leave one strip unmuted that plays its action once (any start, any scale), or assign "
+    "the action.",
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",

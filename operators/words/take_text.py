@@ -1,10 +1,12 @@
 """Wording of what was done to the take around the adapted frames."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from math import degrees, hypot
 
 from ...bridge.controls.control_rig import KeptByControls
+from ...bridge.polish.pins import MovedPin
+from ...bridge.polish.put_on import PlacedPolish
 from ...bridge.takes.span import WrittenTake
 
 _LEVEL = 0.0005  # m
@@ -53,6 +55,33 @@ def _lines(written: WrittenTake) -> Iterator[str]:
         yield _controls(written.controls)
     if written.applied:
         yield f"Curves with modifiers, or muted, are plain keys now: {', '.join(written.applied)}"
+
+
+def polish_lines(polish: PlacedPolish | None) -> list[str]:
+    """Lines about hand polish of the last result that was put on the new one."""
+    if polish is None:
+        return []
+    name, frames, told = polish.polish.result.name, polish.frames, list(polish.polish.unkept)
+    if len(frames):
+        count = len(polish.polish.offsets)
+        channels = "1 channel" if count == 1 else f"{count} channels"
+        between = f"between frames {frames[0]:g} and {frames[-1]:g}"
+        told.append(f"Hand polish of {name} is kept: {channels}, {between}")
+    if polish.lost is not None:
+        first, last = polish.lost
+        told.append(
+            f"Hand polish of {name} on frames {first:g} to {last:g} stays behind: this result has "
+            "no such frames"
+        )
+    return told
+
+
+def pin_lines(pins: Sequence[MovedPin]) -> list[str]:
+    """Warnings about pinned points that hand polish moves."""
+    return [
+        f"Hand polish moves {pin.name} by {1000.0 * pin.distance:.0f} mm at frame {pin.frame:g}"
+        for pin in pins
+    ]
 
 
 def _carried(written: WrittenTake) -> Iterator[str]:

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..numerics.rotations import rotation_matrix, unit
-from .character import MIN_BONE_LENGTH, MIN_BOX_LENGTH, Body
+from .character import MIN_BOX_LENGTH, Body
+from .joint_choice import MIN_BONE_LENGTH
 from .mass_tables import BODY_DENSITY
 
 PARALLEL_SINE = 1e-9  # directions of a smaller sine are parallel

@@ -14,25 +14,15 @@ from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.faults import StillBone, ZeroLengthBone
 from ..data.problem import MassTable
 from ..data.recording import Recording
-from ..numerics.rotations import shortest_rotation, unit
+from ..numerics.rotations import unit
 from ..skeleton.ends import end_span
 from ..skeleton.still_bones import without_still
 from ..skeleton.tree import tree_of
 from .anatomy import Part, Segment, Side, map_anatomy
-from .joint_axes import JointAxes, ball_axes, hinge_axes, residual_angle, universal_axes
+from .joint_axes import JointAxes
+from .joint_choice import MIN_BONE_LENGTH, chosen_axes, own_directions
 from .mass_tables import BODY_DENSITY, BOX_ASPECT, MASS_FALLBACK, MASS_TABLES, SegmentInertia
 
-JOINT_DOFS: Mapping[Part, int] = {
-    Part.SHANK: 1,
-    Part.TOE: 1,
-    Part.FOREARM: 1,
-    Part.FOOT: 2,
-    Part.CLAVICLE: 2,
-    Part.HAND: 2,
-}  # every other part has 3
-EXTENDABLE_JOINTS = (Part.FOREARM, Part.FOOT, Part.CLAVICLE, Part.HAND)
-MAX_JOINT_RESIDUAL = np.radians(4.0)  # RMS; beyond it an extendable joint gets another DOF
-MIN_BONE_LENGTH = 1e-4  # m; a shorter bone has no direction
 MIN_BOX_LENGTH = 0.02  # m; of a body of almost no length, which still needs some inertia
 LEVEL = np.array([1.0, 1.0, 0.0])
 NECK_AREA_RATIO = 0.5  # a neck's cross-section as a share of the head's, to part their mass
@@ -158,9 +148,9 @@ def build_character(
         relative = rotations[:, i]
         if parent >= 0:
             relative = np.swapaxes(rotations[:, parent], -1, -2) @ relative
-        frames.append(_own_directions(segment, tips[i], forward))
+        frames.append(own_directions(segment, tips[i], forward))
         above = frames[parent] if parent >= 0 else None
-        axes = _axes(segment, relative, tips[i], above, frames[i])
+        axes = chosen_axes(segment, relative, tips[i], above, frames[i])
         joints.append(Joint(parent, offsets[i], axes, first))
         first += axes.dofs
     return Character(tuple(bodies), tuple(joints), height, joined=joined)
@@ -360,49 +350,3 @@ def _box_frame(direction: FloatArray, forward: FloatArray) -> FloatArray:
     depth = forward if abs(float(forward @ direction)) < 0.8 else UP
     width = unit(np.cross(depth, direction))
     return np.stack([width, np.cross(direction, width), direction], axis=1)
-
-
-def _own_directions(segment: Segment, tip: FloatArray, forward: FloatArray) -> FloatArray:
-    """(3, 3) columns left, ahead, up as a body has them: of an arm's, as if it rested level.
-
-    Some rigs rest with their arms level, others with them lowered: the joints are the same.
-    """
-    sideways = np.cross(UP, forward)
-    frame: FloatArray = np.stack([sideways, forward, UP], axis=1)
-    if segment.part not in (Part.UPPER_ARM, Part.FOREARM, Part.HAND):
-        return frame
-    outwards = sideways if segment.side is Side.LEFT else -sideways
-    return np.asarray(shortest_rotation(outwards, unit(tip)) @ frame)
-
-
-def _axes(
-    segment: Segment,
-    relative: FloatArray,
-    tip: FloatArray,
-    above: FloatArray | None,
-    frame: FloatArray,
-) -> JointAxes:
-    """Joint axes of a segment from its rotations (T, 3, 3) to its parent.
-
-    above, frame: (3, 3) own directions of parent and segment; above is None for the root.
-    """
-    sideways, _, up = frame.T
-    if above is None:
-        return ball_axes(relative, (UP, sideways), (frame, frame))
-    along = unit(tip) if np.linalg.norm(tip) > MIN_BONE_LENGTH else UP
-    hinge = sideways if abs(float(sideways @ along)) < 0.8 else up  # arms point sideways
-    dofs = JOINT_DOFS.get(segment.part, 3)
-    grow = segment.part in EXTENDABLE_JOINTS
-    if dofs == 1:
-        axes = hinge_axes(relative, hinge)
-        if not grow or residual_angle(axes, relative) < MAX_JOINT_RESIDUAL:
-            return axes
-        dofs = 2
-    if dofs == 2:
-        other = along if segment.part in (Part.FOREARM, Part.FOOT) else np.cross(along, hinge)
-        pair = (hinge, unit(other))
-        # Palms face down where arms are level: there wrists fold about the way ahead.
-        axes = universal_axes(relative, pair[::-1] if segment.part is Part.HAND else pair)
-        if not grow or residual_angle(axes, relative) < MAX_JOINT_RESIDUAL:
-            return axes
-    return ball_axes(relative, frames=(above, frame))

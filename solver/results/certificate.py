@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..body.human_strength import ECCENTRIC_FACTOR, LEG_JOINTS, peak_torque
 from ..body.inverse_dynamics import InverseDynamics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.reports.certificate import CertificateItem, CertificateLine
 from ..data.reports.report import FitQuality
+from ..human.strength import ECCENTRIC_FACTOR, LEG_JOINTS, peak_torque
 from ..transcription.compliant_sole import SINKING_TIME
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion, dynamics_residual, motion_inverse_dynamics

@@ -15,7 +15,13 @@ from ...operators.solve.session import session
 from .failure import draw_failure, wrapped
 from .sidebar import ArmaturePanel, lines, optional, settings_in, split
 
-OF_SOLVES = (OperatorId.ADAPT, OperatorId.REFINE, OperatorId.USE_BEST, OperatorId.FIT)
+OF_SOLVES = (
+    OperatorId.ADAPT,
+    OperatorId.UPDATE,
+    OperatorId.REFINE,
+    OperatorId.USE_BEST,
+    OperatorId.FIT,
+)
 
 
 class SolvePanel(ArmaturePanel):
@@ -101,6 +107,7 @@ class TakePanel(ArmaturePanel):
         optional(column, options, "use_blend", "Custom Blend", "blend_in", "blend_out")
         column.prop(options, "lock_others")
         layout.prop(options, "written_as")
+        layout.prop(options, "keep_polish")
         layout.prop(options, "markers")
         layout.prop(options, "contact_channels")
 
@@ -180,7 +187,9 @@ class ResultPanel(ArmaturePanel):
                 end.label(text="", icon="CHECKMARK")
         for take in takes:
             if take.shown and take.stale:
-                column.label(text=take.stale, icon="FILE_REFRESH")
+                row = column.row()
+                row.label(text=take.stale, icon="FILE_REFRESH")
+                row.operator(OperatorId.UPDATE)
 
 
 class DetailsPanel(ArmaturePanel):

@@ -25,6 +25,7 @@ from .recordings import OutsideKeys as OutsideKeys
 from .recordings import Treadmill as Treadmill
 from .recordings import UnknownContactName as UnknownContactName
 from .recordings import UnreadableClip as UnreadableClip
+from .recordings import UnreadStrips as UnreadStrips
 from .recordings import UnseenSupport as UnseenSupport
 from .recordings import ZeroLengthBone as ZeroLengthBone
 from .requests import AsksNothing as AsksNothing

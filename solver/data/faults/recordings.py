@@ -21,6 +21,16 @@ class NoAction(Fault):
 
 
 @dataclass
+class UnreadStrips(Fault):
+    """Strips of the nonlinear animation play what cannot be read as a recording. why: a reason, to
+    be said after the strips' names."""
+
+    armature: str
+    strips: tuple[str, ...]
+    why: str
+
+
+@dataclass
 class NoBones(Fault):
     """The armature has no bones."""
 

@@ -17,12 +17,11 @@ from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.channels import channels
 from hangtime.bridge.armature.pose_basis import basis_under
 from hangtime.bridge.armature.poses import Poses, sample
-from hangtime.bridge.armature.read import read_recording, record
+from hangtime.bridge.armature.read import record
 from hangtime.bridge.armature.write import write_action
 from hangtime.devtools.rigs.actor import actor
 from hangtime.devtools.rigs.build import build
 from hangtime.devtools.rigs.layout import layouts
-from hangtime.solver.data.faults import NoAction
 from hangtime.solver.data.recording import PoseTrack, Recording
 from hangtime.solver.numerics.rotations import rotation_matrix, rotation_vector
 
@@ -192,17 +191,6 @@ def test_keys_between_frames_are_read_and_written_there() -> None:
     _assert_near(record(armature, between), expected, FRAMES)
     write_action(armature, PoseTrack(between, BONES, track.rotations, track.root_head), name="S")
     _assert_written(record(armature, between), track)
-
-
-def test_a_take_that_a_strip_of_the_artist_s_plays_is_refused() -> None:
-    """Its keys are at other frames than its movement: nobody could write a result beside them."""
-    armature = plain()
-    data = armature.animation_data
-    strip = data.nla_tracks.new().strips.new("Take", 40, data.action)
-    strip.scale = 1.5
-    data.action = None
-    with pytest.raises(NoAction):
-        read_recording(armature)
 
 
 def test_other_slots_keep_their_keys() -> None:

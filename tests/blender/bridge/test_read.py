@@ -146,12 +146,6 @@ def without_animation(armature: bpy.types.Object) -> None:
     armature.animation_data_clear()
 
 
-def with_strips_alone(armature: bpy.types.Object) -> None:
-    data = armature.animation_data
-    data.nla_tracks.new().strips.new("strip", 1, data.action)
-    data.action = None
-
-
 def with_an_empty_action(armature: bpy.types.Object) -> None:
     armature.animation_data.action = bpy.data.actions.new("Empty")
 
@@ -162,9 +156,7 @@ def without_a_slot(armature: bpy.types.Object) -> None:
     armature.animation_data.action_slot = None
 
 
-@pytest.mark.parametrize(
-    "spoil", [without_animation, with_strips_alone, with_an_empty_action, without_a_slot]
-)
+@pytest.mark.parametrize("spoil", [without_animation, with_an_empty_action, without_a_slot])
 def test_an_armature_without_keys_has_no_action(spoil) -> None:
     armature = animated_rig()
     spoil(armature)

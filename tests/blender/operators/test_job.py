@@ -16,6 +16,7 @@ from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.picture.render import draw_sheet
+from hangtime.bridge.properties.attached_groups import ensure_groups
 from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.headless import commands, picture
 from hangtime.operators.headless.cli import main
@@ -53,7 +54,7 @@ def clip() -> Path:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _quick_jobs():
+def _quick_jobs(_enabled):
     """A picture as large as the artist's takes half a minute on a slow machine, a fit seconds:
     what is to be fitted is fitted by the first job that needs it, and remembered."""
     fits = KeptFits()
@@ -216,7 +217,13 @@ def test_a_result_may_be_a_strip_on_top_of_the_take(clip: Path, tmp_path: Path) 
 
 
 def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Path, capsys) -> None:
-    assert run(tmp_path, clip, "frames = [100, 290]\n", "--no-picture") == 0
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    ensure_groups()
+    take = current_action(import_clip(clip).armature)
+    take.hangtime.spans = "[[60.0, 88.0]]"  # an earlier adaptation, which no blend reaches into
+    path = tmp_path / "adapted before.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    assert run(tmp_path, path, "frames = [100, 290]\n", "--no-picture") == 0
     assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"sheet.png"}
     said = capsys.readouterr().out
     assert "picture" not in said
@@ -224,6 +231,7 @@ def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Pa
     report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "solved"
     assert max(report["change"].values()) < 1e-3
+    assert report["take"]["blend_in_frames"] == 12
 
 
 @pytest.mark.slow

@@ -232,6 +232,7 @@ def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     other = result.hangtime.performer
     assert other != analysed
     assert current_action(other) == result
+    assert f"rest of the take is left out: {other.name} has other limbs" in analysed.hangtime.status
     assert not bpy.ops.hangtime.compare.poll()
     assert bpy.ops.hangtime.accept() == {"FINISHED"}
     fbx = tmp_path / "long.fbx"

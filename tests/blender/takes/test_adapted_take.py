@@ -11,6 +11,9 @@ from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.actions import read_recorded, recorded_action
 from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.takes.takes import TAKE_CHANGED, look_again
+from hangtime.tests.blender.helpers import rigs
+from mathutils import Matrix
 
 FIRST, LAST = 110, 260
 BLEND = 30  # frames, a quarter of a second
@@ -77,6 +80,28 @@ def test_a_second_edit_builds_on_the_first(analysed: bpy.types.Object) -> None:
     assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1)
 
 
+def test_update_solves_again_when_the_take_below_was_edited(analysed: bpy.types.Object) -> None:
+    take, slot = current_action(analysed), fcurves.slot_identifier(analysed)
+    analysed.hangtime.stances["ground 2"].forward = 0.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    first = current_action(analysed)
+    path = analysed.pose.bones["LeftArm"].path_from_id("rotation_quaternion")
+    if fcurves.holder_in(take, slot).fcurves.find(path, index=1) is None:
+        path = analysed.pose.bones["LeftArm"].path_from_id("rotation_euler")
+    for key in fcurves.holder_in(take, slot).fcurves.find(path, index=1).keyframe_points:
+        key.co.y += 0.05
+    look_again(analysed)
+    assert first.hangtime.stale == TAKE_CHANGED
+    with pytest.raises(RuntimeError, match="Analyze"):  # these contacts are another motion's
+        bpy.ops.hangtime.adapt()
+    assert bpy.ops.hangtime.update() == {"FINISHED"}
+    second = current_action(analysed)
+    assert second != first
+    look_again(analysed)
+    assert second.hangtime.stale == ""
+    assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1, abs=1e-5)
+
+
 def test_a_result_in_a_strip_is_switched_off(analysed: bpy.types.Object) -> None:
     take, before = current_action(analysed), read_recording(analysed)
     analysed.hangtime.result.written_as = "STRIP"
@@ -95,6 +120,29 @@ def test_a_result_in_a_strip_is_switched_off(analysed: bpy.types.Object) -> None
     assert len(analysed.animation_data.nla_tracks) == 2
 
 
+def test_a_jump_in_a_strip_of_the_artist_s_is_adapted_where_it_plays(
+    jump: bpy.types.Object,
+) -> None:
+    data, later = jump.animation_data, 50
+    take, before = data.action, read_recording(jump)
+    strip = data.nla_tracks.new().strips.new("Jump", 1 + later, take)
+    data.action = None
+    strip.action_frame_start, strip.action_frame_end = take.frame_range
+    jump.hangtime.first_frame, jump.hangtime.last_frame = FIRST + later, LAST + later
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    jump.hangtime.stances["ground 2"].up = 0.05
+    jump.hangtime.keep_times = True
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    now = read_recording(jump)
+    assert now.frames.tolist() == (before.frames + later).tolist()
+    up = now.heads[:, 0, 2] - before.heads[:, 0, 2]
+    np.testing.assert_allclose(up[before.frames > LAST + BLEND], 0.05, atol=1e-5)
+    np.testing.assert_allclose(up[before.frames < FIRST - BLEND], 0.0, atol=1e-5)
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert data.action is None
+    assert recorded_action(jump) == current_action(jump) == take
+
+
 def test_a_return_before_the_last_adapted_frame_is_refused(analysed: bpy.types.Object) -> None:
     result = analysed.hangtime.result
     result.after, result.use_return_frame, result.return_frame = "RETURN", True, 200
@@ -105,12 +153,60 @@ def test_a_return_before_the_last_adapted_frame_is_refused(analysed: bpy.types.O
 def test_edits_made_by_hand_are_told_before_they_stay_behind(
     analysed: bpy.types.Object, capfd: pytest.CaptureFixture[str]
 ) -> None:
+    analysed.hangtime.result.keep_polish = False
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     first = current_action(analysed)
     fcurves.curves_of(analysed)[0].keyframe_points[50].co.y += 1.0
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     assert f"Keys of {first.name} were edited by hand" in capfd.readouterr().out
     assert first.use_fake_user
+
+
+def turn(armature: bpy.types.Object, bone: str, frames: range, angle: float) -> None:
+    """Turn a bone about its own X on some frames of what is shown, as an artist does by keys."""
+    posed = armature.pose.bones[bone]
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        more = Matrix.Rotation(angle, 3, "X")
+        rigs.set_rotation(posed, (posed.matrix_basis.to_3x3() @ more).to_quaternion())
+        posed.keyframe_insert(rigs.rotation_path(posed), frame=frame)
+
+
+def basis(armature: bpy.types.Object, bone: str, frame: float) -> np.ndarray:
+    bpy.context.scene.frame_set(int(frame))
+    return np.array(armature.pose.bones[bone].matrix_basis.to_3x3())
+
+
+def test_hand_polish_is_kept_when_the_landing_is_moved_again(analysed: bpy.types.Object) -> None:
+    scene, stance = bpy.context.scene, analysed.hangtime.stances["ground 2"]
+    analysed.hangtime.keep_times = True
+    stance.forward = 0.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    solved = basis(analysed, "Head", 200)
+    turn(analysed, "Head", range(190, 211), 0.3)  # in flight, and of no pinned point
+    stance.forward = 0.2
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    second = current_action(analysed)
+    assert second.hangtime.polished
+    assert "Hand polish of" in analysed.hangtime.status
+    assert not second.hangtime.warning
+    polished = basis(analysed, "Head", 200)
+    analysed.hangtime.result.keep_polish = False
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    clean = basis(analysed, "Head", 200)
+    turned = np.array(Matrix.Rotation(0.3, 3, "X"))
+    np.testing.assert_allclose(clean.T @ polished, turned, atol=1e-4)
+    assert np.abs(clean - solved).max() > 1e-4  # it was solved anew beneath
+    assert scene.frame_current == 200
+
+
+def test_hand_polish_that_moves_a_pinned_foot_is_warned_about(analysed: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    turn(analysed, "LeftFoot", range(250, 256), 0.2)
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    result = current_action(analysed)
+    assert "Hand polish moves Left toe 2 by" in result.hangtime.warning
+    assert "Hand polish moves Left toe 2 by" in result.hangtime.report
 
 
 def test_contacts_are_marked_and_told_to_engines(analysed: bpy.types.Object) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import ClassVar
 
@@ -140,6 +141,100 @@ def test_results_that_are_out_of_date_say_so(armature: bpy.types.Object) -> None
     holder.fcurves[0].keyframe_points[5].co.y += 0.1
     look_again(armature)
     assert first.hangtime.stale == TAKE_CHANGED
+
+
+def test_objects_count_by_what_they_are_and_not_by_their_names(armature: bpy.types.Object) -> None:
+    crate, other = (bpy.data.objects.new(n, bpy.data.meshes.new(n)) for n in ("Crate", "Other"))
+    surface = armature.hangtime.surfaces.add()
+    surface.object = crate
+    first = adapt(armature, 10, 20, 0.1)
+    crate.name = "Old crate"
+    other.name = "Crate"
+    look_again(armature)
+    assert first.hangtime.stale == ""
+    surface.object = other
+    look_again(armature)
+    assert first.hangtime.stale == EDIT_CHANGED
+    surface.object = crate
+    look_again(armature)
+    assert first.hangtime.stale == ""
+    bpy.data.objects.remove(crate)
+    look_again(armature)
+    assert first.hangtime.stale == EDIT_CHANGED
+
+
+def change_easing(curve: bpy.types.FCurve) -> None:
+    curve.keyframe_points[4].easing = "EASE_IN"
+
+
+def change_elasticity(curve: bpy.types.FCurve) -> None:
+    curve.keyframe_points[4].amplitude = 3.0
+
+
+def extrapolate(curve: bpy.types.FCurve) -> None:
+    curve.extrapolation = "LINEAR"
+
+
+def shake(curve: bpy.types.FCurve) -> None:
+    curve.modifiers.new("NOISE")
+
+
+def shake_more(curve: bpy.types.FCurve) -> None:
+    curve.modifiers[0].strength = 2.0
+
+
+@pytest.mark.parametrize(
+    "change", [change_easing, change_elasticity, extrapolate, shake, shake_more]
+)
+def test_whatever_shapes_a_curve_of_the_take_makes_results_stale(
+    armature: bpy.types.Object, change: Callable[[bpy.types.FCurve], None]
+) -> None:
+    holder = fcurves.holder_in(current_action(armature), fcurves.slot_identifier(armature))
+    curve = holder.fcurves[0]
+    curve.keyframe_points[4].interpolation = "ELASTIC"
+    if change is shake_more:
+        shake(curve)
+    first = adapt(armature, 10, 20, 0.1)
+    look_again(armature)
+    assert first.hangtime.stale == ""
+    change(curve)
+    look_again(armature)
+    assert first.hangtime.stale == TAKE_CHANGED
+
+
+def test_results_are_numbered_and_the_newest_is_the_last(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    recording.name = "jump"
+    for number in range(2, 12):
+        adapt(armature, 10, 20, 0.01 * number)
+    names = [take.action.name for take in takes_of(armature)]
+    assert names == ["jump", "jump adapted", *(f"jump adapted {n}" for n in range(2, 11))]
+    bpy.data.actions["jump adapted 3"].name = "zigzag"
+    start_from_result(armature, bpy.data.actions["jump adapted"])
+    start_from_recording(armature)  # with what was last made, and not what is last by its name
+    assert armature.hangtime.adapted.name == "jump adapted 10"
+    assert armature.hangtime.contacts[0].at[2] == pytest.approx(0.11)
+
+
+def test_a_long_name_keeps_the_word_that_tells_results(armature: bpy.types.Object) -> None:
+    current_action(armature).name = "ü" * 31
+    results = [adapt(armature, 10, 20, 0.1) for _ in range(2)]
+    assert [result.name.strip("ü") for result in results] == [" adapted", " adapted 2"]
+
+
+def test_armatures_that_share_a_recording_list_their_own_results(
+    armature: bpy.types.Object,
+) -> None:
+    recording = current_action(armature)
+    twin = rigs.make_armature(name="Twin")
+    for bone in twin.pose.bones:
+        bone.rotation_mode = "QUATERNION"
+    fcurves.assign(twin, recording, fcurves.slot_identifier(armature))
+    first, second = adapt(armature, 10, 20, 0.1), adapt(twin, 10, 20, 0.2)
+    assert [take.action for take in takes_of(armature)] == [recording, first]
+    assert [take.action for take in takes_of(twin)] == [recording, second]
+    show(twin, first)  # what is shown is listed, whosever it is
+    assert [take.action for take in takes_of(twin)] == [recording, first, second]
 
 
 def test_a_recipe_text_that_is_edited_makes_results_stale(armature: bpy.types.Object) -> None:

@@ -2,11 +2,14 @@
 
 from math import pi
 
+import numpy as np
 from hangtime.bridge.takes.span import ResultSpan, WrittenTake
+from hangtime.bridge.takes.take_time import TakeTime
 from hangtime.operators.words.take_text import take_lines, take_record
 from hangtime.solver.data.stance_move import StanceMove
 
 SPAN = ResultSpan(140.0, 333.0, 1.0, 900.0, 30.0, 30.0)
+SAME, LATER = (TakeTime(np.array([140.0, 333.0]), np.array([140.0, end])) for end in (333.0, 334.0))
 MOVED = StanceMove("ground 2", (0.0, 0.0, 0.0), -0.5 * pi, (0.3, 0.4, 0.2))
 
 
@@ -15,7 +18,7 @@ def test_adapted_frames_alone_need_no_words() -> None:
 
 
 def test_a_take_that_goes_on_as_it_was_says_so_in_a_line() -> None:
-    written = WrittenTake(SPAN, None, None, 0)
+    written = WrittenTake(SPAN, None, None, SAME)
     assert take_lines(written) == [
         "Take: frames 140 to 333 are adapted",
         "Blended in over 30 frames and out over 30 frames",
@@ -23,7 +26,7 @@ def test_a_take_that_goes_on_as_it_was_says_so_in_a_line() -> None:
 
 
 def test_what_follows_is_told() -> None:
-    written = WrittenTake(SPAN, MOVED, 450.0, 1, ("LeftArm",))
+    written = WrittenTake(SPAN, MOVED, 450.0, LATER, ("LeftArm",))
     assert take_lines(written)[2:] == [
         "What follows comes 1 frame later",
         "What follows is carried along with ground 2:",

@@ -78,6 +78,29 @@ def test_presets_are_exported_and_imported(tmp_path: Path) -> None:
     assert bone_presets.preset_names() == ["handed on"]
 
 
+def test_a_preset_is_overwritten_only_where_that_is_asked_for() -> None:
+    armature = made("spanish")
+    assert bpy.ops.hangtime.save_bone_preset(name="Mine") == {"FINISHED"}
+    armature.hangtime.parts["head"].bone = "cuello"
+    with pytest.raises(RuntimeError, match="already: choose another name, or tick Replace"):
+        bpy.ops.hangtime.save_bone_preset(name="Mine")
+    kept = bone_presets.read_preset(bone_presets.preset_path("Mine"))
+    assert kept["head"] != "cuello"
+    assert bpy.ops.hangtime.save_bone_preset(name="Mine", replace=True) == {"FINISHED"}
+    assert bone_presets.read_preset(bone_presets.preset_path("Mine"))["head"] == "cuello"
+
+
+def test_an_imported_preset_leaves_another_of_the_same_name_alone(tmp_path: Path) -> None:
+    armature = made("spanish")
+    path = tmp_path / "Mine.toml"
+    assert bpy.ops.hangtime.save_bone_preset(name="Mine") == {"FINISHED"}
+    armature.hangtime.parts["head"].bone = "cuello"
+    assert bpy.ops.hangtime.export_bone_preset(filepath=str(path)) == {"FINISHED"}
+    for _ in range(2):  # what is there already is not kept once more
+        assert bpy.ops.hangtime.import_bone_preset(filepath=str(path)) == {"FINISHED"}
+        assert bone_presets.preset_names() == ["Mine", "Mine 2"]
+
+
 def test_a_preset_of_another_rig_says_what_is_lacking() -> None:
     made("german")
     assert bpy.ops.hangtime.save_bone_preset(name="German") == {"FINISHED"}

@@ -11,8 +11,8 @@ often show less (review: Alcazar et al., Frontiers in Physiology 10, 2019).
 
 from collections.abc import Mapping
 
+from ..body.anatomy import Part
 from ..data.constants import STANDARD_GRAVITY
-from .anatomy import Part
 
 # By the part below the joint: hip extension, knee extension, plantar flexion.
 PEAK_TORQUE_SHARES: Mapping[Part, float] = {Part.THIGH: 0.161, Part.SHANK: 0.163, Part.FOOT: 0.095}

@@ -1,0 +1,111 @@
+"""A recording that a strip of the artist's plays: it is read and copied as the scene shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+import numpy as np
+
+from ...solver.data.faults import Fault, NoAction, UnreadStrips
+from ..accessors import IN_STRIP, mapped_strip, take_strips
+from ..played_strips import StripTime, played_strip, time_of, visible_strips, why_unread
+from . import fcurves
+
+_TRIPLES = ("co", "handle_left", "handle_right")
+
+
+def strip_time(owner: bpy.types.Object, action: bpy.types.Action) -> StripTime | None:
+    """When a strip plays an action for an object; None where it is assigned, or every frame is
+    shown at that frame."""
+    data = owner.animation_data
+    if data is not None and data.action == action:
+        return None
+    strip = mapped_strip(owner, action)
+    return time_of(strip) if strip is not None else None
+
+
+def why_no_action(owner: bpy.types.Object) -> Fault:
+    """Why nothing that animates an object can be read as a recording."""
+    data, strips = owner.animation_data, visible_strips(owner)
+    if data is not None and data.action is None and strips:
+        why = why_unread(strips)
+        if why is not None:
+            return UnreadStrips(owner.name, tuple(strip.name for strip in strips), why)
+    return NoAction(owner.name)
+
+
+def adopt_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
+    """Let a strip of the artist's that plays a recording count as its take's strip: results are
+    shown above it."""
+    strip = played_strip(owner)
+    if strip is not None and strip.action == action:
+        action[IN_STRIP] = True
+
+
+@contextmanager
+def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterator[None]:
+    """Context in which of the assigned action and the takes' strips only this one is seen."""
+    data = owner.animation_data
+    assert data is not None
+    assigned, slot = data.action, fcurves.slot_identifier(owner)
+    tracks = [(track, track.mute) for track, _ in take_strips(owner)]
+    own = next(track for track in data.nla_tracks if strip in list(track.strips))
+    fcurves.assign(owner, None)
+    try:
+        for track, _ in tracks:
+            track.mute = track != own
+        yield
+    finally:
+        for track, mute in tracks:
+            track.mute = mute
+        fcurves.assign(owner, assigned, slot)
+
+
+def scene_copy(owner: bpy.types.Object, action: bpy.types.Action, name: str) -> bpy.types.Action:
+    """A copy of a recording with its keys where the scene shows them: elsewhere only where a strip
+    plays it sooner or later, slower or faster, or in part."""
+    copy = action.copy()
+    copy.name = name
+    copy.use_fake_user = False
+    time = strip_time(owner, action)
+    if time is None:
+        return copy
+    for curve in fcurves.all_curves(copy):
+        _move(curve, time)
+    for marker in copy.pose_markers:
+        marker.frame = round(float(time.to_scene(np.array([float(marker.frame)]))[0]))
+    if copy.use_frame_range:
+        copy.frame_start, copy.frame_end = time.clipped(copy.frame_start, copy.frame_end)
+    return copy
+
+
+def _move(curve: bpy.types.FCurve, time: StripTime) -> None:
+    """Put a curve's keys where the scene shows them. Modifiers count the action's frames: a curve
+    with such gets keys of what it does."""
+    if len(curve.modifiers):
+        frames = np.arange(np.ceil(time.start), np.floor(time.end) + 1.0)
+        values = np.array([curve.evaluate(frame) for frame in time.to_action(frames)])
+        for modifier in list(curve.modifiers):
+            curve.modifiers.remove(modifier)
+        fcurves.put(curve, fcurves.linear_keys(fcurves.table(curve), frames, values))
+        return
+    fcurves.crop(curve, *time.to_action(np.array([time.start, time.end])).tolist())
+    keys = fcurves.table(curve)
+    for each in _TRIPLES:
+        keys[each][:, 0] = time.to_scene(keys[each][:, 0].astype(float))
+    fcurves.put(curve, keys)
+
+
+@contextmanager
+def in_scene_time(owner: bpy.types.Object, action: bpy.types.Action) -> Iterator[bpy.types.Action]:
+    """A recording's action as the scene shows it: itself, or a copy that is gone afterwards."""
+    if strip_time(owner, action) is None:
+        yield action
+        return
+    copy = scene_copy(owner, action, action.name)
+    try:
+        yield copy
+    finally:
+        bpy.data.actions.remove(copy)

@@ -1,0 +1,175 @@
+"""A recording that a strip of the artist's plays later, slower or in part, and its results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature.actions import read_recorded, recorded_action, show
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.keys_digest import keys_digest
+from hangtime.bridge.armature.poses import sample
+from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.rows.choices import After, WrittenAs
+from hangtime.bridge.takes.plan import AdaptedMotion
+from hangtime.bridge.takes.takes import look_again, note_made
+from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
+from hangtime.solver.data.faults import UnreadStrips
+from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.data.reports.jumps import TimeMap
+from hangtime.tests.blender.helpers import rigs
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+SCENE = np.arange(40.0, 88.0)  # where the strip plays
+START, SCALE = 40.0, 1.5
+
+
+def played(scale: float = SCALE, first: float = 1.0, last: float = 60.0) -> bpy.types.Object:
+    """A take of 60 frames, of which a strip plays some from scene frame 40 on."""
+    rigs.reset()
+    armature = rigs.make_armature()
+    rigs.animate(armature, frames=range(1, 61))
+    data = armature.animation_data
+    strip = data.nla_tracks.new().strips.new("Take", int(START), data.action)
+    data.action = None
+    strip.action_frame_start, strip.action_frame_end = first, last
+    strip.scale = scale
+    strip.frame_start, strip.frame_end = START, START + scale * (last - first)
+    return armature
+
+
+def adapt(
+    armature: bpy.types.Object, first: float, last: float, **options: object
+) -> bpy.types.Action:
+    """A result in which some of the scene's frames are 0.1 higher."""
+    part = read_recorded(armature, first, last)
+    bones = [part.index(bone) for bone in rigs.MOVING]
+    heads = part.heads[:, bones[0]] + [0.0, 0.0, 0.1]
+    track = PoseTrack(part.frames, rigs.MOVING, part.rotations[:, bones], heads)
+    chosen = ResultOptions(blend_in=3.0, blend_out=3.0, **options)
+    motion = AdaptedMotion(track, TimeMap((first, last), (first, last)), None, chosen)
+    action, written = complete(write_adapted_incrementally(armature, motion))
+    if chosen.written_as is WrittenAs.COMBINE:
+        combine(armature, action, chosen.after)
+    span = written.span if written is not None else None
+    note_made(armature, action, span, 0)
+    return action
+
+
+def heights(armature: bpy.types.Object, frames: np.ndarray) -> np.ndarray:
+    return sample(armature, frames).matrices[:, 0, 2, 3]
+
+
+def test_the_recording_is_where_the_scene_shows_it() -> None:
+    armature = played()
+    recording = read_recording(armature)
+    assert recording.frames[[0, -1]].tolist() == [40.0, 128.0]  # 128.5 is its last
+    for frame in (40, 71, 120):
+        seen = rigs.world_of(armature, "foot", frame)
+        found = recording.heads[frame - 40, recording.index("foot")]
+        np.testing.assert_allclose(found, np.array(seen.translation), atol=1e-6)
+
+
+@pytest.mark.parametrize("written_as", list(WrittenAs))
+@pytest.mark.parametrize("scale", [1.0, 1.5, 0.5])
+def test_a_result_is_the_take_there_and_changed_only_in_its_frames(
+    written_as: WrittenAs, scale: float
+) -> None:
+    armature = played(scale)
+    take, digest = current_action(armature), keys_digest(current_action(armature))
+    last = START + scale * 59.0
+    frames = np.arange(30.0, last + 10.0)
+    was = sample(armature, frames)
+    result = adapt(armature, 50.0, 60.0, written_as=written_as)
+    assert current_action(armature) == result
+    assert recorded_action(armature) == take
+    now = sample(armature, frames)
+    lifted = now.matrices[:, 0, 2, 3] - was.matrices[:, 0, 2, 3]
+    np.testing.assert_allclose(lifted[(frames >= 50) & (frames <= 60)], 0.1, atol=1e-5)
+    outside = (frames < 47) | (frames > 63)
+    np.testing.assert_allclose(now.matrices[outside], was.matrices[outside], atol=2e-5)
+    show(armature, take)
+    assert sample(armature, frames).matrices.tobytes() == was.matrices.tobytes()
+    assert keys_digest(take) == digest
+    show(armature, result)
+    again = sample(armature, frames)
+    assert again.matrices.tobytes() == now.matrices.tobytes()
+    second = adapt(armature, 50.0, 60.0, written_as=written_as)  # from the take, as it is played
+    np.testing.assert_allclose(sample(armature, frames).matrices, now.matrices, atol=2e-5)
+    assert second != result
+
+
+def test_a_strip_that_plays_a_part_has_the_part_alone() -> None:
+    armature = played(1.0, 11.0, 30.0)
+    frames = np.arange(30.0, 70.0)
+    was = heights(armature, frames)
+    recording = read_recording(armature)
+    assert recording.frames[[0, -1]].tolist() == [40.0, 59.0]
+    adapt(armature, 48.0, 52.0)
+    more = heights(armature, frames) - was
+    np.testing.assert_allclose(more[18:23], 0.1, atol=1e-5)
+    np.testing.assert_allclose(more[[0, 10, 29, -1]], 0.0, atol=1e-5)
+
+
+def test_cut_leaves_the_adapted_frames_where_they_are_seen() -> None:
+    armature = played()
+    was = heights(armature, np.arange(50.0, 61.0))
+    result = adapt(armature, 50.0, 60.0, after=After.CUT)
+    assert tuple(result.frame_range) == (50.0, 60.0)
+    np.testing.assert_allclose(heights(armature, np.arange(50.0, 61.0)) - was, 0.1, atol=1e-5)
+
+
+def test_a_strip_that_is_moved_makes_results_stale() -> None:
+    armature = played()
+    result = adapt(armature, 50.0, 60.0)
+    look_again(armature)
+    assert result.hangtime.stale == ""
+    strip = armature.animation_data.nla_tracks[0].strips[0]
+    strip.frame_start, strip.frame_end = 45.0, 45.0 + SCALE * 59.0
+    look_again(armature)
+    assert result.hangtime.stale
+
+
+def repeats(armature: bpy.types.Object) -> None:
+    armature.animation_data.nla_tracks[0].strips[0].repeat = 2.0
+
+
+def turns_back(armature: bpy.types.Object) -> None:
+    armature.animation_data.nla_tracks[0].strips[0].use_reverse = True
+
+
+def fades(armature: bpy.types.Object) -> None:
+    armature.animation_data.nla_tracks[0].strips[0].blend_in = 5.0
+
+
+def has_company(armature: bpy.types.Object) -> None:
+    tracks = armature.animation_data.nla_tracks
+    tracks.new().strips.new("Wave", 50, tracks[0].strips[0].action)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (repeats, "Take repeats its action"),
+        (turns_back, "Take plays backwards"),
+        (fades, "Take fades in or out"),
+        (has_company, "Take, Wave are several"),
+    ],
+)
+def test_what_strips_make_together_is_refused_by_their_names(
+    spoil: Callable[[bpy.types.Object], None], said: str
+) -> None:
+    armature = played()
+    spoil(armature)
+    with pytest.raises(UnreadStrips):
+        read_recording(armature)
+    bpy.context.scene.hangtime.armature = armature
+    with pytest.raises(RuntimeError, match=said):
+        bpy.ops.hangtime.analyze()
