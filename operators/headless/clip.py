@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...solver.data.faults import NoArmature, UnreadableClip
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import BEYOND, Recording
+from ...solver.data.recording import BEYOND, Recording, Skin
 from ...solver.data.reports.recording import Origin
 from ...solver.worker.pipeline import Subject, measure
 from .quiet import quiet
@@ -53,7 +53,8 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
     with stages.stage("Importing the clip"):
         armature, origin = _import(clip)
     with stages.stage("Finding contacts"):
-        subject = measure(_read(armature, problem), problem)
+        recording = _read(armature, problem)
+        subject = measure(recording, replace(problem, skin=_skin(armature, recording)))
     return LoadedClip(armature, origin, subject)
 
 
@@ -120,6 +121,13 @@ def _read(armature: bpy.types.Object, problem: MotionProblem) -> Recording:
 
     first, last = _recorded_frames(armature, problem)
     return read_recording(armature, first=first, last=last, beyond=BEYOND)
+
+
+def _skin(armature: bpy.types.Object, recording: Recording) -> Skin | None:
+    from ...bridge.armature.incremental import complete
+    from ...bridge.scene.skin import read_skin
+
+    return complete(read_skin(armature, recording.frames)).skin
 
 
 def _recorded_frames(

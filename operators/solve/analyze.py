@@ -2,6 +2,7 @@
 
 from collections.abc import Generator
 from dataclasses import replace
+from functools import partial
 
 import bpy
 
@@ -31,9 +32,10 @@ from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import higher
+from ..words.shape_text import shapes_told
 from .adapt import ask_for, read_wanted, require_writable
 from .common import FaultyOperator, chosen_armature, required_armature, said
-from .scene import read_surfaces
+from .scene import read_bound, read_surfaces
 from .session import session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered
@@ -98,7 +100,9 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
         find_parts(armature)
         for missing in missing_parts(settings):
             raise MissingPart(missing)
-        problem = problem_of(settings, recording, with_contacts=False)
+        bound = yield from read_bound(armature, recording.frames)
+        asked = partial(problem_of, settings, skin=bound.skin, with_contacts=False)
+        problem = asked(recording)
         yield from require_writable(armature, recording, span_of(settings, recording))
         session().advance(SolveState.SOLVING)
         session().support = None
@@ -109,7 +113,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
                     break
                 _take_cycle(settings, answer.cycle)
                 recording = yield from read_wanted(armature)
-                problem = problem_of(settings, recording, with_contacts=False)
+                problem = asked(recording)
                 answer = yield from _analysed(armature, recording, problem)
         except Fault as fault:
             raise _telling(fault, armature, recording, problem) from None
@@ -119,6 +123,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
             raise odd
         write_analysis(settings, recording, answer)
         keep(armature, answer.traces, armature.matrix_world)
+        settings.shapes_told = shapes_told(bound, answer)
         scene_settings(context.scene).armature = armature
         found = (
             f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"

@@ -9,9 +9,11 @@ from ...bridge.constraints.surface_status import write_surface_status
 from ...bridge.properties.settings import settings_of
 from ...bridge.scene.members import members
 from ...bridge.scene.read import SceneReading, changed_objects, read_scene
+from ...bridge.scene.skin import SkinReading, read_skin
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import SceneFault
 from ...solver.data.reports.report import Report
+from ...solver.data.solver_options import ShapeSource
 from .session import Asked
 
 RESHAPED = "{} changes its shape; what counts is that of frame {:.0f}"
@@ -22,6 +24,13 @@ def read_surfaces(armature: bpy.types.Object, frames: FloatArray) -> Incremental
     """The armature's surfaces at frames (T,). Raises ObjectGone, NoFaces, TooManyFaces."""
     solid = members(settings_of(armature), current_scene())
     return (yield from read_scene(solid, frames, showing_recorded(armature)))
+
+
+def read_bound(armature: bpy.types.Object, frames: FloatArray) -> Incremental[SkinReading]:
+    """What of a mesh tells the body's shapes; nothing where these are to be from the bones."""
+    if ShapeSource[settings_of(armature).shapes] is ShapeSource.BONES:
+        return SkinReading()
+    return (yield from read_skin(armature, frames, showing_recorded(armature)))
 
 
 def stale_surfaces(asked: Asked, armature: bpy.types.Object) -> Incremental[tuple[str, ...]]:

@@ -38,6 +38,7 @@ from ..objectives.tracking_cost import CostWeights
 from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
+from ..solid.flesh import shape_flesh
 from ..solid.room import check_room
 from ..solid.shape_changes import ShapeChanges
 from ..solid.solid_world import SolidWorld
@@ -71,8 +72,8 @@ class Setup:
     metric: W at the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the
     changes of a block that a reduction allows, None all. requests: those set up here. recording: of
     the figure as it is asked for. space: the reduced coordinates, None where there are none.
-    durations: where they come from. scene: what is around. price: of turning joints, which is in
-    the metric; None for a figure that is no human.
+    durations: where they come from. changes: of the solid shapes. scene: what is around. price: of
+    turning joints, which is in the metric; None for a figure that is no human.
     """
 
     fit: Fit
@@ -87,6 +88,7 @@ class Setup:
     requests: Requests
     space: ReducedSpace | None
     durations: Durations
+    changes: ShapeChanges
     scene: tuple[SceneObject, ...] = ()
     price: JointPrice | None = None
 
@@ -119,12 +121,7 @@ class Setup:
         if not self.requests.solution.solid:
             return None
         lowest, clears = self.target.lowest(self.schedule), self.requests.clears
-        return surroundings(self.fit, self.context, lowest, self.scene, clears, self.shape_changes)
-
-    @cached_property
-    def shape_changes(self) -> ShapeChanges:
-        """What the artist changes of the solid shapes. Raises StillBone, NotAboveZero."""
-        return ShapeChanges.of(self.requests.shapes, self.context.character)
+        return surroundings(self.fit, self.context, lowest, self.scene, clears, self.changes)
 
     @cached_property
     def human(self) -> HumanGuard | None:
@@ -185,10 +182,11 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     start = resampled_fit(fit, problem, context, added)
     fitted_places = start.places
     target, footing = find_standing(fit, problem, context)
+    flesh = shape_flesh(problem, fit.performance)
+    changes = ShapeChanges.of(requests.shapes, context.character, flesh)
     if requests.solution.solid:
         check_sunk(problem.scene, context.schedule, footing)
         if requests.solution.human:
-            changes = ShapeChanges.of(requests.shapes, context.character)
             check_room(
                 problem.scene, reference.transcription, context.schedule, target.places, changes
             )
@@ -222,6 +220,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         requests,
         space,
         durations,
+        changes,
         problem.scene,
         price,
     )
