@@ -167,13 +167,14 @@ def _snapped(settings: HangtimeSettings, asked: tuple[float, float]) -> str:
 def _analysed(
     armature: bpy.types.Object, recording: Recording, problem: MotionProblem
 ) -> Generator[PendingRequest | None, None, Analysed]:
-    """The analysis; in the scene where without it something unseen carries the body.
+    """The analysis; in the scene where without it something unseen carries the body, or a floor
+    that moves.
 
     Raises any Fault of an analysis, and of reading the scene.
     """
     try:
         return (yield from answered(_ask(recording, problem), Analysed))
-    except UnseenSupport as fault:
+    except (UnseenSupport, Treadmill) as fault:
         unseen = fault
     scene = yield from read_surfaces(armature, recording.frames)
     if not any(thing.role is SceneRole.GROUND for thing in scene.objects):

@@ -7,7 +7,7 @@ from ...bridge.armature.actions import showing_recorded
 from ...bridge.armature.incremental import Incremental
 from ...bridge.constraints.surface_status import write_surface_status
 from ...bridge.properties.settings import settings_of
-from ...bridge.scene.members import members
+from ...bridge.scene.members import is_gone, members
 from ...bridge.scene.read import SceneReading, changed_objects, read_scene
 from ...bridge.scene.skin import SkinReading, read_skin
 from ...solver.arrays import FloatArray
@@ -18,6 +18,7 @@ from .session import Asked
 
 RESHAPED = "{} changes its shape; what counts is that of frame {:.0f}"
 STALE = "{} changed while this was solved; press Adapt again"
+GONE = "{} was deleted while this was solved; remove its row, or undo, and press Adapt again"
 
 
 def read_surfaces(armature: bpy.types.Object, frames: FloatArray) -> Incremental[SceneReading]:
@@ -49,7 +50,8 @@ def note_surfaces(
 ) -> list[str]:
     """Writes the rows' outcomes; returns lines for the sidebar."""
     settings = settings_of(armature)
-    lines = {name: STALE.format(name) for name in stale}
+    gone = {row.called for row in settings.surfaces if is_gone(row, current_scene())}
+    lines = {name: (GONE if name in gone else STALE).format(name) for name in stale}
     first = float(asked.recording.frames[0])
     for name in asked.scene.reshaped:
         lines.setdefault(name, RESHAPED.format(name, first))

@@ -50,6 +50,7 @@ from ..solid.flesh import shape_flesh
 from ..solid.shape_changes import ShapeChanges
 from ..stages.fit import Fit, fit
 from ..stages.implicit import Adaptation, adapt, unadapted
+from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion
 
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
@@ -235,11 +236,13 @@ def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, C
 
 def fit_subject(subject: Subject, clock: StageClock) -> Fit:
     """The valid motion nearest to the recording, solved or not."""
+    schedule = subject.analysis.schedule
     with clock.stage(FITTING):
         fitted = fit(
             subject.analysis.performance,
-            subject.analysis.schedule,
+            schedule,
             periodic=subject.cycle is not None,
+            rides=recorded_rides(schedule, subject.problem.scene, subject.recording),
             progress=clock.step,
         )
         clock.ended(fitted.outcome.violation)
