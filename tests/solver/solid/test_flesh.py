@@ -9,12 +9,15 @@ from hangtime.solver.body.anatomy import Part
 from hangtime.solver.body.character import Body, Character, build_character
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording, Skin
-from hangtime.solver.data.requests import Shape
+from hangtime.solver.data.requests import Requests, Shape
 from hangtime.solver.data.scaling import scaled_problem, scaled_recording
+from hangtime.solver.data.solver_options import ShapeSource, SolverOptions
 from hangtime.solver.solid.flesh import MOST, Flesh, flesh_of
 from hangtime.solver.solid.shape_changes import ShapeChanges
 from hangtime.solver.solid.shapes import SOLID_SHARE, capsules
+from hangtime.solver.stages.setup import set_up
 from hangtime.tests.helpers.clips import JUMP, load_recording
+from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 POINTS = 1500
 NEAR = 0.02  # of its radius, within which a girth is found
@@ -164,3 +167,25 @@ def test_a_stated_stature_scales_the_mesh_as_it_does_the_bones() -> None:
     taller = scaled_recording(recording, 1.2)
     flesh = flesh_of(scaled_problem(problem, 1.2).skin, taller, build_character(taller))
     assert flesh[body("LeftLeg")[0]].radius == pytest.approx(1.2 * 0.05, rel=NEAR)
+
+
+@pytest.mark.parametrize("source", ShapeSource)
+def test_an_adaptation_keeps_the_meshs_shapes_apart_unless_told_otherwise(
+    source: ShapeSource,
+) -> None:
+    fit = fitted_hop()
+    recording, character = fit.performance.recording, fit.performance.character
+    leg = next(each for each in character.bodies if each.bone == "LeftLeg")
+    head = recording.bones[recording.index("LeftLeg")].head
+    points = tube("LeftLeg", 0.03) - figure()[0].bones[figure()[0].index("LeftLeg")].head
+    problem = MotionProblem(
+        skin=skin(("LeftLeg", points + head)),
+        requests=Requests(solution=SolverOptions(shapes=source)),
+    )
+    changes = set_up(fit, problem).changes
+    (shape,) = (each for each in capsules(character, changes) if character.bodies[each.body] is leg)
+    (plain,) = (each for each in capsules(character) if character.bodies[each.body] is leg)
+    if source is ShapeSource.MESH:
+        assert shape.radius == pytest.approx(SOLID_SHARE * 0.03, rel=NEAR)
+    else:
+        assert shape.radius == plain.radius

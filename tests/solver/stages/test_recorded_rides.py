@@ -95,7 +95,9 @@ def test_ground_that_goes_elsewhere_explains_nothing(changed: dict[str, object])
         analyse(carried(VELOCITY), MotionProblem(scene=(train(VELOCITY, **changed),)))
 
 
-@pytest.mark.parametrize("lift", [False, True], ids=["train", "lift"])
+@pytest.mark.parametrize(
+    "lift", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["train", "lift"]
+)
 def test_the_fit_rides_along(lift: bool) -> None:
     found, still = fitted(lift), fitted_hop()
     assert found.solved

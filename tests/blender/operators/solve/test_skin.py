@@ -41,6 +41,7 @@ def test_shapes_are_the_meshs_unless_the_bones_are_chosen(jump: bpy.types.Object
     assert shank(jump) == from_bones
 
 
+@pytest.mark.slow
 def test_a_result_has_the_meshs_shapes_times_the_thickness(jump: bpy.types.Object) -> None:
     make_skin(jump, {"LeftLeg": 0.04}, name="Stocking")
     analyse()
