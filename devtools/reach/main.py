@@ -88,8 +88,10 @@ REACHES = tuple(
         ("right hand forward", RIGHT, (FAR, 0.0, 0.0)),
         ("right hand up", RIGHT, (0.0, 0.0, FAR)),
         ("both hands forward", BOTH, (FAR, 0.0, 0.0)),
+        ("right hand down", RIGHT, (0.0, 0.0, -FAR)),
     )
-) + (Reach("right hand down, standing", RIGHT, (0.0, 0.0, -FAR), flying=False),)
+    if away[2] >= 0.0 or not flying  # at the top there is nothing below
+)
 
 
 def main(argv: list[str]) -> int:
