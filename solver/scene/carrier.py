@@ -40,7 +40,7 @@ class Carrier:
     def placed(self, place: FloatArray, time: float) -> FloatArray:
         """Where a place (3,) m that is seen from the ground is at an instant, s."""
         local = _back(self._first, place[None])
-        return _put(self.motion.surface(np.array([time])), local)[0]
+        return np.asarray(_put(self.motion.surface(np.array([time])), local)[0])
 
     def heights(self, times: FloatArray, points: FloatArray) -> FloatArray:
         """(N,) m, of the ground that points (N, 3) m, seen from it, may be on at instants (N,) s;
