@@ -15,10 +15,10 @@ import numpy as np
 from ...solver.data.contacts import Contact, ContactSchedule, Phase, PhaseKind, numbered
 from ...solver.data.faults import EmptyRange
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
-from ...solver.data.recording import Recording, digest
+from ...solver.data.recording import Recording, Skin, digest
 from ...solver.data.requests import Clear, Requests
 from ...solver.data.scene import CLEARANCE, SceneObject
-from ...solver.data.solver_options import HumanRanges
+from ...solver.data.solver_options import HumanRanges, ShapeSource
 from ...solver.worker.protocol import Analysed
 from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
@@ -71,11 +71,13 @@ def problem_of(
     recording: Recording,
     scene: tuple[SceneObject, ...] = (),
     *,
+    skin: Skin | None = None,
     with_contacts: bool = True,
 ) -> MotionProblem:
     """What the settings ask of a recording.
 
-    scene: the surfaces as they were read (bridge/scene). with_contacts: whether corrections, pins
+    scene, skin: the surfaces, and what the armature deforms, as they were read (bridge/scene).
+    with_contacts: whether corrections, pins
     and surfaces count; an analysis starts without them.
     Raises EmptyRange for a contact that ends before it begins, BadRecipe, and as `requests_of`.
     """
@@ -94,6 +96,7 @@ def problem_of(
         scene=scene if with_contacts else (),
         requests=_requests(settings, span, scene) if with_contacts else Requests(),
         loop=loop_options(settings) is not None,
+        skin=skin,
     )
 
 
@@ -115,10 +118,16 @@ def _requests(
         listed.solution,
         keep_times=listed.solution.keep_times or settings.keep_times,
         solid=listed.solution.solid and settings.keep_out,
+        shapes=_shapes(listed.solution.shapes, settings),
         human=_human(listed.solution.human, settings),
         wider=max(listed.solution.wider, settings.wider_ranges),
     )
     return replace(listed, solution=solution)
+
+
+def _shapes(asked: ShapeSource, settings: HangtimeSettings) -> ShapeSource:
+    """From the bones where the settings or a recipe's text say so."""
+    return asked if ShapeSource[settings.shapes] is ShapeSource.MESH else ShapeSource.BONES
 
 
 def _human(asked: HumanRanges, settings: HangtimeSettings) -> HumanRanges:

@@ -11,6 +11,7 @@ import bpy
 
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
+from ...solver.data.solver_options import ShapeSource
 from ..accessors import attached
 from ..rows.row import CLASSES as ROW_CLASSES
 from ..rows.row import (
@@ -186,6 +187,20 @@ class HangtimeSettings(bpy.types.PropertyGroup):
             default=True,
         )
     )
+    shapes: bpy.props.EnumProperty(
+        name="Shapes",
+        description="What the solid shapes of the body are made from",
+        items=[
+            (
+                ShapeSource.MESH.name,
+                "From the Mesh",
+                "As thick as the mesh that the armature deforms, where there is one",
+            ),
+            (ShapeSource.BONES.name, "From the Bones", "As thick as mass and length make a person"),
+        ],
+        override=OVERRIDABLE,
+    )
+    shapes_told: hidden(text())  # what the last analysis found of the mesh
     human_ranges: chosen(
         boolean(
             "Human Ranges",

@@ -100,6 +100,7 @@ method = "implicit"             # or "implicit with torques", "explicit"
 dynamics = "automatic"          # or "reduced", "standard"
 keep_times = true               # phases that no timing names last as long as recorded
 solid = false                   # limbs and floor may go through each other
+shapes = "bones"                # the body is as thick as its mass; default: as the skinned mesh
 human = false                   # joints may go beyond what a person's can; or "hard": never
 wider = 10                      # degrees, by which joints may go further than a person's
 longest_span = 0.1              # s between knots; torque_span: of the torques

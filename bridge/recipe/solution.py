@@ -7,6 +7,7 @@ from ...solver.data.solver_options import (
     ObjectiveKind,
     Reduction,
     ReductionKind,
+    ShapeSource,
     SolverOptions,
 )
 from ..recipe_syntax.items import Kind, Values, angle, choice, flag, number, one, whole
@@ -96,6 +97,7 @@ SOLUTION = Kind(
         choice("dynamics", Dynamics),
         flag("keep_times"),
         flag("solid"),
+        choice("shapes", ShapeSource),
         one("human", _human, _human_words),
         angle("wider", NOT_NEGATIVE),
         number("longest_span", ABOVE_ZERO),

@@ -1,1 +1,1 @@
-"""The scene around the armature: which objects are solid, and their faces and movement."""
+"""The scene around the armature: which objects are solid, their faces and movement; its skin."""

@@ -40,19 +40,28 @@ def read_triangles(evaluated: bpy.types.Object) -> Triangles:
     except RuntimeError as problem:  # an empty, a light
         raise NoFaces(evaluated.name) from problem
     try:
-        mesh.calc_loop_triangles()
-        count = len(mesh.loop_triangles)
-        if count > MOST_TRIANGLES:  # before they are sent anywhere
-            raise TooManyFaces(evaluated.name, count, MOST_TRIANGLES)
-        vertices = np.empty(3 * len(mesh.vertices), np.float32)
-        mesh.vertices.foreach_get("co", vertices)
-        corners = np.empty(3 * count, np.int32)
-        mesh.loop_triangles.foreach_get("vertices", corners)
+        vertices, corners = triangles_of(mesh, evaluated.name)
     finally:
         evaluated.to_mesh_clear()
-    if not len(corners):
-        raise NoFaces(evaluated.name)
-    used = np.zeros(len(vertices) // 3, bool)  # loose ones are no part of the surface
+    used = np.zeros(len(vertices), bool)  # loose ones are no part of the surface
     used[corners] = True
     places = np.cumsum(used) - 1
-    return Triangles(vertices.reshape(-1, 3)[used].astype(float), places[corners].reshape(-1, 3))
+    return Triangles(vertices[used], places[corners])
+
+
+def triangles_of(mesh: bpy.types.Mesh, name: str) -> tuple[FloatArray, IntArray]:
+    """All vertices (V, 3) of a mesh, and the corners (F, 3) of its faces in triangles.
+
+    name: the object's. Raises NoFaces, TooManyFaces.
+    """
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    if count > MOST_TRIANGLES:  # before they are sent anywhere
+        raise TooManyFaces(name, count, MOST_TRIANGLES)
+    if not count:
+        raise NoFaces(name)
+    vertices = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", vertices)
+    corners = np.empty(3 * count, np.int32)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    return vertices.reshape(-1, 3).astype(float), corners.reshape(-1, 3)

@@ -168,7 +168,7 @@ def solid_check(
     """
     setup, fitted = adaptation.setup, adaptation.fit
     figure, reference = fitted.motion.transcription.character, setup.context.reference
-    changes = setup.shape_changes
+    changes = setup.changes
     pairs = meeting_pairs(figure, capsules(figure, changes), changes)
     old = np.clip(setup.context.timeline.to_old(times), 0.0, fitted.motion.duration)
     pose = fitted.motion.pose(old)

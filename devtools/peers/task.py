@@ -17,7 +17,7 @@ from ...solver.numerics.splines import ORDER
 from ...solver.optimisation.sqp import worst_violation
 from ...solver.stages.fit import Fit
 from ...solver.stages.setup import set_up
-from ...solver.stages.warm_start import Standing, stance_moves, warm_start
+from ...solver.stages.warm_start import stance_moves, warm_start
 from ...solver.transcription.rows import Rows
 from ...solver.transcription.transcription import Transcription
 
@@ -38,7 +38,7 @@ class Task:
     def of(fit: Fit, problem: MotionProblem) -> "Task":
         """The adaptation of a fit to a problem, in one stage."""
         setup = set_up(fit, problem)
-        still = Standing.still(setup.start.places)
+        still = setup.fitted.with_places(setup.start.places)
         moves = stance_moves(setup.schedule, still, setup.target, setup.turns)
         start = warm_start(setup.start, moves)
         return Task(setup.start.transcription, setup.target_places, start, setup.metric)

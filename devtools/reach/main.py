@@ -53,7 +53,8 @@ it takes of the joints' ranges. The weight of the halves was not chosen on any r
 
 People reach with the arm first (Kaminski, Bock & Gentile 1995). Where they have to lean, spine and
 hips share: the spine bends 1.2 times as far as the hips in men, 0.2 times in women (Thomas, Corcos
-& Hasan 1998).
+& Hasan 1998). Forwards and upwards 0.3 m is within what arm, spine and a lean over the ankles give,
+so hips and knees add little; downwards they have to bend, and do.
 """
 
 
@@ -87,7 +88,9 @@ REACHES = tuple(
         ("right hand forward", RIGHT, (FAR, 0.0, 0.0)),
         ("right hand up", RIGHT, (0.0, 0.0, FAR)),
         ("both hands forward", BOTH, (FAR, 0.0, 0.0)),
+        ("right hand down", RIGHT, (0.0, 0.0, -FAR)),
     )
+    if away[2] >= 0.0 or not flying  # at the top there is nothing below
 )
 
 

@@ -146,12 +146,12 @@ class FollowedDrag(PolledOperator):
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
         """Reads the recording in parts, then has the worker follow what is dragged."""
         asked = yield from ask_for(context)
-        stream = shared().follow(asked.recording)
+        stream, skin = shared().follow(asked.recording), asked.problem.skin
         while True:
             if self._moved:
                 self._moved = False
                 settings = settings_of(self._armature)
-                stream.want(problem_of(settings, asked.recording, asked.scene.objects))
+                stream.want(problem_of(settings, asked.recording, asked.scene.objects, skin=skin))
             for message in stream.news():
                 self._hear(message)
             yield

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...solver.data.faults import NoArmature, UnreadableClip
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import BEYOND, Recording
+from ...solver.data.recording import BEYOND, Recording, Skin
 from ...solver.data.reports.recording import Origin
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
@@ -65,7 +65,7 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
             origin = replace(origin, bind_frames=count)
             after = float(recording.frames[count]), float(recording.frames[-1])
             problem = replace(problem, frames=after)
-        subject = measure(recording, problem)
+        subject = measure(recording, replace(problem, skin=_skin(armature, recording)))
     return LoadedClip(armature, origin, problem, subject)
 
 
@@ -132,6 +132,13 @@ def _read(armature: bpy.types.Object, problem: MotionProblem) -> Recording:
 
     first, last = _recorded_frames(armature, problem)
     return read_recording(armature, first=first, last=last, beyond=BEYOND)
+
+
+def _skin(armature: bpy.types.Object, recording: Recording) -> Skin | None:
+    from ...bridge.armature.incremental import complete
+    from ...bridge.scene.skin import read_skin
+
+    return complete(read_skin(armature, recording.frames)).skin
 
 
 def _recorded_frames(

@@ -66,7 +66,7 @@ from ..words.warning_text import warnings_of
 from .common import hindrance, required_armature
 from .keys import key_options, mark_contacts, write_keys
 from .live import live
-from .scene import note_surfaces, read_surfaces, stale_surfaces
+from .scene import note_surfaces, read_bound, read_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
 from .takes import left_behind
@@ -215,7 +215,8 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     _require_loopable(armature)
     yield from require_writable(armature, recording, span_of(settings, recording))
     scene = yield from read_surfaces(armature, recording.frames)
-    problem = problem_of(settings, recording, scene.objects)
+    skin = (yield from read_bound(armature, recording.frames)).skin
+    problem = problem_of(settings, recording, scene.objects, skin=skin)
     return Asked(armature.name, armature.session_uid, recording, problem, scene)
 
 

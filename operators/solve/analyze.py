@@ -2,6 +2,7 @@
 
 from collections.abc import Generator
 from dataclasses import replace
+from functools import partial
 
 import bpy
 
@@ -32,9 +33,10 @@ from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import higher
+from ..words.shape_text import shapes_told
 from .adapt import Adapting, ask_for, quick_solution, read_wanted, require_writable
 from .common import FaultyOperator, chosen_armature, required_armature, said
-from .scene import read_surfaces
+from .scene import read_bound, read_surfaces
 from .session import session
 from .solving import SolveState
 from .task import Task, TaskOperator, answered
@@ -127,7 +129,9 @@ def analysis(context: bpy.types.Context) -> Task:
     yield None
     for missing in missing_parts(settings):
         raise MissingPart(missing)
-    problem = problem_of(settings, recording, with_contacts=False)
+    bound = yield from read_bound(armature, recording.frames)
+    asked = partial(problem_of, settings, skin=bound.skin, with_contacts=False)
+    problem = asked(recording)
     yield from require_writable(armature, recording, span_of(settings, recording))
     yield None
     session().advance(SolveState.SOLVING)
@@ -139,7 +143,7 @@ def analysis(context: bpy.types.Context) -> Task:
                 break
             _take_cycle(settings, answer.cycle)
             recording = yield from read_wanted(armature)
-            problem = problem_of(settings, recording, with_contacts=False)
+            problem = asked(recording)
             answer = yield from _analysed(armature, recording, problem)
     except Fault as fault:
         raise _telling(fault, armature, recording, problem) from None
@@ -150,6 +154,7 @@ def analysis(context: bpy.types.Context) -> Task:
     yield None
     write_analysis(settings, recording, answer)
     keep(armature, answer.traces, armature.matrix_world)
+    settings.shapes_told = shapes_told(bound, answer)
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
     found = f"{found}{bind}{_snapped(settings, span)}"
@@ -191,13 +196,14 @@ def _snapped(settings: HangtimeSettings, asked: tuple[float, float]) -> str:
 def _analysed(
     armature: bpy.types.Object, recording: Recording, problem: MotionProblem
 ) -> Generator[PendingRequest | None, None, Analysed]:
-    """The analysis; in the scene where without it something unseen carries the body.
+    """The analysis; in the scene where without it something unseen carries the body, or a floor
+    that moves.
 
     Raises any Fault of an analysis, and of reading the scene.
     """
     try:
         return (yield from answered(_ask(recording, problem), Analysed))
-    except UnseenSupport as fault:
+    except (UnseenSupport, Treadmill) as fault:
         unseen = fault
     scene = yield from read_surfaces(armature, recording.frames)
     if not any(thing.role is SceneRole.GROUND for thing in scene.objects):

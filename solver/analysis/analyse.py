@@ -48,7 +48,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
         performance = replace(performance, longer=perform(take, character))
     # Parted before corrections, for those are the last word.
     found = parted(find_contacts(performance, problem.scene))
-    standing = foot_sized(_corrected(found, problem, performance), performance)
+    standing = foot_sized(_corrected(found, problem, performance), performance, problem.scene)
     schedule = grounded(standing, performance, problem.scene)
     for gap in schedule.unseen:
         points, floor_m = contact_points(performance)

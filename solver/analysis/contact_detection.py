@@ -17,6 +17,7 @@ from ..data.contacts import (
     numbered,
 )
 from ..numerics.interpolation import interpolate
+from ..scene.carrier import Carrier
 from ..scene.support import Heights, level
 from .force_timing import timed_by_forces
 from .point_movement import STEP, PointMovement, even_clock, point_movement
@@ -42,6 +43,7 @@ def detect_contacts(
     duration_s: float | None = None,
     shortest_flight_s: float = 0.03,
     ground: Heights | None = None,
+    carriers: Sequence[Carrier] = (),
 ) -> ContactSchedule:
     """Contact schedule of a recording.
 
@@ -49,9 +51,10 @@ def detect_contacts(
     recorded before and after tells of the contacts that are cut off. points: by name ("Left heel").
     com: (T, 3) m, the centre of mass: an interval without contact in which it does not fall freely
     is `unseen` support, not a flight. ground: heights of what points are above then, None for the
-    floor alone. Gaps below shortest_flight_s are closed. A point that is low and slow touches; the
-    contact lasts while it stays at its height of that contact, and a foot's as long as its force
-    acts, to a fraction of a frame.
+    floor alone. carriers: ground that moves; places of contacts on it are as seen from it. Gaps
+    below shortest_flight_s are closed. A point that is low and slow touches; the contact lasts
+    while it stays at its height of that contact, and a foot's as long as its force acts, to a
+    fraction of a frame.
     """
     duration = float(times[-1]) if duration_s is None else duration_s
     clock = even_clock(float(times[0]), float(times[-1]))
@@ -61,6 +64,9 @@ def detect_contacts(
         for name, point in points.items()
         for touch in _touches(clock, name, point, movements[name], ground or level(floor_m))
     ]
+    for carrier in carriers:
+        touches += _carried(times, clock, points, carrier)
+    touches = _on_one_thing(touches) if carriers else touches
     heights = {name: movement.track[:, 2] for name, movement in movements.items()}
     legs = {
         name: np.linalg.norm(movements[name].track - interpolate(times, p.hip, clock), axis=1)
@@ -96,6 +102,27 @@ def _touches(
             yield Contact(
                 name, name, point.bone, point.offset, candidate.start, candidate.end, place
             )
+
+
+def _carried(
+    times: FloatArray, clock: FloatArray, points: Mapping[str, ContactPoint], carrier: Carrier
+) -> Iterable[Contact]:
+    """Contacts with ground that moves: of points that are low and slow as seen from it."""
+    for name, point in points.items():
+        seen = carrier.seen_point(times, point)
+        movement = point_movement(times, seen, clock)
+        for contact in _touches(clock, name, seen, movement, carrier.heights):
+            yield replace(contact, on=carrier.name)
+
+
+def _on_one_thing(contacts: Iterable[Contact]) -> list[Contact]:
+    """Of contacts of one point at one time the longest."""
+    kept: list[Contact] = []
+    for contact in sorted(contacts, key=lambda c: c.start - c.end):
+        others = (c for c in kept if c.point == contact.point)
+        if all(c.start >= contact.end or c.end <= contact.start for c in others):
+            kept.append(contact)
+    return kept
 
 
 @dataclass(frozen=True)

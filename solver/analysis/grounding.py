@@ -60,16 +60,19 @@ def parted(schedule: ContactSchedule) -> ContactSchedule:
     return found
 
 
-def foot_sized(schedule: ContactSchedule, performance: Performance) -> ContactSchedule:
+def foot_sized(
+    schedule: ContactSchedule, performance: Performance, scene: Sequence[SceneObject] = ()
+) -> ContactSchedule:
     """The schedule with heel and toe of a foot as far apart as the foot is long.
 
     A foot that turns while it stands leaves its heel and toe places of different moments. The point
     that stands for longer keeps its place, or takes along what stands for less than it.
     """
+    ground = StandingGround.of(schedule.floor_m, scene, performance.recording)
     contacts = list(schedule.contacts)
     longest_first = sorted(range(len(contacts)), key=lambda k: contacts[k].start - contacts[k].end)
     for longer, shorter in combinations(longest_first, 2):
-        apart = _recorded_apart(contacts[shorter], contacts[longer], performance)
+        apart = _recorded_apart(contacts[shorter], contacts[longer], performance, ground)
         if apart is None:
             continue
         found = (contacts[shorter].place - contacts[longer].place)[:2]
@@ -80,7 +83,9 @@ def foot_sized(schedule: ContactSchedule, performance: Performance) -> ContactSc
     return replace(schedule, contacts=tuple(contacts))
 
 
-def _recorded_apart(one: Contact, other: Contact, performance: Performance) -> FloatArray | None:
+def _recorded_apart(
+    one: Contact, other: Contact, performance: Performance, ground: StandingGround
+) -> FloatArray | None:
     """(2,) m, level, from the other point to this one while both stand; None if not of one foot."""
     start, end = max(one.start, other.start), min(one.end, other.end)
     feet = [c.point.rpartition(" ") for c in (one, other)]
@@ -88,40 +93,42 @@ def _recorded_apart(one: Contact, other: Contact, performance: Performance) -> F
         return None
     if end - start < MIN_OVERLAP:
         return None
-    between = _track(one, performance) - _track(other, performance)
+    between = _track(one, performance, ground) - _track(other, performance, ground)
     instants = np.linspace(start, end, OVERLAP_SAMPLES)
     return np.asarray(np.median(interpolate(performance.times, between, instants)[:, :2], axis=0))
 
 
-def _track(contact: Contact, performance: Performance) -> FloatArray:
-    """(T, 3) m, the contact's point as it was recorded."""
+def _track(contact: Contact, performance: Performance, ground: StandingGround) -> FloatArray:
+    """(T, 3) m, the contact's point as it was recorded, seen from what carries it."""
     recording = performance.recording
     bone = recording.index(contact.bone)
-    return np.asarray(recording.heads[:, bone] + recording.rotations[:, bone] @ contact.offset)
+    track = np.asarray(recording.heads[:, bone] + recording.rotations[:, bone] @ contact.offset)
+    carrier = ground.carrier(contact)
+    return track if carrier is None else carrier.seen(recording.times, track)
 
 
 def grounded(
     schedule: ContactSchedule, performance: Performance, scene: Sequence[SceneObject] = ()
 ) -> ContactSchedule:
-    """The schedule with its places near the ground put upon it, and each contact's rise.
+    """The schedule with its places near the ground put upon it, and each contact's rise; places on
+    ground that moves are where they are when the stance begins.
 
     scene: the objects that contacts may be on.
     """
     ground = StandingGround.of(schedule.floor_m, scene, performance.recording)
-    contacts = tuple(
-        _grounded(c, schedule, performance, ground.beneath(c)) for c in schedule.contacts
-    )
-    return replace(schedule, contacts=contacts)
+    contacts = tuple(_grounded(c, schedule, performance, ground) for c in schedule.contacts)
+    return ground.placed(replace(schedule, contacts=contacts))
 
 
 def _grounded(
-    contact: Contact, schedule: ContactSchedule, performance: Performance, ground_m: float
+    contact: Contact, schedule: ContactSchedule, performance: Performance, ground: StandingGround
 ) -> Contact:
+    ground_m = ground.beneath(contact)
     height = float(contact.place[2]) - ground_m
     if abs(height) < NEAR_FLOOR:
         height = float(np.clip(height, *PLACE_BAND))
     place = np.array([*contact.place[:2], ground_m + height])
-    track = _track(contact, performance)
+    track = _track(contact, performance, ground)
     ends = np.array([contact.start, contact.end])
     above = interpolate(performance.times, track[:, 2], ends) - place[2]
     cut_off = (ends <= 0.0) | (ends >= schedule.duration)

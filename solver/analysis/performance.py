@@ -82,7 +82,7 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
 
     Found in the whole take, and told as far as they are within the recording. Ground of the scene
     counts where the floor alone leaves support unseen: elsewhere the recording knows nothing of
-    what is put into its way.
+    what is put into its way. Places on ground that moves are as seen from it.
     """
     take = performance.take
     points, floor_m = contact_points(take)
@@ -91,8 +91,8 @@ def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -
         detect_contacts, take.times, points, floor_m=floor_m, com=take.com, duration_s=duration
     )
     schedule, ground = detect(), StandingGround.of(floor_m, scene, performance.recording)
-    if schedule.unseen and ground.things:
-        schedule = ground.named(detect(ground=ground.heights))
+    if schedule.unseen and not ground.bare:
+        schedule = ground.named(detect(ground=ground.heights, carriers=ground.carriers))
     return snap(schedule, snap_tolerance(performance))
 
 

@@ -186,6 +186,11 @@ class ContactSchedule:
         """The contacts that carry during part of `phase`."""
         return tuple(c for c in self.contacts if c.start < phase.end and c.end > phase.start)
 
+    def stance(self, contact: Contact) -> Phase:
+        """The ground phase in which a contact begins."""
+        ground = (phase for phase in self.phases if phase.kind is PhaseKind.GROUND)
+        return next(p for p in ground if contact.start < p.end and contact.end > p.start)
+
 
 def gaps(covered: Iterable[tuple[float, float]], duration: float) -> tuple[Interval, ...]:
     """Complement of the intervals (start, end), s, in [0, duration], in order."""

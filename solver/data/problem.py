@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
+from .recording import Skin
 from .requests import Requests
 from .scene import SceneObject
 
@@ -67,6 +68,7 @@ class MotionProblem:
 
     frames: first and last scene frame, None for all. mass: kg. height: m, None as the armature is.
     loop: whether the motion shall repeat; it is then made of the cycle nearest to the frames.
+    skin: of the recording's figure, where it has one.
     """
 
     frames: tuple[float, float] | None = None
@@ -80,6 +82,7 @@ class MotionProblem:
     scene: tuple[SceneObject, ...] = ()
     requests: Requests = field(default_factory=Requests)
     loop: bool = False
+    skin: Skin | None = None
 
     def keeping_times(self) -> "MotionProblem":
         """The same, but for durations that are not asked for."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 
 POSE_TOLERANCE = 1e-5  # m and rad; going into edit mode and back moves bones by less
 BEYOND = 0.5  # s, on both sides of the range that is adapted, which a recording may have and tell
@@ -24,6 +24,35 @@ class Bone:
     head: FloatArray
     tail: FloatArray
     rotation: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """Points spread evenly over the meshes that bones deform, in the rest pose.
+
+    meshes: their names. bones: names. points: (N, 3) m, world, where `Bone` has its rest.
+    owners: (N,) indices of bones, of each point the one that moves it most; -1 where none does.
+    Two are equal whose values are.
+    """
+
+    meshes: tuple[str, ...]
+    bones: tuple[str, ...]
+    points: FloatArray
+    owners: IntArray
+
+    def scaled(self, factor: float) -> "Skin":
+        """With every length times `factor`, about the world's origin."""
+        return replace(self, points=factor * self.points)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Skin):
+            return NotImplemented
+        named = (self.meshes, self.bones) == (other.meshes, other.bones)
+        pairs = ((self.points, other.points), (self.owners, other.owners))
+        return self is other or (named and all(np.array_equal(a, b) for a, b in pairs))
+
+    def __hash__(self) -> int:
+        return hash((self.meshes, self.bones, self.points.shape))
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,8 @@ def scaled_problem(problem: MotionProblem, factor: float) -> MotionProblem:
         )
         for thing in problem.scene
     )
-    return replace(problem, pins=tuple(pins), requests=requests, scene=scene)
+    skin = problem.skin and problem.skin.scaled(factor)
+    return replace(problem, pins=tuple(pins), requests=requests, scene=scene, skin=skin)
 
 
 def _scaled_rates(steady: SteadyMotion, factor: float) -> SteadyMotion:

@@ -76,6 +76,16 @@ class HumanRanges(Enum):
         return self is not HumanRanges.OFF
 
 
+class ShapeSource(Enum):
+    """What the body's solid shapes are made from.
+
+    MESH: from the skinned mesh, of bodies that have one; the others from their bones.
+    """
+
+    MESH = "mesh"
+    BONES = "bones"
+
+
 @dataclass(frozen=True)
 class SolverOptions:
     """Solver options. objectives: (kind, weight) of the explicit solution, weights as shares.
@@ -84,8 +94,8 @@ class SolverOptions:
     None chooses them automatically. keep_times: phases last as long as recorded where no
     PhaseTiming says otherwise; else those that a moved landing or take-off adjoins take the time
     that goes with it. solid: floor and limbs keep out of each other, as far as they do in the
-    recording. human: whether joints keep to human ranges; wider: rad, by which both ends of each
-    of these are.
+    recording. shapes: what the body's shapes are made from. human: whether joints keep to human
+    ranges; wider: rad, by which both ends of each of these are.
     """
 
     method: Method = Method.IMPLICIT
@@ -99,5 +109,6 @@ class SolverOptions:
     torque_span: float | None = None
     keep_times: bool = False
     solid: bool = True
+    shapes: ShapeSource = ShapeSource.MESH
     human: HumanRanges = HumanRanges.SOFT
     wider: float = 0.0

@@ -15,7 +15,7 @@ def last_stance_move(adaptation: Adaptation) -> StanceMove | None:
     """
     setup = adaptation.setup
     schedule = setup.schedule
-    before, after = Standing.still(setup.fitted_places), Standing.of(adaptation.motion)
+    before, after = setup.fitted, Standing.of(adaptation.motion)
     moves = stance_moves(schedule, before, after, setup.turns)
     if not moves:
         return None

@@ -32,7 +32,7 @@ def moving_ground(adaptation: Adaptation, problem: MotionProblem) -> Iterator[Mo
         moved = (setup.target.places - still)[mine].mean(axis=0)
         x, y, z = moved.tolist()
         found = ((i, setup.target.rides[i]) for i in mine)
-        riding = [(i, ride) for i, ride in found if ride is not None]
+        riding = [(i, ride) for i, ride in found if ride not in (None, setup.fitted.rides[i])]
         if riding:
             last, ride = max(riding, key=lambda each: contacts[each[0]].end)
             place, name = setup.target.places[last], ride.ground.thing.name

@@ -193,7 +193,7 @@ def _contact(adaptation: Adaptation, i: int, pin: str | None, loaded: LoadedDrif
         end_s=contact.end,
         start_frame=scene_frame(fit, contact.start),
         end_frame=scene_frame(fit, contact.end),
-        fitted_place_m=_vector(adaptation.setup.fitted_places[i]),
+        fitted_place_m=_vector(adaptation.setup.fitted.places[i]),
         place_m=_vector(motion.places[i]),
         worst_violation_mm=1000.0 * float(drift.max()),
         worst_violation_frame=scene_frame(fit, float(pinned[drift.argmax()])),

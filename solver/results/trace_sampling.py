@@ -34,8 +34,8 @@ class _Figure:
         return _Figure(self.rotations[index], self.centres[index])
 
 
-def recorded_traces(performance: Performance) -> Traces:
-    """Of a recording as it was analysed: figure and centre of mass."""
+def recorded_traces(performance: Performance, changes: ShapeChanges = AS_IS) -> Traces:
+    """Of a recording as it was analysed: figure and centre of mass. changes: of the shapes."""
     character, times = performance.character, performance.times
     figure = _Figure(performance.rotations, performance.centres)
     index = np.arange(len(times))
@@ -58,7 +58,7 @@ def recorded_traces(performance: Performance) -> Traces:
         joints=(),
         torques=none[:, :, 0],
         flights=(),
-        **_solids(character, figure),
+        **_solids(character, figure, changes),
     )
 
 
@@ -135,7 +135,7 @@ def _tails(character: Character, figure: _Figure) -> FloatArray:
     return np.asarray(figure.centres + np.einsum("tbij,bj->tbi", figure.rotations, tips))
 
 
-def _solids(character: Character, figure: _Figure, changes: ShapeChanges = AS_IS) -> dict[str, Any]:
+def _solids(character: Character, figure: _Figure, changes: ShapeChanges) -> dict[str, Any]:
     """What traces hold of the body's solid shapes."""
     shapes = Capsules.of(capsules(character, changes))
     turns, centres = figure.rotations[:, shapes.bodies], figure.centres[:, shapes.bodies]

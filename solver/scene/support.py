@@ -4,7 +4,7 @@ A recording that steps down from a box shows feet that rest in mid-air. Ground o
 them explains it; where there is none, a box from the floor to the resting soles is what would.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,16 +13,13 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.contacts import Contact, ContactPoint, ContactSchedule, Interval, PointKind
 from ..data.recording import Recording
 from ..data.scene import SceneObject, SceneRole, SupportBox
-from ..scene.triangle_mesh import TriangleMesh, placed_mesh
+from .carrier import REACH, Carrier
 from .object_motion import ObjectMotion
+from .triangle_mesh import placed_mesh
 
-REACH = 0.04  # m; feet this far above or below a face may be on it, and levels this near are one
 LEAST_REST = 0.1  # s, for which feet stay where they are carried
 LEAST_HEIGHT = 0.04  # m of a box; less is a floor that is not level
 SOLE_MARGIN = 0.05  # m around the soles' lines, which run through the middle of feet 0.1 m broad
-
-LOOK = 0.01  # s, between looks whether ground rests
-RESTING_SPEED = 0.05  # m/s, and rad/s: ground slower than that stands still, as feet on it do
 
 # m, of the ground at instants (N,) s beneath points (N, 3) m
 Heights = Callable[[FloatArray, FloatArray], FloatArray]
@@ -35,73 +32,82 @@ def level(floor_m: float) -> Heights:
 
 @dataclass(frozen=True)
 class StandingGround:
-    """A level floor and objects upon it, as feet find them from above while they stand still.
+    """A level floor and objects upon it, as feet find them from above while they stand on them.
 
-    Feet that rest are told from feet that move, by the world: what moves explains the ones that
-    rest on it as long as it rests itself, such as a lift that waits or a train that is to leave.
+    still: objects that do not move. carriers: those that do; feet that rest on them move with them.
     """
 
     floor_m: float
-    things: tuple[ObjectMotion, ...]
+    still: tuple[ObjectMotion, ...]
+    carriers: tuple[Carrier, ...]
 
     @staticmethod
     def of(floor_m: float, scene: Sequence[SceneObject], recording: Recording) -> "StandingGround":
         """Of all ground in the scene, moving by the recording's clock."""
         first, rate = float(recording.frames[0]), recording.rate
         ground = (each for each in scene if each.role is SceneRole.GROUND)
-        return StandingGround(floor_m, tuple(ObjectMotion.of(each, first, rate) for each in ground))
+        things = tuple(ObjectMotion.of(each, first, rate) for each in ground)
+        still = tuple(each for each in things if not each.thing.moves)
+        return StandingGround(
+            floor_m, still, tuple(Carrier(each) for each in things if each.thing.moves)
+        )
 
-    def heights(self, times: FloatArray, points: FloatArray) -> FloatArray:
-        """(N,) m, of the highest ground that points (N, 3) m may be on at instants (N,) s."""
-        return self._below(times, points)[0]
+    @property
+    def bare(self) -> bool:
+        """Whether there is the floor alone."""
+        return not (self.still or self.carriers)
+
+    def heights(self, _times: FloatArray, points: FloatArray) -> FloatArray:
+        """(N,) m, of the highest still ground that points (N, 3) m may be on."""
+        return self._below(points)[0]
 
     def named(self, schedule: ContactSchedule) -> ContactSchedule:
         """The schedule, each contact with the name of the object that it is on."""
         places = np.array([c.place for c in schedule.contacts]).reshape(-1, 3)
-        owners = self._below(np.array([_middle(c) for c in schedule.contacts]), places)[1]
+        owners = self._below(places)[1]
         contacts = (
-            replace(contact, on=self.things[owner].thing.name if owner >= 0 else None)
+            replace(contact, on=self.still[owner].thing.name)
+            if contact.on is None and owner >= 0
+            else contact
             for contact, owner in zip(schedule.contacts, owners, strict=True)
         )
         return replace(schedule, contacts=tuple(contacts))
 
+    def carrier(self, contact: Contact) -> Carrier | None:
+        """What moves beneath a contact; its place is as seen from there until `placed`."""
+        return next((each for each in self.carriers if each.name == contact.on), None)
+
     def beneath(self, contact: Contact) -> float:
         """Height, m, of what a contact is on: the floor, or the object that it names."""
-        things = tuple(each for each in self.things if each.thing.name == contact.on)
-        only = StandingGround(self.floor_m, things)
-        return float(only.heights(np.array([_middle(contact)]), contact.place[None])[0])
+        carrier = self.carrier(contact)
+        if carrier is not None:
+            height = float(carrier.heights(np.zeros(1), contact.place[None])[0])
+            return height if np.isfinite(height) else float(contact.place[2])
+        still = tuple(each for each in self.still if each.thing.name == contact.on)
+        only = StandingGround(self.floor_m, still, ())
+        return float(only._below(contact.place[None])[0][0])
 
-    def _below(self, times: FloatArray, points: FloatArray) -> tuple[FloatArray, IntArray]:
-        """The ground beneath points (N, 3): heights (N,) m, and which thing it is of, else -1."""
+    def placed(self, schedule: ContactSchedule) -> ContactSchedule:
+        """The schedule with what rides where it is when its stance begins."""
+        contacts = []
+        for contact in schedule.contacts:
+            carrier = self.carrier(contact)
+            if carrier is not None:
+                began = schedule.stance(contact).start
+                contact = replace(contact, place=carrier.placed(contact.place, began))
+            contacts.append(contact)
+        return replace(schedule, contacts=tuple(contacts))
+
+    def _below(self, points: FloatArray) -> tuple[FloatArray, IntArray]:
+        """The still ground beneath points (N, 3): heights (N,) m, and which thing it is of, or -1
+        for the floor."""
         height = np.full(len(points), self.floor_m)
         owner = np.full(len(points), -1)
-        for i, thing in enumerate(self.things):
-            for when, mesh in _at_rest(thing, times):
-                top = mesh.heights(points[when, :2]).z
-                on = (top > height[when]) & (top < points[when, 2] + REACH)
-                height[when[on]], owner[when[on]] = top[on], i
+        for i, thing in enumerate(self.still):
+            top = placed_mesh(thing.thing).heights(points[:, :2]).z
+            on = (top > height) & (top < points[:, 2] + REACH)
+            height[on], owner[on] = top[on], i
         return height, owner
-
-
-def _middle(contact: Contact) -> float:
-    return 0.5 * (contact.start + contact.end)
-
-
-def _at_rest(moves: ObjectMotion, times: FloatArray) -> Iterator[tuple[IntArray, TriangleMesh]]:
-    """Where an object stands: indices of the instants (N,) s of each rest, and its mesh then."""
-    if not moves.thing.moves:
-        yield np.arange(len(times)), placed_mesh(moves.thing)
-        return
-    if not len(times):
-        return
-    clock = np.arange(times.min(), times.max() + LOOK, LOOK)
-    rates = moves.surface_rates(clock)
-    speeds = np.abs(rates.shift).max(axis=1), np.abs(rates.turn).max(axis=(1, 2))
-    still = np.flatnonzero(np.maximum(*speeds) < RESTING_SPEED)
-    for rest in np.split(clock[still], np.flatnonzero(np.diff(still) > 1) + 1):
-        if len(rest):
-            during = (times > rest[0] - LOOK) & (times < rest[-1] + LOOK)
-            yield np.flatnonzero(during), placed_mesh(moves.still_at(float(rest[len(rest) // 2])))
 
 
 # ---------------------------------------------------------------- boxes that would carry

@@ -2,25 +2,32 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from ..body.character import Character
 from ..data.faults import NotAboveZero
 from ..data.requests import Shape, Through
+from .flesh import Flesh
+
+NO_FLESH: Mapping[int, Flesh] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class ShapeChanges:
     """By bodies' indices. thickness: scale factors, of others 1. loose: what goes through all.
 
-    together: groups whose bodies may be in each other.
+    together: groups whose bodies may be in each other. flesh: of bodies that have a mesh.
     """
 
     thickness: Mapping[int, float] = field(default_factory=dict)
     loose: frozenset[int] = frozenset()
     together: tuple[frozenset[int], ...] = ()
+    flesh: Mapping[int, Flesh] = field(default_factory=dict)
 
     @staticmethod
-    def of(shapes: Sequence[Shape], character: Character) -> "ShapeChanges":
+    def of(
+        shapes: Sequence[Shape], character: Character, flesh: Mapping[int, Flesh] = NO_FLESH
+    ) -> "ShapeChanges":
         """As the requests say; factors of one bone multiply. Raises StillBone, NotAboveZero."""
         thickness: dict[int, float] = {}
         loose: set[int] = set()
@@ -35,7 +42,7 @@ class ShapeChanges:
                 loose |= bodies
             elif shape.through is Through.EACH_OTHER:
                 together.append(bodies)
-        return ShapeChanges(thickness, frozenset(loose), tuple(together))
+        return ShapeChanges(thickness, frozenset(loose), tuple(together), flesh)
 
     def factor(self, body: int) -> float:
         """On a body's thickness."""

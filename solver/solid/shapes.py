@@ -1,7 +1,8 @@
 """The body's solid shapes: capsules about its bones, and which of them may meet.
 
-A capsule has the girth of its segment: the segment's mass (mass_tables.py), its length and the
-body's density give its cross-section. Flesh gives, so only a share of the radius is solid.
+A capsule has the girth of its segment: that of the skinned mesh (flesh.py), or else the segment's
+mass (mass_tables.py), its length and the body's density give its cross-section. Flesh gives, so
+only a share of the radius is solid.
 """
 
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ from ..body.anatomy import Part, Side
 from ..body.character import Body, Character
 from ..body.kinematics import BodyPoint, Pose
 from ..numerics.rotations import unit
+from .flesh import Flesh
 from .segments import closest_shares
 from .shape_changes import AS_IS, ShapeChanges
 
@@ -87,22 +89,41 @@ def capsules(character: Character, changes: ShapeChanges = AS_IS) -> list[Capsul
     return [
         capsule
         for i, body in enumerate(character.bodies)
-        for capsule in _of_body(i, body, changes.factor(i), leaf=i not in parents)
+        for capsule in _of_body(i, body, changes, leaf=i not in parents)
     ]
 
 
-def _of_body(index: int, body: Body, thickness: float, *, leaf: bool) -> list[Capsule]:
+def _of_body(index: int, body: Body, changes: ShapeChanges, *, leaf: bool) -> list[Capsule]:
+    flesh = changes.flesh.get(index)
+    if flesh is None:
+        return _of_bone(index, body, changes.factor(index), leaf=leaf)
+    return _of_mesh(index, body, flesh, changes.factor(index), leaf=leaf)
+
+
+def _of_mesh(
+    index: int, body: Body, flesh: Flesh, thickness: float, *, leaf: bool
+) -> list[Capsule]:
+    radius, aside = SOLID_SHARE * thickness * flesh.radius, SOLID_SHARE * thickness * flesh.aside
+    start, end = flesh.centre, flesh.centre + _shortened(flesh.reach * body.tip, radius, leaf=leaf)
+    sides = (aside, -aside) if aside.any() else (aside,)
+    return [Capsule(index, start + side, end + side, radius) for side in sides]
+
+
+def _of_bone(index: int, body: Body, thickness: float, *, leaf: bool) -> list[Capsule]:
     narrow, wide = thickness * np.sort(body.box_size[:2])
     radius = float(SOLID_SHARE * narrow / np.sqrt(np.pi))  # of the circle of a square's area
-    start, end = np.zeros(3), body.tip
-    length = float(np.linalg.norm(end))
-    if leaf and length > 0.0:  # a hand ends at its tip, not a radius beyond
-        end = end - unit(end) * min(radius, 0.5 * length)
+    start, end = np.zeros(3), _shortened(body.tip, radius, leaf=leaf)
     apart = SOLID_SHARE * 0.5 * (wide - narrow)
     if apart < WIDE * radius:
         return [Capsule(index, start, end, radius)]
     aside = apart * body.box_rotation[:, int(np.argmax(body.box_size[:2]))]
     return [Capsule(index, start + side, end + side, radius) for side in (aside, -aside)]
+
+
+def _shortened(tip: FloatArray, radius: float, *, leaf: bool) -> FloatArray:
+    """(3,) where a capsule's axis ends: a hand ends at its tip, not a radius beyond."""
+    length = float(np.linalg.norm(tip))
+    return tip - unit(tip) * min(radius, 0.5 * length) if leaf and length > 0.0 else tip
 
 
 def floor_balls(

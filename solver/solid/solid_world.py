@@ -203,7 +203,7 @@ def solid_world(
 ) -> SolidWorld:
     """The world of a motion of `reference`'s body. floors: heights, m, of the motion's and the
     fit's. scene: objects and how they move in the motion's time. clears: by object and body, how
-    far above it what is over it stays, m. changes: of the shapes of both. known: the still objects
+    far above it what is over it stays, m. changes: of the shapes of both. known: the objects
     that the recording is on."""
     character = fitted.transcription.character
     pairs = meeting_pairs(character, capsules(character, changes), changes)

@@ -3,7 +3,7 @@
 It is computed once per recording and starts every adaptation.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -34,6 +34,7 @@ from ..transcription.motion import (
     spans_to_refine,
     split_spans,
 )
+from ..transcription.ride import Ride
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
 from .transcribe import initial_guess, recorded_target, transcribe
@@ -121,14 +122,18 @@ def fit(
     schedule: ContactSchedule,
     *,
     periodic: bool = False,
+    rides: Sequence[Ride | None] = (),
     progress: Progress | None = None,
 ) -> Fit:
     """The physically valid motion nearest to the recording, with its contacts (thesis 4.2).
 
-    periodic: whether it shall repeat, its end meeting its start. A fit that fails is returned as
+    periodic: whether it shall repeat, its end meeting its start. rides: of the schedule's contacts,
+    where some of them were recorded on ground that moves. A fit that fails is returned as
     it ended, with a status that says so.
     """
     transcription = transcribe(performance, schedule, periodic=periodic)
+    if any(ride is not None for ride in rides):
+        transcription = transcription.riding(rides)
     x = initial_guess(transcription, performance)
     places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
     places = settled_places(transcription, places)
@@ -210,7 +215,10 @@ def reached_places(motion: Motion) -> FloatArray:
     places = motion.places.copy()
     for i, contact in enumerate(motion.transcription.contacts):
         instants = pinned_instants(contact, 120.0)
-        places[i] = motion.contact_points(instants)[:, contact.point].mean(axis=0)
+        reached = motion.contact_points(instants)[:, contact.point]
+        if contact.ride is not None:
+            reached = contact.ride.back(instants, reached)
+        places[i] = reached.mean(axis=0)
     return settled_places(motion.transcription, places)
 
 

@@ -26,7 +26,7 @@ from ..transcription.transcription import Transcription
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
 from .setup import Setup, set_up
-from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
+from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_ARRIVALS = 2  # where guards were given up, which in smaller steps need not be
@@ -230,7 +230,7 @@ def _continuation(
     """
     on_the_way = _on_the_way(setup, limbs=limbs)
     motion, schedule = setup.start, setup.schedule
-    before = last = Standing.still(motion.places)
+    before = last = setup.fitted.with_places(motion.places)
     whole = stance_moves(schedule, before, setup.target, setup.turns)
     steps = times * continuation_steps(whole)
     outcomes: list[Outcome] = []
@@ -239,7 +239,7 @@ def _continuation(
         transcription = setup.start.transcription
         if step < steps:
             places = partial_places(schedule, before.places, places, whole, step / steps)
-            standing = setup.target.slowed(step / steps).with_places(places)
+            standing = setup.target.slowed(step / steps, before).with_places(places)
         if step < steps and standing.moves:
             transcription = transcription.riding(standing.rides)
         start = warm_start(motion, stance_moves(schedule, last, standing))

@@ -55,7 +55,7 @@ class Follower:
         if last is None:
             self.setup = set_up(fit, problem)
             self.motion, self._metric = self.setup.start, self.setup.metric
-            self._standing = Standing.still(self.motion.places)
+            self._standing = self.setup.fitted.with_places(self.motion.places)
         else:
             self.setup = last.setup
             self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
@@ -84,7 +84,8 @@ class Follower:
         steps = continuation_steps(whole)
         if steps > 1:
             places = partial_places(schedule, was.places, target.places, whole, 1.0 / steps)
-            target = target.slowed(was.share + (1.0 - was.share) / steps).with_places(places)
+            share = was.share + (1.0 - was.share) / steps
+            target = target.slowed(share, self.setup.fitted).with_places(places)
         x = warm_start(self.motion, stance_moves(schedule, was, target))
         self._guard()
         if not self._step(x, target):
@@ -104,7 +105,7 @@ class Follower:
         """Sets up for other requests, from the same unknowns where basis and layout allow."""
         setup = set_up(self._fit, problem)
         old, new = self.motion.transcription, setup.start.transcription
-        start, standing = setup.start, Standing.still(setup.start.places)
+        start, standing = setup.start, setup.fitted.with_places(setup.start.places)
         if new.basis is old.basis and new.layout == old.layout:
             start, standing = Motion(new, self.motion.x, self.motion.places), self._standing
         self._begin(setup, start, standing, problem)
@@ -121,7 +122,7 @@ class Follower:
             return
         start, target = setup.start, setup.target
         feasible = setup.feasible_set(start.transcription, target.places)
-        still = Standing.still(start.places)
+        still = setup.fitted.with_places(start.places)
         x = warm_start(start, stance_moves(setup.schedule, still, target))
         found = restore(feasible, setup.metric, x, stage="drag", max_steps=RETIMING_STEPS)
         motion = feasible.motion(found.x)

@@ -15,9 +15,11 @@ from ..analysis.landing import Footing
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..arrays import FloatArray
 from ..constraints.evaluation_context import EvaluationContext
-from ..data.contacts import Phase, PhaseKind
+from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.faults import GroundNotThere, JerkyGround
 from ..data.problem import MotionProblem, Pin
+from ..data.recording import Recording
+from ..data.scene import SceneObject
 from ..numerics.rotations import axis_rotation
 from ..scene.object_motion import ObjectMotion
 from ..transcription.ride import Ride
@@ -28,6 +30,8 @@ from .warm_start import Standing
 MAX_ACCELERATION = 100.0  # m/s², of a point of the ground; nobody stands on what jumps
 CHECKING_RATE = 240.0  # Hz
 FRAME_TOLERANCE = 0.01  # scene frames
+RESTING_SPEED = 0.05  # m/s, and rad/s: ground slower than that stands still, as feet on it do
+RESTING_SAMPLES = 50
 
 
 @dataclass(frozen=True)
@@ -72,7 +76,7 @@ def find_standing(
     footing = first_footing(fit, problem, context)
     moving = _moving(problem, context)
     if not any(pin.on in moving for pin in problem.pins):
-        return Standing.still(footing.places), footing
+        return Standing(footing.places, _kept_rides(fit, problem, context)), footing
     return _Walk(fit, problem, context, footing).through()
 
 
@@ -84,6 +88,47 @@ def first_footing(fit: Fit, problem: MotionProblem, context: EvaluationContext) 
     began, moving = _began(fit, problem, context), _moving(problem, context)
     standing = {pin: moving[pin.on or ""].still_at(time) for pin, time in began.items()}
     return find_footing(fit, problem, context.schedule, standing)
+
+
+def recorded_rides(
+    schedule: ContactSchedule, scene: Sequence[SceneObject], recording: Recording
+) -> tuple[Ride | None, ...]:
+    """Of the contacts (n_contacts,) of a recording: those on ground that moves meanwhile."""
+    first, rate = float(recording.frames[0]), recording.rate
+    moving = {each.name: ObjectMotion.of(each, first, rate) for each in scene if each.moves}
+    return tuple(
+        _recorded_ride(moving[contact.on], schedule.stance(contact))
+        if contact.on in moving
+        else None
+        for contact in schedule.contacts
+    )
+
+
+def _recorded_ride(ground: ObjectMotion, phase: Phase) -> Ride | None:
+    """None where the ground waits: then it is as still as any."""
+    times = np.linspace(phase.start, phase.end, RESTING_SAMPLES)
+    rates = ground.surface_rates(times)
+    speed = max(float(np.abs(rates.shift).max()), float(np.abs(rates.turn).max()))
+    return Ride(ground, phase.start) if speed > RESTING_SPEED else None
+
+
+def recorded_in(fit: Fit, context: EvaluationContext) -> tuple[Ride | None, ...]:
+    """Of the contacts of a context's schedule, the rides that they have in the fit."""
+    known = {c.contact.name: c.ride for c in fit.motion.transcription.contacts}
+    return tuple(known.get(contact.name) for contact in context.schedule.contacts)
+
+
+def _kept_rides(
+    fit: Fit, problem: MotionProblem, context: EvaluationContext
+) -> tuple[Ride | None, ...]:
+    """The rides that contacts have in the fit, but for those that a pin puts on something else."""
+    rides = list(recorded_in(fit, context))
+    for stance in _stances(fit, problem, context):
+        for i, pin in stance.pins.items():
+            ride = rides[i]
+            if ride is not None and pin.on not in (None, ride.ground.thing.name):
+                rides[i] = None
+    return tuple(rides)
 
 
 def _moving(problem: MotionProblem, context: EvaluationContext) -> dict[str, ObjectMotion]:
@@ -98,11 +143,15 @@ def _moving(problem: MotionProblem, context: EvaluationContext) -> dict[str, Obj
 
 @dataclass(frozen=True)
 class _Stance:
-    """A ground phase, its contacts that were found, and the pins of some of them, by index."""
+    """A ground phase, its contacts that were found, and the pins of some of them, by index.
+
+    recorded_on: names of the moving objects on which the recording has it.
+    """
 
     phase: Phase
     contacts: tuple[int, ...]
     pins: Mapping[int, Pin]
+    recorded_on: frozenset[str]
 
 
 def _stances(fit: Fit, problem: MotionProblem, context: EvaluationContext) -> Iterator[_Stance]:
@@ -112,7 +161,7 @@ def _stances(fit: Fit, problem: MotionProblem, context: EvaluationContext) -> It
         for pin in problem.pins
         for i in chosen_contacts(pin, phase_of(pin, fit.schedule), fit.schedule)
     }
-    contacts = context.schedule.contacts
+    contacts, rides = context.schedule.contacts, recorded_in(fit, context)
     for phase in context.schedule.phases:
         mine = tuple(
             i
@@ -121,7 +170,8 @@ def _stances(fit: Fit, problem: MotionProblem, context: EvaluationContext) -> It
         )
         if phase.kind is PhaseKind.GROUND and mine:
             named = {i: pins[contacts[i].name] for i in mine if contacts[i].name in pins}
-            yield _Stance(phase, mine, named)
+            on = frozenset(ride.ground.thing.name for ride in (rides[i] for i in mine) if ride)
+            yield _Stance(phase, mine, named, on)
 
 
 def _began(fit: Fit, problem: MotionProblem, context: EvaluationContext) -> dict[Pin, float]:
@@ -134,7 +184,8 @@ def _began(fit: Fit, problem: MotionProblem, context: EvaluationContext) -> dict
         for pin in stance.pins.values():
             if pin.on in moving:
                 own = stance.phase.start
-                began[pin] = own if pin.place is not None else last.get(pin.on, own)
+                anew = pin.place is not None or pin.on in stance.recorded_on
+                began[pin] = own if anew else last.get(pin.on, own)
                 now[pin.on] = began[pin]
         last = now
     return began
@@ -151,7 +202,8 @@ class _Walk:
         self._moving = _moving(problem, context)
         self._began = _began(fit, problem, context)
         self._places, self._normals = footing.places.copy(), footing.normals.copy()
-        self._rides: list[Ride | None] = [None] * len(self._places)
+        self._recorded = _kept_rides(fit, problem, context)
+        self._rides = list(self._recorded)
         self._take_off: TakeOff | None = None
 
     def through(self) -> tuple[Standing, Footing]:
@@ -162,9 +214,12 @@ class _Walk:
 
     def _stand(self, stance: _Stance) -> None:
         riding = [i for i, pin in stance.pins.items() if pin.on in self._moving]
+        known = [ride for ride in (self._recorded[i] for i in riding) if ride is not None]
         for i in riding:
             self._ride(i, stance)
-        if riding:
+        if known:  # the recording has the ground's speed
+            self._take_off = None
+        elif riding:
             self._take_off = self._left(stance, riding)
         elif stance.pins:
             self._take_off = None

@@ -38,6 +38,7 @@ from ..objectives.tracking_cost import CostWeights
 from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
+from ..solid.flesh import shape_flesh
 from ..solid.room import check_room
 from ..solid.shape_changes import ShapeChanges
 from ..solid.solid_world import SolidWorld
@@ -48,7 +49,7 @@ from .anticipation import anticipate, changed_jumps
 from .fit import ADAPT_COST_WEIGHTS, Fit, motion_metric
 from .footing import check_sunk, on_faces, pin_turns
 from .initial_guess import resampled_fit
-from .platforms import find_standing
+from .platforms import find_standing, recorded_in
 from .surroundings import surroundings
 from .warm_start import Standing
 
@@ -66,19 +67,19 @@ class Setup:
     """A problem ready to be solved.
 
     start: the initial guess, whose transcription has the problem's constraints; its places are
-    where its contacts are, on still ground. fitted_places: (n_contacts, 3) m, where they were in
-    the fit; target: where they shall be, and the rides from there, which the transcription has.
+    where its contacts are, on still ground. fitted: where they were in the
+    fit; target: where they shall be, and the rides from there, which the transcription has.
     metric: W at the start. turns: of the ground phases by the pins, rad. basis: (n_block, k), the
     changes of a block that a reduction allows, None all. requests: those set up here. recording: of
     the figure as it is asked for. space: the reduced coordinates, None where there are none.
-    durations: where they come from. scene: what is around. price: of turning joints, which is in
-    the metric; None for a figure that is no human.
+    durations: where they come from. changes: of the solid shapes. scene: what is around. price: of
+    turning joints, which is in the metric; None for a figure that is no human.
     """
 
     fit: Fit
     context: EvaluationContext
     start: Motion
-    fitted_places: FloatArray
+    fitted: Standing
     target: Standing
     metric: BlockBanded
     turns: dict[str, float]
@@ -87,6 +88,7 @@ class Setup:
     requests: Requests
     space: ReducedSpace | None
     durations: Durations
+    changes: ShapeChanges
     scene: tuple[SceneObject, ...] = ()
     price: JointPrice | None = None
 
@@ -119,12 +121,7 @@ class Setup:
         if not self.requests.solution.solid:
             return None
         lowest, clears = self.target.lowest(self.schedule), self.requests.clears
-        return surroundings(self.fit, self.context, lowest, self.scene, clears, self.shape_changes)
-
-    @cached_property
-    def shape_changes(self) -> ShapeChanges:
-        """What the artist changes of the solid shapes. Raises StillBone, NotAboveZero."""
-        return ShapeChanges.of(self.requests.shapes, self.context.character)
+        return surroundings(self.fit, self.context, lowest, self.scene, clears, self.changes)
 
     @cached_property
     def human(self) -> HumanGuard | None:
@@ -183,12 +180,13 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     contacts = [added_contact(request, context) for request in added.values()]
     context = replace(context, schedule=with_added(context.schedule, contacts))
     start = resampled_fit(fit, problem, context, added)
-    fitted_places = start.places
+    fitted = Standing(start.places, recorded_in(fit, context))
     target, footing = find_standing(fit, problem, context)
+    flesh = shape_flesh(problem, fit.performance)
+    changes = ShapeChanges.of(requests.shapes, context.character, flesh)
     if requests.solution.solid:
         check_sunk(problem.scene, context.schedule, footing)
         if requests.solution.human:
-            changes = ShapeChanges.of(requests.shapes, context.character)
             check_room(
                 problem.scene, reference.transcription, context.schedule, target.places, changes
             )
@@ -196,7 +194,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     durations = Durations.MOVING_GROUND
     if not target.moves:  # the ground's clock is no jumper's to stretch
         context, start, durations = _anticipated(fit, problem, context, start, target.places)
-    start = _with_constraints(_riding(start, target), problem, context)
+    start = _with_constraints(_riding(start, fitted, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights, price = _cost_weights(requests), _price(fit, reference, requests)
     kept = same and weights is ADAPT_COST_WEIGHTS and price is not None
@@ -213,7 +211,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         fit,
         context,
         start,
-        fitted_places,
+        fitted,
         target,
         metric,
         turns,
@@ -222,6 +220,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         requests,
         space,
         durations,
+        changes,
         problem.scene,
         price,
     )
@@ -268,10 +267,10 @@ def _anticipated(
     return context, found.motion, Durations.FOUND
 
 
-def _riding(start: Motion, target: Standing) -> Motion:
+def _riding(start: Motion, fitted: Standing, target: Standing) -> Motion:
     """The initial guess with contacts that ride on what the target has them stand on."""
-    t = start.transcription
-    return replace(start, transcription=t.riding(target.rides)) if target.moves else start
+    t, moves = start.transcription, fitted.moves or target.moves
+    return replace(start, transcription=t.riding(target.rides)) if moves else start
 
 
 def _weighs_torques(requests: Requests) -> bool:

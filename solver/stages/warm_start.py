@@ -69,9 +69,12 @@ class Standing:
     def with_places(self, places: FloatArray) -> "Standing":
         return Standing(places, self.rides)
 
-    def slowed(self, share: float) -> "Standing":
-        """On ground that moves at a share of its speed."""
-        rides = tuple(None if ride is None else ride.slowed(share) for ride in self.rides)
+    def slowed(self, share: float, recorded: "Standing") -> "Standing":
+        """On ground that moves at a share of its speed, but for what was recorded on it."""
+        rides = tuple(
+            ride if ride is None or ride == old else ride.slowed(share)
+            for ride, old in zip(self.rides, recorded.rides, strict=True)
+        )
         return Standing(self.places, rides)
 
 

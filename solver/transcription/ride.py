@@ -43,6 +43,11 @@ class Ride:
         """World to world: from places at `since` to where the ground carries them by (T,) s."""
         return self._relative(self.ground.surface(self._slowed(times)))
 
+    def back(self, times: FloatArray, points: FloatArray) -> FloatArray:
+        """Where points (T, 3) m at instants (T,) s were at `since`, on the ground."""
+        at = self.poses(times)
+        return np.asarray(np.einsum("tji,tj->ti", at.turn, points - at.shift))
+
     def rates(self, times: FloatArray) -> Poses:
         """Rates of change of `poses`."""
         rate = self._relative(self.ground.surface_rates(self._slowed(times)))

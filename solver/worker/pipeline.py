@@ -46,9 +46,11 @@ from ..results.report import report, time_map
 from ..results.trace_sampling import motion_traces, recorded_traces
 from ..results.violations import most_telling
 from ..scene.checks import check_scene
+from ..solid.flesh import shape_flesh
 from ..solid.shape_changes import ShapeChanges
 from ..stages.fit import Fit, fit
 from ..stages.implicit import Adaptation, adapt, unadapted
+from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion
 
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
@@ -118,20 +120,35 @@ class Subject:
         """The contacts found, in the recording's own lengths."""
         return scaled_schedule(self.analysis.schedule, 1.0 / self.factor)
 
+    @property
+    def shape_changes(self) -> ShapeChanges:
+        """Of the recording's own figure. Raises StillBone, NotAboveZero."""
+        performance = self.analysis.performance
+        flesh = shape_flesh(self.problem, performance)
+        return ShapeChanges.of(self.problem.requests.shapes, performance.character, flesh)
+
+    @property
+    def fleshed(self) -> tuple[str, ...]:
+        """Names of the bodies whose solid shapes are from the mesh."""
+        performance = self.analysis.performance
+        bodies = performance.character.bodies
+        return tuple(bodies[i].name for i in shape_flesh(self.problem, performance))
+
     def recorded_traces(self) -> Traces:
-        """Of the recording, in its own lengths."""
-        return scaled_traces(recorded_traces(self.analysis.performance), 1.0 / self.factor)
+        """Of the recording, in its own lengths. Raises StillBone, NotAboveZero."""
+        seen = recorded_traces(self.analysis.performance, self.shape_changes)
+        return scaled_traces(seen, 1.0 / self.factor)
 
     def motion_traces(
-        self, motion: Motion, schedule: ContactSchedule, *, torques: bool = True
+        self,
+        motion: Motion,
+        schedule: ContactSchedule,
+        changes: ShapeChanges,
+        *,
+        torques: bool = True,
     ) -> Traces:
-        """Of a solved motion, in the recording's own lengths. schedule: of the motion.
-
-        Raises StillBone, NotAboveZero for a shape that the problem changes.
-        """
+        """Of a solved motion, in the recording's own lengths. schedule, changes: of the motion."""
         dynamics = dynamics_of(motion) if torques else None
-        character = motion.transcription.character
-        changes = ShapeChanges.of(self.problem.requests.shapes, character)
         seen = motion_traces(motion, self.recording, schedule, dynamics, changes)
         return scaled_traces(seen, 1.0 / self.factor)
 
@@ -172,8 +189,8 @@ class AdaptationResult:
 
     def traces(self) -> Traces:
         """In the recording's own lengths."""
-        motion, schedule = self.adaptation.motion, self.adaptation.setup.schedule
-        seen = self.subject.motion_traces(motion, schedule)
+        motion, setup = self.adaptation.motion, self.adaptation.setup
+        seen = self.subject.motion_traces(motion, setup.schedule, setup.changes)
         _, times = motion.frames(self.subject.recording)
         return replace(seen, changes=joint_turns(self.adaptation, times))
 
@@ -219,11 +236,13 @@ def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, C
 
 def fit_subject(subject: Subject, clock: StageClock) -> Fit:
     """The valid motion nearest to the recording, solved or not."""
+    schedule = subject.analysis.schedule
     with clock.stage(FITTING):
         fitted = fit(
             subject.analysis.performance,
-            subject.analysis.schedule,
+            schedule,
             periodic=subject.cycle is not None,
+            rides=recorded_rides(schedule, subject.problem.scene, subject.recording),
             progress=clock.step,
         )
         clock.ended(fitted.outcome.violation)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ..data.stance_move import StanceMove
     from ..data.traces import Traces
 
-PROTOCOL = 5
+PROTOCOL = 6
 LARGEST = 1 << 30  # bytes; a longer message is not one
 _HEAD = struct.Struct("<Q")  # length of the pickle
 _NUMPY = {
@@ -135,7 +135,8 @@ class Analysed:
     """The contacts found.
 
     height: m, as measured. axes: (3, 3) by ground phase's name, columns forward, left and up.
-    bones: by the part of the body that they move ("left foot"). cycle: whose frames these are,
+    bones: by the part of the body that they move ("left foot"). fleshed: names of the bodies whose
+    solid shapes are from the mesh. cycle: whose frames these are,
     where the motion shall repeat.
     """
 
@@ -145,6 +146,7 @@ class Analysed:
     axes: dict[str, FloatArray]
     bones: dict[str, str]
     traces: Traces
+    fleshed: tuple[str, ...] = ()
     cycle: Cycle | None = None
 
 

@@ -95,7 +95,7 @@ class Service:
             return self._followed(request.id, subject, fitted)
         if not fitted.solved:
             raise no_fit(fitted)
-        traces = subject.motion_traces(fitted.motion, fitted.schedule)
+        traces = subject.motion_traces(fitted.motion, fitted.schedule, subject.shape_changes)
         return Fitted(request.id, fit_quality(fitted), watch.done[-1].seconds, traces)
 
     def _adapted(self, request: int, subject: Subject, watch: "_Watch") -> Adapted:
@@ -116,8 +116,9 @@ class Service:
             self._following = following
         follower = following.follower
         status = follower.follow(problem)
-        traces = subject.motion_traces(follower.motion, follower.setup.schedule, torques=False)
-        summary = change(fitted, following.pelvis, follower.setup, follower.motion, traces)
+        motion, setup = follower.motion, follower.setup
+        traces = subject.motion_traces(motion, setup.schedule, setup.changes, torques=False)
+        summary = change(fitted, following.pelvis, setup, motion, traces)
         return Followed(request, traces, status, summary)
 
     def _similar(self, fitted: Fit, problem: MotionProblem) -> Adaptation | None:
@@ -198,14 +199,16 @@ def _analysed(request: int, subject: Subject) -> Analysed:
         {p.name: travel_axes(performance, schedule, p) for p in ground},
         {body.name: body.bone for body in performance.character.bodies},
         subject.recorded_traces(),
+        subject.fleshed,
         subject.cycle,
     )
 
 
 def _fit_relevant(problem: MotionProblem) -> str:
-    """Everything of a problem but its pins, scene and requests, which the fit does not know."""
+    """Everything of a problem but pins, scene, skin and requests, which the fit does not know."""
     bones = dict(sorted(problem.bones.items()))
-    return repr(replace(problem, pins=(), scene=(), requests=Requests(), bones=bones))
+    known = replace(problem, pins=(), scene=(), skin=None, requests=Requests(), bones=bones)
+    return repr(known)
 
 
 def _named(names: Collection[str], scene: Sequence[SceneObject]) -> tuple[SceneObject, ...]:

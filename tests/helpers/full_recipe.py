@@ -34,6 +34,7 @@ from hangtime.solver.data.solver_options import (
     ObjectiveKind,
     Reduction,
     ReductionKind,
+    ShapeSource,
     SolverOptions,
 )
 
@@ -158,6 +159,7 @@ longest_span = 0.1
 torque_span = 0.2
 keep_times = true
 solid = false
+shapes = "bones"
 human = "hard"
 wider = 90
 
@@ -243,6 +245,7 @@ REQUESTS = Requests(
         0.2,
         keep_times=True,
         solid=False,
+        shapes=ShapeSource.BONES,
         human=HumanRanges.HARD,
         wider=math.pi / 2.0,
     ),

@@ -36,6 +36,7 @@ from hangtime.solver.data.solver_options import (
     ObjectiveKind,
     Reduction,
     ReductionKind,
+    ShapeSource,
     SolverOptions,
 )
 from hypothesis import strategies as st
@@ -163,6 +164,7 @@ SOLUTIONS = st.builds(
     torque_span=st.none() | POSITIVE,
     keep_times=st.booleans(),
     solid=st.booleans(),
+    shapes=st.sampled_from(ShapeSource),
     human=st.sampled_from(HumanRanges),
     wider=SLACKS,
 )

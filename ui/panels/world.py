@@ -14,6 +14,7 @@ from ...operators.lists.row_lists import RowList
 from ...operators.lists.support_box import offered, sized
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
+from ...solver.data.solver_options import ShapeSource
 from .lists import MET_ICONS, ROLE_ICONS, SurfaceList
 from .sidebar import ArmaturePanel, draw_list, lines, settings_in, split
 
@@ -81,4 +82,9 @@ def _draw_switches(
     layout: bpy.types.UILayout, settings: HangtimeSettings, context: bpy.types.Context
 ) -> None:
     layout.prop(settings, "keep_out")
+    shapes = layout.column()
+    shapes.active = settings.keep_out
+    shapes.prop(settings, "shapes")
+    if settings.shapes == ShapeSource.MESH.name and settings.shapes_told:
+        lines(shapes, "\n".join(fill(line, NARROW) for line in settings.shapes_told.split("\n")))
     layout.prop(scene_settings(context.scene), "snap")

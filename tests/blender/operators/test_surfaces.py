@@ -224,7 +224,10 @@ def test_a_surface_that_is_edited_meanwhile_is_told_and_nothing_is_lost(
     assert line == "Crate changed while this was solved; press Adapt again"
     assert rig.hangtime.surfaces[0].status == line
     bpy.data.objects.remove(bpy.data.objects["Crate"])
-    assert complete(stale_surfaces(asked, rig)) == ("Crate",)
+    stale = complete(stale_surfaces(asked, rig))
+    assert stale == ("Crate",)
+    (line,) = note_surfaces(rig, asked, SimpleNamespace(overlaps=()), stale)
+    assert line.startswith("Crate was deleted while this was solved; remove its row")
 
 
 @pytest.mark.parametrize("deep", [True, False])
@@ -263,6 +266,34 @@ def test_a_jump_lands_on_a_crate(analysed: bpy.types.Object) -> None:
 
 
 # ---------------------------------------------------------------- what nothing in sight carries
+
+
+@pytest.mark.slow
+def test_a_jump_recorded_on_a_train_rides_on_it(jump: bpy.types.Object) -> None:
+    """Nothing else explains feet that slide as they stand."""
+    train = bpy.data.objects.new("Train", None)
+    bpy.context.scene.collection.objects.link(train)
+    jump.parent = train
+    for frame, x in ((0, 0.0), (400, 4.0)):  # 1.2 m/s
+        train.location.x = x
+        train.keyframe_insert("location", frame=frame)
+    for curve in train.animation_data.action.fcurves:
+        for key in curve.keyframe_points:
+            key.interpolation = "LINEAR"
+    with pytest.raises(RuntimeError, match=r"slide along the floor|something unseen"):
+        bpy.ops.hangtime.analyze()
+    floor = make_box("Wagon", size=20.0, at=(0.0, 0.0, -10.0))
+    floor.parent = train
+    add_row(jump, floor)
+    bpy.context.view_layer.objects.active = jump
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    settings = jump.hangtime
+    assert {row.phase for row in settings.contacts} == {"ground 1", "ground 2"}
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert settings.status.startswith("Solved in")
+    recorded, made = (kept(owner).traces for owner in (jump, settings.adapted))
+    assert np.abs(made.heads[-1] - recorded.heads[-1]).max() < 0.05
+    assert made.velocity[-1, 0] == pytest.approx(1.2, abs=0.2)
 
 
 def test_a_box_is_added_under_the_feet_in_the_scenes_units(rig: bpy.types.Object) -> None:
