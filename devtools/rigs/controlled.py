@@ -11,7 +11,7 @@ OFF_MM, OFF_AIM_MM = 1.0, 0.1
 TURNED_DEGREES, TURNED_AIM_DEGREES = 0.2, 0.05
 DRIFT_MM, DRIFT_AIM_MM = 1.0, 0.1
 # Rigify's spine bends and stretches as one between chest and hips: it cannot follow each bone.
-KNOWN_OFF_MM, KNOWN_TURNED_DEGREES = 30.0, 12.0
+KNOWN_OFF_MM, KNOWN_TURNED_DEGREES, KNOWN_SKIN_MM = 30.0, 12.0, 36.0
 KNOWN_WRITTEN = 2  # limbs in inverse kinematics are refused before a solve
 COLUMNS = (
     "control rig",
@@ -20,6 +20,8 @@ COLUMNS = (
     "places (mm)",
     "where",
     "turns (°)",
+    "where",
+    "skin (mm)",
     "where",
     "foot's keys (mm)",
     "writing (s)",
@@ -34,6 +36,7 @@ in inverse kinematics (IK). The landing is moved by 0.3 m, the result written to
 - **Places, turns**: every bone that deforms, as Blender evaluates it on every frame, against
   forward kinematics of the solution's joint angles; what the writer says of itself does not count.
   Bones that share out a limb's twist count by where they point.
+- **Skin**: vertices of a tube about each such bone that move with it alone, likewise.
 - **Foot's keys**: how far over the ground the keys of a foot's IK control carry its heel while it
   is pinned.
 """
@@ -57,7 +60,8 @@ class Worst:
 class ControlResult:
     """The edit on one control rig. mapped: whether its bones were found by themselves, and rightly.
 
-    off, turned: mm and degrees from the solution; None where nothing was written. drift: mm that
+    off, turned, skin: mm, degrees, and mm of the skin's vertices from the solution; None where
+    nothing was written. drift: mm that
     the keys of a foot's control slide while its heel is pinned; None in FK. refused: why nothing
     was written, in words; seconds: of writing.
     """
@@ -68,6 +72,7 @@ class ControlResult:
     mapped: bool
     off: Worst | None = None
     turned: Worst | None = None
+    skin: Worst | None = None
     drift: Worst | None = None
     refused: str = ""
     seconds: float = 0.0
@@ -96,7 +101,7 @@ def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
             "1",
             count,
             count,
-            "; ".join(f"{r.name}: {r.refused}" for r in refused),
+            ", ".join(r.name for r in refused),
             least=True,
             known=KNOWN_WRITTEN,
         ),
@@ -118,6 +123,7 @@ def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
             TURNED_AIM_DEGREES,
             KNOWN_TURNED_DEGREES,
         ),
+        ("skin", "control rig: skin off the solution", "mm", OFF_MM, OFF_AIM_MM, KNOWN_SKIN_MM),
         (
             "drift",
             "control rig: slide of the pinned foot's keys",
@@ -160,10 +166,11 @@ def _cells(result: ControlResult) -> Iterator[str]:
     if result.off is None:
         yield "**refused**"
         yield result.refused
-        yield from [""] * 4
+        yield from [""] * (len(COLUMNS) - 5)
         return
     yield from _worst(result.off)
     yield from _worst(result.turned)
+    yield from _worst(result.skin)
     yield f"{result.drift.value:.3f}" if result.drift else ""
     yield f"{result.seconds:.0f}"
 

@@ -115,15 +115,16 @@ def test_a_file_that_loses_more_than_it_may_is_told_with_its_format() -> None:
 
 def on_controls(key: str) -> ControlResult:
     slight = Worst(0.01, "foot.l", 3.0)
-    return ControlResult(key, key, 100, True, slight, slight, slight)
+    return ControlResult(key, key, 100, True, slight, slight, slight, slight)
 
 
 def test_a_control_rig_that_is_refused_is_a_miss_that_says_why() -> None:
-    refused = replace(on_controls("arp_ik"), off=None, turned=None, drift=None, refused="In IK.")
+    nothing = dict.fromkeys(("off", "turned", "skin", "drift"))
+    refused = replace(on_controls("arp_ik"), **nothing, refused="In IK.")
     results = [*map(on_controls, CONTROLS[1:]), refused]
     written = control_figures(results)[1]
     assert (written.value, written.must, written.ok) == (3, 4, False)
-    assert written.where == "arp_ik: In IK."
+    assert written.where == "arp_ik"
     assert "| **refused** | In IK. |" in page([GOOD], results, figures([GOOD]), 1.0)
 
 

@@ -33,6 +33,7 @@ from ...processes import dump
 from ..actor import CLIP
 from ..controlled import ControlResult, Worst
 from .cases import ControlCase, cases, performer
+from .skin import add_skin, own_vertices, skin_at, skin_at_rest
 
 EDIT = next(iter(EDITS))
 RESULT = "result.pickle"
@@ -50,8 +51,10 @@ def measured(case: ControlCase) -> ControlResult:
     with quiet():
         rig = case.build(take)
         recording = record(rig, take.frames)
-    bodies = tuple(recording.bones[s.bone].name for s in map_anatomy(recording.bones))
+    parts = {recording.bones[s.bone].name: s.part for s in map_anatomy(recording.bones)}
+    bodies = tuple(parts)
     deforming = case.deforming([bone.name for bone in recording.bones], bodies)
+    skin = add_skin(rig, {bone: parts[body] for bone, body in deforming.items()})
     count = len(recording.bones)
     mapped = set(deforming.values()) == set(bodies)
     try:
@@ -65,16 +68,24 @@ def measured(case: ControlCase) -> ControlResult:
         seconds = time.perf_counter() - began
     except Fault as fault:
         return ControlResult(case.key, case.name, count, mapped, refused=sentence(fault))
-    off, turned = _missed(rig, answer, deforming)
+    off, turned, skinned = _missed(rig, skin, answer, deforming)
     drift = _drift(rig, answer, case.foot) if case.foot else None
-    return ControlResult(case.key, case.name, count, mapped, off, turned, drift, "", seconds)
+    return ControlResult(
+        case.key, case.name, count, mapped, off, turned, skinned, drift, "", seconds
+    )
 
 
 def _missed(
-    rig: bpy.types.Object, answer: AdaptationResult, deforming: dict[str, str]
-) -> tuple[Worst, Worst]:
-    """The largest distance of any deforming bone's head, mm, and its largest turn, degrees, from
-    the solution; of bones that share out a limb's twist the turn of their direction."""
+    rig: bpy.types.Object,
+    skin: bpy.types.Object,
+    answer: AdaptationResult,
+    deforming: dict[str, str],
+) -> tuple[Worst, Worst, Worst]:
+    """The largest distance of any deforming bone's head, mm, its largest turn, degrees, and the
+    largest distance of its own skin, mm, from the solution.
+
+    Of bones that share out a limb's twist the turn of their direction counts, and no skin.
+    """
     frames, times = answer.adaptation.motion.frames(answer.recording)
     shown = record(rig, frames)
     names = tuple(deforming)
@@ -86,7 +97,30 @@ def _missed(
     whole = np.linalg.norm(rotation_vector(apart.reshape(-1, 3, 3)), axis=1).reshape(off.shape)
     along = np.arctan2(np.linalg.norm(apart[..., [0, 2], 1], axis=-1), apart[..., 1, 1])
     turned = np.degrees(np.where(shares, along, whole))
-    return _worst(off, names, frames), _worst(turned, names, frames)
+    return (
+        _worst(off, names, frames),
+        _worst(turned, names, frames),
+        _skin_off(
+            skin,
+            shown,
+            {n: (heads[:, k], rotations[:, k]) for k, n in enumerate(names) if not shares[k]},
+        ),
+    )
+
+
+def _skin_off(
+    skin: bpy.types.Object, shown: Recording, wanted: dict[str, tuple[FloatArray, FloatArray]]
+) -> Worst:
+    """The largest distance, mm, of the vertices that a bone alone moves from where they would be
+    on it at its wanted heads (T, 3) and rotations (T, 3, 3)."""
+    at_rest, seen = skin_at_rest(skin), skin_at(skin, shown.frames)
+    off = []
+    for name, (heads, rotations) in wanted.items():
+        bone, vertices = shown.bones[shown.index(name)], own_vertices(skin, name)
+        local = (at_rest[vertices] - bone.head) @ bone.rotation
+        there = heads[:, None] + local @ np.swapaxes(rotations, -1, -2)
+        off.append(1e3 * np.linalg.norm(seen[:, vertices] - there, axis=2).max(1))
+    return _worst(np.stack(off, axis=1), tuple(wanted), shown.frames)
 
 
 def _wanted(

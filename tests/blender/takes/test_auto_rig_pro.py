@@ -15,7 +15,8 @@ from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
 from hangtime.devtools.rigs.controls.auto_rig_pro import auto_rig_pro
 from hangtime.devtools.rigs.controls.cases import RATE, cases, performer
-from hangtime.solver.body.anatomy import map_anatomy
+from hangtime.devtools.rigs.controls.skin import add_skin, own_vertices, skin_at
+from hangtime.solver.body.anatomy import Part, map_anatomy
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.solver.numerics.rotations import axis_rotation
@@ -36,14 +37,18 @@ def test_a_rig_as_auto_rig_pros_is_written_to_its_controls() -> None:
     turned[:, forearm] = axis_rotation(0, 0.2) @ turned[:, forearm]
     moved = PoseTrack(shown.frames, bodies, turned, shown.heads[:, columns[0]] @ turn.T)
     span = (1.0, float(take.frames[-1]))
+    skin = add_skin(rig, {"hand.l": Part.HAND, "forearm_twist.l": Part.FOREARM})
     motion = AdaptedMotion(moved, TimeMap(span, span), None, ResultOptions())
     write_result(rig, motion, name="moved")
     after = record(rig, shown.frames)
     np.testing.assert_allclose(after.rotations[:, columns], turned, atol=1e-4)
-    # What deforms goes along with it.
+    # What deforms goes along with it, and the skin.
     hand, twist = after.index("hand.l"), after.index("forearm_twist.l")
     elbow = after.heads[:, columns[forearm]]
     np.testing.assert_allclose(after.heads[:, twist], (elbow + after.heads[:, hand]) / 2, atol=1e-4)
+    palm = skin_at(skin, shown.frames)[:, own_vertices(skin, "hand.l")].mean(1)
+    along = after.rotations[:, hand, :, 1] * rig.data.bones["hand.l"].length / 2
+    np.testing.assert_allclose(palm, after.heads[:, hand] + along, atol=1e-4)
     keyed = {re.findall(r'"(.*?)"', curve.data_path)[0] for curve in curves_of(rig)}
     assert {"c_root_master.x", "c_forearm_fk.l", "c_foot_fk.r"} <= keyed
     assert all(name.startswith("c_") for name in keyed)
