@@ -156,11 +156,13 @@ def _drift(rig: bpy.types.Object, answer: AdaptationResult, foot: str) -> Worst:
     for contact in answer.schedule.contacts:
         rows = np.flatnonzero((times >= contact.start) & (times <= contact.end))
         if "heel" in contact.point and len(rows):
-            found.append(_slide(shown, contact, rows, foot))
+            found.append(slide(shown, contact, rows, foot))
     return max(found, key=lambda each: each.value)
 
 
-def _slide(shown: Recording, contact: Contact, rows: IntArray, foot: str) -> Worst:
+def slide(shown: Recording, contact: Contact, rows: IntArray, foot: str) -> Worst:
+    """How far over the ground, mm, a foot's control carries a contact's point from where it has it
+    in the middle of some frames, by their rows. foot: as in ControlCase."""
     side = contact.point[0].lower()
     names = [bone.name for bone in shown.bones]
     control = next(n for n in names if n in (foot.format(s=side), foot.format(s=side.upper())))

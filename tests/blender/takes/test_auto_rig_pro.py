@@ -15,9 +15,11 @@ from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
 from hangtime.devtools.rigs.controls.auto_rig_pro import auto_rig_pro
 from hangtime.devtools.rigs.controls.cases import RATE, cases, performer
+from hangtime.devtools.rigs.controls.measure import slide
 from hangtime.devtools.rigs.controls.skin import add_skin, own_vertices, skin_at
 from hangtime.solver.body.anatomy import Part, map_anatomy
-from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.data.contacts import Contact
+from hangtime.solver.data.recording import Bone, PoseTrack, Recording
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.blender.helpers.actions import curves_of
@@ -68,3 +70,20 @@ def test_a_bone_that_deforms_counts_with_the_body_whose_twist_it_shares() -> Non
         "thigh_stretch.l": "thigh.l",
         "foot.l": "foot.l",
     }
+
+
+def test_a_foots_control_slides_by_what_its_keys_carry_the_pinned_heel() -> None:
+    """It turns about the heel, and goes on by 2 mm a frame."""
+    rest = np.eye(3)
+    names = ("foot.l", "c_foot_ik.l")
+    bones = tuple(Bone(name, -1, np.zeros(3), np.ones(3), rest) for name in names)
+    heel = np.array([0.0, 0.05, -0.08])
+    turns = np.stack([axis_rotation(0, 0.1 * t) for t in range(3)])
+    forth = 0.002 * np.arange(3)[:, None] * [0.0, 1.0, 0.0]
+    heads = np.repeat((heel - turns @ heel + forth)[:, None], 2, axis=1)
+    frames = np.arange(1.0, 4.0)
+    shown = Recording("jump", bones, frames, frames / RATE, heads, turns[:, None].repeat(2, axis=1))
+    contact = Contact("Left heel 1", "Left heel", "foot.l", heel, 0.0, 1.0, heel)
+    slid = slide(shown, contact, np.arange(3), "c_foot_ik.{s}")
+    assert slid.value == pytest.approx(2.0)
+    assert slid.bone == "c_foot_ik.l"
