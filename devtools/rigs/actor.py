@@ -6,7 +6,7 @@ head, clavicles, shoulders, elbows, wrists. The recording's other joints are hel
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -74,6 +74,12 @@ class Actor:
         if name == "hand":
             return np.asarray(here + HAND_M * unit(along))
         return np.asarray(here + TOE_M * unit(along * [1.0, 1.0, 0.0]))
+
+    def part(self, first: float, last: float, every: int) -> Actor:
+        """The frames from the first to the last, one in `every` of them, counted from 1."""
+        rows = np.flatnonzero((self.frames >= first) & (self.frames <= last))[::every]
+        frames = np.arange(1.0, len(rows) + 1.0)
+        return replace(self, frames=frames, heads=self.heads[rows], turns=self.turns[rows])
 
     def at(self, joint: str) -> FloatArray:
         """(3,) a joint's rest position."""

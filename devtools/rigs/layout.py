@@ -78,11 +78,12 @@ class Layout:
 
 def layouts() -> tuple[Layout, ...]:
     """All rigs, the conventions first."""
-    found = [_read(path) for path in sorted(LAYOUTS.glob("*.toml"))]
+    found = [read_layout(path) for path in sorted(LAYOUTS.glob("*.toml"))]
     return tuple(sorted(found, key=lambda layout: layout.unknown))
 
 
-def _read(path: Path) -> Layout:
+def read_layout(path: Path) -> Layout:
+    """A layout's file."""
     table = tomllib.loads(path.read_text(encoding="utf-8"))
     bones: list[Placed] = []
     for line in filter(None, table["bones"].splitlines()):

@@ -29,10 +29,12 @@ class RigFigure:
     @property
     def missed(self) -> bool:
         """Whether it misses what it must, and not as is known."""
-        return not self.ok and (self.known is None or self.value > self.known)
+        if self.ok or self.known is None:
+            return not self.ok
+        return self.value < self.known if self.least else self.value > self.known
 
 
-CONVENTIONS, LANGUAGES = 14, 3
+CONVENTIONS = 14
 DIFFERENCE_MM, DIFFERENCE_AIM_MM = 10.0, 2.0
 FILE_MM, FILE_AIM_MM = 1.0, 0.1
 FILE_DEGREES, FILE_AIM_DEGREES = 0.1, 0.01
@@ -59,8 +61,8 @@ def figures(results: Sequence[RigResult]) -> list[RigFigure]:
             "skeletons of unknown names mapped with no hand work",
             sum(r.mapped for r in strange),
             "1",
-            0,
-            min(LANGUAGES, len(strange)),
+            len(strange),
+            len(strange),
             ", ".join(r.name for r in strange if not r.mapped),
             least=True,
         ),

@@ -1,7 +1,8 @@
 """Measures rigs: python3 dev.py rigs [NAMES...] [--out DIR] [--quick].
 
 One recorded jump on the skeleton of each convention: is it mapped with no hand work, and does the
-same edit give the same motion? A run of all writes docs/rigs.md anew. Ends with 1 where a limit is
+same edit give the same motion? And on rigs that are posed through controls: do their bones end
+where the solution has them? A run of all writes docs/rigs.md anew. Ends with 1 where a limit is
 missed that is not known to be.
 """
 
@@ -18,14 +19,17 @@ from pathlib import Path
 from ..environment.virtual_environment import ROOT
 from ..processes import run_module, undump
 from .actor import JOINTS
+from .controlled import ControlResult, control_figures, control_line
 from .layout import layouts
-from .limits import RigFigure, figures
+from .limits import figures
 from .measure import EDITED, RESULT
 from .result import Edited, RigResult, compared
 from .table import line, page, text
 
 PAGE = ROOT / "docs" / "rigs.md"
 MEASURE = "devtools.rigs.measure"
+MEASURE_CONTROLS = "devtools.rigs.controls.measure"
+CONTROLS = ("rigify_fk", "rigify_ik", "arp_fk", "arp_ik")
 REFERENCE = "cmu"  # the rig that has the recording's own skeleton
 QUICK = (REFERENCE, "unreal")  # whose edits are compared; all are mapped
 LONGEST = 300.0  # s, that one rig may take, on a busy machine too
@@ -38,20 +42,23 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--quick", action="store_true", help="the edit on two rigs only")
     options = parser.parse_args(argv)
     keys = [layout.key for layout in layouts()]
-    unknown = [name for name in options.names if name not in keys]
+    unknown = [name for name in options.names if name not in (*keys, *CONTROLS)]
     if unknown:
-        print(f"No rig '{unknown[0]}'; there are: {', '.join(keys)}.")
+        print(f"No rig '{unknown[0]}'; there are: {', '.join((*keys, *CONTROLS))}.")
         return 2
-    wanted = {REFERENCE, *(options.names or (QUICK if options.quick else keys))}
+    every = (*keys, *CONTROLS)
+    wanted = {REFERENCE, *(options.names or (QUICK if options.quick else every))}
     began = time.perf_counter()
-    results = []
+    results, controlled = [], []
     for result in measured(keys, wanted):
         print(line(result), flush=True)
         results.append(result)
+    for key in (key for key in CONTROLS if key in wanted):
+        controlled.append(measured_controls(key))
+        print(control_line(controlled[-1]), flush=True)
     minutes = (time.perf_counter() - began) / 60.0
-    found = figures(results)
     whole = not options.names and not options.quick
-    return tell(results, found, options.out, minutes, write_page=whole)
+    return tell(results, controlled, options.out, minutes, write_page=whole)
 
 
 def measured(keys: Sequence[str], wanted: set[str]) -> Iterator[RigResult]:
@@ -77,9 +84,20 @@ def measured(keys: Sequence[str], wanted: set[str]) -> Iterator[RigResult]:
             yield replace(result, failed=result.failed or said or "")
 
 
+def measured_controls(key: str) -> ControlResult:
+    """A rig that is posed through controls, in a process of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        said = run_module(MEASURE_CONTROLS, [folder, key], LONGEST)
+        path = Path(folder) / RESULT
+        if not path.is_file():
+            return ControlResult(key, key, 0, False, refused=said or "no result")
+        found: ControlResult = undump(path)
+        return found
+
+
 def tell(
     results: Sequence[RigResult],
-    found: Sequence[RigFigure],
+    controlled: Sequence[ControlResult],
     out: Path,
     minutes: float,
     *,
@@ -89,15 +107,18 @@ def tell(
 
     1 where one is missed that is not known to be.
     """
+    found = [*figures(results), *control_figures(controlled)]
     out.mkdir(parents=True, exist_ok=True)
     content = {
         "figures": [{**asdict(f), "ok": f.ok} for f in found],
         "rigs": [*map(asdict, results)],
+        "control rigs": [*map(asdict, controlled)],
     }
     words = json.dumps(content, indent=1, ensure_ascii=False)
     (out / "figures.json").write_text(words + "\n", encoding="utf-8")
     if write_page:
-        PAGE.write_text(page(results, found, minutes), encoding="utf-8")
+        PAGE.write_text(page(results, controlled, found, minutes), encoding="utf-8")
     print(text(found))
-    print(f"{len(results)} rigs in {minutes:.1f} minutes; all in {out / 'figures.json'}")
+    count = len(results) + len(controlled)
+    print(f"{count} rigs in {minutes:.1f} minutes; all in {out / 'figures.json'}")
     return 1 if any(f.missed for f in found) else 0

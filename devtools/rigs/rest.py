@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...solver.arrays import FloatArray
@@ -30,9 +32,16 @@ def rest_bones(layout: Layout, actor: Actor) -> tuple[Bone, ...]:
 def rest_heads(layout: Layout, actor: Actor) -> FloatArray:
     """(B, 3) m, in the rig's own rest pose."""
     rest, turns = rest_pose(layout, actor)
+    return heads_on(layout.bones, actor, rest, turns)
+
+
+def heads_on(
+    bones: Sequence[Placed], actor: Actor, rest: FloatArray, turns: FloatArray
+) -> FloatArray:
+    """(B, 3) m, of bones on joints at (J, 3) that are turned by (J, 3, 3) from the actor's rest."""
     ahead = unit(actor.end("foot.l") - actor.at("foot.l")) * [1.0, 1.0, 0.0]
-    heads = np.zeros((len(layout.bones), 3))
-    for i, bone in enumerate(layout.bones):
+    heads = np.zeros((len(bones), 3))
+    for i, bone in enumerate(bones):
         if bone.joint != GROUND:
             j = JOINTS.index(bone.joint)
             off = bone.share * (actor.end(bone.joint) - actor.rest[j]) + bone.ahead * ahead
@@ -43,11 +52,16 @@ def rest_heads(layout: Layout, actor: Actor) -> FloatArray:
 def rest_pose(layout: Layout, actor: Actor) -> tuple[FloatArray, FloatArray]:
     """Joint centres (J, 3) and turns from the actor's rest (J, 3, 3) in the rig's rest pose."""
     turns = actor.lowered() if layout.lowered else np.tile(np.eye(3), (len(JOINTS), 1, 1))
+    return centres_of(actor, turns), turns
+
+
+def centres_of(actor: Actor, turns: FloatArray) -> FloatArray:
+    """(J, 3) joint centres, the bodies turned by (J, 3, 3) from the actor's rest."""
     rest = actor.rest.copy()
     for j, parent in enumerate(actor.parents):
         if parent >= 0:
             rest[j] = rest[parent] + turns[parent] @ (actor.rest[j] - actor.rest[parent])
-    return rest, turns
+    return rest
 
 
 def axes(layout: Layout, i: int, heads: FloatArray, actor: Actor) -> tuple[FloatArray, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from .controlled import ControlResult, control_page
 from .limits import RigFigure
 from .result import RigResult
 
@@ -30,7 +31,12 @@ rigid to it.
 COLUMNS = ("rig", "bones", "named as", "mapped", "by", "same edit (mm)", "worst")
 
 
-def page(results: Sequence[RigResult], found: Sequence[RigFigure], minutes: float) -> str:
+def page(
+    results: Sequence[RigResult],
+    controlled: Sequence[ControlResult],
+    found: Sequence[RigFigure],
+    minutes: float,
+) -> str:
     """The whole page."""
     rows = [f"| {' | '.join(_cells(result))} |" for result in results]
     parts = [
@@ -46,6 +52,7 @@ def page(results: Sequence[RigResult], found: Sequence[RigFigure], minutes: floa
         f"| {' | '.join(COLUMNS)} |",
         f"|{'---|' * len(COLUMNS)}",
         *rows,
+        *control_page(controlled),
     ]
     return "\n".join(parts) + "\n"
 

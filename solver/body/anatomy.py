@@ -29,8 +29,7 @@ def map_anatomy(
     segments += [Segment(Part.SPINE, Side.MIDDLE, bone) for bone in spine]
     segments += [Segment(Part.NECK, Side.MIDDLE, bone) for bone in neck]
     # Bones come parents first, but a family's parents are not always those of the armature.
-    family = bool(tree.prefixes)
-    return tuple(sorted(segments, key=lambda s: (tree.depth(s.bone) if family else 0, s.bone)))
+    return tuple(sorted(segments, key=lambda s: (tree.family and tree.depth(s.bone), s.bone)))
 
 
 def guess_anatomy(bones: Sequence[Bone]) -> dict[str, str | None]:

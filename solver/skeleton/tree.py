@@ -1,7 +1,7 @@
 """The skeleton as a tree, within one family of bones where a rig has several."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.recording import Bone
+from .inner_bones import inner_parents
 
 FAMILIES = ("DEF-", "ORG-")  # Rigify's deform bones, and the bones that these follow
 SEGMENT = re.compile(r"\.\d+$")
@@ -27,6 +28,11 @@ class Tree:
     parents: tuple[int, ...]
     inside: tuple[int, ...]
     prefixes: tuple[str, ...] = ()
+
+    @property
+    def family(self) -> bool:
+        """Whether the body's bones are but some of the rig's."""
+        return len(self.inside) < len(self.bones)
 
     @property
     def generated(self) -> bool:
@@ -96,13 +102,17 @@ def bare(name: str) -> str:
 
 
 def tree_of(bones: Sequence[Bone]) -> Tree:
-    """The tree of the bones, parents first; of a generated rig's family alone where there is one.
+    """The tree of the bones, parents first; of a control rig's family alone where there is one.
 
+    Of Auto-Rig Pro's rig its inner bones. Of a generated rig:
     Deform bones, but for a limb that has several in a row, which share out its twist: of these the
     one that they follow. A bone whose parent is of another family hangs on the bone that stands for
     this parent in its own: Rigify's ORG-thigh.L, below ORG-spine, on DEF-spine.
     """
     names = [bone.name for bone in bones]
+    inner = inner_parents(names)
+    if inner:
+        return _tree_within(bones, inner)
     index: dict[str, int] = {}
     for prefix in FAMILIES:
         family = {bare(n): i for i, n in enumerate(names) if n.startswith(prefix)}
@@ -117,6 +127,15 @@ def tree_of(bones: Sequence[Bone]) -> Tree:
             del index[name]
     parents = [_above(bones, i, index) for i in range(len(bones))]
     return Tree(tuple(bones), tuple(parents), tuple(sorted(index.values())), FAMILIES)
+
+
+def _tree_within(bones: Sequence[Bone], inner: Mapping[str, str | None]) -> Tree:
+    """The tree of some bones, by name, whose parents are told."""
+    index = {bone.name: i for i, bone in enumerate(bones)}
+    parents = [-1] * len(bones)
+    for name, above in inner.items():
+        parents[index[name]] = -1 if above is None else index[above]
+    return Tree(tuple(bones), tuple(parents), tuple(sorted(index[name] for name in inner)))
 
 
 def _above(bones: Sequence[Bone], bone: int, index: dict[str, int]) -> int:

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.devtools.rigs.actor import JOINTS, actor
+from hangtime.devtools.rigs.controlled import ControlResult, Worst, control_figures
 from hangtime.devtools.rigs.layout import Layout, layouts
 from hangtime.devtools.rigs.limits import figures
+from hangtime.devtools.rigs.main import CONTROLS
 from hangtime.devtools.rigs.recorded import recorded
 from hangtime.devtools.rigs.rest import rest_bones
 from hangtime.devtools.rigs.result import Edited, FileResult, RigResult, compared
@@ -87,7 +89,13 @@ def test_a_rig_that_is_mapped_wrongly_misses_the_limit_by_name() -> None:
     bad = replace(GOOD, name="Unreal", wrong=("left toe: none",))
     counted = figures([GOOD, bad])[0]
     assert (counted.value, counted.ok, counted.where) == (1, False, "Unreal")
-    assert "left toe: none" in page([GOOD, bad], figures([GOOD, bad]), 1.0)
+    assert "left toe: none" in page([GOOD, bad], [], figures([GOOD, bad]), 1.0)
+
+
+def test_a_skeleton_of_unknown_names_that_is_mapped_wrongly_misses_the_limit() -> None:
+    strange = replace(GOOD, name="Greek words", unknown=True)
+    counted = figures([GOOD, strange, replace(strange, name="Welsh", wrong=("head: none",))])[1]
+    assert (counted.value, counted.must, counted.missed, counted.where) == (1, 2, True, "Welsh")
 
 
 def test_a_difference_beyond_the_limit_is_told_with_its_place() -> None:
@@ -103,3 +111,24 @@ def test_a_file_that_loses_more_than_it_may_is_told_with_its_format() -> None:
     place, turn = (figure for name, figure in found.items() if name.startswith("file"))
     assert (place.missed, place.where) == (True, "VRM, glTF")
     assert (turn.missed, turn.where) == (True, "VRM, FBX")
+
+
+def on_controls(key: str) -> ControlResult:
+    slight = Worst(0.01, "foot.l", 3.0)
+    return ControlResult(key, key, 100, True, slight, slight, slight, slight)
+
+
+def test_a_control_rig_that_is_refused_is_a_miss_that_says_why() -> None:
+    nothing = dict.fromkeys(("off", "turned", "skin", "drift"))
+    refused = replace(on_controls("arp_ik"), **nothing, refused="In IK.")
+    results = [*map(on_controls, CONTROLS[1:]), refused]
+    written = control_figures(results)[1]
+    assert (written.value, written.must, written.ok) == (3, 4, False)
+    assert written.where == "arp_ik"
+    assert "| **refused** | In IK. |" in page([GOOD], results, figures([GOOD]), 1.0)
+
+
+def test_a_bone_off_the_solution_is_told_with_its_rig_bone_and_frame() -> None:
+    far = replace(on_controls("arp_fk"), off=Worst(50.0, "hand.r", 7.0))
+    off = control_figures([on_controls("rigify_fk"), far])[2]
+    assert (off.value, off.missed, off.where) == (50.0, True, "arp_fk: hand.r, frame 7")

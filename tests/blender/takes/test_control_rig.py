@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,27 +14,17 @@ from hangtime.bridge.controls.driven import is_driven
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
-from hangtime.devtools.rigs.actor import Actor, actor
+from hangtime.devtools.rigs.controls.cases import performer as jumper
 from hangtime.devtools.rigs.generated import SWITCH, generated_human, perform
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers.actions import curves_of, snapshot
 from hangtime.tests.helpers.clips import JUMP_FRAMES
 
-EVERY = 5  # frames: 24 a second
 MOVED = 0.2  # m
 TOE = "DEF-toe.L"
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-def jumper() -> Actor:
-    """The recorded jump from standing to standing, 24 frames a second."""
-    whole = actor()
-    first, last = JUMP_FRAMES
-    rows = np.flatnonzero((whole.frames >= first) & (whole.frames <= last))[::EVERY]
-    frames = np.arange(1.0, len(rows) + 1.0)
-    return replace(whole, frames=frames, heads=whole.heads[rows], turns=whole.turns[rows])
 
 
 @pytest.mark.slow

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.devtools.rigs.actor import actor
+from hangtime.devtools.rigs.actor import JOINTS, actor
+from hangtime.devtools.rigs.controls.rest import at_rest
 from hangtime.devtools.rigs.layout import Layout, layouts
 from hangtime.devtools.rigs.rest import rest_bones
 from hangtime.solver.body.anatomy import map_anatomy
@@ -59,6 +60,24 @@ def test_there_is_a_rig_of_every_convention_asked_for() -> None:
     tables = {convention.name for convention in conventions()}
     assert {RIGS[key].name for key in KNOWN} <= tables
     assert len(KNOWN) == 14
+
+
+def test_of_a_rig_with_controls_the_bones_are_found_that_the_limbs_follow() -> None:
+    """Auto-Rig Pro's: its forearms, shanks and hands hang on the root's control."""
+    performer = actor()
+    rest = at_rest(performer)
+    bones = rest.bones(performer)
+    assert found(bones) == right(rest.layout)
+    assert guess_bones(tree_of(bones)).convention == "Auto-Rig Pro"
+    segments = [bones[segment.bone].name for segment in map_anatomy(bones)]
+    assert set(segments) == set(rest.layout.parts.values())
+    tree = tree_of(bones)
+    index = {bone.name: i for i, bone in enumerate(bones)}
+    for joint, name in rest.layout.parts.items():
+        above = tree.parents[index[name]]
+        parent = performer.parents[JOINTS.index(joint)]
+        wanted = rest.layout.parts[JOINTS[parent]] if parent >= 0 else None
+        assert (bones[above].name if above >= 0 else None) == wanted
 
 
 @pytest.mark.parametrize("key", UNKNOWN)

@@ -1,0 +1,1 @@
+"""Rigs that are posed through controls: do their bones end where the solution has them?"""
