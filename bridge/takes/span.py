@@ -8,7 +8,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.stance_move import StanceMove
-from ..controls.control_rig import KeptByControls
+from ..controls.kept import KeptByControls
 
 BLEND = 0.25  # s, the usual blend
 RETURN = 1.0  # s after the adapted frames, by which a take is usually back
