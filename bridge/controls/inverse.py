@@ -17,7 +17,6 @@ from .responses import Freedom, Responses, apart, measured
 from .targets import Targets
 
 STEPS = 30
-FEET = 5.0  # weight of what stands: what a spine or a knee cannot follow moves no foot
 NEAR = 2e-6  # m, beside LEVER times rad: steps that gain less end a frame, as do
 LITTLE = 0.001  # those that gain a smaller share of the error: what is left cannot be met
 STILL = 2e-5  # m, beside LEVER times rad, that a body must be to move by in a step
@@ -45,7 +44,7 @@ _COLUMN = {Freedom.TURN: 0, Freedom.SHIFT: 3, Freedom.SIZE: _SIZE}  # of offsets
 
 @dataclass(frozen=True)
 class _Look:
-    """What controls do at pose bases (C, 4, 4). error: (6 B + C,), weighted: heads in m and turns
+    """What controls do at pose bases (C, 4, 4). error: (6 B + C,): heads in m and turns
     times LEVER that bodies lack, in the armature's axes; then sizes."""
 
     bases: FloatArray
@@ -78,8 +77,6 @@ class Inverse:
         self._groups = apart(responses)
         self._responses = responses
         self._offsets = np.zeros((len(posing.controls), 7))
-        weights = np.where(targets.feet, FEET, 1.0)
-        self._weights = np.repeat(np.concatenate([weights, weights]), 3)
         self._influences = Influences(posing.armature)
         self._acted: BoolArray | None = None
         self.tries = 0
@@ -96,7 +93,7 @@ class Inverse:
             if np.linalg.norm(other[1].error) < np.linalg.norm(best.error):
                 offsets, best = other
         self._offsets = offsets
-        lacks = (best.error[: len(self._weights)] / self._weights).reshape(2, -1, 3)
+        lacks = best.error[: -len(offsets)].reshape(2, -1, 3)
         return Inverted(
             best.bases,
             np.linalg.norm(lacks[0], axis=1),
@@ -158,8 +155,7 @@ class Inverse:
         off = wanted.unit[t] * (wanted.heads[t] - posed.bodies[:, :3, 3])
         now = np.swapaxes(proper(posed.bodies[:, :3, :3]), 1, 2)
         turned = LEVER * rotation_vector(wanted.rotations[t] @ now)
-        lacks: FloatArray = self._weights * np.concatenate([off.ravel(), turned.ravel()])
-        return lacks
+        return np.concatenate([off.ravel(), turned.ravel()])
 
     def _stepped(
         self, offsets: FloatArray, at: _Look, t: int, damping: float
@@ -174,7 +170,7 @@ class Inverse:
         sized = np.zeros((count, len(offsets)))
         for d, dof in enumerate(self._responses.dofs):
             sized[d, dof.control] = SIZES * (dof.freedom is Freedom.SIZE)
-        weighted = np.concatenate([rows * self._weights, sized], axis=1)
+        weighted = np.concatenate([rows, sized], axis=1)
         sizes = np.linalg.norm(weighted, axis=1)
         weighted = weighted / np.where(sizes > 0.0, sizes, 1.0)[:, None]
         normal = weighted @ weighted.T + damping * np.eye(count)

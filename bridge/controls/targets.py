@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray, IntArray
+from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.skeleton.tree import tree_of
 from ..accessors import current_scene
@@ -16,14 +16,12 @@ from ..armature.channels import proper
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.read import rest_bones
 
-_KNEE = 2  # bodies above the shank: pelvis and thigh
-
 
 @dataclass(frozen=True)
 class Targets:
     """Poses of bodies (B) at T frames, in the armature's space and units.
 
-    unit: (T,) m in a unit of the armature. feet: (B,) what stands: below the knees.
+    unit: (T,) m in a unit of the armature.
     """
 
     frames: FloatArray
@@ -31,7 +29,6 @@ class Targets:
     rotations: FloatArray
     heads: FloatArray
     unit: FloatArray
-    feet: BoolArray
 
 
 def targets_of(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> Targets:
@@ -50,27 +47,7 @@ def targets_of(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> Ta
         np.swapaxes(proper(linear), 1, 2)[:, None] @ track.rotations,
         np.einsum("tij,tbj->tbi", np.linalg.inv(linear), apart),
         metres * np.cbrt(np.abs(np.linalg.det(linear))),
-        ~_upper(parents) & (_depths(parents) > _KNEE),
     )
-
-
-def _upper(parents: list[int]) -> BoolArray:
-    """(B,) whether bodies are above the pelvis, the first: on the branch with most bodies."""
-    branch = np.arange(len(parents))  # parents first
-    for b, parent in enumerate(parents):
-        if parent > 0:
-            branch[b] = branch[parent]
-    counts = np.bincount(branch[1:], minlength=1)
-    return np.asarray(branch == counts.argmax()) & (branch > 0)
-
-
-def _depths(parents: list[int]) -> IntArray:
-    """(B,) number of bodies above each."""
-    depths = np.zeros(len(parents), int)
-    for b, parent in enumerate(parents):
-        if parent >= 0:
-            depths[b] = depths[parent] + 1
-    return depths
 
 
 def _heads(

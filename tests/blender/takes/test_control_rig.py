@@ -109,7 +109,7 @@ def test_feet_and_hands_in_inverse_kinematics_stay_so_and_stand_still_in_their_k
     for row in (row for row in rig.hangtime.contacts if row.name in FLAT):
         loaded = slice(int(np.ceil(row.start_frame)), int(row.end_frame) - 1)  # from frame 1 on
         drift = carried_places(shown, f"foot_ik.{row.name[0]}", np.array(row.place), loaded)
-        assert np.linalg.norm(np.ptp(drift, axis=0)) < 5e-4, row.name
+        assert np.linalg.norm(np.ptp(drift, axis=0)) < 1e-3, row.name
 
 
 def carried_places(shown: Recording, bone: str, place: np.ndarray, frames: slice) -> np.ndarray:
