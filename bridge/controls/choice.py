@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ..armature import fcurves
+from .needed import Effects, needed
 from .posing import Posing
-from .responses import FELT, Dof, Freedom, Responses, free_dofs, measured
+from .responses import Dof, Freedom, Responses, free_dofs, measured
 
-LEVER = 0.3  # m, by which turns of bodies count beside shifts
-NEW = 0.15  # share of what a dof does that others must not do already
-LEAST = 0.05  # m a rad, or m a m: what does less is of no use
 PART = 0.05  # of a turn, by which a body that follows in full may miss it
 WHOLE = 0.6  # of the bodies, which more than legs and pelvis are
+TORN = 0.3  # share of a control's effect that pulls bodies apart (a tweak, a stretched spine)
 _STILL = 1e-6  # of a curve's values
+
+
+@dataclass(frozen=True)
+class Group:
+    """The dofs of one freedom of a control, by index; its size goes with its turns."""
+
+    control: int
+    freedom: Freedom
+    dofs: tuple[int, ...]
 
 
 def felt_controls(posing: Posing, bases: FloatArray) -> list[int]:
@@ -45,95 +53,63 @@ def all_responses(posing: Posing, bases: FloatArray) -> Responses:
     return measured(posing, bases, [[(dof, every)] for dof in dofs])
 
 
-def used_dofs(posing: Posing, bases: FloatArray, responses: Responses, unit: float) -> list[int]:
-    """Dofs that together pose the bodies, as few as do; in the order of preference.
-
-    First those whose curves move in the take, then what moves most bodies. unit: m in the
-    armature's unit.
-    """
-    posed = posing.look()
-    turns, shifts = responses.columns(posed, bases)
-    rows = np.concatenate([LEVER * turns.reshape(len(turns), -1), unit * shifts[:, 0]], axis=1)
-    by_freedom = np.array([1.0 if d.freedom is Freedom.TURN else unit for d in responses.dofs])
-    rows = rows / by_freedom[:, None]
-    chosen: list[int] = []
-    basis = np.zeros((0, rows.shape[1]))
-    for d in _preferred(posing, responses):
-        size = np.linalg.norm(rows[d])
-        rest = rows[d] - basis.T @ (basis @ rows[d])
-        rest -= basis.T @ (basis @ rest)
-        left = np.linalg.norm(rest)
-        if left > max(NEW * size, LEAST):
-            chosen.append(d)
-            basis = np.vstack([basis, rest / left])
-    return chosen
+def used_groups(posing: Posing, looks: Sequence[tuple[Responses, Effects]]) -> list[Group]:
+    """Groups of dofs that together pose the bodies, as few as do. looks: the same dofs at several
+    frames."""
+    wanted = _preferred(posing, looks)
+    return [wanted[g] for g in needed([g.dofs for g in wanted], [each for _, each in looks])]
 
 
-def _preferred(posing: Posing, responses: Responses) -> list[int]:
-    """All dofs, the preferred first.
+def _preferred(posing: Posing, looks: Sequence[tuple[Responses, Effects]]) -> list[Group]:
+    """All groups, the preferred first: those whose curves move in the take, then what moves most
+    bodies.
 
     Of the controls that move the whole figure the last below the others leads, and the rest come
-    last. A shift that turns the same bodies as its control's turns bends what is rigid (a tweak, a
-    stretched spine): late.
+    last. What pulls apart bodies that hang together comes late.
     """
-    controls = _followers(responses)
+    dofs = looks[0][0].dofs
+    follow = np.any([responses.follow for responses, _ in looks], axis=0)
+    torn = np.max([effects.torn for _, effects in looks], axis=0) > TORN
+    shared = np.any([_shared(responses) for responses, _ in looks], axis=0)
+    by_control = {d.control: np.zeros(follow.shape[1], bool) for d in dofs}
+    for dof, of in zip(dofs, follow, strict=True):
+        by_control[dof.control] |= of
+    whole = [c for c, of in by_control.items() if of[0] and of.mean() > WHOLE]
     moving = _moving(posing.armature)
-    whole = [c for c, of in controls.items() if of[0] and of.mean() > WHOLE]
-    turned = _turned_by(responses, Freedom.TURN)
-    bends = {c: (of & turned[c]).any() for c, of in _turned_by(responses, Freedom.SHIFT).items()}
-    axes = Counter(d.control for d in responses.dofs if d.freedom is Freedom.TURN)
 
-    shares = _shared(responses)
-
-    def key(d: int) -> tuple[bool, bool, bool, bool, bool, int, int, int, bool, int]:
-        dof = responses.dofs[d]
-        keyed = (posing.controls[dof.control], dof.freedom) in moving
-        turn = dof.freedom is Freedom.TURN
-        leads = bool(whole) and dof.control == whole[-1]
+    def key(group: Group) -> tuple[bool, bool, bool, bool, bool, int, int, int, bool]:
+        control = group.control
+        own = [d for d in group.dofs if dofs[d].freedom is group.freedom]
+        tears = bool(torn[own].any())
         return (
-            dof.control in whole[:-1],
-            not leads,
-            not turn and bool(bends[dof.control]),
-            not keyed,
-            bool(shares[dof.control]),
-            -int(controls[dof.control].sum()),
-            -axes[dof.control],
-            dof.control,
-            not turn,
-            dof.axis,
+            control in whole[:-1],
+            not whole or control != whole[-1],
+            tears,
+            (posing.controls[control], group.freedom) not in moving,
+            bool(shared[own].any()),
+            int(by_control[control].sum()) * (1 if tears else -1),
+            -len(own),
+            control,
+            group.freedom is not Freedom.TURN,
         )
 
-    return sorted(range(len(responses.dofs)), key=key)
+    return sorted(_groups(dofs), key=key)
 
 
-def _followers(responses: Responses) -> dict[int, BoolArray]:
-    """(B,) bodies that follow each control, by index, parents first."""
-    found: dict[int, BoolArray] = {}
-    for dof, follow in zip(responses.dofs, responses.follow, strict=True):
-        found[dof.control] = found.get(dof.control, follow) | follow
-    return found
+def _groups(dofs: Sequence[Dof]) -> list[Group]:
+    found: dict[tuple[int, Freedom], list[int]] = {}
+    for d, dof in enumerate(dofs):
+        freedom = Freedom.TURN if dof.freedom is Freedom.SIZE else dof.freedom
+        found.setdefault((dof.control, freedom), []).append(d)
+    return [Group(control, freedom, tuple(own)) for (control, freedom), own in found.items()]
 
 
-def _shared(responses: Responses) -> dict[int, bool]:
-    """Whether some bodies follow the turns of each control by a part only, as those of a foot's
-    roll do: after those that all follow in full."""
+def _shared(responses: Responses) -> BoolArray:
+    """(D,) whether some bodies follow a turn by a part only, as those of a foot's roll do: after
+    those that all follow in full."""
     amount = np.linalg.norm(responses.turns, axis=2)
-    part = (responses.follow & (np.abs(amount - 1.0) > PART)).any(1)
-    found = {dof.control: False for dof in responses.dofs}
-    for dof, shared in zip(responses.dofs, part, strict=True):
-        if dof.freedom is Freedom.TURN:
-            found[dof.control] |= bool(shared)
-    return found
-
-
-def _turned_by(responses: Responses, freedom: Freedom) -> dict[int, BoolArray]:
-    """(B,) bodies that each control turns by turning or shifting."""
-    turned = np.abs(responses.turns).max(2) > FELT
-    found = {dof.control: np.zeros(turned.shape[1], bool) for dof in responses.dofs}
-    for dof, of in zip(responses.dofs, turned, strict=True):
-        if dof.freedom is freedom:
-            found[dof.control] = found[dof.control] | of
-    return found
+    turn = np.array([dof.freedom is Freedom.TURN for dof in responses.dofs])
+    return np.asarray(turn & (responses.follow & (np.abs(amount - 1.0) > PART)).any(1))
 
 
 def _moving(armature: bpy.types.Object) -> set[tuple[str, Freedom]]:
@@ -147,12 +123,4 @@ def _moving(armature: bpy.types.Object) -> set[tuple[str, Freedom]]:
             found.add((name, Freedom.SHIFT))
         elif "rotation" in curve.data_path:
             found.add((name, Freedom.TURN))
-    return found
-
-
-def by_control(dofs: Sequence[Dof], controls: Sequence[str]) -> dict[str, set[Freedom]]:
-    """What is used of each control."""
-    found: dict[str, set[Freedom]] = {}
-    for dof in dofs:
-        found.setdefault(controls[dof.control], set()).add(dof.freedom)
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import bpy
@@ -16,23 +16,22 @@ from ...solver.data.recording import PoseTrack
 from ..accessors import current_scene
 from ..armature.channels import proper
 from ..armature.incremental import Incremental, in_slices
-from ..armature.poses import Poses, metres_per_unit
-from .choice import all_responses, by_control, felt_controls, used_dofs
+from ..armature.poses import Poses, metres_per_unit, sample
+from .choice import Group, all_responses, felt_controls, used_groups
 from .driven import candidates
+from .followed import telling_frames
 from .inverse import Inverse, Inverted
+from .needed import Effects, effects_at
 from .posing import Posing
 from .responses import Freedom, Responses
-from .targets import targets_of
-
-FAR_MM, TURNED_DEG = 1.0, 0.2  # by which a body may miss; beyond, it is told as a miss
-LOOKS = 3  # frames at which the controls are sought: a switch may be thrown in between
+from .targets import parents_of, targets_of
 
 
 @dataclass(frozen=True)
 class ControlRig:
     """The controls that pose bodies. used: what of each; carriers: those that no other moves.
 
-    turns: (D, B, 3) of the bodies by each degree of freedom where they were tried.
+    turns: (L, D, B, 3) of the bodies by each degree of freedom at the frames where they were tried.
     """
 
     armature: bpy.types.Object
@@ -70,7 +69,7 @@ def found_controls(
 
     Raises NoControls.
     """
-    at = frames[np.linspace(0, len(frames) - 1, LOOKS).round().astype(int)]
+    at = yield from telling_frames(armature, frames, showing)
     names = candidates(armature, bodies)
     felt: set[str] = set()
     found = yield from in_slices(at, partial(_felt, armature, names, bodies), showing)
@@ -79,12 +78,23 @@ def found_controls(
     names = [name for name in names if name in felt]
     if not names:
         raise NoControls(bodies)
+    posing = Posing(armature, names, bodies)
     with showing():
-        used = _used(armature, names, bodies, float(at[len(at) // 2]))
+        parents = parents_of(armature, sample(armature, frames[:1]), bodies)
     yield
-    controls = tuple(name for name in names if any(name == own for own, _, _ in used))
-    with showing():
-        return _measured(armature, controls, bodies, used, float(at[len(at) // 2]))
+    looked = yield from in_slices(at, partial(_looks, posing, parents), showing)
+    looks = [look for part in looked for look in part]
+    groups = used_groups(posing, [(look.responses, look.effects) for look in looks])
+    return _rig(posing, looks, groups)
+
+
+@dataclass(frozen=True)
+class _Look:
+    """What all controls do at a frame, and the turns that this is, (D, B, 3)."""
+
+    responses: Responses
+    effects: Effects
+    turns: FloatArray
 
 
 def _felt(
@@ -99,44 +109,37 @@ def _felt(
     return found
 
 
-def _used(
-    armature: bpy.types.Object, names: list[str], bodies: tuple[str, ...], frame: float
-) -> list[tuple[str, Freedom, int]]:
-    posing = Posing(armature, names, bodies)
+def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[_Look]:
+    looks = []
     with posing.kept():
-        posing.go_to(frame)
-        bases = posing.bases()
-        responses = all_responses(posing, bases)
-        world = posing.object_to_world()
-        unit = metres_per_unit(current_scene()) * float(np.cbrt(np.linalg.det(world[:3, :3])))
-        rows = used_dofs(posing, bases, responses, unit)
-    dofs = [responses.dofs[d] for d in rows]
-    return [(names[dof.control], dof.freedom, dof.axis) for dof in dofs]
+        for frame in frames:
+            posing.go_to(float(frame))
+            bases, world = posing.bases(), posing.object_to_world()
+            responses, posed = all_responses(posing, bases), posing.look()
+            unit = metres_per_unit(current_scene()) * float(np.cbrt(np.linalg.det(world[:3, :3])))
+            effects = effects_at(responses, posed, bases, parents, unit)
+            looks.append(_Look(responses, effects, responses.columns(posed, bases)[0]))
+    return looks
 
 
-def _measured(
-    armature: bpy.types.Object,
-    controls: tuple[str, ...],
-    bodies: tuple[str, ...],
-    used: list[tuple[str, Freedom, int]],
-    frame: float,
-) -> ControlRig:
-    posing = Posing(armature, controls, bodies)
-    with posing.kept():
-        posing.go_to(frame)
-        bases = posing.bases()
-        responses, posed = all_responses(posing, bases), posing.look()
-    chosen = [
-        d
-        for d, dof in enumerate(responses.dofs)
-        if (controls[dof.control], dof.freedom, dof.axis) in used
-    ]
-    responses = responses.part(chosen)
-    turns, _ = responses.columns(posed, bases)
-    free = [name for c, name in enumerate(controls) if not responses.moved[:, c].any()]
-    parts = by_control(responses.dofs, controls)
-    carriers = tuple(name for name in free if Freedom.SHIFT in parts[name])
-    return ControlRig(armature, controls, bodies, responses, parts, carriers, turns)
+def _rig(posing: Posing, looks: list[_Look], groups: list[Group]) -> ControlRig:
+    """The rig of those groups of all controls, as it is at the middle one of the looks."""
+    kept = sorted({group.control for group in groups})
+    dofs = sorted(d for group in groups for d in group.dofs)
+    parts = [look.responses.part(dofs, kept) for look in looks]
+    middle = replace(
+        parts[len(parts) // 2],
+        follow=np.any([part.follow for part in parts], axis=0),
+        moved=np.any([part.moved for part in parts], axis=0),
+    )
+    controls = tuple(posing.controls[c] for c in kept)
+    used: dict[str, set[Freedom]] = {}
+    for dof in middle.dofs:
+        used.setdefault(controls[dof.control], set()).add(dof.freedom)
+    free = [name for c, name in enumerate(controls) if not middle.moved[:, c].any()]
+    carriers = tuple(name for name in free if Freedom.SHIFT in used[name])
+    turns = np.stack([look.turns[dofs] for look in looks])
+    return ControlRig(posing.armature, controls, posing.bodies, middle, used, carriers, turns)
 
 
 def control_poses(
@@ -164,42 +167,6 @@ def control_poses(
         np.stack([each.off for each in solved]),
         np.stack([each.turned for each in solved]),
         inverse.tries,
-    )
-
-
-@dataclass(frozen=True)
-class KeptByControls:
-    """How near bodies that controls pose are to where they should be.
-
-    The worst in mm and degrees, each with its bone and frame; and how many controls have keys.
-    """
-
-    mm: float
-    far_bone: str
-    far_frame: float
-    degrees: float
-    turned_bone: str
-    turned_frame: float
-    controls: int
-
-    @property
-    def kept(self) -> bool:
-        """Whether all is as near as is promised."""
-        return self.mm <= FAR_MM and self.degrees <= TURNED_DEG
-
-
-def kept_by(posed: ControlPoses, frames: FloatArray) -> KeptByControls:
-    """The worst over frames (T,) and bodies."""
-    far = np.unravel_index(int(posed.off.argmax()), posed.off.shape)
-    turned = np.unravel_index(int(posed.turned.argmax()), posed.turned.shape)
-    return KeptByControls(
-        1e3 * float(posed.off[far]),
-        posed.bodies[int(far[1])],
-        float(frames[far[0]]),
-        float(np.degrees(posed.turned[turned])),
-        posed.bodies[int(turned[1])],
-        float(frames[turned[0]]),
-        len(posed.bases),
     )
 
 

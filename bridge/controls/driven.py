@@ -16,25 +16,36 @@ _CHAINS = (bpy.types.KinematicConstraint, bpy.types.SplineIKConstraint)
 
 
 def is_driven(armature: bpy.types.Object, bones: Iterable[str]) -> bool:
-    """Whether constraints, and no keys of their own, pose some of these bones."""
+    """Whether constraints, more than keys of their own, pose some of these bones."""
     return bool(driven_of(armature, bones))
 
 
 def driven_of(armature: bpy.types.Object, bones: Iterable[str]) -> list[str]:
-    """Those of these bones that constraints pose, and no keys of their own."""
-    moved = constrained(armature)
+    """Those of these bones that constraints pose, and no keys of their own; or inverse kinematics,
+    whatever keys they have."""
+    moved, chained = constrained(armature), set[str]()
+    for bone, constraint in _acting(armature):
+        chained.update(chain_of(bone, constraint))
     keyed = {fcurves.bone_of(curve.data_path) for curve in fcurves.curves_of(armature)}
-    return [name for name in bones if name in moved and name not in keyed]
+    return [name for name in bones if name in moved and (name in chained or name not in keyed)]
 
 
 def constrained(armature: bpy.types.Object) -> set[str]:
     """Bones with constraints that may act, and those of inverse kinematics' chains."""
-    switched = _animated(armature)
     found: set[str] = set()
+    for bone, constraint in _acting(armature):
+        found.update((bone.name, *chain_of(bone, constraint)))
+    return found
+
+
+def _acting(
+    armature: bpy.types.Object,
+) -> Iterator[tuple[bpy.types.PoseBone, bpy.types.Constraint]]:
+    """Constraints that have influence, or may come to it."""
+    switched = _animated(armature)
     for bone, constraint in constraints_of(armature):
         if constraint.influence > 0.0 or constraint.path_from_id("influence") in switched:
-            found.update((bone.name, *chain_of(bone, constraint)))
-    return found
+            yield bone, constraint
 
 
 def constraints_of(
@@ -57,6 +68,16 @@ def chain_of(bone: bpy.types.PoseBone, constraint: bpy.types.Constraint) -> list
     return [each.name for each in chain[:count]]
 
 
+def stretching(armature: bpy.types.Object) -> set[str]:
+    """Bones of inverse kinematics that may become longer and shorter as it acts."""
+    bones, found = pose_of(armature).bones, set[str]()
+    for bone, constraint in constraints_of(armature):
+        if isinstance(constraint, bpy.types.KinematicConstraint) and constraint.use_stretch:
+            chain = chain_of(bone, constraint)
+            found.update(name for name in chain if bones[name].ik_stretch > 0.0)
+    return found
+
+
 def _animated(armature: bpy.types.Object) -> set[str]:
     """Paths of what curves or drivers change."""
     data = armature.animation_data
@@ -66,16 +87,25 @@ def _animated(armature: bpy.types.Object) -> set[str]:
 
 def candidates(armature: bpy.types.Object, bodies: Iterable[str]) -> list[str]:
     """Bones that an artist may pose, parents first: those with shapes of their own where a rig has
-    such, and those with keys; but no bodies, and none whose channels are all locked."""
+    such, and those with keys; but none whose channels are all locked, and no bodies that inverse
+    kinematics always poses."""
     keyed = {fcurves.bone_of(curve.data_path) for curve in fcurves.curves_of(armature)}
     bones = [b for b in pose_of(armature).bones if not b.name.startswith(_INNER)]
     shaped = [bone for bone in bones if bone.custom_shape is not None]
     if len(shaped) >= _FEWEST_SHAPES:
         bones = [b for b in bones if b.custom_shape is not None or b.name in keyed]
-    inner = set(bodies)
+    inner = _always_chained(armature) & set(bodies)
     found = [bone.name for bone in bones if bone.name not in inner and _free(bone)]
     rest = armature_data(armature).bones
     return sorted(found, key=lambda name: len(rest[name].parent_recursive))
+
+
+def _always_chained(armature: bpy.types.Object) -> set[str]:
+    switched, found = _animated(armature), set[str]()
+    for bone, constraint in constraints_of(armature):
+        if constraint.influence > 0.0 and constraint.path_from_id("influence") not in switched:
+            found.update(chain_of(bone, constraint))
+    return found
 
 
 def _free(bone: bpy.types.PoseBone) -> bool:

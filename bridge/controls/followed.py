@@ -1,8 +1,8 @@
-"""What bodies follow, through constraints and parents: whether inverse kinematics poses them."""
+"""What acts in a rig at a frame: switches between kinds of controls may be thrown on the way."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 
 import bpy
@@ -12,68 +12,52 @@ from ...solver.arrays import FloatArray
 from ..accessors import current_scene, pose_of
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import evaluated
-from .driven import chain_of, constraints_of
+from .driven import constraints_of
 
-_FAINT = 1e-3  # influence, below which a switch is off
+LOOKS = 3  # frames at which a rig is looked at, beside one for each state of its switches
+FAINT = 1e-3  # influence, below which a switch is off
 
 
-def in_chains(
+def telling_frames(
     armature: bpy.types.Object,
-    bodies: Iterable[str],
     frames: FloatArray,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
-) -> Incremental[list[str]]:
-    """Those of the bodies that inverse kinematics poses at any of the frames (T,)."""
-    every = list(constraints_of(armature))
-    if not any(chain_of(*each) for each in every):
-        return []
-    indices = [(bone.name, list(bone.constraints).index(each)) for bone, each in every]
+) -> Incremental[FloatArray]:
+    """Frames (L,) of those (T,) that show all that acts in a rig at any: some that are spread
+    evenly, and the middle one of each state of its switches."""
+    influences = Influences(armature)
 
     def look(part: FloatArray) -> FloatArray:
-        return _influences(armature, indices, part)
+        return np.stack([influences.at(float(frame)) for frame in part])
 
     parts = yield from in_slices(frames, look, showing)
-    acts = np.max(parts, axis=0) > _FAINT
-    acting = [each for each, on in zip(every, acts, strict=True) if on]
-    chained = {name for each in acting for name in chain_of(*each)}
-    above = _followed(armature, acting)
-    return [body for body in bodies if chained & _all_above(body, above)]
+    states = np.concatenate(parts) > FAINT
+    at = np.linspace(0, len(frames) - 1, LOOKS).round().astype(int).tolist()
+    for state in np.unique(states, axis=0):
+        rows = np.flatnonzero((states == state).all(axis=1))
+        at.append(int(rows[len(rows) // 2]))
+    return np.asarray(frames[np.unique(at)])
 
 
-def _influences(
-    armature: bpy.types.Object, indices: list[tuple[str, int]], frames: FloatArray
-) -> FloatArray:
-    """The largest influence of each constraint, by bone and index, as drivers and keys have it."""
-    found = np.zeros(len(indices))
-    with evaluated([armature]):
-        for frame in frames:
-            current_scene().frame_set(int(frame))
-            posed = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-            bones = pose_of(posed).bones
-            now = [bones[name].constraints[index].influence for name, index in indices]
-            found = np.maximum(found, now)
-    return found
+class Influences:
+    """How much each constraint of an armature acts."""
 
+    def __init__(self, armature: bpy.types.Object) -> None:
+        self._armature = armature
+        self._indices = [
+            (bone.name, list(bone.constraints).index(each))
+            for bone, each in constraints_of(armature)
+        ]
 
-def _followed(
-    armature: bpy.types.Object,
-    acting: Iterable[tuple[bpy.types.PoseBone, bpy.types.Constraint]],
-) -> dict[str, set[str]]:
-    """Bones that each bone follows: its parent, and what its constraints aim at."""
-    bones = pose_of(armature).bones
-    found = {b.name: {b.parent.name} if b.parent is not None else set[str]() for b in bones}
-    for bone, constraint in acting:
-        for aim in getattr(constraint, "targets", [constraint]):
-            if getattr(aim, "target", None) == armature:
-                found[bone.name] |= {getattr(aim, "subtarget", "")} & found.keys()
-    return found
+    def at(self, frame: float) -> FloatArray:
+        """(N,) as drivers and keys have it at a frame; the scene's is what it was."""
+        with evaluated([self._armature]):
+            whole = int(np.floor(frame))
+            current_scene().frame_set(whole, subframe=frame - whole)
+            return self.now()
 
-
-def _all_above(bone: str, above: dict[str, set[str]]) -> set[str]:
-    """The bone and all that it follows, whatever is between."""
-    found, left = {bone}, [bone]
-    while left:
-        new = above[left.pop()] - found
-        found |= new
-        left.extend(new)
-    return found
+    def now(self) -> FloatArray:
+        """(N,) at the scene's frame."""
+        posed = self._armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        bones = pose_of(posed).bones
+        return np.array([bones[name].constraints[index].influence for name, index in self._indices])

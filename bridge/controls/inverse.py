@@ -7,23 +7,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import BoolArray, FloatArray
 from ...solver.numerics.rotations import rotation_matrix, rotation_vector
 from ..armature.channels import proper
-from .choice import LEVER
+from .followed import FAINT, Influences
+from .needed import LEVER
 from .posing import Posed, Posing
 from .responses import Freedom, Responses, apart, measured
 from .targets import Targets
 
-STEPS = 16
-UPPER = 0.1  # weight of the upper body: what its spine cannot follow moves no foot
-NEAR = 2e-5  # m, beside LEVER times rad: steps that gain less end a frame, as do
-LITTLE = 0.03  # those that gain a smaller share of the error
+STEPS = 30
+NEAR = 2e-6  # m, beside LEVER times rad: steps that gain less end a frame, as do
+LITTLE = 0.001  # those that gain a smaller share of the error: what is left cannot be met
+STILL = 2e-5  # m, beside LEVER times rad, that a body must be to move by in a step
 SLOW = 0.25  # share of the error that a step may leave before the rig is tried anew
 # Of the squares of a dof's effect; Nielsen, Damping Parameter in Marquardt's Method (1999).
-DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-6, 1.0
+DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1.0
 LESS, MORE = 5.0, 6.0  # by which damping goes down after a gain, and up after none
-LONGEST = 0.5  # rad, or m, of one step
+LONGEST, MOST = 0.5, 0.1  # rad of one step, and change of size
+LOST = 0.05  # m of error at which a frame is solved from another start as well
+SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight it does nothing
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,37 @@ class Inverted:
     turned: FloatArray
 
 
+_SIZE = 6
+_COLUMN = {Freedom.TURN: 0, Freedom.SHIFT: 3, Freedom.SIZE: _SIZE}  # of offsets (C, 7)
+
+
+@dataclass(frozen=True)
+class _Look:
+    """What controls do at pose bases (C, 4, 4). error: (6 B + C,): heads in m and turns
+    times LEVER that bodies lack, in the armature's axes; then sizes."""
+
+    bases: FloatArray
+    posed: Posed
+    error: FloatArray
+
+
+def _offset(animated: FloatArray, offsets: FloatArray) -> FloatArray:
+    """Bases (C, 4, 4) with offsets (C, 7): turn vector in the basis's axes, shift, log of size."""
+    bases = animated.copy()
+    sizes = np.exp(offsets[:, _SIZE])[:, None, None]
+    bases[:, :3, :3] = sizes * (animated[:, :3, :3] @ rotation_matrix(offsets[:, :3]))
+    bases[:, :3, 3] += offsets[:, 3:6]
+    return bases
+
+
+def _changed(offsets: FloatArray, changes: FloatArray) -> FloatArray:
+    """Offsets (C, 7) with small changes, turns last."""
+    moved = offsets + changes
+    turns = rotation_matrix(offsets[:, :3]) @ rotation_matrix(changes[:, :3])
+    moved[:, :3] = rotation_vector(turns)
+    return moved
+
+
 class Inverse:
     """Solves frames one after the other; each begins with what the one before needed."""
 
@@ -42,86 +76,109 @@ class Inverse:
         self._posing, self._targets = posing, targets
         self._groups = apart(responses)
         self._responses = responses
-        self._turns = np.tile(np.eye(3), (len(posing.controls), 1, 1))
-        self._shifts = np.zeros((len(posing.controls), 3))
-        weights = np.where(targets.upper, UPPER, 1.0)
-        self._weights = np.repeat(np.concatenate([weights, weights]), 3)
+        self._offsets = np.zeros((len(posing.controls), 7))
+        self._influences = Influences(posing.armature)
+        self._acted: BoolArray | None = None
         self.tries = 0
 
     def solve(self, t: int) -> Inverted:
-        """Solve the frame of index t."""
-        posing = self._posing
-        posing.go_to(float(self._targets.frames[t]))
-        animated = posing.bases()
-        bases = animated.copy()
-        bases[:, :3, :3] = animated[:, :3, :3] @ self._turns
-        bases[:, :3, 3] += self._shifts
+        """Solve the frame of index t: from what the one before needed; where that leads nowhere,
+        from the take."""
+        self._posing.go_to(float(self._targets.frames[t]))
+        animated = self._posing.bases()
+        self._try_where_switched(animated)
+        offsets, best = self._solved(animated, self._offsets, t)
+        if np.linalg.norm(best.error) > LOST:
+            other = self._solved(animated, np.zeros_like(offsets), t)
+            if np.linalg.norm(other[1].error) < np.linalg.norm(best.error):
+                offsets, best = other
+        self._offsets = offsets
+        lacks = best.error[: -len(offsets)].reshape(2, -1, 3)
+        return Inverted(
+            best.bases,
+            np.linalg.norm(lacks[0], axis=1),
+            np.linalg.norm(lacks[1], axis=1) / LEVER,
+        )
+
+    def _try_where_switched(self, animated: FloatArray) -> None:
+        """At the first frame, and where other constraints act than before and so other controls do:
+        try them anew, and leave to the take those that do nothing."""
+        acts = self._influences.now() > FAINT
+        if self._acted is None or (acts != self._acted).any():
+            self._responses = measured(self._posing, animated, self._groups)
+            self.tries += len(self._groups)
+            felt = {
+                dof.control
+                for dof, of in zip(self._responses.dofs, self._responses.follow, strict=True)
+                if of.any()
+            }
+            self._offsets[[c for c in range(len(animated)) if c not in felt]] = 0.0
+        self._acted = acts
+
+    def _solved(
+        self, animated: FloatArray, offsets: FloatArray, t: int
+    ) -> tuple[FloatArray, _Look]:
+        """Offsets from the animated bases, from a first guess, and what they do."""
+        best = self._look(animated, offsets, t)
         fresh, damping = False, DAMPING
-        best = self._look(bases, t)
         for _ in range(STEPS):
-            posed, error = best
-            size = float(np.linalg.norm(error))
-            moved = self._stepped(bases, posed, error, t, damping)
-            after = self._look(moved, t)
-            left = float(np.linalg.norm(after[1]))
+            size = float(np.linalg.norm(best.error))
+            moved, reach = self._stepped(offsets, best, t, damping)
+            if fresh and reach < STILL:
+                break
+            after = self._look(animated, moved, t)
+            left = float(np.linalg.norm(after.error))
             gained = size - left
             if gained > 0.0:
-                bases, best = moved, after
+                offsets, best = moved, after
             done = gained < max(NEAR, LITTLE * size) if gained > 0.0 else damping > MOST_DAMPING
             if fresh and (done or left < NEAR):
                 break
             anew = left > SLOW * size and (gained > 0.0 or not fresh)
             damping = max(damping / LESS, LEAST_DAMPING) if gained > 0.0 else MORE * damping
             if anew:
-                self._responses = measured(posing, bases, self._groups)
+                self._responses = measured(self._posing, best.bases, self._groups)
                 self.tries += len(self._groups)
             fresh = anew or (fresh and gained <= 0.0)
-        self._turns = np.swapaxes(proper(animated[:, :3, :3]), 1, 2) @ proper(bases[:, :3, :3])
-        self._shifts = bases[:, :3, 3] - animated[:, :3, 3]
-        error = (best[1] / self._weights).reshape(2, -1, 3)
-        return Inverted(
-            bases, np.linalg.norm(error[0], axis=1), np.linalg.norm(error[1], axis=1) / LEVER
-        )
+        return offsets, best
 
-    def _look(self, bases: FloatArray, t: int) -> tuple[Posed, FloatArray]:
+    def _look(self, animated: FloatArray, offsets: FloatArray, t: int) -> _Look:
+        bases = _offset(animated, offsets)
         for index, basis in enumerate(bases):
             self._posing.pose(index, basis)
         self.tries += 1
         posed = self._posing.look()
-        return posed, self._error(posed, t)
+        return _Look(bases, posed, np.append(self._lacks(posed, t), -SIZES * offsets[:, _SIZE]))
 
-    def _error(self, posed: Posed, t: int) -> FloatArray:
-        """(6 B,) heads in m, then turns times LEVER, that bodies lack; in the armature's axes,
-        weighted."""
+    def _lacks(self, posed: Posed, t: int) -> FloatArray:
         wanted = self._targets
         off = wanted.unit[t] * (wanted.heads[t] - posed.bodies[:, :3, 3])
         now = np.swapaxes(proper(posed.bodies[:, :3, :3]), 1, 2)
         turned = LEVER * rotation_vector(wanted.rotations[t] @ now)
-        error: FloatArray = self._weights * np.concatenate([off.ravel(), turned.ravel()])
-        return error
+        return np.concatenate([off.ravel(), turned.ravel()])
 
     def _stepped(
-        self, bases: FloatArray, posed: Posed, error: FloatArray, t: int, damping: float
-    ) -> FloatArray:
-        """Bases after a damped least-squares step."""
-        turns, shifts = self._responses.columns(posed, bases)
+        self, offsets: FloatArray, at: _Look, t: int, damping: float
+    ) -> tuple[FloatArray, float]:
+        """Offsets after a damped least-squares step, and how far it moves any body."""
+        turns, shifts = self._responses.columns(at.posed, at.bases)
         count = len(turns)
         unit = self._targets.unit[t]
         rows = np.concatenate(
             [unit * shifts.reshape(count, -1), LEVER * turns.reshape(count, -1)], axis=1
         )
-        rows = rows * self._weights
-        sizes = np.linalg.norm(rows, axis=1)
-        rows = rows / np.where(sizes > 0.0, sizes, 1.0)[:, None]
-        normal = rows @ rows.T + damping * np.eye(count)
-        step = np.linalg.solve(normal, rows @ error) / np.where(sizes > 0.0, sizes, np.inf)
-        changed = bases.copy()
-        for index in {dof.control for dof in self._responses.dofs}:
-            turn, shift = np.zeros(3), np.zeros(3)
-            for dof, amount in zip(self._responses.dofs, step, strict=True):
-                if dof.control == index:
-                    (turn if dof.freedom is Freedom.TURN else shift)[dof.axis] = amount
-            limit = min(1.0, LONGEST / max(float(np.linalg.norm(turn)), 1e-12))
-            changed[index, :3, :3] = bases[index, :3, :3] @ rotation_matrix(limit * turn)
-            changed[index, :3, 3] += shift
-        return changed
+        sized = np.zeros((count, len(offsets)))
+        for d, dof in enumerate(self._responses.dofs):
+            sized[d, dof.control] = SIZES * (dof.freedom is Freedom.SIZE)
+        weighted = np.concatenate([rows, sized], axis=1)
+        sizes = np.linalg.norm(weighted, axis=1)
+        weighted = weighted / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+        normal = weighted @ weighted.T + damping * np.eye(count)
+        step = np.linalg.solve(normal, weighted @ at.error) / np.where(sizes > 0.0, sizes, np.inf)
+        changes = np.zeros_like(offsets)
+        for dof, amount in zip(self._responses.dofs, step, strict=True):
+            changes[dof.control, _COLUMN[dof.freedom] + dof.axis] = amount
+        turned = np.linalg.norm(changes[:, :3], axis=1, keepdims=True)
+        changes[:, :3] *= np.minimum(1.0, LONGEST / np.maximum(turned, 1e-12))
+        changes[:, _SIZE] = np.clip(changes[:, _SIZE], -MOST, MOST)
+        return _changed(offsets, changes), float(np.abs(step @ rows).max())

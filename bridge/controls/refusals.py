@@ -9,12 +9,11 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ...solver.data.faults import LimbsInChains, NoControls
+from ...solver.data.faults import NoControls
 from ..armature.incremental import Incremental
 from ..armature.poses import sample
-from .control_rig import ControlRig, found_controls
+from .control_rig import found_controls
 from .driven import driven_of
-from .followed import in_chains
 from .targets import parents_of
 
 MISSING = 0.5  # share of a body's own turn that controls may lack about its best axis
@@ -29,11 +28,8 @@ def require_posable(
 ) -> Incremental[bool]:
     """Refuse bodies whose poses a result could not be given, at frames (T,); in slices.
 
-    bodies: the pelvis first. Returns whether controls pose them. Raises LimbsInChains, NoControls.
+    bodies: the pelvis first. Returns whether controls pose them. Raises NoControls.
     """
-    chained = yield from in_chains(armature, bodies, frames, showing)
-    if chained:
-        raise LimbsInChains(tuple(chained), float(frames[0]), float(frames[-1]))
     with showing():
         driven = driven_of(armature, bodies)
     if not driven:
@@ -41,25 +37,26 @@ def require_posable(
     rig = yield from found_controls(armature, bodies, frames, showing)
     with showing():
         poses = sample(armature, frames[:1])
-    unled = _unled(rig, parents_of(armature, poses, bodies))
+    parents = parents_of(armature, poses, bodies)
+    unled = {body for turns in rig.turns for body in _unled(turns, bodies, parents)}
     if unled:
-        raise NoControls(tuple(unled))
+        raise NoControls(tuple(body for body in bodies if body in unled))
     return True
 
 
-def _unled(rig: ControlRig, parents: list[int]) -> list[str]:
-    """Bodies that the controls cannot turn about any axis while all stay that are not below them.
+def _unled(turns: FloatArray, bodies: tuple[str, ...], parents: list[int]) -> list[str]:
+    """Bodies that turns (D, B, 3) cannot turn about any axis while all but those below them stay.
 
     What is missing of a turn of 1 rad, as a share, by least squares.
     """
     found = []
-    for b, body in enumerate(rig.bodies):
-        stays = [o for o in range(len(rig.bodies)) if b not in _line(o, parents)] + [b]
-        turns = rig.turns[:, stays].reshape(len(rig.turns), -1)
-        wanted = np.zeros((3, turns.shape[1]))
+    for b, body in enumerate(bodies):
+        stays = [o for o in range(len(bodies)) if b not in _line(o, parents)] + [b]
+        rows = turns[:, stays].reshape(len(turns), -1)
+        wanted = np.zeros((3, rows.shape[1]))
         wanted[:, -3:] = np.eye(3)
-        weights = np.linalg.lstsq(turns.T, wanted.T, rcond=SMALL)[0]
-        missing = np.linalg.norm(wanted - weights.T @ turns, axis=1)
+        weights = np.linalg.lstsq(rows.T, wanted.T, rcond=SMALL)[0]
+        missing = np.linalg.norm(wanted - weights.T @ rows, axis=1)
         if missing.min() > MISSING:
             found.append(body)
     return found

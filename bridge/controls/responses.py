@@ -7,7 +7,7 @@ holds at other frames too for whatever follows in that way.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import bpy
@@ -17,10 +17,12 @@ from ...solver.arrays import BoolArray, FloatArray
 from ...solver.numerics.rotations import rotation_matrix, rotation_vector
 from ..accessors import pose_of
 from ..armature.channels import proper
+from .driven import stretching
 from .posing import Posed, Posing
 
-TURN_STEP = 0.01  # rad
-SHIFT_STEP = 0.005  # Blender units
+TURN_STEP = 0.001  # rad
+SHIFT_STEP = 0.001  # Blender units
+SIZE_STEP = 0.001  # of the size
 FELT = 2e-3  # of a step; what answers by less does not follow
 
 
@@ -29,12 +31,13 @@ class Freedom(Enum):
 
     TURN = "turn"
     SHIFT = "shift"
+    SIZE = "size"
 
 
 @dataclass(frozen=True)
 class Dof:
-    """Degree of freedom of a control, by index: a turn about one of its own axes, or a shift along
-    one of those in which its channels count."""
+    """Degree of freedom of a control, by index: a turn about one of its own axes, a shift along one
+    of those in which its channels count, or its size along all."""
 
     control: int
     freedom: Freedom
@@ -43,13 +46,21 @@ class Dof:
     @property
     def step(self) -> float:
         """The change by which it is tried."""
-        return TURN_STEP if self.freedom is Freedom.TURN else SHIFT_STEP
+        steps = {Freedom.TURN: TURN_STEP, Freedom.SHIFT: SHIFT_STEP, Freedom.SIZE: SIZE_STEP}
+        return steps[self.freedom]
+
+    @property
+    def shifts(self) -> bool:
+        """Whether it is counted in units of length."""
+        return self.freedom is Freedom.SHIFT
 
     def applied(self, basis: FloatArray, amount: float) -> FloatArray:
         """A pose basis (4, 4), changed by that much."""
         changed = basis.copy()
         if self.freedom is Freedom.SHIFT:
             changed[self.axis, 3] += amount
+        elif self.freedom is Freedom.SIZE:
+            changed[:3, :3] = (1.0 + amount) * basis[:3, :3]
         else:
             changed[:3, :3] = basis[:3, :3] @ rotation_matrix(amount * np.eye(3)[self.axis])
         return changed
@@ -85,25 +96,31 @@ class Responses:
             shifts[d] = self.shifts[d] @ axes.T + _rigid(dof, turns[d], posed)
         return turns, shifts
 
-    def part(self, chosen: Sequence[int]) -> Responses:
-        """Those of some dofs."""
-        rows = list(chosen)
-        dofs = tuple(self.dofs[d] for d in rows)
+    def part(self, chosen: Sequence[int], controls: Sequence[int]) -> Responses:
+        """Those of some dofs, which are of some controls; among these alone."""
+        rows, kept = list(chosen), list(controls)
+        dofs = (self.dofs[d] for d in rows)
         return Responses(
-            dofs, self.turns[rows], self.shifts[rows], self.follow[rows], self.moved[rows]
+            tuple(replace(dof, control=kept.index(dof.control)) for dof in dofs),
+            self.turns[rows],
+            self.shifts[rows],
+            self.follow[rows],
+            self.moved[np.ix_(rows, kept)],
         )
 
 
 def _rigid(dof: Dof, turns: FloatArray, posed: Posed) -> FloatArray:
     """(B, 3) shifts of heads that turn rigidly about a control."""
-    if dof.freedom is Freedom.SHIFT:
+    if dof.freedom is not Freedom.TURN:
         return np.zeros_like(turns)
     arms = posed.bodies[:, :3, 3] - posed.controls[dof.control, :3, 3]
     return np.cross(turns, arms)
 
 
 def free_dofs(armature: bpy.types.Object, controls: Sequence[str]) -> Iterator[Dof]:
-    """The degrees of freedom that are not locked."""
+    """The degrees of freedom that are not locked. Sizes only of what is in a chain that stretches:
+    one bends by shortening its bones as well, and its size makes up for that."""
+    stretched = stretching(armature)
     for index, name in enumerate(controls):
         bone = pose_of(armature).bones[name]
         for freedom, locked in (
@@ -111,6 +128,8 @@ def free_dofs(armature: bpy.types.Object, controls: Sequence[str]) -> Iterator[D
             (Freedom.SHIFT, bone.lock_location),
         ):
             yield from (Dof(index, freedom, axis) for axis in range(3) if not locked[axis])
+        if name in stretched and not any(bone.lock_scale):
+            yield Dof(index, Freedom.SIZE, 0)
 
 
 def measured(

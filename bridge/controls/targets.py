@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray
+from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.skeleton.tree import tree_of
 from ..accessors import current_scene
@@ -21,7 +21,7 @@ from ..armature.read import rest_bones
 class Targets:
     """Poses of bodies (B) at T frames, in the armature's space and units.
 
-    unit: (T,) m in a unit of the armature. upper: (B,) what is above the pelvis, and the arms.
+    unit: (T,) m in a unit of the armature.
     """
 
     frames: FloatArray
@@ -29,7 +29,6 @@ class Targets:
     rotations: FloatArray
     heads: FloatArray
     unit: FloatArray
-    upper: BoolArray
 
 
 def targets_of(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> Targets:
@@ -48,18 +47,7 @@ def targets_of(armature: bpy.types.Object, poses: Poses, track: PoseTrack) -> Ta
         np.swapaxes(proper(linear), 1, 2)[:, None] @ track.rotations,
         np.einsum("tij,tbj->tbi", np.linalg.inv(linear), apart),
         metres * np.cbrt(np.abs(np.linalg.det(linear))),
-        _upper(parents),
     )
-
-
-def _upper(parents: list[int]) -> BoolArray:
-    """(B,) whether bodies are above the pelvis, the first: on the branch with most bodies."""
-    branch = np.arange(len(parents))  # parents first
-    for b, parent in enumerate(parents):
-        if parent > 0:
-            branch[b] = branch[parent]
-    counts = np.bincount(branch[1:], minlength=1)
-    return np.asarray(branch == counts.argmax()) & (branch > 0)
 
 
 def _heads(

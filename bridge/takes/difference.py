@@ -1,8 +1,9 @@
 """What a result has more than its take, as Blender's NLA combines it: an action of differences.
 
 Blender adds locations and angles to what is below, less what the property is by default, and
-multiplies quaternions from the right (anim_sys.cc, nla_combine_value and nla_combine_quaternion).
-So differences are result minus take, and take⁻¹ · result. Keys stand on whole frames.
+multiplies sizes, and quaternions from the right (anim_sys.cc, nla_combine_value and
+nla_combine_quaternion). So differences are result minus take, result by take, and take⁻¹ · result.
+Keys stand on whole frames.
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from .key_splice import key_span
 
 _SAME = 1e-6  # of a channel's value
 _QUATERNION = "rotation_quaternion"
+_SCALE = "scale"
 _DEFAULTS = {
     "location": (0.0, 0.0, 0.0),
     "rotation_quaternion": (1.0, 0.0, 0.0, 0.0),
     "rotation_axis_angle": (0.0, 0.0, 0.0, 0.0),  # not the property's own, whose axis is Y
     "rotation_euler": (0.0, 0.0, 0.0),
+    "scale": (1.0, 1.0, 1.0),
 }
 
 
@@ -35,7 +38,8 @@ def difference_of(
 ) -> bpy.types.Action:
     """A new action that, combined with a take, shows a result on whole frames.
 
-    Of bones' locations and rotations, and channels that the take lacks; others are the take's.
+    Of bones' locations, rotations and sizes, and channels that the take lacks; others are the
+    take's.
     slot: identifier of the slot that both have for the armature, and the new action gets.
     """
     below, above = fcurves.holder_in(take, slot), fcurves.holder_in(result, slot)
@@ -46,7 +50,7 @@ def difference_of(
     first, last = key_span(list(above.fcurves))
     frames = np.arange(np.floor(first), np.ceil(last) + 1.0)
     for bone in pose_of(armature).bones:
-        for attribute in ("location", rotation_channel(bone)):
+        for attribute in ("location", rotation_channel(bone), _SCALE):
             path = bone.path_from_id(attribute)
             _write_difference(made, (below, above), path, attribute, bone.name, frames)
     there = {(curve.data_path, curve.array_index) for curve in below.fcurves}
@@ -72,8 +76,7 @@ def _write_difference(
     changed = np.abs(result - take).max(axis=1) > _SAME
     if not changed.any():
         return
-    turns = attribute == _QUATERNION
-    values = _quotient(take, result) if turns else default + result - take
+    values = _apart(attribute, take, result)
     where = np.flatnonzero(changed)
     kept = slice(max(where[0] - 1, 0), where[-1] + 2)
     for index, column in enumerate(values[kept].T):
@@ -106,12 +109,29 @@ def bake_combined(result: bpy.types.Action, take: bpy.types.Action, slot: str | 
         attribute = path.rpartition(".")[2]
         default = np.array(_DEFAULTS[attribute])
         take_values, more = (_values(each, path, default, frames) for each in (below, above))
-        turns = attribute == _QUATERNION
-        values = _product(take_values, more) if turns else take_values + more - default
+        values = _together(attribute, take_values, more)
         for index, column in enumerate(values.T):
             curve = ensured(made, path, index, fcurves.bone_of(path) or "")
             put(curve, linear_keys(table(curve), frames, column))
     result.update_tag()
+
+
+def _apart(attribute: str, take: FloatArray, result: FloatArray) -> FloatArray:
+    """What a result (T, n) has more than a take, as Blender combines an attribute."""
+    if attribute == _QUATERNION:
+        return _quotient(take, result)
+    if attribute == _SCALE:
+        return result / take
+    return np.asarray(result - take + _DEFAULTS[attribute])
+
+
+def _together(attribute: str, take: FloatArray, more: FloatArray) -> FloatArray:
+    """A take (T, n) combined with what a result has more."""
+    if attribute == _QUATERNION:
+        return _product(take, more)
+    if attribute == _SCALE:
+        return take * more
+    return np.asarray(take + more - _DEFAULTS[attribute])
 
 
 def difference_shown(result: bpy.types.Action) -> bpy.types.Action | None:

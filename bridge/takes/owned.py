@@ -51,6 +51,8 @@ class OwnedChannel:
         """(T, n) channels of bases (T, 4, 4), beginning on the branch of the recorded ones."""
         if self.attribute == "location":
             return np.asarray(bases[:, :3, 3])
+        if self.attribute == "scale":
+            return np.asarray(np.linalg.norm(bases[:, :3, :3], axis=1))
         mode = pose_of(armature).bones[self.bone].rotation_mode
         return channels(proper(bases[:, :3, :3]), mode, recorded[0])
 
@@ -90,3 +92,5 @@ def owned_by(rig: ControlRig) -> Iterator[OwnedChannel]:
             yield OwnedChannel(name, bone.path_from_id(attribute), attribute, carries)
         if Freedom.SHIFT in freedoms:
             yield OwnedChannel(name, bone.path_from_id("location"), "location", carries)
+        if Freedom.SIZE in freedoms:
+            yield OwnedChannel(name, bone.path_from_id("scale"), "scale", carries=False)

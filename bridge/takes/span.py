@@ -8,7 +8,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.stance_move import StanceMove
-from ..controls.control_rig import KeptByControls
+from ..controls.kept import KeptByControls
 from .take_time import TakeTime
 
 BLEND = 0.25  # s, the usual blend

@@ -24,9 +24,10 @@ from ..controls.control_rig import (
     carried_controls,
     control_poses,
     found_controls,
-    kept_by,
 )
 from ..controls.driven import is_driven
+from ..controls.kept import kept_by
+from ..controls.targets import targets_of
 from .carry import carried, shares_of_return
 from .key_splice import FullTurns, anchor, applied, retime, splice
 from .offsets import faded, seam_offset
@@ -69,12 +70,10 @@ def write_take(
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
     body, rest = _tracks(poses, later, plan, motion)
     yield
-    posed = None
     if rig is None:
         bases = yield from pose_bases(armature, poses, body)
     else:
-        posed = yield from control_poses(rig, poses, body, showing)
-        bases = posed.bases
+        bases = (yield from control_poses(rig, poses, body, showing)).bases
     if later is not None and rest is not None:
         if rig is None:
             more = yield from pose_bases(armature, later, rest)
@@ -88,7 +87,10 @@ def write_take(
         for curve in fcurves.all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
-    kept = None if posed is None else kept_by(posed, plan.body_frames)
+    kept = None
+    if rig is not None:
+        shown = yield from sample_incrementally(armature, plan.body_frames, showing)
+        kept = kept_by(shown, targets_of(armature, poses, body), len(rig.used))
     return WrittenTake(plan.span, plan.moved, plan.back, plan.time, done, kept)
 
 

@@ -121,3 +121,7 @@ def _key(
     if Freedom.SHIFT in freedoms:
         path = bone.path_from_id("location")
         fcurves.write_channels(curves, path, frames, bases[:, :3, 3], name)
+    if Freedom.SIZE in freedoms:
+        path = bone.path_from_id("scale")
+        values = np.linalg.norm(bases[:, :3, :3], axis=1)
+        fcurves.write_channels(curves, path, frames, values, name)

@@ -225,7 +225,7 @@ def require_writable(
 ) -> Incremental[None]:
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
-    Raises LimbsInChains, NoControls, NotInLoop, and as `map_anatomy`.
+    Raises NoControls, NotInLoop, and as `map_anatomy`.
     """
     if not constrained(armature):  # keys of their own pose all bones
         return

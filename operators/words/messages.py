@@ -57,10 +57,6 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "air.",
     faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
     "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
-    faults.LimbsInChains: "Inverse kinematics poses {bones:names} between frames {first:g} and "
-    "{last:g}, and results cannot be written through it yet; switch these limbs to FK over all of "
-    "these frames (Rigify: snap FK to IK with Bake, then set IK-FK to 1), or bake the bones and "
-    "mute the constraints.",
     faults.NoControls: "The bones {bones:names} follow constraints, and no bone that you can pose "
     "turns them by itself, so a result could not be written; bake them and mute the constraints, "
     "or choose other bones under Bones.",

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from math import degrees, hypot
 
-from ...bridge.controls.control_rig import KeptByControls
+from ...bridge.controls.kept import KeptByControls
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish
 from ...bridge.takes.span import WrittenTake
@@ -52,7 +52,7 @@ def _lines(written: WrittenTake) -> Iterator[str]:
     if written.moved is not None:
         yield from _carried(written)
     if written.controls is not None:
-        yield _controls(written.controls)
+        yield from _controls(written.controls)
     if written.applied:
         yield f"Curves with modifiers, or muted, are plain keys now: {', '.join(written.applied)}"
 
@@ -99,15 +99,20 @@ def _carried(written: WrittenTake) -> Iterator[str]:
         yield f"  It is back where it was at frame {written.back:g}"
 
 
-def _controls(kept: KeptByControls) -> str:
-    said = f"{kept.controls} controls have keys; bones are within {kept.mm:.2f} mm"
+def _controls(kept: KeptByControls) -> Iterator[str]:
     if kept.kept:
-        return f"{said} and {kept.degrees:.2f}°"
-    return (
-        f"The controls miss the solution: {kept.far_bone} by {kept.mm:.1f} mm (frame "
-        f"{kept.far_frame:g}), {kept.turned_bone} by {kept.degrees:.1f}° (frame "
-        f"{kept.turned_frame:g})"
-    )
+        yield (
+            f"{kept.controls} controls have keys; bones are within {kept.mm:.2f} mm "
+            f"({kept.far_bone}, frame {kept.far_frame:g}) and {kept.degrees:.2f}° "
+            f"({kept.turned_bone}, frame {kept.turned_frame:g})"
+        )
+        return
+    yield f"{kept.controls} controls have keys, and miss the solution by more than 1 mm or 0.2°:"
+    for miss in kept.worst:
+        yield (
+            f"  {miss.bone} by {miss.mm:.1f} mm (frame {miss.far_frame:g}), {miss.degrees:.1f}° "
+            f"(frame {miss.turned_frame:g})"
+        )
 
 
 def _frames(count: int) -> str:

@@ -275,10 +275,10 @@ def _falls(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
     if within.sum() < 4:
         return True
     t = times[within] - middle
-    fitted = np.polynomial.Polynomial.fit(t, com[within, 2], 2).convert()
+    curvature = 2.0 * np.polyfit(t, com[within, 2], 2)[0]
     error = 2.0 * COM_NOISE / np.linalg.norm(_without_line(t, t**2))
     tolerance = max(FREE_FALL_TOLERANCE, STANDARD_ERRORS * error)
-    return bool(abs(2.0 * fitted.coef[2] + STANDARD_GRAVITY) < tolerance)
+    return bool(abs(curvature + STANDARD_GRAVITY) < tolerance)
 
 
 def _without_line(t: FloatArray, samples: FloatArray) -> FloatArray:

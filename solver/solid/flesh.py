@@ -12,7 +12,8 @@ import numpy as np
 
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
-from ..body.character import MIN_BONE_LENGTH, Body, Character
+from ..body.character import Body, Character
+from ..body.joint_choice import MIN_BONE_LENGTH
 from ..body.mass_tables import BOX_ASPECT
 from ..data.problem import MotionProblem
 from ..data.recording import Recording, Skin

@@ -43,6 +43,6 @@ def vary(changes: Sequence[str]) -> None:
     for change in changes:
         name, _, value = change.partition("=")
         if name in WEIGHTS:
-            fit.FIT_COST_WEIGHTS = replace(fit.FIT_COST_WEIGHTS, **{name: float(value)})
+            fit.FIT_COST_WEIGHTS = replace(fit.FIT_COST_WEIGHTS, **{name: float(value)})  # type: ignore[arg-type]
         for module in HOLDERS.get(name, ()):
             setattr(module, name, float(value))

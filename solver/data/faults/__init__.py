@@ -56,7 +56,6 @@ from .requests import UnknownPhaseIn as UnknownPhaseIn
 from .requests import UnknownReductionBone as UnknownReductionBone
 from .requests import WrongAngle as WrongAngle
 from .requests import WrongWeights as WrongWeights
-from .rigs import LimbsInChains as LimbsInChains
 from .rigs import NoControls as NoControls
 from .scenes import GroundNotThere as GroundNotThere
 from .scenes import InsideOut as InsideOut

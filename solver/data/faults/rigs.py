@@ -6,15 +6,6 @@ from .base import Fault
 
 
 @dataclass
-class LimbsInChains(Fault):
-    """Inverse kinematics poses these bones at some of the frames from first to last."""
-
-    bones: tuple[str, ...]
-    first: float
-    last: float
-
-
-@dataclass
 class NoControls(Fault):
     """Constraints pose these bones, and no bone that can be posed turns them by itself."""
 
