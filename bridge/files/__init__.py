@@ -1,1 +1,1 @@
-"""Motion files into the scene (BVH, FBX, Acclaim), and actions out as FBX."""
+"""Motion files into the scene: BVH, FBX, Acclaim."""

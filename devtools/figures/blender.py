@@ -10,7 +10,7 @@ from ...bridge.accessors import current_action
 from ...bridge.armature import fcurves
 from ...bridge.armature.read import read_recording
 from ...bridge.armature.write import write_action
-from ...bridge.files.export import export_takes
+from ...bridge.exports.export import export_takes
 from ...bridge.files.import_clip import import_clip
 from ...bridge.files.reimport import reimport
 from ...solver.data.recording import BEYOND, Recording

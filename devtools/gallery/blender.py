@@ -9,7 +9,7 @@ import bpy
 
 from ...bridge.armature.read import read_recording, record
 from ...bridge.armature.write import write_action
-from ...bridge.files.export import export_takes
+from ...bridge.exports.export import export_takes
 from ...bridge.files.import_clip import import_clip
 from ...bridge.files.reproportioned import build_reproportioned
 from ...bridge.picture.render import draw_sheet

@@ -12,10 +12,10 @@ import bpy
 import numpy as np
 
 from ...bridge.accessors import current_action, present
-from ...bridge.files.engines import ENDINGS
-from ...bridge.files.export import export_takes
+from ...bridge.exports.engines import ENDINGS
+from ...bridge.exports.export import export_takes
+from ...bridge.exports.writers import usd_name
 from ...bridge.files.reimport import reimport
-from ...bridge.files.writers import usd_name
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.rows.choices import Engine, FileFormat
 from ...solver.arrays import FloatArray

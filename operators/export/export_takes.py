@@ -5,9 +5,9 @@ from pathlib import Path
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.files.engines import ENDINGS, format_of
-from ...bridge.files.export import export_takes
-from ...bridge.files.writers import usd_name
+from ...bridge.exports.engines import ENDINGS, format_of
+from ...bridge.exports.export import export_takes
+from ...bridge.exports.writers import usd_name
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.rows.choices import Engine, FileFormat, RootMotion

@@ -80,8 +80,8 @@ class Outputs:
         return report
 
     def _export(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
-        from ...bridge.files.engines import ENDINGS, format_of
-        from ...bridge.files.export import export_takes
+        from ...bridge.exports.engines import ENDINGS, format_of
+        from ...bridge.exports.export import export_takes
 
         form, pelvis = format_of(self.export), self.result.track.bones[0]
         with self.stages.stage(f"Exporting {form.name}"), quiet():

@@ -12,7 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.armature.write import side_by_side, write_action
-from hangtime.bridge.files.export import export_takes
+from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.rows.choices import FileFormat

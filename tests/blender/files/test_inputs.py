@@ -10,7 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.read import read_recording
-from hangtime.bridge.files.export import export_takes
+from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.rows.choices import FileFormat
 from hangtime.devtools.rigs.actor import actor

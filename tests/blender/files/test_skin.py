@@ -9,8 +9,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.files.engines import ENDINGS
-from hangtime.bridge.files.export import export_takes
+from hangtime.bridge.exports.engines import ENDINGS
+from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.rows.choices import Engine, FileFormat
 from hangtime.tests.blender.helpers import rigs

@@ -8,10 +8,10 @@ from pathlib import Path
 import bpy
 
 from ...solver.data.faults import MissingPart, SeveralTakes
+from ..files.data_blocks import data_blocks, remove_added, scene_restored
 from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import bake
-from .data_blocks import data_blocks, remove_added, scene_restored
 from .engines import CONVENTIONS, format_of
 from .placed_takes import place_takes
 from .skin import copy_skin
