@@ -30,6 +30,7 @@ MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
+FALL_RESIDUAL = 0.02  # m, rms; a centre of mass further from every parabola is carried
 COM_NOISE = 0.001  # m, from frame to frame, of a recorded centre of mass
 STANDARD_ERRORS = 3.0  # of a fitted acceleration, before it speaks against a free fall
 
@@ -78,7 +79,7 @@ def detect_contacts(
     contacts = _kept_off_ends(contacts, duration, shortest_flight_s, times, com)
     contacts = _closed(contacts, duration, shortest_flight_s)
     carried = ((c.start, c.end) for c in contacts)
-    unseen = tuple(gap for gap in gaps(carried, duration) if not _falls(times, com, gap))
+    unseen = tuple(gap for gap in gaps(carried, duration) if not _may_fall(times, com, gap))
     return ContactSchedule(numbered(contacts), duration, floor_m, unseen)
 
 
@@ -266,21 +267,40 @@ def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> li
 
 
 def _falls(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
-    """Whether the body can be in free fall during `gap`: curvature of a fitted parabola, as far as
-    so many frames tell it (standard error of a least-squares coefficient)."""
+    """Whether the body is in free fall during `gap`, so far as that can be told."""
+    off = _off_gravity(times, com, gap)
+    return off is None or off < FREE_FALL_TOLERANCE
+
+
+def _may_fall(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
+    """Whether the recording allows a free fall during `gap`: a few frames tell little."""
     if com is None:
         return gap.end - gap.start < MAX_FLIGHT
+    off = _off_gravity(times, com, gap)
+    return off is None or off < max(FREE_FALL_TOLERANCE, STANDARD_ERRORS * _uncertainty(times, gap))
+
+
+def _off_gravity(times: FloatArray, com: FloatArray | None, gap: Interval) -> float | None:
+    """By how much the centre of mass's acceleration differs from gravity, m/s², by the parabola
+    that fits best; infinite where none fits, None where it cannot be told."""
+    t, within = _around(times, gap)
+    if com is None or len(t) < 4:
+        return None
+    fitted = np.polyfit(t, com[within, 2], 2)
+    if np.std(com[within, 2] - np.polyval(fitted, t)) > FALL_RESIDUAL:
+        return np.inf
+    return float(abs(2.0 * fitted[0] + STANDARD_GRAVITY))
+
+
+def _uncertainty(times: FloatArray, gap: Interval) -> float:
+    """Standard error, m/s², of an acceleration told by the frames around a gap (least squares)."""
+    t, _ = _around(times, gap)
+    without_line = t**2 - np.polyval(np.polyfit(t, t**2, 1), t)
+    return float(2.0 * COM_NOISE / np.linalg.norm(without_line))
+
+
+def _around(times: FloatArray, gap: Interval) -> tuple[FloatArray, BoolArray]:
+    """Times s from the middle of a gap, and which frames they are: enough for an acceleration."""
     middle, half = (gap.start + gap.end) / 2, max(gap.end - gap.start, MIN_FALL_WINDOW) / 2
-    within = np.abs(times - middle) <= half
-    if within.sum() < 4:
-        return True
-    t = times[within] - middle
-    curvature = 2.0 * np.polyfit(t, com[within, 2], 2)[0]
-    error = 2.0 * COM_NOISE / np.linalg.norm(_without_line(t, t**2))
-    tolerance = max(FREE_FALL_TOLERANCE, STANDARD_ERRORS * error)
-    return bool(abs(curvature + STANDARD_GRAVITY) < tolerance)
-
-
-def _without_line(t: FloatArray, samples: FloatArray) -> FloatArray:
-    """Samples (T,) less the straight line that fits them best."""
-    return np.asarray(samples - np.polyval(np.polyfit(t, samples, 1), t))
+    within = np.asarray(np.abs(times - middle) <= half)
+    return times[within] - middle, within

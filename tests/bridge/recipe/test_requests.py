@@ -33,6 +33,7 @@ def test_the_recipe_in_the_documentation_is_understood() -> None:
         "keep_times",
         "solid",
         "human",
+        "shapes",
         "wider",
         "gravity",
         "kind",

@@ -304,10 +304,10 @@ def test_runs(clip: str) -> None:
     p = performance(clip)
     flights = find_contacts(p).flights
     for start, end in feet_above(p, 0.035):
-        assert 0.07 - FRAME <= end - start <= 0.13  # as listed
+        assert 0.07 - FRAME <= end - start <= 0.13 + FRAME  # as listed
         (flight,) = [f for f in flights if f.start < end and f.end > start]
         assert -0.055 <= flight.start - start <= FRAME
-        assert -0.03 <= flight.end - end <= 0.03  # heel strikes high: a sole is pressed by then
+        assert -0.03 - FRAME <= flight.end - end <= 0.03  # heel strikes high, a sole is pressed
     assert all(0.08 < f.end - f.start < 0.18 for f in flights if f.end < p.times[-1])
 
 
