@@ -61,6 +61,7 @@ def test_what_follows_a_moved_landing_is_carried_along(analysed: bpy.types.Objec
     assert "carried along with ground 2" in analysed.hangtime.status
 
 
+@pytest.mark.slow
 def test_a_second_edit_builds_on_the_first(analysed: bpy.types.Object) -> None:
     take = read_recording(analysed)
     analysed.hangtime.stances["ground 2"].forward = 0.1
@@ -80,6 +81,7 @@ def test_a_second_edit_builds_on_the_first(analysed: bpy.types.Object) -> None:
     assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1)
 
 
+@pytest.mark.slow
 def test_update_solves_again_when_the_take_below_was_edited(analysed: bpy.types.Object) -> None:
     take, slot = current_action(analysed), fcurves.slot_identifier(analysed)
     analysed.hangtime.stances["ground 2"].forward = 0.1
@@ -120,6 +122,7 @@ def test_a_result_in_a_strip_is_switched_off(analysed: bpy.types.Object) -> None
     assert len(analysed.animation_data.nla_tracks) == 2
 
 
+@pytest.mark.slow
 def test_a_jump_in_a_strip_of_the_artist_s_is_adapted_where_it_plays(
     jump: bpy.types.Object,
 ) -> None:

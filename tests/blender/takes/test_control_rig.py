@@ -122,6 +122,7 @@ def inverted(rig: bpy.types.Object, track: PoseTrack) -> ControlPoses:
     return complete(control_poses(controls, sample(rig, track.frames), track))
 
 
+@pytest.mark.slow
 def test_a_switch_between_forward_and_inverse_kinematics_is_followed() -> None:
     rig = generated_human(jumper(), arms=1.0, legs=0.0)
     torso, leg = rig.pose.bones["torso"], rig.pose.bones["thigh_parent.L"]

@@ -51,6 +51,7 @@ def test_the_landing_moves_and_the_recording_stays(analysed: bpy.types.Object) -
     assert analysed.animation_data.action == adapted
 
 
+@pytest.mark.slow
 def test_settings_survive_saving_and_still_adapt(
     analysed: bpy.types.Object, tmp_path: Path
 ) -> None:
