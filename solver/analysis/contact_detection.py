@@ -30,7 +30,7 @@ MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
-FALL_RESIDUAL = 0.02  # m, rms; a centre of mass further from every parabola is carried
+FALL_RESIDUAL = 0.03  # m, rms; a centre of mass further from every parabola is carried
 COM_NOISE = 0.001  # m, from frame to frame, of a recorded centre of mass
 STANDARD_ERRORS = 3.0  # of a fitted acceleration, before it speaks against a free fall
 

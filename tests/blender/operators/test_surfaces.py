@@ -26,6 +26,7 @@ from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.scene import SceneRole, SupportBox
 from hangtime.solver.scene.checks import check_scene
 from hangtime.solver.scene.triangle_mesh import placed_mesh
+from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.rows import make_rig
 from hangtime.tests.blender.helpers.solids import add_row, make_box, read
 
@@ -277,7 +278,7 @@ def test_a_jump_recorded_on_a_train_rides_on_it(jump: bpy.types.Object) -> None:
     for frame, x in ((0, 0.0), (400, 4.0)):  # 1.2 m/s
         train.location.x = x
         train.keyframe_insert("location", frame=frame)
-    for curve in train.animation_data.action.fcurves:
+    for curve in curves_of(train):
         for key in curve.keyframe_points:
             key.interpolation = "LINEAR"
     with pytest.raises(RuntimeError, match=r"slide along the floor|something unseen"):
