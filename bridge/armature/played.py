@@ -30,7 +30,7 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     """Why nothing that animates an object can be read as a recording."""
     data, strips = owner.animation_data, visible_strips(owner)
     if data is not None and data.action is None and strips:
-        why = why_unread(strips)
+        why = why_unread(owner, strips)
         if why is not None:
             return UnreadStrips(owner.name, tuple(strip.name for strip in strips), why)
     return NoAction(owner.name)

@@ -154,6 +154,11 @@ def has_company(armature: bpy.types.Object) -> None:
     tracks.new().strips.new("Wave", 50, tracks[0].strips[0].action)
 
 
+def is_starred(armature: bpy.types.Object) -> None:
+    has_company(armature)
+    armature.animation_data.nla_tracks[0].is_solo = True
+
+
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
@@ -161,6 +166,7 @@ def has_company(armature: bpy.types.Object) -> None:
         (turns_back, "Take plays backwards"),
         (fades, "Take fades in or out"),
         (has_company, "Take, Wave are several"),
+        (is_starred, "Take plays on a starred track"),
     ],
 )
 def test_what_strips_make_together_is_refused_by_their_names(
