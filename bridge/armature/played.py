@@ -19,9 +19,6 @@ _TRIPLES = ("co", "handle_left", "handle_right")
 def strip_time(owner: bpy.types.Object, action: bpy.types.Action) -> StripTime | None:
     """When a strip plays an action for an object; None where it is assigned, or every frame is
     shown at that frame."""
-    data = owner.animation_data
-    if data is not None and data.action == action:
-        return None
     strip = mapped_strip(owner, action)
     return time_of(strip) if strip is not None else None
 

@@ -9,7 +9,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.accessors import current_action
+from hangtime.bridge.accessors import current_action, shown_range
 from hangtime.bridge.armature.actions import read_recorded, recorded_action, show
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.keys_digest import keys_digest
@@ -135,6 +135,15 @@ def test_a_strip_that_is_moved_makes_results_stale() -> None:
     strip.frame_start, strip.frame_end = 45.0, 45.0 + SCALE * 59.0
     look_again(armature)
     assert result.hangtime.stale
+
+
+def test_a_take_that_is_assigned_again_is_read_at_its_own_frames() -> None:
+    armature = played()
+    adapt(armature, 50.0, 60.0)
+    take = recorded_action(armature)
+    armature.animation_data.action = take
+    assert shown_range(armature, take) == (1.0, 60.0)
+    assert read_recorded(armature, None, None).frames[[0, -1]].tolist() == [1.0, 60.0]
 
 
 def repeats(armature: bpy.types.Object) -> None:
