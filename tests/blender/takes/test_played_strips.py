@@ -137,6 +137,14 @@ def test_a_strip_that_is_moved_makes_results_stale() -> None:
     assert result.hangtime.stale
 
 
+def test_showing_the_take_leaves_the_strip_to_play_it() -> None:
+    armature = played()
+    before = heights(armature, SCENE)
+    show(armature, recorded_action(armature))
+    assert armature.animation_data.action is None
+    np.testing.assert_array_equal(heights(armature, SCENE), before)
+
+
 def test_a_take_that_is_assigned_again_is_read_at_its_own_frames() -> None:
     armature = played()
     adapt(armature, 50.0, 60.0)
