@@ -71,7 +71,11 @@ def shown_range(armature: bpy.types.Object, action: bpy.types.Action) -> tuple[f
 
 
 def mapped_strip(armature: bpy.types.Object, action: bpy.types.Action) -> bpy.types.NlaStrip | None:
-    """The strip that plays an action for an armature elsewhere than each frame at that frame."""
+    """The strip that plays an action for an armature elsewhere than each frame at that frame; None
+    where it is assigned."""
+    data = armature.animation_data
+    if data is not None and data.action == action:
+        return None
     strips = [strip for _, strip in take_strips(armature) if strip.action == action]
     alone = played_strip(armature)
     if alone is not None and alone.action == action:

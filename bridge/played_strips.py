@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 _SAME = 1e-4  # frames
 
 SEVERAL = "are several, and what they make together has no keys of its own"
+STARRED = "plays on a starred track, which would hide every result, so take the star off"
 
 
 @dataclass(frozen=True)
@@ -72,17 +73,20 @@ def played_strip(owner: bpy.types.Object) -> bpy.types.NlaStrip | None:
     if data is None or data.action is not None:
         return None
     strips = visible_strips(owner)
-    return strips[0] if len(strips) == 1 and why_unread(strips) is None else None
+    return strips[0] if len(strips) == 1 and why_unread(owner, strips) is None else None
 
 
-def why_unread(strips: list[bpy.types.NlaStrip]) -> str | None:
-    """Why what strips play cannot be read as one recording, to be said after their names; None
-    where it can. At least one strip."""
+def why_unread(owner: bpy.types.Object, strips: list[bpy.types.NlaStrip]) -> str | None:
+    """Why what an object's visible strips play cannot be read as one recording, to be said after
+    their names; None where it can. At least one strip."""
     if len(strips) > 1:
         return SEVERAL
     (strip,) = strips
+    data = owner.animation_data
+    assert data is not None
     slots = list(getattr(strip.action, "slots", ()))
     reasons = {
+        STARRED: any(track.is_solo for track in data.nla_tracks),
         "holds no action": strip.type != "CLIP" or strip.action is None,
         "plays no slot of its action": bool(slots) and strip.action_slot is None,
         "repeats its action": abs(strip.repeat - 1.0) > 1e-6,

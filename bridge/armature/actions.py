@@ -74,12 +74,13 @@ def recorded_poses(armature: bpy.types.Object, frames: FloatArray) -> Poses:
 def show(
     armature: bpy.types.Object, action: bpy.types.Action | None, slot: str | None = None
 ) -> None:
-    """Let the armature perform an action, in its strip where it has one; the pose follows."""
+    """Let the armature perform an action, in its strip where it has one, Hangtime's or the
+    artist's; the pose follows."""
     slot = slot or fcurves.slot_identifier(armature)
     if action is not None and strips_of(armature, action):
         fcurves.assign(armature, None)
         show_strip(armature, action)
-    else:
+    elif action is None or action != current_action(armature):
         fcurves.assign(armature, action, slot)
     _evaluate()
 

@@ -19,9 +19,6 @@ _TRIPLES = ("co", "handle_left", "handle_right")
 def strip_time(owner: bpy.types.Object, action: bpy.types.Action) -> StripTime | None:
     """When a strip plays an action for an object; None where it is assigned, or every frame is
     shown at that frame."""
-    data = owner.animation_data
-    if data is not None and data.action == action:
-        return None
     strip = mapped_strip(owner, action)
     return time_of(strip) if strip is not None else None
 
@@ -30,7 +27,7 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     """Why nothing that animates an object can be read as a recording."""
     data, strips = owner.animation_data, visible_strips(owner)
     if data is not None and data.action is None and strips:
-        why = why_unread(strips)
+        why = why_unread(owner, strips)
         if why is not None:
             return UnreadStrips(owner.name, tuple(strip.name for strip in strips), why)
     return NoAction(owner.name)

@@ -13,7 +13,7 @@ from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import bake
 from .engines import CONVENTIONS, format_of
-from .placed_takes import place_takes
+from .placed_takes import frames_of, place_takes
 from .skin import copy_skin
 from .writers import write
 
@@ -31,15 +31,16 @@ def export_takes(
 
     pelvis: the bone; needed where something else is to carry the way. Folders are made where
     missing. The scene is left as it was. A single take keeps its frames where the file is for no
-    engine; others begin at 0 s. Raises OutputNotWritable, MissingPart, SeveralTakes (a USD file
-    holds one), SameUsdNames.
+    engine, as long as none is below 0, where files have none; others begin at 0 s. Raises
+    OutputNotWritable, MissingPart, SeveralTakes (a USD file holds one), SameUsdNames.
     """
     form = format_of(options)
     if form is FileFormat.USD and len(takes) > 1:
         raise SeveralTakes(tuple(take.name for take in takes))
     if pelvis is None and options.root is not RootMotion.AS_IT_IS:
         raise MissingPart("pelvis")
-    keeps = len(takes) == 1 and not CONVENTIONS[options.engine].clean
+    alone = len(takes) == 1 and not CONVENTIONS[options.engine].clean
+    keeps = alone and frames_of(takes[0])[0] >= 0
     with scene_restored():
         found = place_takes(armature, takes, options, pelvis, keeps_frames=keeps)
         before = data_blocks()

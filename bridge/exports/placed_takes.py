@@ -71,7 +71,7 @@ def place_takes(
             if not carries:
                 path = without_turns(path, rest)
         name = take.name + (convention.loop if take.use_cyclic else "")
-        first = _range(take)[0] if keeps_frames else 0
+        first = frames_of(take)[0] if keeps_frames else 0
         baked.append(BakedTake(name, first, _placed(performed, found, made, space, path, carries)))
     return PlacedTakes(made, tuple(baked), space.placed, from_armature)
 
@@ -123,12 +123,13 @@ def _space(options: ExportOptions, poses: Sequence[Poses]) -> _Space:
 
 def _performed(armature: bpy.types.Object, take: bpy.types.Action) -> Poses:
     """Poses at every whole frame of a take."""
-    first, last = _range(take)
+    first, last = frames_of(take)
     with _performing(armature, take):
         return sample(armature, np.arange(first, last + 1.0))
 
 
-def _range(take: bpy.types.Action) -> tuple[int, int]:
+def frames_of(take: bpy.types.Action) -> tuple[int, int]:
+    """First and last whole frame of a take."""
     first, last = take.frame_range.to_tuple()
     return round(first), round(last)
 

@@ -53,6 +53,8 @@ def write(
         if form is FileFormat.FBX:
             if keeps_frames:  # only the scene's own take does, which is called as the scene is
                 called.enter_context(_called(scene, takes[0].name, bpy.data.scenes))
+            # What a viewport hides does not count as selected where that is asked.
+            called.enter_context(bpy.context.temp_override(selected_objects=list(names)))
             _write_fbx(made, convention, keeps_frames=keeps_frames)
         elif form is FileFormat.GLTF:
             _write_gltf(made)

@@ -33,6 +33,7 @@ from .span import ResultSpan
 
 _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
+    "shapes_told",
     *("whole_stance", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
     "keep_polish",

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 
-from ...bridge.accessors import present
+from ...bridge.accessors import armature_data, present
 from ...bridge.exports.engines import ENDINGS, format_of
 from ...bridge.exports.export import export_takes
 from ...bridge.exports.writers import usd_name
@@ -105,8 +105,10 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
 
     def check(self, _context: bpy.types.Context) -> bool:
         """Let the name end as the chosen format's files do."""
+        if not bpy.path.basename(self.filepath):  # a folder's name is not to end so
+            return False
         path = Path(self.filepath)
-        known = path.suffix in ENDINGS.values()
+        known = path.suffix.lower() in ENDINGS.values()
         wanted = str(path.with_suffix("") if known else path) + ENDINGS[format_of(self._options())]
         changed = bool(wanted != self.filepath)
         self.filepath = wanted
@@ -127,8 +129,7 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         options = self._options(bpy.path.abspath(self.filepath))
         ending = ENDINGS[format_of(options)]
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ending)
-        pelvis = next((p.bone for p in settings_of(armature).parts if p.name == "pelvis"), None)
-        export_takes(performer, taken, path, options, pelvis or None)
+        export_takes(performer, taken, path, options, _pelvis(armature, performer))
         left_out = [take.name for take in chosen if take not in taken]
         self._tell(performer, Path(path).name, options, left_out)
         return {"FINISHED"}
@@ -158,6 +159,12 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
 def _accepted(armature: bpy.types.Object) -> list[bpy.types.Action]:
     """The results with a tick, in the order of the list of takes."""
     return [t.action for t in takes_of(armature) if action_settings(t.action).accepted]
+
+
+def _pelvis(armature: bpy.types.Object, performer: bpy.types.Object) -> str | None:
+    """The bone, where there still is one of the name that was found."""
+    found = (part.bone for part in settings_of(armature).parts if part.name == "pelvis")
+    return next((name for name in found if name in armature_data(performer).bones), None)
 
 
 def _performer(take: bpy.types.Action, armature: bpy.types.Object) -> bpy.types.Object:

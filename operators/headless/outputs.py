@@ -30,7 +30,6 @@ from .stages import Stages
 if TYPE_CHECKING:  # as in clip.py
     import bpy
 
-    from ...bridge.armature.fcurves import CurveHolder
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
 
@@ -57,14 +56,16 @@ class Outputs:
     def write(self, *, picture: bool = True) -> Report:
         """All files of a result that is what was asked for; the picture where wanted."""
         from ...bridge.accessors import current_action, present
+        from ...bridge.armature.played import adopt_strip
 
         with self.stages.stage("Writing keyframes"):
-            take, recorded = self._recorded_curves(), current_action(self.clip.armature)
+            recorded = present(current_action(self.clip.armature))
+            adopt_strip(self.clip.armature, recorded)
             performer, adapted, written = self._write_actions("adapted")
-            keys = self._choose_keys(performer, adapted, take)
+            keys = self._choose_keys(performer, adapted, recorded)
             self._mark_contacts(performer, adapted)
             if self.loop is None:  # which is an action of its own
-                self._lay_strips(performer, present(recorded), adapted)
+                self._lay_strips(performer, recorded, adapted)
             self._build_scene()
             _save_blend(self.outbox.path("adapted.blend"))
         self._export(performer, adapted)
@@ -181,12 +182,11 @@ class Outputs:
         if written_as is WrittenAs.ACTION or performer != self.clip.armature:
             return
         from ...bridge.armature.fcurves import slot_identifier
-        from ...bridge.armature.played import adopt_strip, in_scene_time
+        from ...bridge.armature.played import in_scene_time
         from ...bridge.armature.strips import lay_strips
         from ...bridge.takes.difference import difference_of
 
         slot, combined = slot_identifier(performer), written_as is WrittenAs.COMBINE
-        adopt_strip(performer, take)
         with in_scene_time(performer, take) as played:
             more = difference_of(performer, played, adapted, slot) if combined else None
         lay_strips(performer, take, adapted, slot, more)
@@ -208,28 +208,25 @@ class Outputs:
             kept=adapted_spans(present(current_action(self.clip.armature))),
         )
 
-    def _recorded_curves(self) -> CurveHolder | None:
-        """Before anything is written."""
-        from ...bridge.armature import fcurves
-
-        return fcurves.holder(self.clip.armature)
-
     def _choose_keys(
-        self, performer: bpy.types.Object, adapted: bpy.types.Action, take: CurveHolder | None
+        self, performer: bpy.types.Object, adapted: bpy.types.Action, recorded: bpy.types.Action
     ) -> KeysReport | None:
         """Give the action the keys that are asked for; None where every frame has one."""
         if self.keys.on is KeyChoice.EVERY_FRAME:
             return None
         from ...bridge.armature import fcurves
         from ...bridge.armature.incremental import complete
+        from ...bridge.armature.played import in_scene_time
         from ...bridge.keys.events import events_of
         from ...bridge.keys.written import KeyedAction, choose_keys
 
         track, rate = self.result.track, self.result.recording.rate
         slot = fcurves.slot_identifier(performer)
-        keyed = KeyedAction(adapted, slot, track.bones, track.frames, take)
         events = events_of(self.result.schedule, float(track.frames[0]), rate)
-        return complete(choose_keys(performer, keyed, self.keys, events))
+        with in_scene_time(self.clip.armature, recorded) as played:
+            take = fcurves.holder_in(played, fcurves.slot_identifier(self.clip.armature))
+            keyed = KeyedAction(adapted, slot, track.bones, track.frames, take)
+            return complete(choose_keys(performer, keyed, self.keys, events))
 
     def _build_scene(self) -> None:
         from ...bridge.files.scene_objects import build_scene

@@ -95,8 +95,8 @@ class UpdateOperator(Adapting, bpy.types.Operator):
     bl_idname = OperatorId.UPDATE
     bl_label = "Update"
     bl_description = (
-        "Make the result anew from the take as it is now, with the settings it was made with: "
-        "analyzes where the take below has changed, and adapts"
+        "Make the result anew from the take and the settings as they are now: analyzes where the "
+        "take below has changed, and adapts"
     )
     bl_options = {"UNDO"}
 

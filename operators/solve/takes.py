@@ -13,6 +13,7 @@ from ...bridge.takes.takes import (
     start_from_recording,
     start_from_result,
 )
+from ...solver.data.faults import BadRecipe
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import hindrance, required_armature
@@ -32,7 +33,10 @@ def left_behind(armature: bpy.types.Object) -> str:
     """What is to be said before edits made by hand in the last result do not go along; empty where
     they do, or there are none."""
     result = polished_result(armature)
-    if result is None or is_kept(armature, result):
+    try:
+        if result is None or is_kept(armature, result):
+            return ""
+    except BadRecipe:  # nothing is made, and the solve says why
         return ""
     result.use_fake_user = True
     source, chosen = present(recorded_action(armature)), settings_of(armature).result.keep_polish

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +11,11 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import record
 from hangtime.bridge.files.reimport import reimport
+from hangtime.bridge.recipe.export import ExportOptions
+from hangtime.operators.export.export_takes import ExportTakesOperator
 from hangtime.tests.blender.helpers.fbx import fbx_file
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -84,3 +88,52 @@ def test_a_usd_of_several_takes_is_refused_in_words(
     with pytest.raises(RuntimeError, match="A USD file holds one take"):
         bpy.ops.hangtime.export(filepath=str(path), takes="ACCEPTED", format="USD")
     assert not path.exists()
+
+
+def test_a_take_that_begins_below_frame_0_is_whole_and_begins_at_0_s(
+    accepted: bpy.types.Object, tmp_path: Path
+) -> None:
+    result = current_action(accepted)
+    for curve in fcurves.all_curves(result):
+        keys = fcurves.table(curve)
+        for each in ("co", "handle_left", "handle_right"):
+            keys[each][:, 0] -= 40.0
+        fcurves.put(curve, keys)
+    frames = np.arange(*result.frame_range)[::20]
+    shown, path = record(accepted, frames), tmp_path / "early.fbx"
+    assert bpy.ops.hangtime.export(filepath=str(path)) == {"FINISHED"}
+    again = reimport(path, frames, begins=frames[0])
+    columns = [again.index(bone.name) for bone in shown.bones]
+    np.testing.assert_allclose(again.heads[:, columns], shown.heads, atol=1e-3)
+
+
+def test_a_viewport_that_hides_armatures_does_not_empty_the_file(
+    accepted: bpy.types.Object, tmp_path: Path
+) -> None:
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    area.spaces.active.show_object_viewport_armature = False
+    path, (first, last) = tmp_path / "hidden.fbx", current_action(accepted).frame_range
+    with bpy.context.temp_override(window=window, area=area):
+        assert bpy.ops.hangtime.export(filepath=str(path)) == {"FINISHED"}
+    assert len(reimport(path, np.array([first, last])).bones) == len(accepted.data.bones)
+
+
+def test_a_pelvis_that_was_renamed_is_asked_for_where_it_is_needed(
+    accepted: bpy.types.Object, tmp_path: Path
+) -> None:
+    accepted.data.bones[accepted.hangtime.parts["pelvis"].bone].name = "Gubbins"
+    path = str(tmp_path / "renamed.fbx")
+    assert bpy.ops.hangtime.export(filepath=path) == {"FINISHED"}
+    with pytest.raises(RuntimeError, match="pelvis") as refused:
+        bpy.ops.hangtime.export(filepath=path, root="ROOT_BONE")
+    assert "Traceback" not in str(refused.value)
+
+
+def test_the_dialog_mends_endings_and_leaves_a_folder_without_a_name_alone(tmp_path: Path) -> None:
+    def mended(name: str) -> str:
+        dialog = SimpleNamespace(filepath=f"{tmp_path}/{name}", _options=ExportOptions)
+        ExportTakesOperator.check(dialog, None)
+        return dialog.filepath.removeprefix(f"{tmp_path}/")
+
+    assert [mended(name) for name in ("", "jump", "jump.GLB")] == ["", "jump.fbx", "jump.fbx"]

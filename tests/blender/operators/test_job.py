@@ -12,6 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.files.reimport import reimport
@@ -214,6 +215,28 @@ def test_a_result_may_be_a_strip_on_top_of_the_take(clip: Path, tmp_path: Path) 
     copy = bpy.data.objects[f"{clip.stem} recording"].animation_data
     assert copy.action.name == clip.stem
     assert not copy.nla_tracks
+
+
+@pytest.mark.slow
+def test_a_take_that_a_strip_plays_later_stays_there(clip: Path, tmp_path: Path) -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    data = import_clip(clip).armature.animation_data
+    strip = data.nla_tracks.new().strips.new("Mine", 51, data.action)  # 50 frames later
+    data.action = None
+    path = tmp_path / "played.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    text = 'frames = [150, 340]\n[result]\nwritten_as = "combine"\n[keys]\non = "as the take"\n'
+    assert strip.frame_start == 51.0
+    assert run(tmp_path, path, text, "--no-picture") == 0
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out" / "adapted.blend"))
+    figure = bpy.data.objects[clip.stem]
+    assert len(figure.animation_data.nla_tracks) == 2
+    frames = np.array([80.0, 160.0, 240.0, 300.0, 360.0])
+    shown = sample(figure, frames).matrices[:, 0, 2, 3]
+    copy = sample(bpy.data.objects[f"{clip.stem} recording"], frames).matrices[:, 0, 2, 3]
+    recorded = sample(import_clip(clip).armature, frames - 50.0).matrices[:, 0, 2, 3]
+    np.testing.assert_allclose(copy, recorded, atol=1e-4)
+    np.testing.assert_allclose(shown, recorded, atol=0.05)
 
 
 def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Path, capsys) -> None:

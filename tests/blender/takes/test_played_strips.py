@@ -9,7 +9,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.accessors import current_action
+from hangtime.bridge.accessors import current_action, shown_range
 from hangtime.bridge.armature.actions import read_recorded, recorded_action, show
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.keys_digest import keys_digest
@@ -137,6 +137,23 @@ def test_a_strip_that_is_moved_makes_results_stale() -> None:
     assert result.hangtime.stale
 
 
+def test_showing_the_take_leaves_the_strip_to_play_it() -> None:
+    armature = played()
+    before = heights(armature, SCENE)
+    show(armature, recorded_action(armature))
+    assert armature.animation_data.action is None
+    np.testing.assert_array_equal(heights(armature, SCENE), before)
+
+
+def test_a_take_that_is_assigned_again_is_read_at_its_own_frames() -> None:
+    armature = played()
+    adapt(armature, 50.0, 60.0)
+    take = recorded_action(armature)
+    armature.animation_data.action = take
+    assert shown_range(armature, take) == (1.0, 60.0)
+    assert read_recorded(armature, None, None).frames[[0, -1]].tolist() == [1.0, 60.0]
+
+
 def repeats(armature: bpy.types.Object) -> None:
     armature.animation_data.nla_tracks[0].strips[0].repeat = 2.0
 
@@ -154,6 +171,11 @@ def has_company(armature: bpy.types.Object) -> None:
     tracks.new().strips.new("Wave", 50, tracks[0].strips[0].action)
 
 
+def is_starred(armature: bpy.types.Object) -> None:
+    has_company(armature)
+    armature.animation_data.nla_tracks[0].is_solo = True
+
+
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
@@ -161,6 +183,7 @@ def has_company(armature: bpy.types.Object) -> None:
         (turns_back, "Take plays backwards"),
         (fades, "Take fades in or out"),
         (has_company, "Take, Wave are several"),
+        (is_starred, "Take plays on a starred track"),
     ],
 )
 def test_what_strips_make_together_is_refused_by_their_names(

@@ -260,3 +260,15 @@ def test_a_result_chosen_in_the_list_hands_on_its_own_polish() -> None:
     armature.hangtime.result.keep_polish = True
     adapt(armature, 0.3)
     assert turned(head_bases(armature), polished).max() < 2e-3
+
+
+def test_a_broken_recipe_beside_polish_is_refused_in_words() -> None:
+    armature = rig()
+    adapt(armature, 0.1)
+    turn_head(armature, range(25, 31))
+    wishes = armature.hangtime.requests = bpy.data.texts.new("wishes")
+    wishes.write("[[")
+    armature.hangtime.contacts.add().name = "heel"
+    with pytest.raises(RuntimeError, match="wishes") as refused:
+        bpy.ops.hangtime.adapt()
+    assert "Traceback" not in str(refused.value)

@@ -237,6 +237,15 @@ def test_armatures_that_share_a_recording_list_their_own_results(
     assert [take.action for take in takes_of(twin)] == [recording, first, second]
 
 
+def test_what_an_analysis_says_of_the_mesh_makes_no_result_stale(
+    armature: bpy.types.Object,
+) -> None:
+    first = adapt(armature, 10, 20, 0.1)
+    armature.hangtime.shapes_told = "12 of 20 bodies have the shape of Skin"
+    look_again(armature)
+    assert first.hangtime.stale == ""
+
+
 def test_a_recipe_text_that_is_edited_makes_results_stale(armature: bpy.types.Object) -> None:
     armature.hangtime.requests = text = bpy.data.texts.new("Requests")
     first = adapt(armature, 10, 20, 0.1)
