@@ -101,6 +101,29 @@ class UnreadableClip(Fault):
 
 
 @dataclass
+class ClipNotOpened(Fault):
+    """A motion file that is not there, or cannot be opened."""
+
+    path: str
+    problem: str
+
+
+@dataclass
+class UnknownClipFormat(Fault):
+    """A file of another format than those that are read."""
+
+    path: str
+
+
+@dataclass
+class FramesReversed(Fault):
+    """The chosen frames end before they begin."""
+
+    first: float
+    last: float
+
+
+@dataclass
 class UnseenSupport(Fault):
     """Nothing touches, yet the body does not fall: something unrecorded carries it (frames).
 
