@@ -69,6 +69,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is.",
         "No bone was found for the {part} (looked for {tried:names}); say which bone it is.",
     ),
+    faults.BoneTaken: "No bone is left for the {part}, for “{bone}” was chosen for the {by}; "
+    "choose another bone for one of them.",
     faults.NotJoined: "The bones {bones:names} have no common bone above them, so that legs and "
     "trunk do not hang together; parent them to one bone in edit mode, or choose others under "
     "Bones.",

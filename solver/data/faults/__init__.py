@@ -11,6 +11,7 @@ from .loops import NothingRecurs as NothingRecurs
 from .loops import NotInLoop as NotInLoop
 from .loops import SeamStanceMoved as SeamStanceMoved
 from .recordings import BadScale as BadScale
+from .recordings import BoneTaken as BoneTaken
 from .recordings import ChangedMeanwhile as ChangedMeanwhile
 from .recordings import ClipNotOpened as ClipNotOpened
 from .recordings import ClipTooShort as ClipTooShort

@@ -61,6 +61,14 @@ class MissingPart(Fault):
 
 
 @dataclass
+class BoneTaken(MissingPart):
+    """A body part that the physics needs has no bone, as its own was chosen for another part."""
+
+    bone: str = ""
+    by: str = ""
+
+
+@dataclass
 class NotJoined(Fault):
     """Legs and head hang on no common bone. bones: both thighs and the head."""
 
