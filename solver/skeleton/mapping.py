@@ -125,7 +125,7 @@ def trunk(tree: Tree, found: Found) -> tuple[list[int], list[int]]:
         arms.update(tree.ancestors(shoulder)[1:])
     middle = line[: line.index(pelvis)][::-1] if pelvis in line else []
     spine = [bone for bone in middle if bone in arms]
-    if not spine:
+    if not spine or set(middle) & set(found.values()):  # else a limb's bones would be two bodies
         raise NoSpine(tree.bones[pelvis].name, tree.bones[head].name)
     neck = [bone for bone in middle if bone not in arms]
     return spine, neck[:1] if tree.generated else neck
