@@ -39,6 +39,8 @@ def write(
     """Write a baked rig, at rest where the file tells no take, and its skin, under these names. The
     scene's range and frame are left at the takes'. Raises OutputNotWritable, SameUsdNames."""
     form, convention = format_of(options), CONVENTIONS[options.engine]
+    if form is FileFormat.USD and not bpy.app.build_options.usd:  # as Debian's is
+        raise OutputNotWritable(str(target), "this Blender was built without USD")
     scene = current_scene()
     for thing in names:
         thing.select_set(True)

@@ -13,7 +13,13 @@ from warnings import catch_warnings, simplefilter
 import bpy
 import numpy as np
 
-from ...solver.data.faults import NoAction, NoArmature, UnreadableClip
+from ...solver.data.faults import (
+    ClipNotOpened,
+    NoAction,
+    NoArmature,
+    UnknownClipFormat,
+    UnreadableClip,
+)
 from ..accessors import armature_data, current_action, current_scene, pose_of, present
 from ..armature import fcurves
 from ..armature.build_armature import FIRST_FRAME, build_armature
@@ -56,8 +62,8 @@ def import_clip(
     unit: m per unit of length, up: the axis that points up (an FBX tells its own); what is not
     given is what the file tells or else guessed. asf, rate (Hz): the skeleton and rate of an AMC
     file, which tells neither. The scene gets the clip's rate, range and first frame; one file
-    frame is one scene frame. Raises UnreadableClip, NonFiniteKey, and for an FBX NoArmature,
-    NoAction; nothing that came in is then left behind.
+    frame is one scene frame. Raises ClipNotOpened, UnknownClipFormat, UnreadableClip, NonFiniteKey,
+    and for an FBX NoArmature, NoAction; nothing that came in is then left behind.
     """
     path = Path(path)
     _leave_other_modes()
@@ -74,7 +80,7 @@ def import_clip(
                 problem = "is a skeleton without motion; its AMC file holds the motion"
                 raise UnreadableClip(str(path), None, problem)
             case _:
-                raise UnreadableClip(str(path), None, "is no BVH, FBX or AMC file")
+                raise UnknownClipFormat(str(path))
 
 
 def _placed(
@@ -109,7 +115,7 @@ def _import_bvh(path: Path, _: MotionClip, scale: float, up: UpAxis) -> bpy.type
 
 def _import_fbx(path: Path, unit: float | None) -> ImportedClip:
     if not path.is_file():
-        raise UnreadableClip(str(path), None, "cannot be opened")
+        raise ClipNotOpened(str(path), "there is no such file")
     before = set(bpy.data.objects)
     with _importer("io_scene_fbx", path):
         bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)

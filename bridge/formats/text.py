@@ -8,7 +8,7 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ...solver.data.faults import NonFiniteKey, UnreadableClip
+from ...solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
 
 
 class Line(NamedTuple):
@@ -26,13 +26,13 @@ class Reader:
     """A text file's lines that are not blank, taken one after another."""
 
     def __init__(self, path: Path) -> None:
-        """Raises UnreadableClip where the file cannot be opened or is not text."""
+        """Raises ClipNotOpened, or UnreadableClip where the file is not text."""
         self.path = path
         try:
             data = path.read_bytes()
             text = data.decode("utf-8")
         except OSError as error:
-            raise UnreadableClip(str(path), None, error.strerror or "cannot be opened") from error
+            raise ClipNotOpened(str(path), error.strerror or str(error)) from error
         except UnicodeDecodeError as error:
             line = data.count(b"\n", 0, error.start) + 1
             raise UnreadableClip(str(path), line, "holds bytes that are not text") from error

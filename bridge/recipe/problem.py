@@ -59,6 +59,7 @@ from ...solver.body.anatomy import SIDED_PARTS
 from ...solver.data.faults import (
     BadDimensions,
     BadRecipe,
+    BoneTaken,
     DependentRows,
     Fault,
     MissingPart,
@@ -196,7 +197,7 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
             contacts = enumerate(values.get("contact", ()))
             return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
         case MissingPart():
-            return [("bones", fault.part)]
+            return [("bones", fault.by if isinstance(fault, BoneTaken) else fault.part)]
         case UnknownReductionBone() | WrongWeights():
             return [(*REDUCTION, "matrix", fault.row - 1)]
         case DependentRows():

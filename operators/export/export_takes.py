@@ -150,9 +150,9 @@ class ExportTakesOperator(FaultyOperator, bpy.types.Operator):
         said = f"Exported {name}"
         if left_out:
             said += LEFT_OUT.format(", ".join(left_out))
-        renamed = [b for b in present(performer.pose).bones if usd_name(b.name) != b.name]
-        if format_of(options) is FileFormat.USD and renamed:
-            said += RENAMED.format(len(renamed))
+        if format_of(options) is FileFormat.USD:
+            renamed = [b for b in present(performer.pose).bones if usd_name(b.name) != b.name]
+            said += RENAMED.format(len(renamed)) if renamed else ""
         self.report({"INFO"}, said)
 
 

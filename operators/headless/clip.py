@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...solver.data.faults import NoArmature, UnreadableClip
+from ...solver.data.faults import ClipNotOpened, NoArmature
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording, Skin
 from ...solver.data.reports.recording import Origin
@@ -105,8 +105,8 @@ def _open(path: Path) -> bpy.types.Object:
         with quiet():
             bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False)
     except RuntimeError as error:
-        problem = "Blender cannot open it" if path.is_file() else "there is no such file"
-        raise UnreadableClip(str(path), None, problem) from error
+        problem = "Blender does not read it" if path.is_file() else "there is no such file"
+        raise ClipNotOpened(str(path), problem) from error
     active = present(bpy.context.view_layer).objects.active
     if active is not None and active.type == "ARMATURE":
         return _recorded(active)

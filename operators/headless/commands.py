@@ -12,7 +12,7 @@ from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.objects import placed_objects
-from ...bridge.recipe.problem import Recipe, locate, parse_recipe, read_recipe_text
+from ...bridge.recipe.problem import PARTS, Recipe, locate, parse_recipe, read_recipe_text
 from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...solver.data.faults import BadRecipe, Fault, NoSolution, UnseenSupport
 from ...solver.data.problem import MotionProblem
@@ -130,7 +130,12 @@ def _bone(text: str) -> tuple[str, str]:
     part, equals, bone = text.partition("=")
     if not (equals and part.strip() and bone.strip()):
         raise argparse.ArgumentTypeError(f'{text!r} is not of the form "left foot=Fuss.L"')
-    return part.strip().lower(), bone.strip()
+    part = part.strip().lower()
+    if part not in PARTS:
+        raise argparse.ArgumentTypeError(
+            f"unknown part of the body {part!r}; known: {', '.join(PARTS)}"
+        )
+    return part, bone.strip()
 
 
 # ---------------------------------------------------------------- the commands

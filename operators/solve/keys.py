@@ -1,5 +1,7 @@
 """Keys of a result, as the panel or the armature's recipe text asks for them."""
 
+from math import degrees, radians
+
 import bpy
 
 from ...bridge.accessors import present
@@ -27,7 +29,9 @@ def key_options(settings: HangtimeSettings) -> KeyOptions:
     if stated is not None:
         return stated
     panel = settings.result_keys
-    return KeyOptions(KeyChoice[panel.on], panel.distance / 1000.0, panel.angle)
+    # As the panel shows it: Blender's single precision is not what a person asked for.
+    angle = radians(round(degrees(panel.angle), 4))
+    return KeyOptions(KeyChoice[panel.on], panel.distance / 1000.0, angle)
 
 
 def mark_contacts(

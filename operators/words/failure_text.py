@@ -50,16 +50,9 @@ def failure_of(fault: Fault, uid: int, of: str, translate: Translate = str) -> F
     if not isinstance(fault, NoSolution) or not fault.worst:
         first = told.partition("; ")[0].rstrip(".")
         return Failure(uid, of, fault, shorten(first, MOST_LETTERS, placeholder=" …"), told)
-    worst = [replace(each, name=_called(each.name)) for each in fault.worst[:MOST_ROWS]]
-    rows = tuple(FailureRow(each.name, missed(each, translate)) for each in worst)
+    rows = tuple(FailureRow(each.name, missed(each, translate)) for each in fault.worst[:MOST_ROWS])
     head = translate(NO_FIT if isinstance(fault, NoFit) else NO_MOTION).format(rows[0].text)
     advice = sentence(replace(fault, worst=()), translate)
     if fault.reached > 0.0:
         advice = f"{advice} {translate(REACHED).format(round(100.0 * fault.reached))}"
     return Failure(uid, of, fault, head, advice, rows)
-
-
-def _called(name: str) -> str:
-    """A violation's name as the lists have it: "Left toe 2: Left toe 2" is a pin and its point."""
-    pin, _, point = name.partition(": ")
-    return pin if pin == point else name

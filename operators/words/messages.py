@@ -40,6 +40,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",
+    faults.FramesReversed: "The chosen frames end at {last:g}, before they begin at {first:g}; "
+    "swap them.",
     faults.NothingRecurs: "Nothing repeats from frame {first:g} to {last:g}: no heel or toe lands "
     "or leaves, and does so again that many frames later. Choose frames from one landing of a foot "
     "to its next.",
@@ -67,6 +69,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is.",
         "No bone was found for the {part} (looked for {tried:names}); say which bone it is.",
     ),
+    faults.BoneTaken: "No bone is left for the {part}, for “{bone}” was chosen for the {by}; "
+    "choose another bone for one of them.",
     faults.NotJoined: "The bones {bones:names} have no common bone above them, so that legs and "
     "trunk do not hang together; parent them to one bone in edit mode, or choose others under "
     "Bones.",
@@ -82,11 +86,15 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "The recording {path}, line {line}: {problem}; mend the file or export it again from where "
         "it came.",
     ),
+    faults.ClipNotOpened: "The recording {path} cannot be opened ({problem}); check its name and "
+    "whether it may be read.",
+    faults.UnknownClipFormat: "The recording {path} is no BVH, FBX, AMC or .blend file; import it "
+    "in Blender, and give the .blend file that you save.",
     faults.BadRecipe: (
         "Recipe {path}: {problem:ended}",
         "Recipe {path}, line {line}: {problem:ended}",
     ),
-    faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another folder "
+    faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another place "
     "or allow writing there.",
     faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
     "no pose holds both, so move one of them or move them together.",

@@ -308,12 +308,13 @@ def _contacts(report: Report) -> Iterator[str]:
 
 
 def _conditions(report: Report) -> Iterator[str]:
-    yield f"{'Request':<24}{'':<14}held"
+    width = max([24, *(len(each.name) + 1 for each in report.conditions)])
+    yield f"{'Request':<{width}}{'':<14}held"
     for each in report.conditions:
         held = "yes"
         if not each.met:
             held = f"missed by {amount(each)} (frame {each.worst_violation_frame:.0f})"
-        yield f"{each.name:<24}{each.kind.label:<14}{held}"
+        yield f"{each.name:<{width}}{each.kind.label:<14}{held}"
 
 
 def amount(missed: ConstraintReport) -> str:
@@ -330,7 +331,7 @@ def amount(missed: ConstraintReport) -> str:
 def _torque_limits(report: Report) -> Iterator[str]:
     for each in report.torque_limits:
         yield (
-            f"{each.name:<24}muscles at most {each.muscles_peak_nm:.3g} N·m "
+            f"{each.name:<23} muscles at most {each.muscles_peak_nm:.3g} N·m "
             f"(rms {each.muscles_rms_nm:.2g}), passive tissue {each.passive_peak_nm:.2g} N·m"
         )
 

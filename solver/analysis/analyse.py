@@ -12,7 +12,14 @@ from dataclasses import dataclass, replace
 
 from ..body.character import Character, build_character
 from ..data.contacts import Contact, ContactSchedule, Interval, snap
-from ..data.faults import BadTiming, ClipTooShort, Treadmill, UnknownContactName, UnseenSupport
+from ..data.faults import (
+    BadTiming,
+    ClipTooShort,
+    FramesReversed,
+    Treadmill,
+    UnknownContactName,
+    UnseenSupport,
+)
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from ..scene.fall_rate import fitting_rate
@@ -71,10 +78,13 @@ def _fitting_rate(performance: Performance, gap: Interval) -> int | None:
 def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:
     """The problem's frames of a recording, and the character built from them.
 
-    Raises ClipTooShort, MissingPart, ZeroLengthBone.
+    Raises FramesReversed, ClipTooShort, MissingPart, ZeroLengthBone.
     """
     if problem.frames is not None:
-        recording = recording.window(*problem.frames)
+        first, last = problem.frames
+        if last < first:
+            raise FramesReversed(first, last)
+        recording = recording.window(first, last)
     seconds = float(recording.times[-1]) if len(recording.times) else 0.0
     if seconds < MIN_CLIP_DURATION:
         raise ClipTooShort(seconds, MIN_CLIP_DURATION)

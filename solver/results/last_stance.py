@@ -11,12 +11,16 @@ def last_stance_move(adaptation: Adaptation) -> StanceMove | None:
     """The least-squares rigid move of the last ground phase's contacts, at its end; None where
     no phase has contacts that were found.
 
-    From where the fit has them, so that what nobody moves stays to the last bit.
+    From where the fit has them, so that what nobody moves stays to the last bit; to where the
+    motion has them, which short of its target is on the way there.
     """
     setup = adaptation.setup
     schedule = setup.schedule
-    before, after = setup.fitted, Standing.of(adaptation.motion)
-    moves = stance_moves(schedule, before, after, setup.turns)
+    if adaptation.stood is None:
+        after, turns = Standing.of(adaptation.motion), setup.turns
+    else:
+        after, turns = adaptation.stood, None
+    moves = stance_moves(schedule, setup.fitted, after, turns)
     if not moves:
         return None
     last = moves[-1]

@@ -76,7 +76,9 @@ def worst_constraints(
     rows = t.rows(motion.x, adaptation.outcome.places)
     pins = pins_of_contacts(adaptation.fit, problem)
     phases = adaptation.setup.schedule.phases
-    owners = [f"{pins[name]}: {name}" if name in pins else name for name in t.owners]
+    owners = [
+        name if pins.get(name, name) == name else f"{pins[name]}: {name}" for name in t.owners
+    ]
     found: dict[tuple[str, RowKind], float] = {}
     for kind, time, owner, left in zip(
         rows.kind, rows.time, rows.owner, np.abs(rows.violation()), strict=True

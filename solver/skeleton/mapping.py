@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import pairwise
 
-from ..data.faults import MissingPart, NoSpine, NotJoined
+from ..data.faults import BoneTaken, MissingPart, NoSpine, NotJoined
 from ..data.recording import Bone
 from .conventions import matched
 from .names import PART_NAMES, by_words
@@ -78,10 +78,10 @@ def labels_of(guess: Guess, bones: Sequence[Bone]) -> dict[str, tuple[str, Evide
 def settled(tree: Tree, chosen: Mapping[str, str]) -> Found:
     """The bone of every part but spine and neck; the artist's choices, label -> bone, win.
 
-    Raises MissingPart for a part that the physics needs or a choice that there is not, NotJoined
-    where legs and head hang on no common bone.
+    Raises MissingPart for a part that the physics needs or a choice that there is not, BoneTaken
+    where its bone was chosen for another, NotJoined where legs and head hang on no common bone.
     """
-    found = guess_bones(tree).bones
+    guessed = found = guess_bones(tree).bones
     index = {bone.name: i for i, bone in enumerate(tree.bones)}
     for label, name in chosen.items():
         if name not in index:
@@ -92,13 +92,23 @@ def settled(tree: Tree, chosen: Mapping[str, str]) -> Found:
         found[LABELS[label]] = index[name]
     for key in REQUIRED_KEYS:
         if key not in found:
-            raise MissingPart(label_of(key), PART_NAMES[key[0]])
+            raise _missing(tree, key, guessed, chosen)
     if "pelvis" not in chosen:
         pelvis = _pelvis(tree, found)
         if pelvis is None:
             raise NotJoined(tuple(tree.bones[found[key]].name for key in _JOINED))
         found[Part.PELVIS, Side.MIDDLE] = pelvis
     return found
+
+
+def _missing(tree: Tree, key: Key, guessed: Found, chosen: Mapping[str, str]) -> MissingPart:
+    """Why a part has no bone: its own was chosen for another, or there is none."""
+    part = label_of(key)
+    bone = chosen.get(part, tree.bones[guessed[key]].name if key in guessed else None)
+    by = next((other for other, name in chosen.items() if name == bone and other != part), None)
+    if bone is None or by is None:
+        return MissingPart(part, PART_NAMES[key[0]])
+    return BoneTaken(part, bone=bone, by=by)
 
 
 def trunk(tree: Tree, found: Found) -> tuple[list[int], list[int]]:
@@ -115,7 +125,7 @@ def trunk(tree: Tree, found: Found) -> tuple[list[int], list[int]]:
         arms.update(tree.ancestors(shoulder)[1:])
     middle = line[: line.index(pelvis)][::-1] if pelvis in line else []
     spine = [bone for bone in middle if bone in arms]
-    if not spine:
+    if not spine or set(middle) & set(found.values()):  # else a limb's bones would be two bodies
         raise NoSpine(tree.bones[pelvis].name, tree.bones[head].name)
     neck = [bone for bone in middle if bone not in arms]
     return spine, neck[:1] if tree.generated else neck

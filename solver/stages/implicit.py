@@ -26,7 +26,7 @@ from ..transcription.transcription import Transcription
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
 from .setup import Setup, set_up
-from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
+from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_ARRIVALS = 2  # where guards were given up, which in smaller steps need not be
@@ -46,7 +46,8 @@ class Adaptation(SolvedMotion):
 
     stuck: where the steps failed, None where they did not; the motion is then the last on the way
     that obeys physics, `reached` the share of the way that it went. gain: the explicit solution's
-    objective in shares of that at its start; None where there was none.
+    objective in shares of that at its start; None where there was none. stood: where the contacts
+    stand of a motion short of its target, None where they are at it.
     """
 
     fit: Fit
@@ -54,6 +55,7 @@ class Adaptation(SolvedMotion):
     stuck: Outcome | None = None
     reached: float = 1.0
     gain: float | None = None
+    stood: Standing | None = None
 
     @property
     def track(self) -> PoseTrack:
@@ -104,7 +106,8 @@ def _require_closed(setup: Setup) -> None:
 def _stopped(motion: Motion, fit: Fit, setup: Setup) -> Adaptation:
     feasible = setup.feasible_set(motion.transcription)
     outcome = feasible.outcome(motion.x, Status.STOPPED, [], feasible.violation(motion.x))
-    return Adaptation((outcome,), setup.target_places, fit, setup, outcome, reached=0.0)
+    places, stood = setup.target_places, Standing.of(motion)
+    return Adaptation((outcome,), places, fit, setup, outcome, reached=0.0, stood=stood)
 
 
 def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | None) -> Adaptation:
@@ -216,7 +219,8 @@ def _best_feasible(
     feasible = setup.feasible_set(setup.start.transcription)
     outcomes.append(feasible.outcome(best.x, stuck.status, [], feasible.violation(best.x)))
     places = setup.target_places
-    return Adaptation(tuple(outcomes), places, fit, setup, stuck, attempt.reached)
+    stood = Standing.of(Motion(best.transcription, best.x, best.places))
+    return Adaptation(tuple(outcomes), places, fit, setup, stuck, attempt.reached, stood=stood)
 
 
 def _continuation(

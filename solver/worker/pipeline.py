@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from ..analysis.analyse import Analysis, analyse, build_figure
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
+from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule
 from ..data.faults import NoFit, NoSolution, UnseenSupport
 from ..data.loop import Cycle
@@ -267,13 +268,15 @@ def solve(
 ) -> AdaptationResult:
     """The whole way from an analysis. fitted_by: may remember fits.
 
-    Raises what `adapt` and `check_scene` do; wrong names in pins and shapes before the fit takes
-    its seconds.
+    Raises what `adapt` and `check_scene` do; wrong names of bones, phases and contacts before the
+    fit takes its seconds.
     """
     check_scene(subject.problem)
     check_loop(subject.problem)
     performance, schedule = subject.analysis.performance, subject.analysis.schedule
-    ShapeChanges.of(subject.problem.requests.shapes, performance.character)
+    requests = subject.problem.requests
+    check_bones(requests, performance.character, performance.recording)
+    ShapeChanges.of(requests.shapes, performance.character)
     for pin in subject.problem.pins:
         chosen_contacts(pin, phase_of(pin, schedule), schedule)
     return adapt_fit(subject, fitted_by(subject, clock), clock)

@@ -11,8 +11,11 @@ from .loops import NothingRecurs as NothingRecurs
 from .loops import NotInLoop as NotInLoop
 from .loops import SeamStanceMoved as SeamStanceMoved
 from .recordings import BadScale as BadScale
+from .recordings import BoneTaken as BoneTaken
 from .recordings import ChangedMeanwhile as ChangedMeanwhile
+from .recordings import ClipNotOpened as ClipNotOpened
 from .recordings import ClipTooShort as ClipTooShort
+from .recordings import FramesReversed as FramesReversed
 from .recordings import MissingPart as MissingPart
 from .recordings import NoAction as NoAction
 from .recordings import NoArmature as NoArmature
@@ -23,6 +26,7 @@ from .recordings import NotJoined as NotJoined
 from .recordings import OddHeight as OddHeight
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import Treadmill as Treadmill
+from .recordings import UnknownClipFormat as UnknownClipFormat
 from .recordings import UnknownContactName as UnknownContactName
 from .recordings import UnreadableClip as UnreadableClip
 from .recordings import UnreadStrips as UnreadStrips

@@ -61,6 +61,14 @@ class MissingPart(Fault):
 
 
 @dataclass
+class BoneTaken(MissingPart):
+    """A body part that the physics needs has no bone, as its own was chosen for another part."""
+
+    bone: str = ""
+    by: str = ""
+
+
+@dataclass
 class NotJoined(Fault):
     """Legs and head hang on no common bone. bones: both thighs and the head."""
 
@@ -98,6 +106,29 @@ class UnreadableClip(Fault):
     path: str
     line: int | None
     problem: str
+
+
+@dataclass
+class ClipNotOpened(Fault):
+    """A motion file that is not there, or cannot be opened."""
+
+    path: str
+    problem: str
+
+
+@dataclass
+class UnknownClipFormat(Fault):
+    """A file of another format than those that are read."""
+
+    path: str
+
+
+@dataclass
+class FramesReversed(Fault):
+    """The chosen frames end before they begin."""
+
+    first: float
+    last: float
 
 
 @dataclass

@@ -15,6 +15,7 @@ import pytest
 from hangtime.bridge.worker_client import DragStream, PendingRequest, RequestKind, Worker
 from hangtime.solver.data.faults import (
     ClipTooShort,
+    FramesReversed,
     UnknownContactName,
     UnknownPhase,
     WorkerDied,
@@ -136,6 +137,7 @@ def test_the_second_adaptation_starts_from_the_stored_fit(warm: Warm, jump: Reco
 def test_a_fault_is_an_answer_and_the_worker_lives_on(worker: Worker, jump: Recording) -> None:
     asked: list[tuple[MotionProblem, type[Exception]]] = [
         (MotionProblem(frames=(1.0, 5.0)), ClipTooShort),
+        (MotionProblem(frames=(300.0, 200.0)), FramesReversed),
         (MotionProblem(frames=SPAN, contacts=(ContactEdit("Nose 1"),)), UnknownContactName),
     ]
     numbers = set()

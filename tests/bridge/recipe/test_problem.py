@@ -16,6 +16,7 @@ from hangtime.bridge.recipe_syntax.source_lines import json_lines, toml_lines
 from hangtime.bridge.rows.choices import KeyChoice
 from hangtime.solver.data.faults import (
     BadRecipe,
+    BoneTaken,
     ContradictoryPins,
     MissingPart,
     UnknownContact,
@@ -273,6 +274,7 @@ def test_a_missing_or_binary_file_is_refused(tmp_path) -> None:
         (UnknownContact("Pin 2", "Fuss.L", ()), 'bones = ["Fuss.L"]'),
         (UnknownContactName("Right toe 2", ()), 'name = "Right toe 2"'),
         (MissingPart("left foot", ("Fuss.L",)), '"left foot" ='),
+        (BoneTaken("head", bone="Fuss.L", by="left foot"), '"left foot" ='),
         (ContradictoryPins("Left heel 1", "Landing", 0.1), "[[pin]]                       #"),
     ],
 )

@@ -30,3 +30,13 @@ def test_a_landing_that_is_moved_and_turned_takes_the_rest_along() -> None:
     assert move.shift[2] == pytest.approx(0.0, abs=1e-9)
     assert not move.stays
     assert move.scaled(2.0).shift == pytest.approx(np.multiply(2.0, move.shift))
+
+
+@pytest.mark.slow
+def test_a_motion_short_of_its_target_takes_the_rest_along_as_far_as_it_goes() -> None:
+    pin = Pin("Landing", "ground 2", offset=(0.0, 0.0, 3.0))
+    adaptation = adapt(fitted_hop(), MotionProblem(pins=(pin,)))
+    move = last_stance_move(adaptation)
+    assert move is not None
+    assert 0.0 < adaptation.reached < 1.0
+    assert move.shift[2] == pytest.approx(3.0 * adaptation.reached, rel=0.01)

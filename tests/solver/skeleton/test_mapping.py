@@ -10,7 +10,7 @@ from hangtime.devtools.rigs.controls.rest import at_rest
 from hangtime.devtools.rigs.layout import Layout, layouts
 from hangtime.devtools.rigs.rest import rest_bones
 from hangtime.solver.body.anatomy import map_anatomy
-from hangtime.solver.data.faults import MissingPart, NotJoined
+from hangtime.solver.data.faults import BoneTaken, MissingPart, NoSpine, NotJoined
 from hangtime.solver.data.recording import Bone
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.skeleton.conventions import conventions
@@ -157,6 +157,20 @@ def test_what_is_no_humanoid_names_what_is_missing() -> None:
     bones = [b for b in rest_bones(RIGS["gibberish"], actor()) if b.name[0] in "xqw"]
     with pytest.raises(MissingPart):
         map_anatomy(bones)
+
+
+@pytest.mark.parametrize("head", [{}, {"head": "mixamorig:Head"}])
+def test_a_bone_that_was_chosen_for_another_part_is_told(head: dict[str, str]) -> None:
+    bones = rest_bones(RIGS["mixamo"], actor())
+    with pytest.raises(BoneTaken) as caught:
+        map_anatomy(bones, {"left foot": "mixamorig:Head"} | head)
+    told = {caught.value.part, caught.value.by}
+    assert (told, caught.value.bone) == ({"head", "left foot"}, "mixamorig:Head")
+
+
+def test_a_hand_is_no_head() -> None:
+    with pytest.raises(NoSpine):
+        map_anatomy(rest_bones(RIGS["mixamo"], actor()), {"head": "mixamorig:LeftHand"})
 
 
 @pytest.mark.parametrize(

@@ -2,9 +2,17 @@
 
 import numpy as np
 import pytest
-from hangtime.solver.data.faults import StillBone, UnknownPhase
+from hangtime.solver.data.faults import Fault, StillBone, UnknownBone, UnknownPhase
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.data.requests import Requests, Shape
+from hangtime.solver.data.requests import (
+    AddedMass,
+    BodyChange,
+    ConeLimit,
+    LimbChange,
+    Requests,
+    Shape,
+    TorqueLimit,
+)
 from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.stages.fit import Fit
 from hangtime.solver.worker.pipeline import ADAPTING, StageClock, Subject, adapt_fit, measure, solve
@@ -28,12 +36,22 @@ def test_a_wrong_name_is_said_before_the_fit() -> None:
         solve(subject(Pin("nowhere", "ground 7")), StageClock(), unfitted)
 
 
-@pytest.mark.parametrize("solid", [True, False])
-def test_a_shape_of_a_bone_without_a_body_is_said_before_the_fit(solid: bool) -> None:
-    solution = SolverOptions(solid=solid)
-    requests = Requests(shapes=(Shape("Ring", ("LeftFingerBase",)),), solution=solution)
+@pytest.mark.parametrize(
+    ("requests", "fault"),
+    [
+        (Requests(shapes=(Shape("Ring", ("LeftFingerBase",)),), solution=solution), StillBone)
+        for solution in (SolverOptions(solid=True), SolverOptions(solid=False))
+    ]
+    + [
+        (Requests(cones=(ConeLimit("Arm", "LeftFingerBase", 1.0),)), StillBone),
+        (Requests(torques=(TorqueLimit("Limp", ("LeftKnee",), bound=0.0),)), StillBone),
+        (Requests(body=BodyChange(added=(AddedMass("Bag", "Wing", 1.0),))), UnknownBone),
+        (Requests(body=BodyChange(limbs=(LimbChange("Tail", ("Tail",), 2.0),))), UnknownBone),
+    ],
+)
+def test_a_wrong_bone_is_said_before_the_fit(requests: Requests, fault: type[Fault]) -> None:
     asked = subject().asked(MotionProblem(frames=FRAMES, requests=requests))
-    with pytest.raises(StillBone):
+    with pytest.raises(fault):
         solve(asked, StageClock(), unfitted)
 
 
