@@ -243,3 +243,12 @@ def test_physics_that_fails_between_the_nodes_is_said() -> None:
     flight = replace(good.between_nodes.flight, moment_rms_bw_m=0.002)
     bad = replace(good, between_nodes=replace(good.between_nodes, flight=flight))
     assert "more than it should be" in as_text(bad)
+
+
+@pytest.mark.parametrize(
+    ("pin", "told"), [("Left heel 2", "Left heel 2"), ("Heel", "Heel: Left heel 2")]
+)
+def test_a_pin_called_like_its_contact_is_named_once(pin: str, told: str) -> None:
+    problem = MotionProblem(pins=(Pin(pin, "ground 2", ("Left heel 2",)),))
+    names = {each.name for each in worst_constraints(further(), problem, least=0.0)}
+    assert {name for name in names if "Left heel 2" in name} == {told}

@@ -69,7 +69,7 @@ def test_the_sidebar_is_about_the_active_armature_unless_pinned() -> None:
 
 def test_a_failure_is_a_short_line_with_what_is_furthest_off_first() -> None:
     worst = (
-        Violation("Right Hand: Right Hand", RowKind.POINT, 420.0),
+        Violation("Right Hand", RowKind.POINT, 420.0),
         Violation("Knee", RowKind.BEND, 3.0),
     )
     failure = failure_of(NoSolution(Status.STALLED, worst, 0.8), 1, "hangtime.adapt")
