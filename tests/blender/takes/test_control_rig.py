@@ -14,6 +14,7 @@ from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording, record
 from hangtime.bridge.controls.control_rig import ControlPoses, control_poses, found_controls
 from hangtime.bridge.controls.driven import is_driven
+from hangtime.bridge.controls.refusals import unled
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
@@ -173,6 +174,17 @@ def test_bones_that_follow_another_armature_are_refused_before_a_solve(
     bpy.context.view_layer.objects.active = other
     with pytest.raises(RuntimeError, match="follow constraints, and no bone that you can pose"):
         bpy.ops.hangtime.analyze()
+
+
+def test_an_elbow_may_bend_about_any_axis() -> None:
+    """One hinge across all of the armature's axes is a lead; none is not."""
+    oblique = np.zeros((1, 2, 3))
+    oblique[0, 1] = np.ones(3) / np.sqrt(3.0)
+    trunk = np.zeros((3, 2, 3))
+    trunk[:, 0] = trunk[:, 1] = np.eye(3)
+    parents = [-1, 0]
+    assert unled(np.concatenate([trunk, oblique]), ("trunk", "forearm"), parents) == []
+    assert unled(trunk, ("trunk", "forearm"), parents) == ["forearm"]
 
 
 def test_a_constraint_on_a_finger_diverts_nothing(jump: bpy.types.Object) -> None:
