@@ -37,6 +37,6 @@ def multipliers_by_active_set(
         below = u + reached - lower < -rounding
         found = np.where(above, 1.0, np.where(below, -1.0, 0.0))
         if (found == side).all():
-            return u / scale
+            return np.asarray(u / scale)
         side = found
     return None
