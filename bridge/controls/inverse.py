@@ -25,7 +25,8 @@ SLOW = 0.25  # share of the error that a step may leave before the rig is tried 
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1.0
 LESS, MORE = 5.0, 6.0  # by which damping goes down after a gain, and up after none
 LONGEST, MOST = 0.5, 0.1  # rad of one step, and change of size
-LOST = 0.05  # m of error at which a frame is solved from another start as well
+LOST = 0.005  # m of error at which a frame is solved from other starts as well
+FULL = 0.05  # of a turn, by which a body that follows in full may miss it
 SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight it does nothing
 
 
@@ -83,15 +84,16 @@ class Inverse:
 
     def solve(self, t: int) -> Inverted:
         """Solve the frame of index t: from what the one before needed; where that leads nowhere,
-        from the take."""
+        from the take, or from controls snapped to where their bodies should be."""
         self._posing.go_to(float(self._targets.frames[t]))
         animated = self._posing.bases()
         self._try_where_switched(animated)
         offsets, best = self._solved(animated, self._offsets, t)
-        if np.linalg.norm(best.error) > LOST:
-            other = self._solved(animated, np.zeros_like(offsets), t)
-            if np.linalg.norm(other[1].error) < np.linalg.norm(best.error):
-                offsets, best = other
+        for start in (self._taken, self._snapped):
+            if np.linalg.norm(best.error) > LOST:
+                other = self._solved(animated, start(animated, t), t)
+                if np.linalg.norm(other[1].error) < np.linalg.norm(best.error):
+                    offsets, best = other
         self._offsets = offsets
         lacks = best.error[: -len(offsets)].reshape(2, -1, 3)
         return Inverted(
@@ -99,6 +101,38 @@ class Inverse:
             np.linalg.norm(lacks[0], axis=1),
             np.linalg.norm(lacks[1], axis=1) / LEVER,
         )
+
+    def _taken(self, animated: FloatArray, _t: int) -> FloatArray:
+        return np.zeros((len(animated), 7))
+
+    def _snapped(self, animated: FloatArray, t: int) -> FloatArray:
+        """Offsets that put each control which can be shifted where it is, in the take, beside the
+        body that it leads: a straight limb says of no small change which way its pole is to go."""
+        wanted, offsets = self._targets, self._offsets.copy()
+        take, dofs = self._look(animated, self._taken(animated, t), t).posed, self._responses.dofs
+        for control in sorted({dof.control for dof in dofs if dof.shifts}):
+            body = self._led(control)
+            if body is None:
+                continue
+            frame = self._look(animated, offsets, t).posed.frames[control]
+            turn = wanted.rotations[t, body] @ proper(take.bodies[body, :3, :3]).T
+            arm = take.controls[control, :3, 3] - take.bodies[body, :3, 3]
+            place = np.linalg.solve(frame, np.append(wanted.heads[t, body] + turn @ arm, 1.0))
+            offsets[control, 3:6] = place[:3] - animated[control, :3, 3]
+            if any(dof.control == control and dof.freedom is Freedom.TURN for dof in dofs):
+                turned = proper(frame[:3, :3]).T @ turn @ proper(take.controls[control, :3, :3])
+                offsets[control, :3] = rotation_vector(proper(animated[control, :3, :3]).T @ turned)
+        return offsets
+
+    def _led(self, control: int) -> int | None:
+        """The first body that turns with a control in full, or else is moved by it."""
+        dofs, follow = self._responses.dofs, self._responses.follow
+        own = [d for d, dof in enumerate(dofs) if dof.control == control]
+        turns = [d for d in own if dofs[d].freedom is Freedom.TURN]
+        amounts = np.linalg.norm(self._responses.turns[turns], axis=2)
+        full = (np.abs(amounts - 1.0) < FULL).all(0) & bool(turns)
+        found = np.flatnonzero(full if full.any() else follow[own].any(0))
+        return int(found[0]) if len(found) else None
 
     def _try_where_switched(self, animated: FloatArray) -> None:
         """At the first frame, and where other constraints act than before and so other controls do:

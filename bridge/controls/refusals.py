@@ -38,13 +38,13 @@ def require_posable(
     with showing():
         poses = sample(armature, frames[:1])
     parents = parents_of(armature, poses, bodies)
-    unled = {body for turns in rig.turns for body in _unled(turns, bodies, parents)}
-    if unled:
-        raise NoControls(tuple(body for body in bodies if body in unled))
+    fixed = {body for turns in rig.turns for body in unled(turns, bodies, parents)}
+    if fixed:
+        raise NoControls(tuple(body for body in bodies if body in fixed))
     return True
 
 
-def _unled(turns: FloatArray, bodies: tuple[str, ...], parents: list[int]) -> list[str]:
+def unled(turns: FloatArray, bodies: tuple[str, ...], parents: list[int]) -> list[str]:
     """Bodies that turns (D, B, 3) cannot turn about any axis while all but those below them stay.
 
     What is missing of a turn of 1 rad, as a share, by least squares.
@@ -56,8 +56,9 @@ def _unled(turns: FloatArray, bodies: tuple[str, ...], parents: list[int]) -> li
         wanted = np.zeros((3, rows.shape[1]))
         wanted[:, -3:] = np.eye(3)
         weights = np.linalg.lstsq(rows.T, wanted.T, rcond=SMALL)[0]
-        missing = np.linalg.norm(wanted - weights.T @ rows, axis=1)
-        if missing.min() > MISSING:
+        # An elbow's axis is none of the armature's: the least of all axes, not of three.
+        missing = np.linalg.svd(wanted - weights.T @ rows, compute_uv=False)
+        if missing[-1] > MISSING:
             found.append(body)
     return found
 

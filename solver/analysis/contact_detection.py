@@ -249,7 +249,11 @@ def _kept_off_ends(
             kept = [replace(c, start=max(c.start, flight.end)) for c in kept]
         else:
             kept = [replace(c, end=min(c.end, flight.start)) for c in kept]
-    return [c for c in kept if c.end - c.start >= MIN_PIECE or c in contacts]
+    return [
+        now
+        for now, was in zip(kept, contacts, strict=True)
+        if now.end - now.start >= MIN_PIECE or (now.start, now.end) == (was.start, was.end)
+    ]
 
 
 def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> list[Contact]:

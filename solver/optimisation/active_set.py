@@ -21,7 +21,10 @@ def multipliers_by_active_set(
     u > 0 where a row is at its upper bound, u < 0 at its lower, 0 in between. guess: (m,) the signs
     of u to begin with. None where no set was found that reproduces itself.
     """
-    scale, u = np.diagonal(stiffness), np.zeros(len(guess))
+    # Of rows in their own units none is lost in the rounding of another's.
+    scale = np.sqrt(np.diagonal(stiffness))
+    stiffness = stiffness / np.outer(scale, scale)
+    lower, upper, u = lower / scale, upper / scale, np.zeros(len(guess))
     side = np.where(np.isfinite(np.where(guess > 0.0, upper, lower)), np.sign(guess), 0.0)
     for _ in range(MAX_SETS):
         active = np.flatnonzero(side)
@@ -30,10 +33,10 @@ def multipliers_by_active_set(
         u[active] = np.linalg.solve(stiffness[np.ix_(active, active)], -bound)
         reached = -stiffness[:, active] @ u[active]
         rounding = ROUNDING * np.abs(u).max(initial=0.0)
-        above = u + (reached - upper) / scale > rounding
-        below = u + (reached - lower) / scale < -rounding
+        above = u + reached - upper > rounding
+        below = u + reached - lower < -rounding
         found = np.where(above, 1.0, np.where(below, -1.0, 0.0))
         if (found == side).all():
-            return u
+            return np.asarray(u / scale)
         side = found
     return None

@@ -38,7 +38,7 @@ def minimise(
         d, _ = linearised.step(rows.value, gradient)
         working = linearised.working
         violation = linearised.violation(rows.value)
-        begin = (value, min(1.0, 2.0 * length))
+        begin = (value, min(1.0, 2.0 * max(length, MIN_STEP_LENGTH)))
         found = _corrected_step(feasible, objective, linearised, x, d, begin)
         length = found[2] if found else 0.0
         steps.append(Step(stage, violation, length, linearised.worst_owner(rows.value)))

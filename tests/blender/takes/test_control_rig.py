@@ -14,6 +14,7 @@ from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording, record
 from hangtime.bridge.controls.control_rig import ControlPoses, control_poses, found_controls
 from hangtime.bridge.controls.driven import is_driven
+from hangtime.bridge.controls.refusals import unled
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
@@ -175,13 +176,24 @@ def test_bones_that_follow_another_armature_are_refused_before_a_solve(
         bpy.ops.hangtime.analyze()
 
 
+def test_an_elbow_may_bend_about_any_axis() -> None:
+    """One hinge across all of the armature's axes is a lead; none is not."""
+    oblique = np.zeros((1, 2, 3))
+    oblique[0, 1] = np.ones(3) / np.sqrt(3.0)
+    trunk = np.zeros((3, 2, 3))
+    trunk[:, 0] = trunk[:, 1] = np.eye(3)
+    parents = [-1, 0]
+    assert unled(np.concatenate([trunk, oblique]), ("trunk", "forearm"), parents) == []
+    assert unled(trunk, ("trunk", "forearm"), parents) == ["forearm"]
+
+
 def test_a_constraint_on_a_finger_diverts_nothing(jump: bpy.types.Object) -> None:
     finger = jump.pose.bones["LeftHandIndex1"].constraints.new("COPY_ROTATION")
     finger.target, finger.subtarget = jump, "RightHandIndex1"
     head = jump.pose.bones["Head"].constraints.new("COPY_ROTATION")  # keys pose it beside
     head.target, head.subtarget, head.influence = jump, "Neck", 0.3
     thigh = jump.pose.bones["LeftUpLeg"].constraints.new("LIMIT_ROTATION")
-    thigh.use_limit_y, thigh.min_y, thigh.max_y = True, -3.0, 3.0  # rad
+    thigh.use_limit_y, thigh.min_y, thigh.max_y = True, -np.pi, np.pi  # bends no pose of the jump
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     bodies = [part.bone for part in jump.hangtime.parts if part.bone]
     assert bodies[0] == "Hips"

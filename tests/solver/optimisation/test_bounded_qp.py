@@ -82,6 +82,17 @@ def test_the_active_set_s_answer_is_daqp_s(seed: int, m: int) -> None:
         assert root.T @ u == pytest.approx(root.T @ expected, abs=1e-5 * (1.0 + np.abs(u).max()))
 
 
+def test_no_row_is_lost_in_the_rounding_of_another_unit() -> None:
+    """Two rows in thousandths that contradict each other, and one in thousands that is beyond."""
+    root = np.array([[1e-3, 0.0], [1e-3, 0.0], [0.0, 1e3]])
+    stiffness = root @ root.T
+    stiffness += np.diag(1e-7 * np.diagonal(stiffness))
+    lower = upper = np.array([-1e-2, 1e-2, -0.5])
+    u = multipliers_by_active_set(stiffness, lower, upper, np.array([1.0, -1.0, 0.0]))
+    assert u is not None
+    assert -stiffness @ u == pytest.approx(upper, abs=1e-6)
+
+
 def test_the_active_set_finds_most_programs_and_all_from_their_answer() -> None:
     found = 0
     for seed in range(100):
