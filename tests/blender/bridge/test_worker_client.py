@@ -119,6 +119,7 @@ def gone(pid: int) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_the_second_adaptation_starts_from_the_stored_fit(warm: Warm, jump: Recording) -> None:
     told: list[Progress] = []
     second = warm.worker.ask(RequestKind.ADAPT, jump, AHEAD).wait(told.append)

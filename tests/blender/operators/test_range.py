@@ -46,6 +46,7 @@ def test_its_contacts_are_the_whole_action_s(cut: bpy.types.Object) -> None:
         assert mine == pytest.approx(other, abs=SAME)
 
 
+@pytest.mark.slow
 def test_no_more_is_adapted_than_the_range(cut: bpy.types.Object) -> None:
     whole = current_action(cut).frame_range.to_tuple()
     recording = complete(read_wanted(cut))

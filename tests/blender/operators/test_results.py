@@ -215,6 +215,7 @@ def test_an_override_of_an_analysed_armature_is_analysed_again(
     assert override.hangtime.contacts["Left heel 2"].used
 
 
+@pytest.mark.slow
 def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     analysed: bpy.types.Object, tmp_path: Path
 ) -> None:
@@ -257,6 +258,7 @@ def test_a_stated_height_mends_a_wrong_scale() -> None:
     assert "Left heel 2" in settings.contacts
 
 
+@pytest.mark.slow
 def test_a_result_that_is_not_accepted_goes_with_the_file(
     adapted: bpy.types.Object, tmp_path: Path
 ) -> None:

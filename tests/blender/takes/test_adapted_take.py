@@ -212,6 +212,7 @@ def test_hand_polish_that_moves_a_pinned_foot_is_warned_about(analysed: bpy.type
     assert "Hand polish moves Left toe 2 by" in result.hangtime.report
 
 
+@pytest.mark.slow
 def test_contacts_are_marked_and_told_to_engines(analysed: bpy.types.Object) -> None:
     options = analysed.hangtime.result
     options.markers, options.contact_channels = "ACTION", True

@@ -99,6 +99,7 @@ def nodding(solution: SolverOptions, shapes: tuple[Shape, ...] = ()) -> MotionPr
     return MotionProblem(requests=Requests(orientations=asked, shapes=shapes, solution=solution))
 
 
+@pytest.mark.slow
 def test_what_cannot_be_met_is_given_up_and_told_by_name() -> None:
     problem = nodding(SolverOptions())
     adaptation = adapt(fitted_hop(), problem)

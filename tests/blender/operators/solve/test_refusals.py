@@ -145,6 +145,7 @@ def test_a_worker_killed_in_the_middle_is_told(analysed: bpy.types.Object) -> No
     assert SceneState.of(analysed) == before
 
 
+@pytest.mark.slow
 def test_a_result_for_keys_that_changed_meanwhile_is_thrown_away(
     analysed: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
