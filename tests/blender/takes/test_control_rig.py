@@ -62,9 +62,11 @@ def land_further(rig: bpy.types.Object) -> set[str]:
 
 def misses(status: str) -> tuple[float, float]:
     """How far bones are from the solution, in mm and degrees, as the status tells."""
-    told = re.search(r"bones are within ([\d.]+) mm .* and ([\d.]+)°", status)
-    assert told is not None, status
-    return float(told[1]), float(told[2])
+    told = re.findall(r"bones are within ([\d.]+) mm .* and ([\d.]+)°", status)
+    told = told or re.findall(r"by ([\d.]+) mm \(frame \d+\), ([\d.]+)°", status)
+    assert told, status
+    mm, degrees = zip(*told, strict=True)
+    return max(map(float, mm)), max(map(float, degrees))
 
 
 @pytest.mark.slow
@@ -92,7 +94,7 @@ def test_feet_and_hands_in_inverse_kinematics_stay_so_and_stand_still_in_their_k
     assert {"torso", "foot_ik.L", "foot_ik.R", "thigh_ik.L", "toe_ik.L", "hand_ik.R"} <= keyed
     assert not [bone for bone in keyed if "_fk." in bone and "spine" not in bone]
     far, turned = misses(rig.hangtime.status)
-    assert far < 1.0
+    assert far < 2.0  # of knees: a limb that stretches shortens both its bones, by one size
     assert turned < 0.2
     assert {row.name for row in rig.hangtime.contacts} >= FLAT
     shown = read_recording(rig)
