@@ -190,12 +190,14 @@ def _nothing_left_on_failure() -> Iterator[None]:
     """Roll back a failed import: remove what it has put into the file, reset the scene's rate."""
     before, render = data_blocks(), current_scene().render
     rate = render.fps, render.fps_base
+    imported = False
     try:
         yield
-    except Exception:
-        remove_added(before)
-        render.fps, render.fps_base = rate
-        raise
+        imported = True
+    finally:
+        if not imported:
+            remove_added(before)
+            render.fps, render.fps_base = rate
 
 
 # ---------------------------------------------------------------- FBX

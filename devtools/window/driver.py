@@ -150,13 +150,12 @@ def drive_by_timer(steps: Waits, at_end: Callable[[], None]) -> None:
     """Let Blender's timer drive the run; `at_end` is called when it is over, however it ends."""
 
     def step() -> float | None:
+        pause = None
         try:
-            return next(steps)
-        except StopIteration:
-            at_end()
-        except Exception:
-            at_end()
-            raise
-        return None
+            pause = next(steps, None)
+        finally:
+            if pause is None:
+                at_end()
+        return pause
 
     bpy.app.timers.register(step, first_interval=1.0, persistent=True)

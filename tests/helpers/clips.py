@@ -32,3 +32,15 @@ def load_recording(name: str) -> Recording:
     clip = load_clip(name)
     up = guess_up(clip)
     return to_recording(clip, clip.unit or guess_unit(clip, up), up)
+
+
+def begun_at_rest(clip: Path, folder: Path) -> Path:
+    """A copy of a BVH file with the rest pose, whose angles are 0, on its first frame."""
+    text, motion = clip.read_text().split("MOTION\n")
+    count, time, *frames = motion.splitlines()
+    values = frames[0].split()
+    rest = " ".join([*values[:3], *["0.0"] * (len(values) - 3)])
+    count = f"Frames: {len(frames) + 1}"
+    copy = folder / "begun_at_rest.bvh"
+    copy.write_text("\n".join([f"{text}MOTION", count, time, rest, *frames, ""]))
+    return copy

@@ -21,13 +21,11 @@ from hangtime.bridge.properties.attached_groups import ensure_groups
 from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.headless import commands, picture
 from hangtime.operators.headless.cli import main
-from hangtime.operators.headless.outbox import Outbox
-from hangtime.solver.data.faults import OutputNotWritable
 from hangtime.solver.data.recording import BEYOND
 from hangtime.solver.worker import service
 from hangtime.solver.worker.pipeline import solve
 from hangtime.solver.worker.protocol import Adapted, Request, RequestKind
-from hangtime.tests.helpers.clips import mocap_path
+from hangtime.tests.helpers.clips import begun_at_rest, mocap_path
 from hangtime.tests.helpers.kept_fits import KeptFits
 
 CLIP = "forward_jump_116cm.bvh"
@@ -303,18 +301,6 @@ def test_the_starter_recipe_is_valid_and_names_the_landing(
     assert "jump.toml" in capsys.readouterr().err
 
 
-def begun_at_rest(clip: Path, folder: Path) -> Path:
-    """A copy of a BVH file with the rest pose, whose angles are 0, on its first frame."""
-    text, motion = clip.read_text().split("MOTION\n")
-    count, time, *frames = motion.splitlines()
-    values = frames[0].split()
-    rest = " ".join([*values[:3], *["0.0"] * (len(values) - 3)])
-    count = f"Frames: {len(frames) + 1}"
-    copy = folder / "begun_at_rest.bvh"
-    copy.write_text("\n".join([f"{text}MOTION", count, time, rest, *frames, ""]))
-    return copy
-
-
 def test_a_rest_pose_on_the_first_frame_is_left_out(clip: Path, tmp_path: Path, capsys) -> None:
     target = tmp_path / "jump.toml"
     command = ["analyze", str(begun_at_rest(clip, tmp_path)), "--write-recipe", str(target)]
@@ -400,30 +386,3 @@ def test_a_job_without_a_clip(tmp_path: Path, capsys) -> None:
     (tmp_path / "edit.toml").write_text(EDIT)
     assert main(["adapt", "--recipe", str(tmp_path / "edit.toml")]) == 2
     assert "no recording" in one_line(capsys)
-
-
-# ---------------------------------------------------------------- the outbox
-
-
-def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(OutputNotWritable), Outbox(tmp_path / "file" / "out"):
-        pass
-
-
-def test_a_failing_run_leaves_the_folder_as_it_was(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("old")
-    with Outbox(tmp_path) as outbox:
-        outbox.write_text("a.txt", "new")
-    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
-    assert (tmp_path / "a.txt").read_text() == "old"
-
-
-def test_delivered_files_replace_the_old_ones(tmp_path: Path) -> None:
-    (tmp_path / "a.txt").write_text("old")
-    with Outbox(tmp_path) as outbox:
-        outbox.write_text("a.txt", "new")
-        assert (tmp_path / "a.txt").read_text() == "old"
-        assert outbox.deliver() == [tmp_path / "a.txt"]
-    assert (tmp_path / "a.txt").read_text() == "new"
-    assert len(list(tmp_path.iterdir())) == 1
