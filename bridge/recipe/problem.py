@@ -35,7 +35,6 @@ markers = "action"              # where limbs come down and go up; or "timeline"
 contact_channels = true         # a property of the armature for each limb, 1 while it touches
 [loop]                          # the motion repeats: its end meets its start, solved so
 root = "hips"                   # carry the travel; or "in place", or "root bone"
-
 [keys]                          # of the adapted frames
 on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has
 distance = 0.002                # m by which reduced keys may move a joint, in the world; and
