@@ -131,7 +131,9 @@ def run_installed(python: Path, user: Path, script: str, *arguments: str) -> dic
     return {**answer, "said": done.stdout + done.stderr}
 
 
-@pytest.mark.parametrize("name", ["linux-x64", "windows-x64", "macos-arm64", "macos-x64"])
+@pytest.mark.parametrize(
+    "name", ["linux-x64", "linux-arm64", "windows-x64", "macos-arm64", "macos-x64"]
+)
 def test_a_zip_holds_the_extension_and_its_one_wheel(zips: dict[str, Path], name: str) -> None:
     with zipfile.ZipFile(zips[name]) as archive:
         members = [Path(m) for m in archive.namelist()]
