@@ -230,6 +230,7 @@ def require_writable(
 ) -> Incremental[None]:
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
+    Controls are tried once for a recording, as that takes long and a drag's ghost waits for it.
     Raises NoControls, NotInLoop, and as `map_anatomy`.
     """
     if not constrained(armature):  # keys of their own pose all bones
@@ -238,7 +239,11 @@ def require_writable(
     segments = map_anatomy(recording.bones, chosen_parts(settings))
     bodies = tuple(recording.bones[segment.bone].name for segment in segments)
     frames = recording.window(*span).frames
-    driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
+    trying = armature.session_uid, analysis_key(settings, recording), bodies
+    driven = session().tried == trying
+    if not driven:
+        driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
+        session().tried = trying if driven else None
     if driven and loop_options(settings) is not None:
         raise NotInLoop("a rig that is posed through controls")
 
