@@ -74,9 +74,7 @@ def place_takes(
     return PlacedTakes(made, tuple(baked), space.placed, from_armature)
 
 
-def outline_for(
-    armature: bpy.types.Object, options: ExportOptions, pelvis: str | None
-) -> Outline:
+def outline_for(armature: bpy.types.Object, options: ExportOptions, pelvis: str | None) -> Outline:
     """The bones that a file gets. pelvis: where it is known."""
     convention, carries = CONVENTIONS[options.engine], options.root is RootMotion.ROOT_BONE
     return outline(

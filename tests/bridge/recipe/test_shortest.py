@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from hangtime.bridge.recipe.shortest import shortest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from hangtime.bridge.recipe.shortest import shortest
 
 
 @pytest.mark.parametrize("typed", [0.3, 70.3, -1.1, 1e-5, 3.0, math.radians(30.0)])
