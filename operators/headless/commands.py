@@ -22,7 +22,7 @@ from ..words.headline import headline
 from ..words.messages import recipe_place, sentence
 from .clip import Clip, load
 from .outbox import Outbox, not_writable
-from .outputs import Outputs
+from .outputs import Outputs, require_exported
 from .stages import WIDTH, Stages
 
 WRONG_INPUT = 2
@@ -149,15 +149,16 @@ def adapt(options: argparse.Namespace) -> None:
     recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     clip, problem = _clip(options, recipe), overridden(recipe.problem, options)
     wanted, keys = recipe.result or ResultOptions(), recipe.keys or KeyOptions()
+    export = recipe.export or ExportOptions()
     if recipe.loop is not None:
         require_every_frame(keys)
     stages = Stages(sys.stdout)
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
+        require_exported(loaded, options.out, export)
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
-        export = recipe.export or ExportOptions()
         outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop, export)
         if result.fault is not None:
             outputs.write_failure()

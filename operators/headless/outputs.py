@@ -33,7 +33,17 @@ if TYPE_CHECKING:  # as in clip.py
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
 
+EXPORTED = "adapted"  # file name without ending
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
+
+
+def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> None:
+    """Before a solve takes its seconds. Raises OutputNotWritable, SameUsdNames."""
+    from ...bridge.exports.engines import ENDINGS, format_of
+    from ...bridge.exports.export import require_exportable
+
+    path = folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
+    require_exportable(clip.armature, path, export)
 
 
 @dataclass(frozen=True)
@@ -86,7 +96,7 @@ class Outputs:
 
         form, pelvis = format_of(self.export), self.result.track.bones[0]
         with self.stages.stage(f"Exporting {form.name}"), quiet():
-            path = self.outbox.path(f"adapted{ENDINGS[form]}")
+            path = self.outbox.path(f"{EXPORTED}{ENDINGS[form]}")
             export_takes(performer, [adapted], path, self.export, pelvis)
 
     def _draw(self) -> None:

@@ -11,7 +11,12 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
 from ...bridge.constraints.motion_problem import analysis_key, problem_of, span_of, write_analysis
-from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ...bridge.properties.settings import (
+    HangtimeSettings,
+    action_settings,
+    scene_settings,
+    settings_of,
+)
 from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import (
     MissingPart,
@@ -32,7 +37,14 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import higher
 from ..words.shape_text import shapes_told
-from .adapt import Adapting, ask_for, quick_solution, read_wanted, require_writable
+from .adapt import (
+    Adapting,
+    ask_for,
+    quick_solution,
+    read_wanted,
+    refined_solution,
+    require_writable,
+)
 from .common import FaultyOperator, chosen_armature, required_armature, said
 from .scene import read_bound, read_surfaces
 from .session import session
@@ -94,11 +106,13 @@ class UpdateOperator(Adapting, bpy.types.Operator):
     bl_label = "Update"
     bl_description = (
         "Make the result anew from the take and the settings as they are now: analyzes where the "
-        "take below has changed, and adapts"
+        "take below has changed, and adapts, or refines what was refined"
     )
     bl_options = {"UNDO"}
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+        if settings.adapted is not None and action_settings(settings.adapted).refined:
+            return refined_solution(settings, asked)
         return quick_solution(settings, asked)
 
     def task(self, context: bpy.types.Context) -> Task:
