@@ -25,7 +25,7 @@ from .targets import parents_of
 
 
 @dataclass(frozen=True)
-class Look:
+class RigLook:
     """What all controls do at a frame, and the turns that this is, (D, B, 3)."""
 
     responses: Responses
@@ -38,7 +38,7 @@ class Felt:
     """All controls that move the bodies of a rig, by name, and looks at what they do."""
 
     posing: Posing
-    looks: tuple[Look, ...]
+    looks: tuple[RigLook, ...]
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def _felt(
     return found
 
 
-def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[Look]:
+def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[RigLook]:
     looks = []
     with posing.kept():
         for frame in frames:
@@ -115,7 +115,7 @@ def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[Look]
             responses, posed = all_responses(posing, bases), posing.look()
             unit = metres_per_unit(current_scene()) * float(np.cbrt(np.linalg.det(world[:3, :3])))
             effects = effects_at(responses, posed, bases, parents, unit)
-            looks.append(Look(responses, effects, responses.columns(posed, bases)[0]))
+            looks.append(RigLook(responses, effects, responses.columns(posed, bases)[0]))
     return looks
 
 

@@ -14,7 +14,7 @@ from ..recipe.keys import KeyOptions
 from ..rows.choices import KeyChoice
 from .bone_channels import BoneChannels
 from .events import KeyEvents
-from .figure import Figure
+from .figure import KeyableFigure
 from .hermite import HermiteKeys, fitted
 from .reduction import reduced
 
@@ -22,7 +22,7 @@ TIGHTENINGS = 4  # where errors to first order promise too much, as with bones t
 SAFETY = 0.99
 
 
-class Posed(Protocol):
+class PosedChannels(Protocol):
     """Channels at frames (T,), and the bones whose poses they make, by name."""
 
     @property
@@ -40,7 +40,7 @@ class Posed(Protocol):
         """Distances (T, B) m of the bones' heads from where they should be, and angles (T, B) rad,
         with other values (T, n) of the channels; in slices."""
 
-    def keyed_figure(self, events: KeyEvents, error: KeyOptions) -> Figure:
+    def keyed_figure(self, events: KeyEvents, error: KeyOptions) -> KeyableFigure:
         """What the channels move, with the points that may be off by no more."""
 
 
@@ -53,7 +53,7 @@ class ChosenKeys:
 
 
 def chosen_keys(
-    posed: Posed,
+    posed: PosedChannels,
     options: KeyOptions,
     events: KeyEvents,
     taken: dict[str, FloatArray],
@@ -77,7 +77,7 @@ def chosen_keys(
 
 
 def _within(
-    posed: Posed, error: KeyOptions, events: KeyEvents
+    posed: PosedChannels, error: KeyOptions, events: KeyEvents
 ) -> Generator[None, None, list[HermiteKeys] | None]:
     """The fewest keys that keep an error."""
     asked = _times(error, SAFETY)
@@ -96,7 +96,7 @@ def _times(error: KeyOptions, share: float) -> KeyOptions:
     return replace(error, distance=share * error.distance, angle=share * error.angle)
 
 
-def _as_taken(posed: Posed, taken: dict[str, FloatArray]) -> list[HermiteKeys]:
+def _as_taken(posed: PosedChannels, taken: dict[str, FloatArray]) -> list[HermiteKeys]:
     """Keys where the take has them, and at the ends; for bones without any, where others have."""
     ends = posed.frames[[0, -1]]
     everywhere = np.concatenate([ends, *taken.values()])
@@ -111,7 +111,7 @@ def _as_taken(posed: Posed, taken: dict[str, FloatArray]) -> list[HermiteKeys]:
 
 
 def _report(
-    posed: Posed, choice: KeyChoice, keys: list[HermiteKeys] | None, rate: float
+    posed: PosedChannels, choice: KeyChoice, keys: list[HermiteKeys] | None, rate: float
 ) -> Generator[None, None, KeysReport]:
     channels = [own.values.shape[1] for own in posed.channels]
     if keys is None:
@@ -127,9 +127,9 @@ def _report(
         channels=sum(channels),
         seconds=float(posed.frames[-1] - posed.frames[0]) / rate,
         largest_error_mm=1000.0 * float(apart.max()),
-        error_bone=names[moved],
+        error_bone=names[int(moved)],
         error_frame=float(posed.frames[at]),
         largest_turn_deg=float(np.degrees(turned.max())),
-        turn_bone=names[turning],
+        turn_bone=names[int(turning)],
         turn_frame=float(posed.frames[when]),
     )

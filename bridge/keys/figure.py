@@ -28,7 +28,7 @@ class KeyedChannels(Protocol):
     def fixed(self) -> tuple[float, ...]: ...
 
 
-class Figure(Protocol):
+class KeyableFigure(Protocol):
     """What has keys, at frames (T,), and what it moves, to first order. carried: by its bones."""
 
     @property
@@ -113,7 +113,7 @@ class KeyedFigure:
     def worst(
         self, errors: Errors, frames: slice = slice(None), points: IntArray | slice = slice(None)
     ) -> FloatArray:
-        """As of Figure."""
+        """As of KeyableFigure."""
         return errors.worst(self.distances[frames][:, points], self.angle)
 
 

@@ -169,7 +169,7 @@ class ControlFigure:
     def worst(
         self, errors: Errors, frames: slice = slice(None), points: IntArray | slice = slice(None)
     ) -> FloatArray:
-        """As of Figure."""
+        """As of KeyableFigure."""
         return errors.worst(self.distances[frames][:, points], self.angle)
 
 
