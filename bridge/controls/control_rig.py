@@ -1,8 +1,8 @@
-"""A rig's controls found: those that pose its bodies, of all that move them."""
+"""A rig's controls found, and posed such that its bodies follow a track."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
@@ -12,33 +12,19 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import NoControls
+from ...solver.data.recording import PoseTrack
 from ..accessors import current_scene
+from ..armature.channels import proper
 from ..armature.incremental import Incremental, in_slices
-from ..armature.poses import metres_per_unit, sample
+from ..armature.poses import Poses, metres_per_unit, sample
 from .choice import Group, all_responses, felt_controls, used_groups
 from .driven import candidates
 from .followed import telling_frames
+from .inverse import Inverse, Inverted
 from .needed import Effects, effects_at
 from .posing import Posing
 from .responses import Freedom, Responses
-from .targets import parents_of
-
-
-@dataclass(frozen=True)
-class RigLook:
-    """What all controls do at a frame, and the turns that this is, (D, B, 3)."""
-
-    responses: Responses
-    effects: Effects
-    turns: FloatArray
-
-
-@dataclass(frozen=True)
-class Felt:
-    """All controls that move the bodies of a rig, by name, and looks at what they do."""
-
-    posing: Posing
-    looks: tuple[RigLook, ...]
+from .targets import parents_of, targets_of
 
 
 @dataclass(frozen=True)
@@ -46,7 +32,6 @@ class ControlRig:
     """The controls that pose bodies. used: what of each; carriers: those that no other moves.
 
     turns: (L, D, B, 3) of the bodies by each degree of freedom at the frames where they were tried.
-    felt: what they were chosen of, and groups: as what.
     """
 
     armature: bpy.types.Object
@@ -56,13 +41,22 @@ class ControlRig:
     used: dict[str, set[Freedom]]
     carriers: tuple[str, ...]
     turns: FloatArray
-    felt: Felt
-    groups: tuple[Group, ...]
 
     @property
     def posing(self) -> Posing:
         """To pose them."""
         return Posing(self.armature, self.controls, self.bodies)
+
+
+@dataclass(frozen=True)
+class ControlPoses:
+    """Pose bases (T, 4, 4) by control; what is left by frame and body (T, B), m and rad."""
+
+    bases: dict[str, FloatArray]
+    bodies: tuple[str, ...]
+    off: FloatArray
+    turned: FloatArray
+    tries: int = 0
 
 
 def found_controls(
@@ -89,9 +83,18 @@ def found_controls(
         parents = parents_of(armature, sample(armature, frames[:1]), bodies)
     yield
     looked = yield from in_slices(at, partial(_looks, posing, parents), showing)
-    looks = tuple(look for part in looked for look in part)
+    looks = [look for part in looked for look in part]
     groups = used_groups(posing, [(look.responses, look.effects) for look in looks])
-    return rig_of(Felt(posing, looks), groups)
+    return _rig(posing, looks, groups)
+
+
+@dataclass(frozen=True)
+class _Look:
+    """What all controls do at a frame, and the turns that this is, (D, B, 3)."""
+
+    responses: Responses
+    effects: Effects
+    turns: FloatArray
 
 
 def _felt(
@@ -106,7 +109,7 @@ def _felt(
     return found
 
 
-def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[RigLook]:
+def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[_Look]:
     looks = []
     with posing.kept():
         for frame in frames:
@@ -115,13 +118,12 @@ def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[RigLo
             responses, posed = all_responses(posing, bases), posing.look()
             unit = metres_per_unit(current_scene()) * float(np.cbrt(np.linalg.det(world[:3, :3])))
             effects = effects_at(responses, posed, bases, parents, unit)
-            looks.append(RigLook(responses, effects, responses.columns(posed, bases)[0]))
+            looks.append(_Look(responses, effects, responses.columns(posed, bases)[0]))
     return looks
 
 
-def rig_of(felt: Felt, groups: Sequence[Group]) -> ControlRig:
+def _rig(posing: Posing, looks: list[_Look], groups: list[Group]) -> ControlRig:
     """The rig of those groups of all controls, as it is at the middle one of the looks."""
-    posing, looks = felt.posing, felt.looks
     kept = sorted({group.control for group in groups})
     dofs = sorted(d for group in groups for d in group.dofs)
     parts = [look.responses.part(dofs, kept) for look in looks]
@@ -137,14 +139,67 @@ def rig_of(felt: Felt, groups: Sequence[Group]) -> ControlRig:
     free = [name for c, name in enumerate(controls) if not middle.moved[:, c].any()]
     carriers = tuple(name for name in free if Freedom.SHIFT in used[name])
     turns = np.stack([look.turns[dofs] for look in looks])
-    return ControlRig(
-        posing.armature,
-        controls,
-        posing.bodies,
-        middle,
-        used,
-        carriers,
-        turns,
-        felt,
-        tuple(groups),
+    return ControlRig(posing.armature, controls, posing.bodies, middle, used, carriers, turns)
+
+
+def control_poses(
+    rig: ControlRig,
+    poses: Poses,
+    track: PoseTrack,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[ControlPoses]:
+    """Controls such that the bodies follow a track. poses: the rig's at the track's frames, as
+    `showing` lets it perform them."""
+    posing = rig.posing
+    inverse = Inverse(posing, rig.responses, targets_of(rig.armature, poses, track))
+    index = {float(frame): t for t, frame in enumerate(track.frames)}
+
+    def look(frames: FloatArray) -> list[Inverted]:
+        with posing.kept():
+            return [inverse.solve(index[float(frame)]) for frame in frames]
+
+    parts = yield from in_slices(track.frames, look, showing)
+    solved = [each for part in parts for each in part]
+    bases = np.stack([each.bases for each in solved])
+    return ControlPoses(
+        {name: bases[:, c] for c, name in enumerate(rig.controls)},
+        rig.bodies,
+        np.stack([each.off for each in solved]),
+        np.stack([each.turned for each in solved]),
+        inverse.tries,
     )
+
+
+def carried_controls(
+    rig: ControlRig,
+    poses: Poses,
+    track: PoseTrack,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[dict[str, FloatArray]]:
+    """Pose bases (T, 4, 4) of the carriers that take the whole figure along with its pelvis.
+
+    track: of the pelvis alone. poses: the rig's, at the track's frames.
+    """
+    names = list(rig.carriers)
+    posing = Posing(rig.armature, names, track.bones[:1])
+    index = {float(frame): t for t, frame in enumerate(track.frames)}
+    wanted = targets_of(rig.armature, poses, track)
+
+    def look(frames: FloatArray) -> list[FloatArray]:
+        with posing.kept():
+            return [at(float(frame)) for frame in frames]
+
+    def at(frame: float) -> FloatArray:
+        t = index[frame]
+        posing.go_to(frame)
+        posed = posing.look()
+        goal = posed.bodies[0].copy()
+        turn = wanted.rotations[t, 0] @ proper(posed.bodies[0, :3, :3]).T
+        goal[:3, :3] = turn @ posed.bodies[0, :3, :3]
+        goal[:3, 3] = wanted.heads[t, 0]
+        move = goal @ np.linalg.inv(posed.bodies[0])
+        return np.asarray(np.linalg.solve(posed.frames, move @ posed.controls))
+
+    parts = yield from in_slices(track.frames, look, showing)
+    bases = np.stack([each for part in parts for each in part])
+    return {name: bases[:, c] for c, name in enumerate(names)}

@@ -32,23 +32,11 @@ SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight
 
 @dataclass(frozen=True)
 class Inverted:
-    """Pose bases (C, 4, 4) of controls at a frame, as offsets (C, 7) from those of the take; and
-    what is left: by body (B, 3) m and rad, in the armature's axes."""
+    """Pose bases (C, 4, 4) of controls at a frame, and what is left: by body m and rad (B,)."""
 
     bases: FloatArray
-    offsets: FloatArray
-    lacks: FloatArray
-    lacked_turns: FloatArray
-
-    @property
-    def off(self) -> FloatArray:
-        """(B,) m."""
-        return np.asarray(np.linalg.norm(self.lacks, axis=1))
-
-    @property
-    def turned(self) -> FloatArray:
-        """(B,) rad."""
-        return np.asarray(np.linalg.norm(self.lacked_turns, axis=1))
+    off: FloatArray
+    turned: FloatArray
 
 
 _SIZE = 6
@@ -83,17 +71,10 @@ def _changed(offsets: FloatArray, changes: FloatArray) -> FloatArray:
 
 
 class Inverse:
-    """Solves frames one after the other; each begins with what the one before needed, or with
-    starts (T, C, 7)."""
+    """Solves frames one after the other; each begins with what the one before needed."""
 
-    def __init__(
-        self,
-        posing: Posing,
-        responses: Responses,
-        targets: Targets,
-        starts: FloatArray | None = None,
-    ) -> None:
-        self._posing, self._targets, self._starts = posing, targets, starts
+    def __init__(self, posing: Posing, responses: Responses, targets: Targets) -> None:
+        self._posing, self._targets = posing, targets
         self._groups = apart(responses)
         self._responses = responses
         self._offsets = np.zeros((len(posing.controls), 7))
@@ -107,8 +88,7 @@ class Inverse:
         self._posing.go_to(float(self._targets.frames[t]))
         animated = self._posing.bases()
         self._try_where_switched(animated)
-        first = self._offsets if self._starts is None else self._starts[t]
-        offsets, best = self._solved(animated, first, t)
+        offsets, best = self._solved(animated, self._offsets, t)
         for start in (self._taken, self._snapped):
             if np.linalg.norm(best.error) > LOST:
                 other = self._solved(animated, start(animated, t), t)
@@ -116,7 +96,11 @@ class Inverse:
                     offsets, best = other
         self._offsets = offsets
         lacks = best.error[: -len(offsets)].reshape(2, -1, 3)
-        return Inverted(best.bases, offsets, lacks[0], lacks[1] / LEVER)
+        return Inverted(
+            best.bases,
+            np.linalg.norm(lacks[0], axis=1),
+            np.linalg.norm(lacks[1], axis=1) / LEVER,
+        )
 
     def _taken(self, animated: FloatArray, _t: int) -> FloatArray:
         return np.zeros((len(animated), 7))

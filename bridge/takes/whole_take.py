@@ -19,8 +19,12 @@ from ..armature.channels import proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
 from ..armature.poses import Poses, metres_per_unit
-from ..controls.control_poses import carried_controls, control_poses
-from ..controls.control_rig import ControlRig, found_controls
+from ..controls.control_rig import (
+    ControlRig,
+    carried_controls,
+    control_poses,
+    found_controls,
+)
 from ..controls.driven import is_driven
 from ..controls.kept import kept_by
 from ..controls.targets import targets_of
@@ -69,13 +73,7 @@ def write_take(
     if rig is None:
         bases = yield from pose_bases(armature, poses, body)
     else:
-        posed = yield from control_poses(rig, poses, body, showing)
-        bases = posed.bases
-        if posed.rig is not rig:
-            rig = posed.rig
-            added = tuple(each for each in owned_by(rig) if each not in owned)
-            done += _apply_modifiers(armature, curves, added, plan.span)
-            owned += added
+        bases = (yield from control_poses(rig, poses, body, showing)).bases
     if later is not None and rest is not None:
         if rig is None:
             more = yield from pose_bases(armature, later, rest)

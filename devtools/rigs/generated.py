@@ -12,8 +12,7 @@ from ...bridge.armature.channels import channels, proper
 from ...bridge.armature.incremental import complete
 from ...bridge.armature.poses import sample
 from ...bridge.armature.read import rest_bones
-from ...bridge.controls.control_poses import ControlPoses, control_poses
-from ...bridge.controls.control_rig import ControlRig, found_controls
+from ...bridge.controls.control_rig import ControlPoses, ControlRig, control_poses, found_controls
 from ...bridge.controls.responses import Freedom
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part, Segment, Side, map_anatomy
@@ -100,9 +99,9 @@ def perform(rig: bpy.types.Object, actor: Actor) -> tuple[ControlRig, ControlPos
     found = complete(found_controls(rig, track.bones, track.frames))
     posed = complete(control_poses(found, sample(rig, track.frames), track))
     curves = fcurves.new_holder(rig, "jump")
-    for name, freedoms in posed.rig.used.items():
+    for name, freedoms in found.used.items():
         _key(rig, curves, name, freedoms, track.frames, posed.bases[name])
-    return posed.rig, posed
+    return found, posed
 
 
 def _key(

@@ -12,8 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording, record
-from hangtime.bridge.controls.control_poses import ControlPoses, control_poses
-from hangtime.bridge.controls.control_rig import found_controls
+from hangtime.bridge.controls.control_rig import ControlPoses, control_poses, found_controls
 from hangtime.bridge.controls.driven import is_driven
 from hangtime.bridge.controls.refusals import unled
 from hangtime.bridge.recipe.result import ResultOptions
@@ -95,7 +94,7 @@ def test_feet_and_hands_in_inverse_kinematics_stay_so_and_stand_still_in_their_k
     assert {"torso", "foot_ik.L", "foot_ik.R", "thigh_ik.L", "toe_ik.L", "hand_ik.R"} <= keyed
     assert not [bone for bone in keyed if "_fk." in bone and "spine" not in bone]
     far, turned = misses(rig.hangtime.status)
-    assert far < 1.0
+    assert far < 2.0  # of knees: a limb that stretches shortens both its bones, by one size
     assert turned < 0.2
     assert {row.name for row in rig.hangtime.contacts} >= FLAT
     shown = read_recording(rig)
