@@ -18,8 +18,8 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution, UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
+from ..words.headline import headline
 from ..words.messages import recipe_place, sentence
-from ..words.report_text import headline
 from .clip import Clip, load
 from .outbox import Outbox, not_writable
 from .outputs import Outputs
@@ -166,7 +166,8 @@ def adapt(options: argparse.Namespace) -> None:
         report = outputs.write(picture=not options.no_picture)
         files = outbox.deliver()
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
-    print(total, *headline(report), "Written:", sep="\n")
+    advice = [explained(each, None) for each in loaded.subject.analysis.unseen]
+    print(total, *headline(report), *advice, "Written:", sep="\n")
     for path in files:
         print(f"  {path}")
 

@@ -33,7 +33,8 @@ class CostWeights:
     the centre of mass itself. acceleration_time: s, its fourth power weighs marker accelerations.
     com_acceleration: (m/g)², of the centre of mass's acceleration: one of g weighs as much as so
     many metres. force: (m/BW)², of force errors. force_rate_time: s, its square weighs their rate
-    of change. by_range: how much of `shape` is measured by what a change takes of the joints'
+    of change. support: (m/BW)², of what carries the body unseen.
+    by_range: how much of `shape` is measured by what a change takes of the joints'
     ranges instead of by what it moves, where joints have a price. friction: (m/BW)², of each
     point's force across the target's direction. goes_on: whether the target goes on beyond both
     ends, so that markers must come back to it there.
@@ -46,6 +47,7 @@ class CostWeights:
     com_acceleration: float = 0.0
     force: float = 1e-6
     force_rate_time: float = 0.05
+    support: float = 1e-3
     by_range: float = 0.5
     friction: float = 0.0
     goes_on: bool = False
@@ -273,6 +275,7 @@ class TrackingCost:
         alike = p.force * (mass + p.force_rate_time**2 * stiff)
         matrix = BlockBanded(basis.n_coefficients, layout.n_block)
         exists = t.active[:, layout.forces]
+        unseen = np.diag((np.arange(exists.shape[1]) >= 3 * (layout.n_points - t.n_support)) * 1.0)
         across = self._across()
         first = basis.first_coefficient + FORCE_BLOCKS.start  # of each span's first force value
         identity = np.eye(exists.shape[1])
@@ -280,6 +283,7 @@ class TrackingCost:
             for column in range(row + 1):
                 a, b = first + row, first + column
                 each = alike[:, row, column, None, None] * identity
+                each = each + p.support * mass[:, row, column, None, None] * unseen
                 if p.friction:
                     pair = np.swapaxes(across[a], 1, 2) @ across[b]
                     each = each + p.friction * mass[:, row, column, None, None] * pair

@@ -33,6 +33,7 @@ from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix
 from ..numerics.seam import Seam
 from ..numerics.splines import ORDER, SplineBasis, gauss_instants
+from ..unseen.support_force import N_POINTS, SupportForce
 from .constraint import Constraint, DiscretisedConstraint
 from .contact_pins import Pins, PointContact, touching_spans
 from .friction_cones import FrictionCones
@@ -48,10 +49,11 @@ GAUSS_NODES = 3  # dynamics nodes a span
 class Transcription:
     """Constraint rows of one motion problem on one basis.
 
-    points: the bodies' points that touch. contacts: when and where they do. moment: the rate of
-    angular momentum about the centre of mass. guards: at most one of a kind. active: which unknowns
-    exist. discretised: the constraints on this basis, guards last. periodic: whether the motion
-    repeats, so that its last instant is tied to its first (`seam`).
+    points: the bodies' points on which forces act: those that touch, then those of the support.
+    contacts: when and where they touch. moment: the rate of angular momentum about the centre of
+    mass. support: what carries the body where nothing that is known does. guards: at most one of a
+    kind. active: which unknowns exist. discretised: the constraints on this basis, guards last.
+    periodic: whether the motion repeats, so that its last instant is tied to its first (`seam`).
     """
 
     character: Character
@@ -62,6 +64,7 @@ class Transcription:
     constraints: tuple[Constraint, ...] = ()
     guards: tuple[GuardRows, ...] = ()
     periodic: bool = False
+    support: SupportForce | None = None
     seam: Seam | None = field(init=False)
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block)
@@ -127,7 +130,10 @@ class Transcription:
         """
         basis = replace(self.basis, breaks=warp(self.basis.breaks))
         contacts = tuple(contact.retimed(warp) for contact in self.contacts)
-        return replace(self, basis=basis, contacts=contacts, constraints=(), guards=())
+        support = None if self.support is None else self.support.retimed(warp)
+        return replace(
+            self, basis=basis, contacts=contacts, support=support, constraints=(), guards=()
+        )
 
     def riding(self, rides: Sequence[Ride | None]) -> "Transcription":
         """The same unknowns with contacts (n_contacts,) that ride on moving ground."""
@@ -135,6 +141,21 @@ class Transcription:
             replace(contact, ride=ride) for contact, ride in zip(self.contacts, rides, strict=True)
         )
         return replace(self, contacts=contacts)
+
+    @property
+    def touching(self) -> tuple[BodyPoint, ...]:
+        """The bodies' points that touch."""
+        return self.points[: self.layout.n_points - self.n_support]
+
+    @property
+    def n_support(self) -> int:
+        """How many points the unseen support acts on; they are the last."""
+        return 0 if self.support is None else N_POINTS
+
+    @property
+    def support_columns(self) -> slice:
+        """Columns of a block that hold the unseen support's forces."""
+        return slice(self.layout.n_block - 3 * self.n_support, self.layout.n_block)
 
     @property
     def n_unknowns(self) -> int:
@@ -155,7 +176,20 @@ class Transcription:
                 active[layout.force_block(nodes[0, 0]), layout.force(contact.point)] = False
             if contact.contact.end < basis.breaks[-1]:
                 active[layout.force_block(nodes[-1, 1]), layout.force(contact.point)] = False
+        if self.support is not None:
+            self._let_support(active, self.support)
         return active
+
+    def _let_support(self, active: BoolArray, support: SupportForce) -> None:
+        """Likewise what carries unseen."""
+        basis, columns = self.basis, self.support_columns
+        for spans in support.spans(basis):
+            nodes = basis.force_nodes(spans)
+            active[self.layout.force_block(nodes.ravel()), columns] = True
+            if spans[0] > 0:
+                active[self.layout.force_block(nodes[0, 0]), columns] = False
+            if spans[-1] < basis.n_spans - 1:
+                active[self.layout.force_block(nodes[-1, 1]), columns] = False
 
     def _seam(self) -> Seam:
         """Pose, velocities, the joints' accelerations and forces of a motion that repeats.
