@@ -30,6 +30,7 @@ from .stages import Stages
 if TYPE_CHECKING:  # as in clip.py
     import bpy
 
+    from ...bridge.controls.control_rig import ControlRig
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
 
@@ -72,7 +73,8 @@ class Outputs:
             recorded = present(current_action(self.clip.armature))
             adopt_strip(self.clip.armature, recorded)
             performer, adapted, written = self._write_actions("adapted")
-            keys = self._choose_keys(performer, adapted, recorded)
+            rig = written.rig if written is not None else None
+            keys = self._choose_keys(performer, adapted, recorded, rig)
             self._mark_contacts(performer, adapted)
             if self.loop is None:  # which is an action of its own
                 self._lay_strips(performer, recorded, adapted)
@@ -219,9 +221,14 @@ class Outputs:
         )
 
     def _choose_keys(
-        self, performer: bpy.types.Object, adapted: bpy.types.Action, recorded: bpy.types.Action
+        self,
+        performer: bpy.types.Object,
+        adapted: bpy.types.Action,
+        recorded: bpy.types.Action,
+        rig: ControlRig | None,
     ) -> KeysReport | None:
-        """Give the action the keys that are asked for; None where every frame has one."""
+        """Give the action the keys that are asked for; None where every frame has one. rig: the
+        controls that pose the performer, if such do."""
         if self.keys.on is KeyChoice.EVERY_FRAME:
             return None
         from ...bridge.armature import fcurves
@@ -235,7 +242,7 @@ class Outputs:
         events = events_of(self.result.schedule, float(track.frames[0]), rate)
         with in_scene_time(self.clip.armature, recorded) as played:
             take = fcurves.holder_in(played, fcurves.slot_identifier(self.clip.armature))
-            keyed = KeyedAction(adapted, slot, track.bones, track.frames, take)
+            keyed = KeyedAction(adapted, slot, track.bones, track.frames, take, rig)
             return complete(choose_keys(performer, keyed, self.keys, events))
 
     def _build_scene(self) -> None:

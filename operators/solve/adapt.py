@@ -321,7 +321,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         rate = answer.report.recording.frames_per_second
         moved = yield from renewal.put_on(action, answer.track.bones, time, answer.schedule, rate)
         _tell_polish(armature, action, renewal, moved)
-        yield from write_keys(armature, armature, action, answer)
+        rig = written.rig if written is not None else None
+        yield from write_keys(armature, armature, action, answer, rig)
     finally:  # cancelled it has a key on every frame
         mark_contacts(armature, action, answer, options)
         if options.written_as is WrittenAs.COMBINE:
