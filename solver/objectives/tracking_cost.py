@@ -143,13 +143,13 @@ class TrackingCost:
         for first in range(0, self.transcription.basis.n_spans, POSE_BATCH):
             yield slice(first, min(first + POSE_BATCH, self.transcription.basis.n_spans))
 
-    def _at_nodes(self, x: FloatArray, spans: slice) -> _NodeErrors:
+    def _at_nodes(self, x: FloatArray, all_posed: Pose, spans: slice) -> _NodeErrors:
         t = self.transcription
         nodes = slice(GAUSS_NODES * spans.start, GAUSS_NODES * spans.stop)
         local = t.window(x, t.node_spans[nodes])
         values = [each[nodes] for each in self._values]
         motion, second = (np.einsum("nk,nkj->nj", B, local) for B in values)
-        posed = forward_kinematics(t.character, motion[:, t.layout.angles])
+        posed = all_posed.at(nodes)
         com, target = motion[:, t.layout.com], self.target
         relative = posed.points(self.points)
         markers, centre = target.markers[nodes], target.com[nodes]
@@ -169,8 +169,9 @@ class TrackingCost:
     def value(self, x: FloatArray) -> float:
         """Half the squared distance at unknowns (K, n_block)."""
         p, total = self.weights, 0.0
+        posed = self.transcription.pose_at_nodes(x)
         for spans in self._batches():
-            at = self._at_nodes(x, spans)
+            at = self._at_nodes(x, posed, spans)
             mean = p.position * (at.world**2).sum(axis=(1, 2)) + p.shape * (at.shape**2).sum(
                 axis=(1, 2)
             )
@@ -195,18 +196,19 @@ class TrackingCost:
         t = self.transcription
         gradient = self._force_windows.times(self._force_error(x))
         matrix = self._force_windows.copy()
+        posed = t.pose_at_nodes(x)
         for spans in self._batches():
-            self._expand_batch(x, spans, gradient, matrix)
+            self._expand_batch(self._at_nodes(x, posed, spans), spans, gradient, matrix)
         if self._to_go is not None:
             self._to_go.expand(x, gradient, matrix)
         matrix.add_diagonal((~t.active).astype(float))  # unknowns that do not exist stay put
         return gradient, matrix
 
     def _expand_batch(
-        self, x: FloatArray, spans: slice, gradient: FloatArray, matrix: BlockBanded
+        self, at: _NodeErrors, spans: slice, gradient: FloatArray, matrix: BlockBanded
     ) -> None:
         p, layout = self.weights, self.transcription.layout
-        at, count = self._at_nodes(x, spans), len(self.points)
+        count = len(self.points)
         turn = at.posed.point_jacobian(self.points)
         flat = turn.reshape(len(turn), -1, layout.n_angles)
         n_motion, com, angles = layout.n_motion, layout.com, layout.angles
