@@ -66,6 +66,43 @@ class Pose:
         moved -= self._com_jacobian[..., None]
         return np.ascontiguousarray(moved.transpose(0, 3, 2, 1))
 
+    def points_metric(self, points: Sequence[BodyPoint]) -> tuple[FloatArray, FloatArray]:
+        """Sums over points of J'J (N, n_angles, n_angles), m², and of J (N, 3, n_angles), m.
+
+        J is `point_jacobian`, which is not needed: the first is the mass matrix of points of mass 1,
+        by composite rigid bodies (Featherstone 2008, ch. 6.2), about the centre of mass.
+        """
+        moves = self.character.path_matrix[[p.body for p in points]]  # (P, n)
+        at, count = self.points(points), len(points)
+        pairs = (at[..., None] * at[..., None, :]).reshape(*at.shape[:2], 9)
+        first = moves.T @ at
+        second = (moves.T @ pairs).reshape(*self.axes.shape, 3)
+        mass, turn, move = moves.sum(axis=0)[:, None], self.axes, self._moves_there
+        force = np.cross(turn, first) + mass * move
+        trace = np.trace(second, axis1=2, axis2=3)[..., None]
+        moment = trace * turn - (second @ turn[..., None])[..., 0] + np.cross(first, move)
+        motion, momentum = (
+            np.concatenate(each, axis=2) for each in ((turn, move), (moment, force))
+        )
+        inner = np.triu(self.character.path_matrix[self.character.body_of_angle].T)
+        half = (motion @ np.swapaxes(momentum, 1, 2)) * (inner - 0.5 * np.eye(len(inner)))
+        half -= (force - 0.5 * count * self._com_jacobian) @ np.swapaxes(self._com_jacobian, 1, 2)
+        total = force - count * self._com_jacobian
+        return half + np.swapaxes(half, 1, 2), np.swapaxes(total, 1, 2)
+
+    def points_gradient(self, points: Sequence[BodyPoint], forces: FloatArray) -> FloatArray:
+        """(N, n_angles) sum over points of J' times forces (N, P, 3), without the Jacobian."""
+        moves = self.character.path_matrix[[p.body for p in points]]
+        moment, force = moves.T @ np.cross(self.points(points), forces), moves.T @ forces
+        found = (self.axes * moment).sum(axis=2) + (self._moves_there * force).sum(axis=2)
+        total = forces.sum(axis=1)
+        return np.asarray(found - (self._com_jacobian @ total[..., None])[..., 0])
+
+    @cached_property
+    def _moves_there(self) -> FloatArray:
+        """(N, n_angles, 3) what each angle does to a point at the centre of mass, m/rad."""
+        return np.cross(self.centres[:, self.character.body_of_angle], self.axes)
+
     def jacobian_at(self, bodies: IntArray, at: FloatArray) -> FloatArray:
         """(N, 3, n_angles) Jacobian of one point an instant, at (N, 3) m on bodies (N,), m/rad.
 

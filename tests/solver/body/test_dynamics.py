@@ -217,6 +217,20 @@ def test_point_jacobian(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+def test_metric_and_gradient_of_points_are_their_jacobians(seed: int) -> None:
+    character = random_tree(seed)
+    points = random_points(seed, character, 7)
+    posed = forward_kinematics(character, random_movement(seed, character.n_angles)[0])
+    jacobian = posed.point_jacobian(points)
+    squares, total = posed.points_metric(points)
+    assert relative(squares, np.einsum("npij,npik->njk", jacobian, jacobian)) < 1e-12
+    assert relative(total, jacobian.sum(axis=1)) < 1e-12
+    forces = np.random.default_rng(seed).normal(size=(INSTANTS, len(points), 3))
+    expected = np.einsum("npij,npi->nj", jacobian, forces)
+    assert relative(posed.points_gradient(points, forces), expected) < 1e-12
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_point_velocity_and_its_jacobian(seed: int) -> None:
     character = random_tree(seed, bodies=6)
     points = random_points(seed, character)
