@@ -7,6 +7,7 @@ and L' depends on the joint angles alone. Forces are in body weights, so L' is i
 (thesis 4.1: scaling).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -243,18 +244,27 @@ class _BodySums:
 
     def outward(self, before: list[int]) -> "_BodySums":
         """Sums over each body and all that hangs on it."""
-        parts = [each.copy() for each in self._parts]
-        for i in reversed(range(1, len(before))):
-            for each in parts:
-                each[before[i]] += each[i]
-        return _BodySums(*parts, self.shared)
+
+        def summed(each: FloatArray) -> FloatArray:
+            total = each.copy()
+            for i in reversed(range(1, len(before))):
+                total[before[i]] += total[i]
+            return total
+
+        return self._of_each(summed)
 
     def some(self, which: IntArray) -> "_BodySums":
-        return _BodySums(*(each[which] for each in self._parts), self.shared)
+        return self._of_each(lambda each: each[which])
 
-    @property
-    def _parts(self) -> tuple[FloatArray, ...]:
-        return self.second, self.first, self.swept_out, self.force, self.moment
+    def _of_each(self, work: Callable[[FloatArray], FloatArray]) -> "_BodySums":
+        return _BodySums(
+            work(self.second),
+            work(self.first),
+            work(self.swept_out),
+            work(self.force),
+            work(self.moment),
+            self.shared,
+        )
 
     def momentum(self, motion: _Spatial) -> FloatArray:
         """(K, 3, N) angular momentum of motions of each."""

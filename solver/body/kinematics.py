@@ -69,8 +69,8 @@ class Pose:
     def points_metric(self, points: Sequence[BodyPoint]) -> tuple[FloatArray, FloatArray]:
         """Sums over points of J'J (N, n_angles, n_angles), m², and of J (N, 3, n_angles), m.
 
-        J is `point_jacobian`, which is not needed: the first is the mass matrix of points of mass 1,
-        by composite rigid bodies (Featherstone 2008, ch. 6.2), about the centre of mass.
+        J is `point_jacobian`, which is not needed: the first is the mass matrix of points of mass
+        1, by composite rigid bodies (Featherstone 2008, ch. 6.2), about the centre of mass.
         """
         moves = self.character.path_matrix[[p.body for p in points]]  # (P, n)
         at, count = self.points(points), len(points)
