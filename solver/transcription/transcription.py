@@ -27,7 +27,7 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..body.dynamics import MomentFunction
-from ..body.kinematics import BodyPoint, Pose, forward_kinematics
+from ..body.kinematics import BodyPoint, LastPose, Pose
 from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix
@@ -77,6 +77,7 @@ class Transcription:
         self.node_times = times
         self._node_basis = [self.basis.evaluate(times, k, self.node_spans) for k in range(3)]
         self._node_force = self.basis.force_weights(times, self.node_spans)
+        self._posed = LastPose(self.character)
         self._balance = self._balance_rows()
         self.pins = Pins(self.basis, self.layout, self.contacts)
         self.cones = FrictionCones(self.basis, self.layout, self.contacts)
@@ -246,11 +247,15 @@ class Transcription:
         rows.jacobian[~self.active[blocks]] = 0.0
         return rows
 
+    def pose_at_nodes(self, x: FloatArray) -> Pose:
+        """The figure at the dynamics nodes, relative to the centre of mass."""
+        return self._poses(x)[0]
+
     def _poses(self, x: FloatArray) -> tuple[Pose, Pose]:
         """Forward kinematics at the dynamics nodes and at the pins' breaks, evaluated together."""
         q = self.angles_at_nodes(x, 0)
         pinned = self.pins.angles(self.window(x, self.pins.spans))
-        posed = forward_kinematics(self.character, np.concatenate([q, pinned]))
+        posed = self._posed(np.concatenate([q, pinned]))
         return posed.at(slice(0, len(q))), posed.at(slice(len(q), None))
 
     # -- balance ---------------------------------------------------------------------------
@@ -304,14 +309,17 @@ class Transcription:
 
     def _moment_rows(self, x: FloatArray, posed: Pose) -> Rows:
         layout = self.layout
-        rate, by_order = self.moment.jacobian(*(self.angles_at_nodes(x, k) for k in range(3)))
+        rate, by_order = self.moment.jacobian_at(
+            posed, *(self.angles_at_nodes(x, k) for k in (1, 2))
+        )
         count = len(rate)
         jacobian = np.zeros((count, 3, ORDER, layout.n_block))
         if self.points:
             arms, turn = posed.points(self.points), posed.point_jacobian(self.points)
             forces = self.forces_at_nodes(x)
             rate = rate - np.cross(arms, forces).sum(axis=1)
-            by_order[:, :, 0] += np.einsum("npij,npjk->nik", cross_matrix(forces), turn)
+            pull = cross_matrix(forces).swapaxes(1, 2).reshape(count, 3, 3 * layout.n_points)
+            by_order[:, :, 0] += pull @ turn.reshape(count, 3 * layout.n_points, layout.n_angles)
             lever = -cross_matrix(arms)  # (N, P, 3, 3): d moment / d force
             lever = lever.transpose(0, 2, 1, 3).reshape(count, 3, 3 * layout.n_points)
             for side in range(2):
@@ -319,6 +327,6 @@ class Transcription:
                 jacobian[:, :, FORCE_BLOCKS.start + side, layout.forces] = (
                     weight[:, None, None] * lever
                 )
-        stacked = np.stack(self._node_basis, axis=-1)  # (N, 4, 3)
-        jacobian[..., layout.angles] = np.einsum("nko,niom->nikm", stacked, by_order)
+        stacked = np.stack(self._node_basis, axis=-1)[:, None]  # (N, 1, 4, 3)
+        np.matmul(stacked, by_order, out=jacobian[..., layout.angles])
         return Rows.of(self.node_spans, rate, jacobian, RowKind.MOMENT, self.node_times)
