@@ -114,7 +114,7 @@ def chosen_contacts(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[i
 def pinned_by(pins: Sequence[Pin], schedule: ContactSchedule) -> dict[str, str]:
     """The pin that moves each contact that one moves, by names. Raises UnknownPhase,
     UnknownContact."""
-    found = {}
+    found: dict[str, str] = {}
     for pin in pins:
         chosen = chosen_contacts(pin, phase_of(pin, schedule), schedule)
         found |= {schedule.contacts[i].name: pin.name for i in chosen}
