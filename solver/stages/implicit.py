@@ -25,8 +25,7 @@ from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
-from .requested import check_places
-from .setup import Setup, set_up
+from .setup import Setup, check_places, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps

@@ -5,24 +5,33 @@ changes the transcription, so the fit is resampled on a new one as an initial gu
 of that kind is asked for, the fit's own transcription serves.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
 
-from ..analysis.timeline import TimeWarp
+from ..analysis.pinned_places import pinned_by, travel_axes
+from ..analysis.timeline import TimeWarp, timeline
 from ..arrays import FloatArray
+from ..body.body_changes import changed_character, changed_points
+from ..body.dynamics import MomentFunction
+from ..body.proportions import changed_recording
 from ..constraints.constraint_builder import build_constraints
+from ..constraints.contact_setup import added_contact, with_added, without_lifted
 from ..constraints.evaluation_context import EvaluationContext
-from ..data.contacts import ContactSchedule, Interval
+from ..constraints.far_apart import check_apart
+from ..data.contacts import ContactSchedule, Interval, Phase
+from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
 from ..data.recording import Recording
 from ..data.requests import AngleLimit, ConeLimit, Requests, TwistLimit
 from ..data.scene import SceneObject
-from ..data.solver_options import Dynamics, HumanRanges, Method
+from ..data.solver_options import Dynamics, HumanRanges, Method, ObjectiveKind
 from ..data.status import Durations
 from ..human.human_guard import HumanGuard, recorded_ranges
 from ..human.range_price import range_price
+from ..inverse_kinematics.reseat import reseat
 from ..numerics.block_banded import BlockBanded
 from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
@@ -30,6 +39,8 @@ from ..objectives.tracking_cost import CostWeights
 from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
 from ..optimisation.sqp import FeasibleSet
+from ..solid.flesh import shape_flesh
+from ..solid.room import check_room
 from ..solid.shape_changes import ShapeChanges
 from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
@@ -37,10 +48,37 @@ from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
 from .anticipation import anticipate, changed_jumps
 from .fit import ADAPT_COST_WEIGHTS, Fit, motion_metric
-from .footing import pin_turns
-from .requested import requested, travel_at
+from .footing import check_sunk, on_faces, pin_turns
+from .initial_guess import resampled_fit
+from .platforms import find_standing, recorded_in
 from .surroundings import surroundings
 from .warm_start import Standing
+
+TORQUE_OBJECTIVES = (
+    ObjectiveKind.TORQUE_SMOOTHNESS.value,
+    ObjectiveKind.POWER.value,
+    ObjectiveKind.TORQUE_OUTPUT.value,
+    ObjectiveKind.TOTAL_CHANGE.value,
+    Method.IMPLICIT_TORQUES.value,
+)
+
+
+@dataclass(frozen=True)
+class Requested:
+    """What is asked of a fit.
+
+    start: the fit on the problem's contacts, where they were, without constraints. fitted: where
+    contacts were in the fit; target: where they shall be. reference: the fit with the body that is
+    asked for. recording: of that body. changes: of the solid shapes.
+    """
+
+    context: EvaluationContext
+    start: Motion
+    fitted: Standing
+    target: Standing
+    reference: Motion
+    recording: Recording
+    changes: ShapeChanges
 
 
 @dataclass(frozen=True)
@@ -134,6 +172,58 @@ class Setup:
         return self.fit.torques if same else joint_torques(t)
 
 
+def requested(fit: Fit, problem: MotionProblem) -> Requested:
+    """What a problem asks of a fit.
+
+    Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults.
+    """
+    requests, recording = problem.requests, fit.performance.recording
+    if requests.solution.dynamics is Dynamics.REDUCED:
+        _refuse_torques(requests)
+    rate = (len(recording.times) - 1) / float(recording.times[-1])
+    first = float(recording.frames[0])
+    retiming = timeline(fit.schedule, first, rate, requests.timings, requests.holds)
+    retimed = retiming.schedule(fit.schedule)
+    changed = changed_recording(recording, requests.body.limbs)
+    reference = _with_body(fit, problem, changed)
+    context = EvaluationContext(
+        changed,
+        fit.motion,
+        reference,
+        retimed.phases,
+        without_lifted(retimed, problem),
+        retiming,
+        partial(_travel, fit, retimed.phases),
+    )
+    added = {r.name: r for r in requests.points if r.environment}
+    contacts = [added_contact(request, context) for request in added.values()]
+    context = replace(context, schedule=with_added(context.schedule, contacts))
+    start = resampled_fit(fit, problem, context, added)
+    fitted = Standing(start.places, recorded_in(fit, context))
+    target, footing = find_standing(fit, problem, context)
+    flesh = shape_flesh(problem, fit.performance)
+    changes = ShapeChanges.of(requests.shapes, context.character, flesh)
+    if requests.solution.solid:
+        check_sunk(problem.scene, context.schedule, footing)
+        if requests.solution.human:
+            check_room(
+                problem.scene, reference.transcription, context.schedule, target.places, changes
+            )
+    return Requested(context, on_faces(start, footing), fitted, target, reference, changed, changes)
+
+
+def check_places(
+    fit: Fit, problem: MotionProblem, context: EvaluationContext, start: Motion, target: Standing
+) -> None:
+    """Refuses what is too far apart for any body. Raises ContradictoryPins, OutOfReach.
+
+    context, start: of the problem; target: where its contacts shall be.
+    """
+    if not target.moves:  # a train takes its riders further than they could go
+        pinned = pinned_by(problem.pins, fit.schedule)
+        check_apart(problem.requests, context, replace(start, places=target.places), pinned)
+
+
 def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     """Problem set-up from a fit.
 
@@ -205,7 +295,7 @@ def _anticipated(
         phases=phases,
         schedule=warp.schedule(context.schedule),
         timeline=context.timeline.warped(warp),
-        travel=partial(travel_at, fit, phases),
+        travel=partial(_travel, fit, phases),
     )
     return context, found.motion, Durations.FOUND
 
@@ -260,3 +350,41 @@ def _reduced_basis(space: ReducedSpace | None, start: Motion) -> FloatArray | No
     basis[layout.joint_angles, kept : kept + k] = reduced
     basis[layout.forces, kept + k :] = np.eye(rest)
     return basis
+
+
+def _travel(fit: Fit, phases: Sequence[Phase], time: float) -> FloatArray:
+    """(3, 3) columns forward, left, up at an instant, s. phases: the recording's, on that time."""
+    index = next((i for i, p in enumerate(phases) if time <= p.end), len(phases) - 1)
+    old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
+    return travel_axes(fit.performance, fit.schedule, old)
+
+
+def _with_body(fit: Fit, problem: MotionProblem, changed: Recording) -> Motion:
+    """The fit with the body and the gravity that are asked for; the fit itself where they stay."""
+    change, motion = problem.requests.body, fit.motion
+    t = motion.transcription
+    still = (change.mass, change.gravity, change.added, change.limbs)
+    if still == (None, t.character.gravity, (), ()):
+        return motion
+    if change not in fit.other_bodies:
+        character = changed_character(t.character, change, fit.performance.recording, changed)
+        points = changed_points(t.points, t.character, character)
+        moment = MomentFunction(character)
+        new = replace(t, character=character, points=points, moment=moment)
+        made = Motion(new, reseat(motion, character), motion.places)
+        fit.other_bodies.clear()  # the last one is asked for again and again, older ones are not
+        fit.other_bodies[change] = made
+    return fit.other_bodies[change]
+
+
+def _refuse_torques(requests: Requests) -> None:
+    """Reduced dynamics have no torques to limit or to weigh. Raises NeedsTorques."""
+    solution = requests.solution
+    for limit in requests.torques:
+        raise NeedsTorques(limit.name)
+    if solution.method is not Method.IMPLICIT:
+        weighed = [o.value for o, weight in solution.objectives if weight > 0.0]
+        weighed = weighed if solution.method is Method.EXPLICIT else [solution.method.value]
+        for name in weighed:
+            if name in TORQUE_OBJECTIVES:
+                raise NeedsTorques(name)

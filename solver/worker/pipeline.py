@@ -52,8 +52,8 @@ from ..solid.shape_changes import ShapeChanges
 from ..stages.fit import Fit, fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.platforms import recorded_rides
-from ..stages.requested import check_requested
 from ..transcription.motion import Motion
+from .possible import check_requested
 
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
 

@@ -29,8 +29,8 @@ from hangtime.solver.data.requests import (
 )
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.stages.fit import Fit
-from hangtime.solver.stages.requested import check_requested
 from hangtime.solver.worker.pipeline import ADAPTING, StageClock, Subject, adapt_fit, measure, solve
+from hangtime.solver.worker.possible import check_requested
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
 
