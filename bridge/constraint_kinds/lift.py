@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...solver.data.requests import Lift
-from ..recipe_syntax.items import TOUCHING, Kind, word
+from ..recipe_syntax.items import TOUCHING, Kind, phase
 from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row, phase_text
 from ..rows.row_parts import RowContext, bones_of
 from ..rows.times import phase_of
@@ -27,7 +27,7 @@ KIND = ConstraintKind(
     menu=MenuGroup.CONTACTS,
     record=_record,
     draw=_draw,
-    recipe=Kind("lift", Lift, (word("phase"), TOUCHING), needs=(("phase",),)),
+    recipe=Kind("lift", Lift, (phase("phase"), TOUCHING), needs=(("phase",),)),
     bones=BoneUse.TOUCHING,
     range=NewRange.PHASE_ALWAYS,
     on_ground=True,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 from ...solver.data.requests import PhaseTiming
-from ..recipe_syntax.items import Kind, number, word
+from ..recipe_syntax.items import Kind, number, phase
 from ..recipe_syntax.table import ABOVE_ZERO
 from ..rows.kind import BoneUse, ConstraintKind, FieldDrawing, MenuGroup, NewRange, Row, phase_text
 from ..rows.row_parts import RowContext
@@ -50,7 +50,7 @@ KIND = ConstraintKind(
     recipe=Kind(
         "timing",
         PhaseTiming,
-        (word("phase"), number("factor", ABOVE_ZERO), number("seconds", ABOVE_ZERO)),
+        (phase("phase"), number("factor", ABOVE_ZERO), number("seconds", ABOVE_ZERO)),
         needs=(("phase",), ("factor", "seconds")),
         excludes=(("factor", "seconds"),),
     ),

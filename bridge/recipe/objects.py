@@ -15,7 +15,7 @@ path = [{ frame = 1, place = [0, 0, 0], turn = 0 }, { frame = 50, place = [2, 0,
 under = "Landing"               # instead of place: its top (in its middle) is where that pin's
                                 # contacts land, x ahead; or under = "flight 1": on the floor
                                 # below the highest point of that flight
-forward = 0.2                   # m from there along the travel; left, up
+forward = 0.2                   # m from there along the travel; left, up, back, right, down
 
 How it moves beside its path is in object_rates.py.
 """
@@ -36,7 +36,7 @@ from ...solver.data.scene import SceneObject, SceneRole
 from ...solver.numerics.rotations import axis_rotation
 from ...solver.scene.triangle_mesh import placed_mesh
 from ..formats.obj import UnreadableMesh, read_obj
-from ..recipe_syntax.items import TRAVEL_KEYS
+from ..recipe_syntax.items import TRAVEL_WORDS, travelled
 from ..recipe_syntax.table import Table, shown
 from ..shapes.boxes import SOLIDS
 from .object_rates import RATE_KEYS, read_rates
@@ -44,7 +44,7 @@ from .object_rates import RATE_KEYS, read_rates
 HEADER = "object"
 SHAPES = ("box", "ramp", "file", "points")
 PLACING = ("place", "axes", "path")
-KEYS = ("name", "role", *SHAPES, "faces", *PLACING, "turn", "under", *TRAVEL_KEYS, *RATE_KEYS)
+KEYS = ("name", "role", *SHAPES, "faces", *PLACING, "turn", "under", *TRAVEL_WORDS, *RATE_KEYS)
 PATH_KEYS = ("frame", "place", "turn", "axes")
 
 
@@ -67,14 +67,13 @@ def read_objects(top: Table) -> tuple[tuple[SceneObject, ...], tuple[Under, ...]
         thing = _read(table, table.word("name") or default_name(i))
         what = table.word("under")
         if what is None:
-            for key in TRAVEL_KEYS:
+            for key in TRAVEL_WORDS:
                 if key in table.values:
                     table.refuse(key, f'"{key}" is from what the object is "under"; add that')
             placed.append(thing)
         else:
             table.not_both("under", PLACING)
-            forward, left, up = (table.number(key) or 0.0 for key in TRAVEL_KEYS)
-            under.append(Under(thing, what, (forward, left, up)))
+            under.append(Under(thing, what, travelled(table)))
     return tuple(placed), tuple(under)
 
 
@@ -209,7 +208,7 @@ def _placed(under: Under, problem: MotionProblem, analysis: Analysis) -> SceneOb
 
 def _flight(under: Under, phases: Sequence[Phase]) -> Phase:
     for phase in phases:
-        if phase.name == under.what and phase.kind is PhaseKind.FLIGHT:
+        if phase.name == under.what.casefold() and phase.kind is PhaseKind.FLIGHT:
             return phase
     known = tuple(phase.name for phase in phases if phase.kind is PhaseKind.FLIGHT)
     raise UnknownPhaseIn(under.thing.name, under.what, known)

@@ -10,9 +10,10 @@ unseen_support = "show"         # fits and tells where something unseen carries;
 "left foot" = "Fuss.L"
 [[pin]]                         # any number of them
 name = "Landing"                # optional
-phase = "ground 2"              # as the analysis prints them
+phase = "ground 2"              # as the analysis prints them, in any capitals
 points = ["Left heel"]          # or bones = [...]; default: everything that touches in the phase
-forward = 0.3                   # m along the travel; left, up; or offset = [x, y, z], world
+forward = 0.3                   # m along the travel; left, up; back, right, down;
+                                # or offset = [x, y, z], world
 place = [0.0, 1.0, 0.2]         # m, world: where the middle of the points goes, optional
 turn = 90                       # degrees, counter-clockwise from above
 on = "Crate"                    # the points then stand on that object's faces, below or above
@@ -79,11 +80,14 @@ from ...solver.data.problem import (
 from ..recipe_syntax.items import (
     TOUCHING,
     TRAVEL_KEYS,
+    TRAVEL_WORDS,
     Item,
     Kind,
     Values,
     angle,
     number,
+    phase,
+    travelled,
     vector,
     word,
 )
@@ -304,11 +308,11 @@ def _refuse_same_names(top: Table) -> None:
 
 
 def _read_offset(table: Table) -> Values:
-    table.not_both("offset", TRAVEL_KEYS)
+    table.not_both("offset", TRAVEL_WORDS)
     offset = table.vector("offset")
     if offset is not None:
         return {"offset": offset, "axes": OffsetAxes.WORLD}
-    return {"offset": tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)}
+    return {"offset": travelled(table)}
 
 
 def _write_offset(pin: Pin) -> Values:
@@ -335,9 +339,9 @@ PIN = Kind(
     "pin",
     Pin,
     (
-        word("phase"),
+        phase("phase"),
         TOUCHING,
-        Item((*TRAVEL_KEYS, "offset"), _read_offset, _write_offset),
+        Item((*TRAVEL_WORDS, "offset"), _read_offset, _write_offset),
         vector("place"),
         angle("turn"),
         word("on"),

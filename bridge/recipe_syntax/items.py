@@ -14,6 +14,8 @@ Values = dict[str, Any]
 Record = TypeVar("Record")
 
 TRAVEL_KEYS = ("forward", "left", "up")
+AGAINST = ("back", "right", "down")  # the other way along each
+TRAVEL_WORDS = (*TRAVEL_KEYS, *AGAINST)
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,11 @@ def word(key: str) -> Item:
     return one(key, Table.word)
 
 
+def phase(key: str) -> Item:
+    """The name of a phase."""
+    return one(key, Table.phase)
+
+
 def flag(key: str) -> Item:
     """true or false."""
     return one(key, Table.flag)
@@ -154,6 +161,17 @@ def choice(key: str, of: type[Enum]) -> Item:
 # ---------------------------------------------------------------- of several keys
 
 
+def travelled(table: Table) -> tuple[float, float, float]:
+    """Forward, left and up in m, by the words for either way; zero where absent."""
+    for key, opposite in zip(TRAVEL_KEYS, AGAINST, strict=True):
+        table.not_both(key, (opposite,))
+    pairs = zip(TRAVEL_KEYS, AGAINST, strict=True)
+    forward, left, up = (
+        (table.number(key) or 0.0) - (table.number(opposite) or 0.0) for key, opposite in pairs
+    )
+    return forward, left, up
+
+
 def _read_when(table: Table) -> Values:
     table.not_both("frame", ("frames", "moment"))
     frames = table.pair("frames", "[first, last]")
@@ -164,7 +182,7 @@ def _read_when(table: Table) -> Values:
     frame = table.number("frame")
     if frame is not None:
         frames = (frame, frame)
-    return {"when": When(table.word("phase"), frames, table.choice("moment", Moment))}
+    return {"when": When(table.phase("phase"), frames, table.choice("moment", Moment))}
 
 
 def _write_when(record: Any) -> Values:

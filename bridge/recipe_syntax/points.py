@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from ...solver.data.requests import Bound, Path, PointAxes, PointRequest
-from .items import TRAVEL_KEYS, Item, Values, direction
+from .items import AGAINST, TRAVEL_KEYS, TRAVEL_WORDS, Item, Values, direction, travelled
 from .table import Table, listed
 
 AXIS_NAMES = {
@@ -16,7 +16,7 @@ BOUND_KEYS = ("at_least", "at_most")
 
 
 def _read_axes(table: Table) -> Values:
-    table.not_both("relative", TRAVEL_KEYS)
+    table.not_both("relative", TRAVEL_WORDS)
     names = sum(AXIS_NAMES.values(), ())
     at_least, at_most = bounds = [table.table(key, names, "axis") for key in BOUND_KEYS]
     axes = _axes(table, bounds)
@@ -26,7 +26,7 @@ def _read_axes(table: Table) -> Values:
     if "relative" in table.values:
         values["relative"] = table.vector("relative")
     elif axes is PointAxes.TRAVEL:
-        values["relative"] = tuple(table.number(key) or 0.0 for key in TRAVEL_KEYS)
+        values["relative"] = travelled(table)
     if set(BOUND_KEYS) & set(table.values):
         values["bounds"] = tuple(_bound(at_least, at_most, name) for name in AXIS_NAMES[axes])
         for key, bound in zip(BOUND_KEYS, bounds, strict=True):
@@ -37,17 +37,19 @@ def _read_axes(table: Table) -> Values:
 
 def _axes(table: Table, bounds: list[Table]) -> PointAxes:
     """The axes that are written, or else those that the names of axes belong to."""
-    named = [(table, key) for key in TRAVEL_KEYS if key in table.values]
+    named = [(table, key) for key in TRAVEL_WORDS if key in table.values]
+    same = dict(zip(AGAINST, TRAVEL_KEYS, strict=True))
     for bound in bounds:
         named += [(bound, name) for name in bound.values]
     axes = table.choice("axes", PointAxes)
     if axes is None and named:
-        axes = next(of for of, names in AXIS_NAMES.items() if named[0][1] in names)
+        first = same.get(named[0][1], named[0][1])
+        axes = next(of for of, names in AXIS_NAMES.items() if first in names)
     if axes is None:
         axes = PointAxes.SURFACE if "normal" in table.values else PointAxes.WORLD
     known = AXIS_NAMES[axes]
     for where, name in named:
-        if name not in known:
+        if same.get(name, name) not in known:
             where.refuse(name, f'"{name}" is none of the {axes.value} axes: {listed(known)}')
     if "normal" in table.values and axes is not PointAxes.SURFACE:
         table.refuse("normal", f'"normal" is of a surface; the axes are "{axes.value}"')
@@ -116,7 +118,7 @@ def _write_path(record: Any) -> Values:
 
 
 POINT_AXES = Item(
-    ("axes", "relative", *TRAVEL_KEYS, *BOUND_KEYS, "normal"), _read_axes, _write_axes
+    ("axes", "relative", *TRAVEL_WORDS, *BOUND_KEYS, "normal"), _read_axes, _write_axes
 )
 PATH = Item(("path",), _read_path, _write_path)
 ENVIRONMENT = Item(("environment", "grip"), _read_environment, _write_environment)

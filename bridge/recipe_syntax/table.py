@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -21,6 +22,7 @@ class NumberRange:
     holds: Callable[[float], bool]
 
 
+COUNTED = re.compile(r"(ground|flight) \d+")  # a phase's name, as the analysis gives it
 ANY_NUMBER = NumberRange("a number", lambda _: True)
 ABOVE_ZERO = NumberRange("above zero", lambda value: value > 0.0)
 NOT_NEGATIVE = NumberRange("zero or more", lambda value: value >= 0.0)
@@ -129,6 +131,15 @@ class Table:
         if not isinstance(value, str) or not value.strip():
             self.refuse(key, f'"{key}" must be a text in quotes, not {shown(value)}')
         return value
+
+    def phase(self, key: str) -> str | None:
+        """A phase's name: that of the analysis whatever the capitals, or a hold's. None where
+        absent."""
+        word = self.word(key)
+        if word is None:
+            return None
+        plain = " ".join(word.casefold().split())
+        return plain if COUNTED.fullmatch(plain) else word
 
     def needed_word(self, key: str) -> str:
         """A text that must be there."""

@@ -49,7 +49,8 @@ and at its top. Of each joint: degrees by which it is turned from the recording'
 of one spine or neck are summed up, legs are the mean of both, arms that of those which reach. Means
 over {count} jumps of two performers: {names}. *Moves alone* is what a change costs by what it moves
 (`human = false`); *and ranges* is what it costs for a person: half by what it moves, half by what
-it takes of the joints' ranges. The weight of the halves was not chosen on any recording.
+it takes of the joints' ranges. The weight of the halves was not chosen on any recording. Seconds
+are the clock's, and other work may have gone on beside.
 
 People reach with the arm first (Kaminski, Bock & Gentile 1995). Where they have to lean, spine and
 hips share: the spine bends 1.2 times as far as the hips in men, 0.2 times in women (Thomas, Corcos

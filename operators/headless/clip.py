@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...solver.data.faults import ClipNotOpened, NoArmature
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import BEYOND, Recording, Skin
+from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import bpy
 
     from ...bridge.formats.motion_clip import UpAxis
+    from ...bridge.scene.skin import SkinReading
 
 
 @dataclass(frozen=True)
@@ -41,13 +42,15 @@ class Clip:
 class LoadedClip:
     """An imported clip: its armature and its analysis.
 
-    problem: as it was asked for, in the recording's own lengths, after a bind pose.
+    problem: as it was asked for, in the recording's own lengths, after a bind pose. skin: of the
+    meshes that the armature deforms.
     """
 
     armature: bpy.types.Object
     origin: Origin
     problem: MotionProblem
     subject: Subject
+    skin: SkinReading
 
 
 def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
@@ -65,8 +68,9 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
             origin = replace(origin, bind_frames=count)
             after = float(recording.frames[count]), float(recording.frames[-1])
             problem = replace(problem, frames=after)
-        subject = measure(recording, replace(problem, skin=_skin(armature, recording)))
-    return LoadedClip(armature, origin, problem, subject)
+        read = _skin(armature, recording)
+        subject = measure(recording, replace(problem, skin=read.skin))
+    return LoadedClip(armature, origin, problem, subject, read)
 
 
 def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
@@ -134,11 +138,11 @@ def _read(armature: bpy.types.Object, problem: MotionProblem) -> Recording:
     return read_recording(armature, first=first, last=last, beyond=BEYOND)
 
 
-def _skin(armature: bpy.types.Object, recording: Recording) -> Skin | None:
+def _skin(armature: bpy.types.Object, recording: Recording) -> SkinReading:
     from ...bridge.armature.incremental import complete
     from ...bridge.scene.skin import read_skin
 
-    return complete(read_skin(armature, recording.frames)).skin
+    return complete(read_skin(armature, recording.frames))
 
 
 def _recorded_frames(

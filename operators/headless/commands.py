@@ -18,9 +18,10 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution, UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
+from ..words.doubt_text import doubts_of
 from ..words.headline import headline
 from ..words.messages import recipe_place, sentence
-from .clip import Clip, load
+from .clip import Clip, LoadedClip, load
 from .outbox import Outbox, not_writable
 from .outputs import Outputs, require_exported
 from .stages import WIDTH, Stages
@@ -157,6 +158,7 @@ def adapt(options: argparse.Namespace) -> None:
         loaded = load(clip, problem, stages)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         require_exported(loaded, options.out, export)
+        _ask_about(problem, loaded)
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
         outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop, export)
@@ -180,6 +182,7 @@ def analyze(options: argparse.Namespace) -> None:
         asked = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     problem = overridden(asked.problem, options)
     loaded = load(_clip(options, None), problem, Stages(sys.stdout))
+    _ask_about(problem, loaded)
     print()
     print(analysis_text(loaded.subject.analysis, loaded.origin), end="")
     target: Path | None = options.write_recipe
@@ -191,6 +194,23 @@ def analyze(options: argparse.Namespace) -> None:
         except OSError as error:
             raise not_writable(target, error) from error
         print(f"\nWritten:\n  {target}")
+
+
+def _ask_about(problem: MotionProblem, loaded: LoadedClip) -> None:
+    """Prints what is hardly meant, and whose shapes are a mesh's, before anything takes its time.
+
+    problem: as it was asked for.
+    """
+    from ..words.shape_text import shapes_told  # bpy's, which is loaded by now
+
+    subject = loaded.subject
+    bodies = [body.name for body in subject.analysis.performance.character.bodies]
+    for line in shapes_told(loaded.skin, bodies, subject.fleshed).splitlines():
+        print(line)
+    frames = subject.recording.frames
+    doubts = doubts_of(problem, subject.height, frames[:0] if problem.loop else frames)
+    for doubt in doubts:
+        print(f"Warning: {doubt}", file=sys.stderr)
 
 
 def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:

@@ -59,6 +59,7 @@ from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
+from ..words.doubt_text import doubts_of
 from ..words.report_text import as_text
 from ..words.summary_text import summary
 from ..words.take_text import pin_lines, polish_lines, take_lines
@@ -134,6 +135,11 @@ class Adapting(TaskOperator):
         session().advance(SolveState.SOLVING)
         settings, requests = settings_of(required_armature(context)), asked.problem.requests
         requests = replace(requests, solution=self.solution(settings, requests.solution))
+        first, last = wanted_range(settings)
+        frames = None if first is None or last is None else (first, last)
+        meant = replace(asked.problem, frames=frames)
+        for doubt in doubts_of(meant, settings.measured_height, asked.recording.frames):
+            self.report({"WARNING"}, doubt)
         return replace(asked, problem=replace(asked.problem, requests=requests))
 
 

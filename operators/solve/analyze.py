@@ -170,7 +170,7 @@ def analysis(context: bpy.types.Context) -> Task:
     yield None
     write_analysis(settings, recording, answer)
     keep(armature, answer.traces, armature.matrix_world)
-    settings.shapes_told = shapes_told(bound, answer)
+    settings.shapes_told = shapes_told(bound, answer.bones, answer.fleshed)
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
     found = f"{found}{bind}{_snapped(settings, span)}{_unseen(answer)}"

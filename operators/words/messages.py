@@ -161,6 +161,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.TakenName: "“{request}” is called like a contact that was found; give it a name of its "
     "own.",
     faults.TimedTwice: "“{request}” is the second to say how long “{phase}” takes; keep one.",
+    faults.OutOfReach: "“{request}” is {metres:length} from “{other}”, with {seconds:.2f} s "
+    "between them: nobody goes so far in that time. Move it nearer, give it more time, or switch "
+    "Human Ranges off for a figure that is no human.",
     faults.NoBoneChosen: "“{request}” is about no bone yet; choose one, or switch it off.",
     faults.NoPhaseChosen: "“{request}” holds in a phase, but none is chosen; there are "
     "{known:names}.",

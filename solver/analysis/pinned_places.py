@@ -1,6 +1,6 @@
 """Target positions of contacts: the recorded places, moved by the artist's pins (thesis 6.2)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from .performance import Performance
 
 SAME_BODY_TOLERANCE = 0.003  # m
 SAME_FOOT_TOLERANCE = 0.02  # m; toes bend
+FOOT_LENGTH = 0.152  # of the stature (Drillis & Contini 1966)
+SLOW_WALK = 1.0  # m/s; a runner's flights are short, but he goes somewhere
 
 
 def pinned_places(
@@ -109,6 +111,16 @@ def chosen_contacts(pin: Pin, phase: Phase, schedule: ContactSchedule) -> list[i
     return chosen
 
 
+def pinned_by(pins: Sequence[Pin], schedule: ContactSchedule) -> dict[str, str]:
+    """The pin that moves each contact that one moves, by names. Raises UnknownPhase,
+    UnknownContact."""
+    found: dict[str, str] = {}
+    for pin in pins:
+        chosen = chosen_contacts(pin, phase_of(pin, schedule), schedule)
+        found |= {schedule.contacts[i].name: pin.name for i in chosen}
+    return found
+
+
 def _moved(
     pin: Pin,
     phase: Phase,
@@ -131,7 +143,8 @@ def _moved(
 def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phase) -> FloatArray:
     """(3, 3) travel frame, columns forward, left and up in world axes, of a ground phase.
 
-    Forward: level, along the flight that ends in the phase, or else the first one.
+    Forward: level, along the flight that ends in the phase, or else the first one. Who lands
+    on his own footprints goes nowhere: then it is where the pelvis faces at the take-off.
     """
     flights = [p for p in schedule.phases if p.kind is PhaseKind.FLIGHT]
     before = [f for f in flights if f.end <= phase.start + 1e-9]
@@ -142,8 +155,9 @@ def travel_axes(performance: Performance, schedule: ContactSchedule, phase: Phas
         for t in (flight.start, flight.end)
     )
     ahead = (end - start) * np.array([1.0, 1.0, 0.0])
-    if np.linalg.norm(ahead) < 0.05:  # a jump on the spot: where the pelvis faces
-        ahead = _facing(performance, 0.5 * (flight.start + flight.end))
+    gone, seconds = float(np.linalg.norm(ahead)), flight.end - flight.start
+    if gone < FOOT_LENGTH * performance.character.height and gone < SLOW_WALK * seconds:
+        ahead = _facing(performance, flight.start)
     ahead /= np.linalg.norm(ahead)
     return np.stack([ahead, np.cross(UP, ahead), UP], axis=1)
 

@@ -16,7 +16,7 @@ from ..body.character import Body, Character
 from ..body.joint_choice import MIN_BONE_LENGTH
 from ..body.mass_tables import BOX_ASPECT
 from ..data.problem import MotionProblem
-from ..data.recording import Recording, Skin
+from ..data.recording import Bone, Recording, Skin
 from ..data.solver_options import ShapeSource
 from ..numerics.rotations import unit
 from ..skeleton.tree import tree_of
@@ -28,6 +28,7 @@ LEAST_SEEN = 7  # of the directions, in which there must be points: more than ha
 FURTHEST = 0.98  # share of the points of a last body before which it ends
 LEAST = 1e-4  # m, of a distance
 ROUNDS = 3  # in which the middle of a section settles
+INSIDE = 0.1  # of its length, from a body's axis, within which a bone lies in it
 UNEVEN = 0.1  # of its radius, by which a section must be wider to be more than round
 FLATTEST = 0.8  # second harmonic over the mean: three times as wide as deep
 
@@ -77,7 +78,9 @@ def shape_flesh(problem: MotionProblem, performance: Performance) -> dict[int, F
 def _carriers(recording: Recording, character: Character) -> dict[str, int]:
     """The body that each bone goes with, by names: its own, or the nearest one above.
 
-    So twist bones, fingers, hair and skirts go with the body that they hang on.
+    So twist bones, fingers, hair and skirts go with the body that they hang on. What hangs on none,
+    as limbs that deform hang on the root's control in Auto-Rig Pro's rig, goes with the body in
+    which it lies.
     """
     tree, joined = tree_of(recording.bones), dict(character.joined)
     index = {body.bone: i for i, body in enumerate(character.bodies)}
@@ -87,9 +90,27 @@ def _carriers(recording: Recording, character: Character) -> dict[str, int]:
     for bone, name in enumerate(names):
         line = (own[each] for each in tree.ancestors(bone))
         carrier = next((body for body in line if body is not None), None)
+        if carrier is None:
+            carrier = _within(recording.bones[bone], recording, character)
         if carrier is not None:
             found[name] = carrier
     return found
+
+
+def _within(bone: Bone, recording: Recording, character: Character) -> int | None:
+    """The body along whose axis a bone's middle lies, at rest; None where it lies in none."""
+    middle = 0.5 * (bone.head + bone.tail)
+    nearest, best = None, INSIDE
+    for i, body in enumerate(character.bodies):
+        length = float(np.linalg.norm(body.tip))
+        if length < MIN_BONE_LENGTH:
+            continue
+        from_joint = middle - recording.bones[recording.index(body.bone)].head
+        along = float(np.clip(from_joint @ body.tip / length**2, 0.0, 1.0))
+        aside = float(np.linalg.norm(from_joint - along * body.tip)) / length
+        if aside < best:
+            nearest, best = i, aside
+    return nearest
 
 
 def _fitted(body: Body, points: FloatArray, *, leaf: bool) -> Flesh | None:

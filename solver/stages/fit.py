@@ -145,13 +145,8 @@ def fit(
     where some of them were recorded on ground that moves. A fit that fails is returned as
     it ended, with a status that says so.
     """
-    transcription = transcribe(performance, schedule, periodic=periodic)
-    if any(ride is not None for ride in rides):
-        transcription = transcription.riding(rides)
-    x = initial_guess(transcription, performance)
-    places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
-    places = settled_places(transcription, places)
-    recorded = Motion(transcription, x, places)
+    recorded = recorded_motion(performance, schedule, periodic=periodic, rides=rides)
+    transcription, x, places = recorded.transcription, recorded.x, recorded.places
     human = HumanGuard(recorded_ranges(recorded), recorded)
     tracking_cost = TrackingCost(
         transcription, recorded_target(transcription, performance, schedule), FIT_COST_WEIGHTS
@@ -179,6 +174,22 @@ def fit(
     )
     outcomes[-1] = outcomes[-1].unguarded()
     return Fit(tuple(outcomes), places, performance, replace(schedule, contacts=settled))
+
+
+def recorded_motion(
+    performance: Performance,
+    schedule: ContactSchedule,
+    *,
+    periodic: bool = False,
+    rides: Sequence[Ride | None] = (),
+) -> Motion:
+    """The recording as splines, on its contacts at their places: where the fit begins."""
+    transcription = transcribe(performance, schedule, periodic=periodic)
+    if any(ride is not None for ride in rides):
+        transcription = transcription.riding(rides)
+    x = initial_guess(transcription, performance)
+    places = np.array([c.contact.place for c in transcription.contacts]).reshape(-1, 3)
+    return Motion(transcription, x, settled_places(transcription, places))
 
 
 def _improved(

@@ -25,7 +25,7 @@ from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
-from .setup import Setup, set_up
+from .setup import Setup, check_places, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
@@ -72,13 +72,14 @@ def unadapted(fit: Fit) -> Adaptation:
 def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None) -> Adaptation:
     """Adapts a fitted performance to a problem (thesis 4.3, 4.4).
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults. What cannot
-    be reached with the durations that go with the pins is tried with the recorded ones; a loop
-    keeps these, for it lasts whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve
-    that fails is returned with the best motion found and a status that says so; one that
+    Raises UnknownPhase, UnknownContact, ContradictoryPins, OutOfReach and the requests' own faults.
+    What cannot be reached with the durations that go with the pins is tried with the recorded ones;
+    a loop keeps these, for it lasts whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A
+    solve that fails is returned with the best motion found and a status that says so; one that
     `progress` ends by raising Stopped, with the motion as it stood.
     """
     setup = set_up(fit, problem)
+    check_places(fit, problem, setup.context, setup.start, setup.target)
     _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)

@@ -11,7 +11,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ..analysis.pinned_places import travel_axes
+from ..analysis.pinned_places import pinned_by, travel_axes
 from ..analysis.timeline import TimeWarp, timeline
 from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
@@ -20,6 +20,7 @@ from ..body.proportions import changed_recording
 from ..constraints.constraint_builder import build_constraints
 from ..constraints.contact_setup import added_contact, with_added, without_lifted
 from ..constraints.evaluation_context import EvaluationContext
+from ..constraints.far_apart import check_apart
 from ..data.contacts import ContactSchedule, Interval, Phase
 from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
@@ -60,6 +61,24 @@ TORQUE_OBJECTIVES = (
     ObjectiveKind.TOTAL_CHANGE.value,
     Method.IMPLICIT_TORQUES.value,
 )
+
+
+@dataclass(frozen=True)
+class Requested:
+    """What is asked of a fit.
+
+    start: the fit on the problem's contacts, where they were, without constraints. fitted: where
+    contacts were in the fit; target: where they shall be. reference: the fit with the body that is
+    asked for. recording: of that body. changes: of the solid shapes.
+    """
+
+    context: EvaluationContext
+    start: Motion
+    fitted: Standing
+    target: Standing
+    reference: Motion
+    recording: Recording
+    changes: ShapeChanges
 
 
 @dataclass(frozen=True)
@@ -153,8 +172,8 @@ class Setup:
         return self.fit.torques if same else joint_torques(t)
 
 
-def set_up(fit: Fit, problem: MotionProblem) -> Setup:
-    """Problem set-up from a fit.
+def requested(fit: Fit, problem: MotionProblem) -> Requested:
+    """What a problem asks of a fit.
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults.
     """
@@ -190,11 +209,32 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
             check_room(
                 problem.scene, reference.transcription, context.schedule, target.places, changes
             )
-    start = on_faces(start, footing)
+    return Requested(context, on_faces(start, footing), fitted, target, reference, changed, changes)
+
+
+def check_places(
+    fit: Fit, problem: MotionProblem, context: EvaluationContext, start: Motion, target: Standing
+) -> None:
+    """Refuses what is too far apart for any body. Raises ContradictoryPins, OutOfReach.
+
+    context, start: of the problem; target: where its contacts shall be.
+    """
+    if not target.moves:  # a train takes its riders further than they could go
+        pinned = pinned_by(problem.pins, fit.schedule)
+        check_apart(problem.requests, context, replace(start, places=target.places), pinned)
+
+
+def set_up(fit: Fit, problem: MotionProblem) -> Setup:
+    """Problem set-up from a fit.
+
+    Raises UnknownPhase, UnknownContact, ContradictoryPins and the requests' own faults.
+    """
+    asked, requests = requested(fit, problem), problem.requests
+    context, start, target, reference = asked.context, asked.start, asked.target, asked.reference
     durations = Durations.MOVING_GROUND
     if not target.moves:  # the ground's clock is no jumper's to stretch
         context, start, durations = _anticipated(fit, problem, context, start, target.places)
-    start = _with_constraints(_riding(start, fitted, target), problem, context)
+    start = _with_constraints(_riding(start, asked.fitted, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights, price = _cost_weights(requests), _price(fit, reference, requests)
     kept = same and weights is ADAPT_COST_WEIGHTS and price is not None
@@ -211,26 +251,19 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
         fit,
         context,
         start,
-        fitted,
+        asked.fitted,
         target,
         metric,
         turns,
         basis,
-        changed,
+        asked.recording,
         requests,
         space,
         durations,
-        changes,
+        asked.changes,
         problem.scene,
         price,
     )
-
-
-def _travel(fit: Fit, phases: Sequence[Phase], time: float) -> FloatArray:
-    """(3, 3) columns forward, left, up at an instant, s. phases: the recording's, on that time."""
-    index = next((i for i, p in enumerate(phases) if time <= p.end), len(phases) - 1)
-    old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
-    return travel_axes(fit.performance, fit.schedule, old)
 
 
 def _anticipated(
@@ -279,19 +312,6 @@ def _weighs_torques(requests: Requests) -> bool:
     return solution.method is not Method.IMPLICIT and solution.dynamics is not Dynamics.REDUCED
 
 
-def _refuse_torques(requests: Requests) -> None:
-    """Reduced dynamics have no torques to limit or to weigh. Raises NeedsTorques."""
-    solution = requests.solution
-    for limit in requests.torques:
-        raise NeedsTorques(limit.name)
-    if solution.method is not Method.IMPLICIT:
-        weighed = [o.value for o, weight in solution.objectives if weight > 0.0]
-        weighed = weighed if solution.method is Method.EXPLICIT else [solution.method.value]
-        for name in weighed:
-            if name in TORQUE_OBJECTIVES:
-                raise NeedsTorques(name)
-
-
 def _cost_weights(requests: Requests) -> CostWeights:
     """Default cost weights; the force weight scaled by the largest `match` of the requests."""
     matches = [r.match for r in requests.forces if r.match is not None]
@@ -309,24 +329,6 @@ def _price(fit: Fit, reference: Motion, requests: Requests) -> JointPrice | None
 
 def _torque_metric(fit: Fit, start: Motion, *, same: bool) -> BlockBanded:
     return fit.torque_metric if same else torque_metric(start, joint_torques(start.transcription))
-
-
-def _with_body(fit: Fit, problem: MotionProblem, changed: Recording) -> Motion:
-    """The fit with the body and the gravity that are asked for; the fit itself where they stay."""
-    change, motion = problem.requests.body, fit.motion
-    t = motion.transcription
-    still = (change.mass, change.gravity, change.added, change.limbs)
-    if still == (None, t.character.gravity, (), ()):
-        return motion
-    if change not in fit.other_bodies:
-        character = changed_character(t.character, change, fit.performance.recording, changed)
-        points = changed_points(t.points, t.character, character)
-        moment = MomentFunction(character)
-        new = replace(t, character=character, points=points, moment=moment)
-        made = Motion(new, reseat(motion, character), motion.places)
-        fit.other_bodies.clear()  # the last one is asked for again and again, older ones are not
-        fit.other_bodies[change] = made
-    return fit.other_bodies[change]
 
 
 def _with_constraints(start: Motion, problem: MotionProblem, context: EvaluationContext) -> Motion:
@@ -348,3 +350,41 @@ def _reduced_basis(space: ReducedSpace | None, start: Motion) -> FloatArray | No
     basis[layout.joint_angles, kept : kept + k] = reduced
     basis[layout.forces, kept + k :] = np.eye(rest)
     return basis
+
+
+def _travel(fit: Fit, phases: Sequence[Phase], time: float) -> FloatArray:
+    """(3, 3) columns forward, left, up at an instant, s. phases: the recording's, on that time."""
+    index = next((i for i, p in enumerate(phases) if time <= p.end), len(phases) - 1)
+    old = fit.schedule.phases[min(index, len(fit.schedule.phases) - 1)]
+    return travel_axes(fit.performance, fit.schedule, old)
+
+
+def _with_body(fit: Fit, problem: MotionProblem, changed: Recording) -> Motion:
+    """The fit with the body and the gravity that are asked for; the fit itself where they stay."""
+    change, motion = problem.requests.body, fit.motion
+    t = motion.transcription
+    still = (change.mass, change.gravity, change.added, change.limbs)
+    if still == (None, t.character.gravity, (), ()):
+        return motion
+    if change not in fit.other_bodies:
+        character = changed_character(t.character, change, fit.performance.recording, changed)
+        points = changed_points(t.points, t.character, character)
+        moment = MomentFunction(character)
+        new = replace(t, character=character, points=points, moment=moment)
+        made = Motion(new, reseat(motion, character), motion.places)
+        fit.other_bodies.clear()  # the last one is asked for again and again, older ones are not
+        fit.other_bodies[change] = made
+    return fit.other_bodies[change]
+
+
+def _refuse_torques(requests: Requests) -> None:
+    """Reduced dynamics have no torques to limit or to weigh. Raises NeedsTorques."""
+    solution = requests.solution
+    for limit in requests.torques:
+        raise NeedsTorques(limit.name)
+    if solution.method is not Method.IMPLICIT:
+        weighed = [o.value for o, weight in solution.objectives if weight > 0.0]
+        weighed = weighed if solution.method is Method.EXPLICIT else [solution.method.value]
+        for name in weighed:
+            if name in TORQUE_OBJECTIVES:
+                raise NeedsTorques(name)

@@ -54,6 +54,7 @@ from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion
 from .lasting_fit import lasting_fit
+from .possible import check_requested
 
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
 
@@ -269,15 +270,27 @@ def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationRes
     return AdaptationResult(subject, adaptation, fault)
 
 
+def fit_possible(subject: Subject, clock: StageClock) -> Fit:
+    """The fit, once nothing that is asked is seen to be impossible. Raises as `check_requested`."""
+    schedule = subject.analysis.schedule
+    check_requested(
+        subject.analysis.performance,
+        schedule,
+        subject.problem,
+        periodic=subject.cycle is not None,
+        rides=recorded_rides(schedule, subject.problem.scene, subject.recording),
+    )
+    return fit_subject(subject, clock)
+
+
 def solve(
     subject: Subject,
     clock: StageClock,
-    fitted_by: Callable[[Subject, StageClock], Fit] = fit_subject,
+    fitted_by: Callable[[Subject, StageClock], Fit] = fit_possible,
 ) -> AdaptationResult:
     """The whole way from an analysis. fitted_by: may remember fits.
 
-    Raises what `adapt` and `check_scene` do; wrong names of bones, phases and contacts before the
-    fit takes its seconds.
+    Raises what `adapt` and `check_scene` do, all before the fit takes its seconds.
     """
     check_scene(subject.problem)
     check_loop(subject.problem)

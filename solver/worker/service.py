@@ -4,6 +4,7 @@ from collections import Counter, OrderedDict
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 
 from ..analysis.pinned_places import travel_axes
 from ..data.contacts import PhaseKind
@@ -19,7 +20,17 @@ from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..stages.interactive import Follower, change, pelvis_range
 from ..transcription.motion import Motion
-from .pipeline import ADAPTING, FITTING, StageClock, Subject, fit_subject, measure, no_fit, solve
+from .pipeline import (
+    ADAPTING,
+    FITTING,
+    StageClock,
+    Subject,
+    fit_possible,
+    fit_subject,
+    measure,
+    no_fit,
+    solve,
+)
 from .progress import ProgressFraction
 from .protocol import (
     Adapted,
@@ -99,7 +110,7 @@ class Service:
         return Fitted(request.id, fit_quality(fitted), watch.done[-1].seconds, traces)
 
     def _adapted(self, request: int, subject: Subject, watch: "_Watch") -> Adapted:
-        result = solve(subject, watch, self._fit)
+        result = solve(subject, watch, partial(self._fit, fitted_by=fit_possible))
         if result.fault is None:
             self._last = (result.adaptation.fit, subject.problem, result.adaptation)
         report = result.report(Origin(subject.recording.name), watch.done)
@@ -148,13 +159,18 @@ class Service:
         subject = self._subject[1]
         return scene if subject.analysis.unseen else _named(subject.stood_on, scene)
 
-    def _fit(self, subject: Subject, clock: StageClock) -> Fit:
+    def _fit(
+        self,
+        subject: Subject,
+        clock: StageClock,
+        fitted_by: Callable[[Subject, StageClock], Fit] = fit_subject,
+    ) -> Fit:
         """The remembered fit of this performance, or a new one, which is then remembered."""
         assert self._subject is not None
         key = self._subject[0]
         found = self._fits.pop(key, None)
         if found is None:
-            found = fit_subject(subject, clock)
+            found = fitted_by(subject, clock)
         else:
             with clock.stage(FITTING):
                 pass  # it takes no time

@@ -147,6 +147,16 @@ class TimedTwice(RequestFault):
     phase: str
 
 
+@dataclass
+class OutOfReach(RequestFault):
+    """A request's place is `metres` from that of `other`, `seconds` earlier or later: nobody can
+    go so far in that time."""
+
+    other: str
+    metres: float
+    seconds: float
+
+
 class NoBoneChosen(RequestFault):
     """A request of a kind that is about a bone names none."""
 

@@ -9,20 +9,25 @@ import pytest
 
 pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.read import record
 from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.scene.skin import read_skin
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
 from hangtime.devtools.rigs.controls.auto_rig_pro import auto_rig_pro
 from hangtime.devtools.rigs.controls.cases import RATE, cases, performer
 from hangtime.devtools.rigs.controls.measure import slide
 from hangtime.devtools.rigs.controls.skin import add_skin, own_vertices, skin_at
-from hangtime.solver.body.anatomy import Part, map_anatomy
+from hangtime.solver.body.anatomy import Part, Side, map_anatomy
+from hangtime.solver.body.character import build_character
 from hangtime.solver.data.contacts import Contact
 from hangtime.solver.data.recording import Bone, PoseTrack, Recording
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.solver.solid.flesh import flesh_of
 from hangtime.tests.blender.helpers.actions import curves_of
+from hangtime.tests.blender.helpers.skins import make_skin
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -87,3 +92,15 @@ def test_a_foots_control_slides_by_what_its_keys_carry_the_pinned_heel() -> None
     slid = slide(shown, contact, np.arange(3), "c_foot_ik.{s}")
     assert slid.value == pytest.approx(2.0)
     assert slid.bone == "c_foot_ik.l"
+
+
+def test_limbs_that_deform_tell_the_shapes_of_the_bodies_that_they_follow() -> None:
+    """They hang on the root's control, and not on one another."""
+    take = performer().part(1.0, 2.0, 1)
+    rig = auto_rig_pro(take, ik=True, rate=RATE)
+    make_skin(rig, {bone.name: 0.04 for bone in rig.data.bones if bone.use_deform})
+    shown = record(rig, take.frames)
+    character = build_character(shown)
+    found = flesh_of(complete(read_skin(rig, shown.frames)).skin, shown, character)
+    limbs = {i for i, body in enumerate(character.bodies) if body.side is not Side.MIDDLE}
+    assert limbs <= set(found)

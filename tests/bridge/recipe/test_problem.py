@@ -331,3 +331,20 @@ def test_lines_of_json() -> None:
     text = '\n{"a": [1,\n{"b": "}"}],\n"c": {}}'
     lines = {("a",): 2, ("a", 0): 2, ("a", 1): 3, ("a", 1, "b"): 3, ("c",): 4}
     assert dict(json_lines(text)) == lines
+
+
+def test_the_other_way_has_words_of_its_own() -> None:
+    words = '[[pin]]\nphase = "GROUND  2"\nback = 0.3\nright = 0.1\ndown = 0.2\n'
+    (pin,) = parse_recipe(words).problem.pins
+    assert (pin.offset, pin.phase) == ((-0.3, -0.1, -0.2), "ground 2")
+    (again,) = parse_recipe(write_recipe(parse_recipe(words).problem)).problem.pins
+    assert again == pin
+    words = '[[point]]\nbone = "Hand.L"\nphase = "Flight 1"\nright = 0.3\n'
+    (point,) = parse_recipe(words).problem.requests.points
+    assert (point.relative, point.axes.value) == ((0.0, -0.3, 0.0), "travel")
+    assert point.when.phase == "flight 1"
+
+
+def test_both_ways_at_once_exclude_each_other() -> None:
+    problem = refused('[[pin]]\nphase = "ground 2"\nforward = 0.3\nback = 0.1\n').problem
+    assert '"forward" and "back" exclude each other' in problem

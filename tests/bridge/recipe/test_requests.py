@@ -6,6 +6,7 @@ from dataclasses import fields
 import pytest
 from hangtime.bridge.recipe import requests
 from hangtime.bridge.recipe.problem import parse_recipe, write_recipe
+from hangtime.bridge.recipe_syntax.items import TRAVEL_WORDS
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.requests import (
     AngleLimit,
@@ -41,7 +42,7 @@ def test_the_recipe_in_the_documentation_is_understood() -> None:
         "matrix",
     }
     assert keys - known - solving == {"torque smoothness", "closeness"}
-    alternatives = {"frame", "fixed", "at_most", "forward", "left", "up", "bones", "seconds"}
+    alternatives = {"frame", "fixed", "at_most", "bones", "seconds", *TRAVEL_WORDS}
     assert known - keys <= alternatives
 
 

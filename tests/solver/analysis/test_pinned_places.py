@@ -78,6 +78,10 @@ def test_on_the_spot_ahead_is_where_the_body_faces() -> None:
     faces = travel_axes(still, analysis.schedule, phase)[:, 0]
     travels = travel_axes(performance, analysis.schedule, phase)[:, 0]
     assert faces @ travels > 0.9  # these hops go straight ahead
+    flight = analysis.schedule.flights[0]
+    back = -0.1 / (flight.end - flight.start) * performance.times[:, None] * travels
+    drifting = replace(performance, com=still.com + back)  # 0.1 m backwards in its flight
+    assert travel_axes(drifting, analysis.schedule, phase)[:, 0] == pytest.approx(faces)
 
 
 def test_places_are_for_the_contacts_centre() -> None:

@@ -1,5 +1,6 @@
 """Shapes from a skinned mesh: tubes of known girth are found, whatever else hangs on the bones."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -8,7 +9,7 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.body.character import Body, Character, build_character
 from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.data.recording import Recording, Skin
+from hangtime.solver.data.recording import Bone, Recording, Skin
 from hangtime.solver.data.requests import Requests, Shape
 from hangtime.solver.data.scaling import scaled_problem, scaled_recording
 from hangtime.solver.data.solver_options import ShapeSource, SolverOptions
@@ -136,6 +137,25 @@ def test_nothing_is_more_than_twice_as_thick_as_its_mass_makes_it() -> None:
 def test_fingers_go_with_their_hand(bone: str) -> None:
     index, _ = body("LeftHand")
     assert set(found((bone, tube("LeftHand", 0.03, reach=(0.0, 1.0))))) == {index}
+
+
+def test_a_bone_of_another_family_goes_with_the_body_in_which_it_lies() -> None:
+    """As `arm_stretch.l`, which hangs on the root's control."""
+    recording, character = figure()
+    index, arm = body("LeftArm")
+    head = recording.bones[recording.index("LeftArm")].head
+    loose = Bone("arm_stretch.l", -1, head, head + 0.5 * arm.tip, np.eye(3))
+    far = replace(loose, name="cloth", head=head + 1.0, tail=head + 1.1)
+    more = replace(
+        recording,
+        bones=(*recording.bones, loose, far),
+        heads=np.concatenate([recording.heads, recording.heads[:, :2]], axis=1),
+        rotations=np.concatenate([recording.rotations, recording.rotations[:, :2]], axis=1),
+    )
+    tubes = (("arm_stretch.l", tube("LeftArm", 0.04)), ("cloth", tube("LeftLeg", 0.05)))
+    flesh = flesh_of(skin(*tubes), more, character)
+    assert list(flesh) == [index]
+    assert flesh[index].radius == pytest.approx(0.04, rel=NEAR)
 
 
 def test_too_little_mesh_or_a_load_beside_the_bone_tells_nothing() -> None:

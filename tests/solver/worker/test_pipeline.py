@@ -1,21 +1,36 @@
 """The pipeline's own doings: scaling to a stated stature, faults before the fit, what is timed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hangtime.solver.data.faults import Fault, StillBone, UnknownBone, UnknownPhase
+from hangtime.solver.data.faults import (
+    BadTiming,
+    ContradictoryPins,
+    Fault,
+    OutOfReach,
+    StillBone,
+    UnknownBone,
+    UnknownPhase,
+    UnknownPhaseIn,
+)
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
     AddedMass,
     BodyChange,
     ConeLimit,
     LimbChange,
+    PointAxes,
+    PointRequest,
     Requests,
     Shape,
     TorqueLimit,
+    When,
 )
-from hangtime.solver.data.solver_options import SolverOptions
+from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.stages.fit import Fit
 from hangtime.solver.worker.pipeline import ADAPTING, StageClock, Subject, adapt_fit, measure, solve
+from hangtime.solver.worker.possible import check_requested
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
 
@@ -53,6 +68,81 @@ def test_a_wrong_bone_is_said_before_the_fit(requests: Requests, fault: type[Fau
     asked = subject().asked(MotionProblem(frames=FRAMES, requests=requests))
     with pytest.raises(fault):
         solve(asked, StageClock(), unfitted)
+
+
+TOP = When(frames=(sum(FRAMES) / 2, sum(FRAMES) / 2))
+STANDING = When(frames=(FRAMES[0] + 3, FRAMES[0] + 3))
+
+
+def at(name: str, bone: str, place: tuple[float, float, float], when: When = TOP) -> PointRequest:
+    return PointRequest(name, bone, when, place=place)
+
+
+def pinned(*pins: Pin, points: tuple[PointRequest, ...] = ()) -> MotionProblem:
+    return MotionProblem(frames=FRAMES, pins=pins, requests=Requests(points=points))
+
+
+def checked(problem: MotionProblem) -> None:
+    check_requested(hop().performance, hop().schedule, problem)
+
+
+@pytest.mark.parametrize(
+    ("problem", "fault", "named"),
+    [
+        (
+            pinned(points=(at("Here", "LeftHand", (0, 0, 1)), at("There", "LeftHand", (0, 1, 1)))),
+            ContradictoryPins,
+            {"Here", "There"},
+        ),
+        (
+            pinned(points=(at("Here", "LeftHand", (0, 0, 1)), at("Far", "RightHand", (0, 4, 1)))),
+            ContradictoryPins,
+            {"Here", "Far"},
+        ),
+        (
+            pinned(points=(at("Ceiling", "LeftHand", (0, 0, 9), STANDING),)),
+            ContradictoryPins,
+            {"Ceiling", "Left heel 1"},
+        ),
+        (
+            pinned(Pin("Split", "ground 2", ("Left heel", "Left toe"), offset=(0, 3, 0))),
+            ContradictoryPins,
+            {"Split", "Right toe 2"},
+        ),
+        (pinned(Pin("Leap", "ground 2", offset=(30, 0, 0))), OutOfReach, {"Leap", "Left heel 1"}),
+        (
+            pinned(points=(at("Moon", "LeftHand", (0, 90, 9)),)),
+            OutOfReach,
+            {"Moon", "Left heel 1"},
+        ),
+        (
+            pinned(points=(PointRequest("Later", "LeftHand", When(frames=(9e3, 9e3))),)),
+            BadTiming,
+            {"Later"},
+        ),
+        (
+            pinned(points=(PointRequest("Never", "LeftHand", When("flight 9")),)),
+            UnknownPhaseIn,
+            {"Never"},
+        ),
+    ],
+)
+def test_what_nobody_can_do_is_said_before_the_fit(
+    problem: MotionProblem, fault: type[Fault], named: set[str]
+) -> None:
+    with pytest.raises(fault) as found:
+        checked(problem)
+    said = vars(found.value)
+    assert {said[key] for key in ("first", "second", "request", "other") if key in said} == named
+
+
+def test_what_can_be_done_is_not_refused_before_the_fit() -> None:
+    reach = PointRequest("Reach", "LeftHand", TOP, relative=(0.3, 0, 0), axes=PointAxes.TRAVEL)
+    steps = PointRequest("Then", "LeftHand", STANDING, relative=(0, 0, 0.2))
+    checked(pinned(Pin("Leap", "ground 2", offset=(0.6, 0.1, 0.3)), points=(reach, steps)))
+    far = pinned(Pin("Leap", "ground 2", offset=(30, 0, 0)))
+    free = Requests(solution=SolverOptions(human=HumanRanges.OFF))
+    checked(replace(far, requests=free))  # who knows how a figure jumps that is no human
 
 
 def test_a_stated_stature_scales_the_solvers_lengths_alone() -> None:

@@ -34,8 +34,10 @@ def test_shapes_are_the_meshs_unless_the_bones_are_chosen(jump: bpy.types.Object
     make_skin(jump, {"LeftLeg": girth, "RightLeg": girth}, name="Stockings")
     analyse()
     assert shank(jump) == pytest.approx(SOLID_SHARE * girth, rel=0.03)
-    assert jump.hangtime.shapes_told.startswith("2 of ")
-    assert jump.hangtime.shapes_told.endswith(" bodies have the shape of Stockings")
+    told, rest = jump.hangtime.shapes_told.splitlines()
+    assert told.startswith("2 of ")
+    assert told.endswith(" bodies have the shape of Stockings")
+    assert rest == "From the bones: all but left shank, right shank"
     jump.hangtime.shapes = "BONES"
     analyse()
     assert shank(jump) == from_bones
@@ -59,3 +61,12 @@ def test_a_mesh_that_tells_nothing_is_told_and_changes_nothing(jump: bpy.types.O
     assert jump.hangtime.shapes_told.startswith(
         "Doll tells no shapes: no vertex group is called as a bone; bind it by Parent > "
     )
+
+
+def test_a_mesh_on_which_no_body_is_found_is_told(jump: bpy.types.Object) -> None:
+    """Its groups are bones, but a brooch is around none of them."""
+    make_skin(jump, {"LeftLeg": 0.0005}, name="Brooch")
+    bpy.data.objects["Brooch"].location.x = 0.3
+    analyse()
+    assert jump.hangtime.shapes_told.startswith("0 of ")
+    assert "From the bones: all, since" in jump.hangtime.shapes_told

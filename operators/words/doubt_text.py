@@ -1,0 +1,79 @@
+"""Wording of what is legal but hardly meant, told before a fit takes its seconds."""
+
+from collections.abc import Iterator, Sequence
+from math import isfinite
+
+from ...solver.arrays import FloatArray
+from ...solver.data.problem import MotionProblem
+from ...solver.data.requests import AddedMass
+
+# Body mass over squared stature, kg/m². Adults above 40 have obesity of the third class; of healthy
+# children the leanest have 13 (WHO).
+LEANEST, HEAVIEST = 12.0, 45.0
+MOST_CARRIED = 1.0  # body masses; a weightlifter moves more, but does not jump with it
+MOST_GRAVITY = 25.0  # m/s², Jupiter's
+LONGEST, SHORTEST = 4.0, 0.25  # times a phase's duration
+A_FRAME = 1.0
+
+
+def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list[str]:
+    """A line for each amount that nobody means; none where all is as one would expect.
+
+    height: m, as recorded. frames: (T,) that the clip has of those asked for; none where these do
+    not tell.
+    """
+    return [
+        *_of_frames(problem, frames),
+        *_of_build(problem.mass, problem.height or height),
+        *_of_loads(problem),
+        *_of_timings(problem),
+    ]
+
+
+def _of_frames(problem: MotionProblem, there: FloatArray) -> Iterator[str]:
+    if problem.frames is None or not len(there):
+        return
+    first, last = problem.frames
+    if isfinite(first) and first < there[0] - A_FRAME:
+        yield f"Frame {first:g} was asked for, but the recording begins at {there[0]:g}"
+    if isfinite(last) and last > there[-1] + A_FRAME:
+        yield f"Frame {last:g} was asked for, but the recording ends at {there[-1]:g}"
+
+
+def _of_build(mass: float, height: float) -> Iterator[str]:
+    """mass: kg. height: m."""
+    usual = LEANEST * height**2, HEAVIEST * height**2
+    if not usual[0] <= mass <= usual[1]:
+        yield (
+            f"{mass:g} kg is a mass that nobody of {height:.2f} m has; people have "
+            f"{usual[0]:.0f} to {usual[1]:.0f} kg. State the performer's mass, or the height"
+        )
+
+
+def _of_loads(problem: MotionProblem) -> Iterator[str]:
+    loads = problem.requests.body.added
+    mass = problem.requests.body.mass or problem.mass
+    carried = sum(_share(load, mass) for load in loads)
+    if carried > MOST_CARRIED:
+        yield (
+            f"{_listed(loads)}: {carried:.3g} times the body's own mass, with which nobody jumps"
+        )
+    if problem.requests.body.gravity > MOST_GRAVITY:
+        yield (
+            f"Gravity is {problem.requests.body.gravity:g} m/s², more than on any planet; "
+            "the Earth's is 9.81"
+        )
+
+
+def _of_timings(problem: MotionProblem) -> Iterator[str]:
+    for timing in problem.requests.timings:
+        if timing.factor is not None and not SHORTEST <= timing.factor <= LONGEST:
+            yield f"“{timing.name}” lets {timing.phase} last {timing.factor:g} times as long"
+
+
+def _share(load: AddedMass, mass: float) -> float:
+    return (load.share or 0.0) if load.mass is None else load.mass / mass
+
+
+def _listed(loads: Sequence[AddedMass]) -> str:
+    return ", ".join(f"“{load.name}”" for load in loads)

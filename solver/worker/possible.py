@@ -1,0 +1,38 @@
+"""What cannot be, found on the recording's splines before the fit takes its seconds."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..analysis.performance import Performance
+from ..constraints.constraint_builder import build_constraints
+from ..data.contacts import ContactSchedule
+from ..data.problem import MotionProblem
+from ..data.status import Status
+from ..optimisation.sqp import FeasibleSet
+from ..stages.fit import Fit, recorded_motion
+from ..stages.setup import check_places, requested
+from ..transcription.ride import Ride
+
+
+def check_requested(
+    performance: Performance,
+    schedule: ContactSchedule,
+    problem: MotionProblem,
+    *,
+    periodic: bool = False,
+    rides: Sequence[Ride | None] = (),
+) -> None:
+    """Everything that can be wrong with a problem, before the fit takes its seconds.
+
+    The recording's splines stand for the fit. periodic, rides: as of `fit`. Raises as `requested`,
+    `build_constraints` and `check_places` do.
+    """
+    guess = recorded_motion(performance, schedule, periodic=periodic, rides=rides)
+    outcome = FeasibleSet(guess.transcription, guess.places).outcome(
+        guess.x, Status.STALLED, [], np.inf
+    )
+    fit = Fit((outcome,), guess.places, performance, schedule)
+    asked = requested(fit, problem)
+    build_constraints(problem.requests, asked.context, asked.start.transcription)
+    check_places(fit, problem, asked.context, asked.start, asked.target)
