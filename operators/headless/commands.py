@@ -1,4 +1,4 @@
-"""The commands `adapt` and `analyze`, and their options."""
+"""The commands `adapt`, `analyze` and `doctor`, and their options."""
 
 import argparse
 import math
@@ -21,6 +21,7 @@ from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.messages import recipe_place, sentence
 from ..words.report_text import headline
 from .clip import Clip, load
+from .doctor import examined, told, write_recipe_of
 from .outbox import Outbox, not_writable
 from .outputs import Outputs
 from .stages import WIDTH, Stages
@@ -84,7 +85,13 @@ def parser() -> argparse.ArgumentParser:
     analyzing.add_argument(
         "--write-recipe", type=Path, metavar="FILE", help="leave a recipe to start from"
     )
-    for each in (adapting, analyzing):
+    doctoring = commands.add_parser("doctor", help="tell what is wrong with a clip, and remedies")
+    doctoring.set_defaults(act=doctor, recipe=None)
+    doctoring.add_argument("--json", action="store_true", help="print it for a program")
+    doctoring.add_argument(
+        "--write-recipe", type=Path, metavar="FILE", help="leave a recipe that repairs the clip"
+    )
+    for each in (adapting, analyzing, doctoring):
         _add_clip_options(each, optional=each is adapting)
     return top
 
@@ -153,7 +160,7 @@ def adapt(options: argparse.Namespace) -> None:
         require_every_frame(keys)
     stages = Stages(sys.stdout)
     with Outbox(options.out) as outbox:
-        loaded = load(clip, problem, stages)
+        loaded = load(clip, problem, stages, recipe.repairs)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
@@ -177,7 +184,7 @@ def analyze(options: argparse.Namespace) -> None:
     if options.recipe is not None:
         asked = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     problem = overridden(asked.problem, options)
-    loaded = load(_clip(options, None), problem, Stages(sys.stdout))
+    loaded = load(_clip(options, None), problem, Stages(sys.stdout), asked.repairs)
     print()
     print(analysis_text(loaded.subject.analysis, loaded.origin), end="")
     target: Path | None = options.write_recipe
@@ -189,6 +196,17 @@ def analyze(options: argparse.Namespace) -> None:
         except OSError as error:
             raise not_writable(target, error) from error
         print(f"\nWritten:\n  {target}")
+
+
+def doctor(options: argparse.Namespace) -> None:
+    """Prints what is wrong with a clip; leaves a recipe where asked. Raises Fault."""
+    clip, problem = _clip(options, None), overridden(MotionProblem(), options)
+    diagnosis = examined(clip, problem, options.mass)
+    print(told(diagnosis, clip, as_json=options.json), end="")
+    target: Path | None = options.write_recipe
+    if target is not None:
+        write_recipe_of(diagnosis, clip, target)
+        print(f"\nWritten:\n  {target}", file=sys.stderr if options.json else sys.stdout)
 
 
 def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:
