@@ -36,11 +36,12 @@ markers = "action"              # where limbs come down and go up; or "timeline"
 contact_channels = true         # a property of the armature for each limb, 1 while it touches
 [loop]                          # the motion repeats: its end meets its start, solved so
 root = "hips"                   # carry the travel; or "in place", or "root bone"
+[recording]                     # its repairs: the keys are in recording.py
+repair = ["spikes"]
 [keys]                          # of the adapted frames
 on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has
 distance = 0.002                # m by which reduced keys may move a joint, in the world; and
 angle = 0.2                     # degrees by which they may turn a bone
-
 [export]                        # the file with the result: the keys are in export.py
 engine = "unreal"               # "unity", "godot"; default: "none", as the armature is in Blender
 
@@ -77,6 +78,7 @@ from ...solver.data.problem import (
     Pin,
     Unseen,
 )
+from ...solver.doctor.repairs import Repairs
 from ..recipe_syntax.items import (
     TOUCHING,
     TRAVEL_KEYS,
@@ -100,21 +102,13 @@ from .loop import LOOP, LoopOptions
 from .object_texts import object_text
 from .objects import HEADER as OBJECT
 from .objects import Under, default_name, read_objects
+from .recording import RECORDING
 from .requests import NAMED, REQUEST_KEYS, read_requests, request_texts
 from .result import RESULT, ResultOptions
 
 OWN_KEYS = (
-    "clip",
-    "frames",
-    "mass",
-    "height",
-    "mass_table",
-    "bones",
-    "pin",
-    "contact",
-    "keys",
-    "loop",
-    "export",
+    *("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact"),
+    *("recording", "keys", "loop", "export"),
 )
 TOP_KEYS = (*OWN_KEYS, "unseen_support", "add_contact", OBJECT, *REQUEST_KEYS, RESULT.header)
 REDUCTION = ("solution", "reduction")
@@ -132,8 +126,8 @@ _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 bracke
 class Recipe:
     """Parsed recipe. clip: a path as written, relative to the recipe; None where not given.
 
-    under: objects of which the analysis is to tell the places. result, keys, loop, export: None
-    where not given.
+    under: objects of which the analysis is to tell the places. repairs: of the recording. result,
+    keys, loop, export: None where not given.
     """
 
     problem: MotionProblem
@@ -143,6 +137,7 @@ class Recipe:
     keys: KeyOptions | None = None
     loop: LoopOptions | None = None
     export: ExportOptions | None = None
+    repairs: Repairs | None = None
 
 
 def read_recipe_text(path: str | Path) -> str:
@@ -183,7 +178,8 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
     keys = KEYS.read(table) if KEYS.header in table.values else None
     loop = LOOP.read(table) if problem.loop else None
     export = EXPORT.read(table) if EXPORT.header in table.values else None
-    return Recipe(problem, table.word("clip"), under, result, keys, loop, export)
+    repairs = RECORDING.read(table) if RECORDING.header in table.values else None
+    return Recipe(problem, table.word("clip"), under, result, keys, loop, export, repairs)
 
 
 def locate(text: str, fault: Fault) -> int | None:

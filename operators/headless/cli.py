@@ -9,7 +9,7 @@ from ...solver.one_thread import ONE_THREAD
 
 
 def main(argv: list[str]) -> int:
-    """Runs `adapt` or `analyze` with its arguments; the exit code.
+    """Runs `adapt`, `analyze` or `doctor` with its arguments; the exit code.
 
     Also for bpy.utils.register_cli_command("hangtime", main): argv is what follows `hangtime`.
     """

@@ -10,6 +10,8 @@ from ...solver.data.faults import ClipNotOpened, NoArmature
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
+from ...solver.doctor.repair import mended, placed, trimmed
+from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
 from .quiet import quiet
@@ -53,14 +55,30 @@ class LoadedClip:
     skin: SkinReading
 
 
-def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
-    """Imports a clip into a new, empty file (a .blend is one in itself) and analyses it.
+def read_clip(clip: Clip, problem: MotionProblem) -> Recording:
+    """Imports a clip as `load` does, and reads the problem's frames of it, as they are.
+
+    Raises every Fault that a clip can have.
+    """
+    armature, _ = _import(clip)
+    recording = _read(armature, problem)
+    return recording if problem.frames is None else recording.window(*problem.frames)
+
+
+def load(
+    clip: Clip, problem: MotionProblem, stages: Stages, repairs: Repairs | None = None
+) -> LoadedClip:
+    """Imports a clip into a new, empty file (a .blend is one in itself) and analyses it, repaired.
 
     Where no frames are asked for, a bind pose before the motion is left out.
     Raises every Fault that a clip can have.
     """
     with stages.stage("Importing the clip"):
         armature, origin = _import(clip)
+        if repairs is not None:
+            from ...bridge.files.placed_armature import place_armature
+
+            place_armature(armature, repairs)
     with stages.stage("Finding contacts"):
         recording = _read(armature, problem)
         count = bind_frames(recording) if problem.frames is None else 0
@@ -68,6 +86,11 @@ def load(clip: Clip, problem: MotionProblem, stages: Stages) -> LoadedClip:
             origin = replace(origin, bind_frames=count)
             after = float(recording.frames[count]), float(recording.frames[-1])
             problem = replace(problem, frames=after)
+        if repairs is not None:
+            if count == 0 and problem.frames is None and repairs.trim:
+                recording = trimmed(recording, repairs)
+            recording = mended(recording, repairs, problem.bones)
+            recording = placed(recording, Repairs(drift=repairs.drift))
         read = _skin(armature, recording)
         subject = measure(recording, replace(problem, skin=read.skin))
     return LoadedClip(armature, origin, problem, subject, read)

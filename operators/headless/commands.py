@@ -1,4 +1,4 @@
-"""The commands `adapt` and `analyze`, and their options."""
+"""The commands `adapt`, `analyze` and `doctor`, and their options."""
 
 import argparse
 import math
@@ -22,6 +22,7 @@ from ..words.doubt_text import doubts_of
 from ..words.headline import headline
 from ..words.messages import recipe_place, sentence
 from .clip import Clip, LoadedClip, load
+from .doctor import examined, told, write_recipe_of
 from .outbox import Outbox, not_writable
 from .outputs import Outputs, require_exported
 from .stages import WIDTH, Stages
@@ -85,7 +86,13 @@ def parser() -> argparse.ArgumentParser:
     analyzing.add_argument(
         "--write-recipe", type=Path, metavar="FILE", help="leave a recipe to start from"
     )
-    for each in (adapting, analyzing):
+    doctoring = commands.add_parser("doctor", help="tell what is wrong with a clip, and remedies")
+    doctoring.set_defaults(act=doctor, recipe=None)
+    doctoring.add_argument("--json", action="store_true", help="print it for a program")
+    doctoring.add_argument(
+        "--write-recipe", type=Path, metavar="FILE", help="leave a recipe that repairs the clip"
+    )
+    for each in (adapting, analyzing, doctoring):
         _add_clip_options(each, optional=each is adapting)
     return top
 
@@ -155,7 +162,7 @@ def adapt(options: argparse.Namespace) -> None:
         require_every_frame(keys)
     stages = Stages(sys.stdout)
     with Outbox(options.out) as outbox:
-        loaded = load(clip, problem, stages)
+        loaded = load(clip, problem, stages, recipe.repairs)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         require_exported(loaded, options.out, export)
         _ask_about(problem, loaded)
@@ -181,7 +188,7 @@ def analyze(options: argparse.Namespace) -> None:
     if options.recipe is not None:
         asked = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     problem = overridden(asked.problem, options)
-    loaded = load(_clip(options, None), problem, Stages(sys.stdout))
+    loaded = load(_clip(options, None), problem, Stages(sys.stdout), asked.repairs)
     _ask_about(problem, loaded)
     print()
     print(analysis_text(loaded.subject.analysis, loaded.origin), end="")
@@ -211,6 +218,17 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip) -> None:
     doubts = doubts_of(problem, subject.height, frames[:0] if problem.loop else frames)
     for doubt in doubts:
         print(f"Warning: {doubt}", file=sys.stderr)
+
+
+def doctor(options: argparse.Namespace) -> None:
+    """Prints what is wrong with a clip; leaves a recipe where asked. Raises Fault."""
+    clip, problem = _clip(options, None), overridden(MotionProblem(), options)
+    diagnosis = examined(clip, problem, options.mass)
+    print(told(diagnosis, clip, as_json=options.json), end="")
+    target: Path | None = options.write_recipe
+    if target is not None:
+        write_recipe_of(diagnosis, clip, target)
+        print(f"\nWritten:\n  {target}", file=sys.stderr if options.json else sys.stdout)
 
 
 def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:

@@ -82,7 +82,7 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
     return "\n".join(
         [
             "# What to change in a recorded jump. Metres, degrees, the scene's frames.",
-            f"clip = {_quoted(_relative(clip, recipe))}",
+            f"clip = {_quoted(relative(clip, recipe))}",
             f"frames = [{recording.frames[0] + 0.0:g}, {recording.frames[-1]:g}]",
             f"mass = {problem.mass:g}  # kg",
             f"# height = {analysis.performance.character.height:.2f}  # m, as measured; "
@@ -128,7 +128,8 @@ def _first_landing(analysis: Analysis) -> Phase:
     return next((p for p in ground if p.start >= flown - 1e-9), ground[0])
 
 
-def _relative(clip: Path, recipe: Path) -> str:
+def relative(clip: Path, recipe: Path) -> str:
+    """A clip's path as the recipe beside which it lies tells it."""
     try:
         return Path(os.path.relpath(clip.resolve(), recipe.resolve().parent)).as_posix()
     except ValueError:  # on another drive

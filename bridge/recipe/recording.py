@@ -1,0 +1,57 @@
+"""Keys of a recipe's recording: repairs that it gets when it is read.
+
+[recording]
+up = "Y"                        # the axis, as it was read, that is to become Z; "-X" ...
+trim = 1                        # frames left out at the beginning
+repair = ["flips", "spikes", "held frames", "bone lengths", "noise"]
+time_scale = 0.8                # durations times this: played 1.25 times too slowly
+scale = 0.625                   # lengths times this
+drift = [0.1, 0.0]              # m/s along the floor, x and y, that is taken out
+floor = 0.12                    # m; the height that becomes 0
+"""
+
+from __future__ import annotations
+
+from ...solver.doctor.repairs import Mend, Repairs, UpAxis
+from ..recipe_syntax.items import Item, Kind, Values, choice, number, whole
+from ..recipe_syntax.table import ABOVE_ZERO, NumberRange, Table
+
+COUNT = NumberRange("a whole number, 0 or more", lambda value: value >= 0.0 and value.is_integer())
+
+
+def _read_drift(table: Table) -> Values:
+    drift = table.pair("drift", "[x, y]")
+    return {} if drift is None else {"drift": drift}
+
+
+def _write_drift(repairs: Repairs) -> Values:
+    return {"drift": repairs.drift if any(repairs.drift) else None}
+
+
+def _read_mend(table: Table) -> Values:
+    known = {mend.value: mend for mend in Mend}
+    words = table.words("repair")
+    for word in words:
+        if word not in known:
+            table.refuse("repair", f'"{word}" is no repair; known: {", ".join(known)}')
+    return {"mend": tuple(mend for word, mend in known.items() if word in words)}
+
+
+def _write_mend(repairs: Repairs) -> Values:
+    return {"repair": tuple(mend.value for mend in repairs.mend) or None}
+
+
+RECORDING = Kind(
+    "recording",
+    Repairs,
+    (
+        choice("up", UpAxis),
+        whole("trim", COUNT),
+        Item(("repair",), _read_mend, _write_mend),
+        number("time_scale", ABOVE_ZERO),
+        number("scale", ABOVE_ZERO),
+        Item(("drift",), _read_drift, _write_drift),
+        number("floor"),
+    ),
+    named=False,
+)

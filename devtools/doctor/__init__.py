@@ -1,0 +1,1 @@
+"""Clean recordings damaged in known ways, diagnosed and repaired (docs/doctor.md)."""

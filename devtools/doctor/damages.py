@@ -1,0 +1,251 @@
+"""Ways in which recordings are damaged, each at several strengths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...solver.body.anatomy import Part
+from ...solver.data.recording import Recording
+from ...solver.data.scaling import scaled_recording
+from ...solver.doctor.figure import figure_of
+from ...solver.doctor.finding import FindingKind
+from ...solver.doctor.local_poses import LocalPoses
+from ...solver.doctor.repair import turned
+from ...solver.doctor.repairs import Repairs, UpAxis
+from ...solver.numerics.interpolation import interpolate
+from ...solver.numerics.rotations import rotation_matrix
+
+SEED = 7
+VIDEO_RATE = 30.0  # Hz
+
+
+@dataclass(frozen=True)
+class Damaged:
+    """original: at the damaged recording's frames. scale: which the damage multiplied durations or
+    lengths by; None where it is of another kind."""
+
+    recording: Recording
+    original: Recording
+    scale: float | None = None
+
+
+@dataclass(frozen=True)
+class Damage:
+    """kind: of the finding that names it rightly."""
+
+    name: str
+    kind: FindingKind
+    do: Callable[[Recording, np.random.Generator], Damaged]
+
+    def of(self, recording: Recording) -> Damaged:
+        """The damage done to a recording, alike in every run."""
+        return self.do(recording, np.random.default_rng(SEED))
+
+
+def slowed(factor: float) -> Damage:
+    """Played too slowly, or where the factor is below 1 too fast."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        return Damaged(replace(recording, times=factor * recording.times), recording, factor)
+
+    return Damage(f"time × {factor:g}", FindingKind.TIME_SCALE, do)
+
+
+def sized(factor: float, name: str) -> Damage:
+    """Read at a wrong unit of length."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        return Damaged(scaled_recording(recording, factor), recording, factor)
+
+    return Damage(name, FindingKind.SIZE, do)
+
+
+def lain(up: UpAxis) -> Damage:
+    """Another axis than Z up."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        damaged = recording
+        for _turn in range(3):  # the turn that mends it is the fourth
+            damaged = turned(damaged, Repairs(up=up))
+        return Damaged(damaged, recording)
+
+    return Damage(f"{up.value} up", FindingKind.UP_AXIS, do)
+
+
+def begun_at_rest(frames: int) -> Damage:
+    """The rest pose on the first frames."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        rotations, heads = recording.rotations.copy(), recording.heads.copy()
+        rotations[:frames] = np.stack([bone.rotation for bone in recording.bones])
+        heads[:frames] = np.stack([bone.head for bone in recording.bones])
+        damaged = replace(recording, rotations=rotations, heads=heads)
+        return Damaged(damaged, recording.part(slice(frames, None)))
+
+    return Damage(f"rest pose, {frames} frames", FindingKind.BIND_POSE, do)
+
+
+def spiked(degrees: float) -> Damage:
+    """Five joints off, each on one frame."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        figure, local = figure_of(recording), LocalPoses.of(recording)
+        bones = [bone for bone, part in figure.parts if part is not Part.TOE]
+        for frame in rng.choice(np.arange(4, len(recording.frames) - 4), 5, replace=False):
+            axis = rng.normal(size=3)
+            turn = np.radians(degrees) * axis / np.linalg.norm(axis)
+            bone = rng.choice(bones)
+            local.rotations[frame, bone] = local.rotations[frame, bone] @ rotation_matrix(turn)
+        return Damaged(local.posed(recording), recording)
+
+    return Damage(f"spikes of {degrees:g}°", FindingKind.SPIKE, do)
+
+
+def flipped(frames: int) -> Damage:
+    """A thigh turned by half a turn about its own axis."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        local = LocalPoses.of(recording)
+        bone = _bone(recording, Part.THIGH)
+        first = int(rng.integers(10, len(recording.frames) - frames - 10))
+        half = rotation_matrix(np.array([0.0, np.pi, 0.0]))
+        local.rotations[first : first + frames, bone] = (
+            local.rotations[first : first + frames, bone] @ half
+        )
+        return Damaged(local.posed(recording), recording)
+
+    return Damage(f"thigh flipped, {frames} frames", FindingKind.FLIP, do)
+
+
+def held(count: int) -> Damage:
+    """Single frames dropped, the one before held in their place."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        rotations, heads = recording.rotations.copy(), recording.heads.copy()
+        for frame in _moving(recording, rng, count):
+            rotations[frame], heads[frame] = rotations[frame - 1], heads[frame - 1]
+        return Damaged(replace(recording, rotations=rotations, heads=heads), recording)
+
+    return Damage(f"{count} frames held", FindingKind.HELD_FRAMES, do)
+
+
+def dropped(count: int) -> Damage:
+    """Single frames missing, so that the rest comes earlier."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        gone = set(_moving(recording, rng, count))
+        keep = np.array([t for t in range(len(recording.frames)) if t not in gone])
+        size = len(keep)
+        less = replace(
+            recording,
+            frames=recording.frames[:size],
+            times=recording.times[:size],
+            heads=recording.heads[keep],
+            rotations=recording.rotations[keep],
+        )
+        return Damaged(less, replace(less))
+
+    return Damage(f"{count} frames missing", FindingKind.DROPPED_FRAMES, do)
+
+
+def sliding(speed: float) -> Damage:
+    """The whole body drifts along the floor."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        away = recording.times[:, None] * speed * np.array([0.8, 0.6, 0.0])
+        return Damaged(replace(recording, heads=recording.heads + away[:, None]), recording)
+
+    return Damage(f"drift {speed:g} m/s", FindingKind.SLIDING, do)
+
+
+def raised(metres: float) -> Damage:
+    """Off the floor, or in it."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        up = np.array([0.0, 0.0, metres])
+        return Damaged(replace(recording, heads=recording.heads + up), recording)
+
+    return Damage(f"{metres:+g} m up", FindingKind.FLOOR, do)
+
+
+def noisy(millimetres: float, degrees: float) -> Damage:
+    """As video capture gives it: 30 Hz, and white noise on the root's place and on all joints."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        original = at_rate(recording, VIDEO_RATE)
+        local = LocalPoses.of(original)
+        turns = np.radians(degrees) * rng.normal(size=(*local.rotations.shape[:2], 3))
+        rotations, heads = local.rotations @ rotation_matrix(turns), local.heads
+        for b, bone in enumerate(original.bones):
+            if bone.parent < 0:
+                heads[:, b] += 1e-3 * millimetres * rng.normal(size=(len(heads), 3))
+        return Damaged(LocalPoses(rotations, heads).posed(original), original)
+
+    name = f"30 Hz, {millimetres:g} mm and {degrees:g}° noise"
+    return Damage(name, FindingKind.NOISE, do)
+
+
+def stretched(share: float) -> Damage:
+    """A shank that grows by a share of its length in the middle of the clip, and back."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        local, foot = LocalPoses.of(recording), _bone(recording, Part.FOOT)
+        grown = 1.0 + share * np.sin(np.pi * np.linspace(0.0, 1.0, len(recording.frames))) ** 8
+        local.heads[:, foot] *= grown[:, None]
+        return Damaged(local.posed(recording), recording)
+
+    return Damage(f"shank {100 * share:+g} %", FindingKind.BONE_LENGTH, do)
+
+
+def at_rate(recording: Recording, rate: float) -> Recording:
+    """The recording sampled at another rate, Hz: cubic in places, nearest turns in between."""
+    count = int(recording.times[-1] * rate) + 1
+    times = np.arange(count) / rate
+    local = LocalPoses.of(recording)
+    flat = local.rotations.reshape(len(recording.frames), -1)
+    mixed = interpolate(recording.times, flat, times).reshape(count, -1, 3, 3)
+    u, _, vt = np.linalg.svd(mixed)
+    heads = interpolate(recording.times, local.heads.reshape(len(flat), -1), times)
+    made = LocalPoses(u @ vt, heads.reshape(count, -1, 3))
+    frames = recording.frames[0] + np.arange(count)
+    return made.posed(replace(recording, frames=frames, times=times))
+
+
+def _bone(recording: Recording, part: Part) -> int:
+    """Index of the first bone that moves a part of the body."""
+    return figure_of(recording).of(part)[0]
+
+
+def _moving(recording: Recording, rng: np.random.Generator, count: int) -> list[int]:
+    """Frames amid fast movement, apart from each other."""
+    steps = np.linalg.norm(np.diff(recording.heads, axis=0), axis=2).max(axis=1)
+    fast = np.flatnonzero(steps > np.median(steps))
+    fast = fast[(fast > 4) & (fast < len(steps) - 4)]
+    found: list[int] = []
+    for frame in rng.permutation(fast).tolist():
+        if len(found) < count and all(abs(frame - other) > 4 for other in found):
+            found.append(frame)
+    return found
+
+
+DAMAGES = (
+    *map(slowed, (0.5, 0.8, 1.25, 2.0)),
+    sized(1.6, "size × 1.6"),
+    sized(2.54, "centimetres as inches"),
+    sized(1 / 2.54, "inches as centimetres"),
+    sized(0.01, "metres as centimetres"),
+    *map(lain, (UpAxis.Y, UpAxis.X)),
+    *map(begun_at_rest, (1, 5)),
+    *map(spiked, (20.0, 45.0, 120.0)),
+    *map(flipped, (2, 12)),
+    *map(held, (1, 6)),
+    *map(dropped, (1, 4)),
+    *map(sliding, (0.2, 0.5)),
+    *map(raised, (-0.2, -0.05, 0.1, 0.5)),
+    noisy(3.0, 1.0),
+    noisy(6.0, 2.0),
+    *map(stretched, (0.05, 0.15)),
+)

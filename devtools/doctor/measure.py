@@ -1,0 +1,59 @@
+"""One clip with one damage: what the doctor says of it, and what its remedies leave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...solver.data.recording import Recording
+from ...solver.doctor.diagnose import diagnose
+from ...solver.doctor.finding import FindingKind
+from ...solver.doctor.repair import repaired
+from .damages import Damage
+
+
+@dataclass(frozen=True)
+class Examined:
+    """damage: its name, "" for the clean clip. found: whether it was named rightly. false: other
+    findings that are no notes. scale_error: of the factor of time or size, None where it is of
+    another kind or was not found. before, after: m, rms of the joints' distance to the original."""
+
+    clip: str
+    damage: str
+    kind: FindingKind | None
+    found: bool
+    false: tuple[str, ...]
+    scale_error: float | None
+    before: float
+    after: float
+
+
+def examine_clean(name: str, recording: Recording) -> Examined:
+    """What the doctor says of a clip as it is."""
+    kinds = [f.kind.value for f in diagnose(recording).findings if not f.kind.note]
+    return Examined(name, "", None, True, tuple(kinds), None, 0.0, 0.0)
+
+
+def examine(name: str, recording: Recording, damage: Damage) -> Examined:
+    """Damages a clip, has it diagnosed and repaired."""
+    damaged = damage.of(recording)
+    diagnosis = diagnose(damaged.recording)
+    told = [finding for finding in diagnosis.findings if not finding.kind.note]
+    found = any(finding.kind is damage.kind for finding in told)
+    false = tuple(f.kind.value for f in told if f.kind is not damage.kind)
+    mended = repaired(damaged.recording, diagnosis.repairs)
+    error = None
+    if damaged.scale is not None and found:
+        repairs = diagnosis.repairs
+        timed = damage.kind is FindingKind.TIME_SCALE
+        error = abs(damaged.scale * (repairs.time_scale if timed else repairs.scale) - 1.0)
+    before, after = (apart(each, damaged.original) for each in (damaged.recording, mended))
+    return Examined(name, damage.name, damage.kind, found, false, error, before, after)
+
+
+def apart(recording: Recording, original: Recording) -> float:
+    """M, rms over joints and frames; frames count from the end, for the first may be left out."""
+    count = min(len(recording.heads), len(original.heads))
+    away = recording.heads[-count:] - original.heads[-count:]
+    return float(np.sqrt(np.mean(np.sum(away**2, axis=-1))))

@@ -1,0 +1,89 @@
+"""Wording of what the doctor finds: what is wrong, where, and the remedy."""
+
+from ...bridge.recipe.recording import RECORDING
+from ...bridge.recipe_syntax.toml_text import entries
+from ...solver.doctor.diagnose import Diagnosis
+from ...solver.doctor.finding import Finding, FindingKind
+from ...solver.doctor.repairs import Repairs
+
+MOST_PLACES = 6
+HEALTHY = "Nothing is wrong with the recording."
+
+# {n}: amount, {unit}, {part}, {where}: "at frame 12" or "in frames 3 to 9, 40"; "" without frames.
+SENTENCES = {
+    FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
+    FindingKind.BIND_POSE: "The rest pose is held {where}, and the motion jumps from it.",
+    FindingKind.FLIP: "{part} is turned by half a turn {where}.",
+    FindingKind.SPIKE: "Single frames are far from those around them, {part} by {n:.0f}°: {where}.",
+    FindingKind.HELD_FRAMES: "The pose of the frame before is held amid a movement {where}.",
+    FindingKind.DROPPED_FRAMES: "About {n:.0f} frames are missing: the whole body jumps {where}.",
+    FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}.",
+    FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
+    FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
+    FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
+    FindingKind.MASS: "{n:.0f} kg do not go with the figure's height.",
+    FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
+    FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
+    FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
+    FindingKind.UNSEEN_SUPPORT: "Nothing touches, yet the body does not fall {where}: something "
+    "carries it that the recording does not show.",
+    FindingKind.BEGINS_IN_AIR: "The clip begins in the air.",
+    FindingKind.ENDS_IN_AIR: "The clip ends in the air.",
+}
+
+
+def finding_sentence(finding: Finding) -> str:
+    """What is wrong and where."""
+    told = SENTENCES[finding.kind].format(
+        n=finding.amount, part=finding.part, where=_where(finding), clock=_clock(finding)
+    )
+    return told[0].upper() + told[1:]
+
+
+def diagnosis_text(diagnosis: Diagnosis) -> str:
+    """A paragraph a finding: the sentence, then the recipe's lines that are its remedy."""
+    lines = [] if any(not f.kind.note for f in diagnosis.findings) else [HEALTHY]
+    for finding in diagnosis.findings:
+        lines.append(f"{'note: ' if finding.kind.note else ''}{finding_sentence(finding)}")
+        if finding.kind is FindingKind.MASS and diagnosis.mass is not None:
+            lines.append(f"    remedy: mass = {diagnosis.mass:.0f}")
+        if finding.remedy is not None:
+            lines.append(f"    remedy: {remedy_text(finding.remedy)}")
+        if finding.alternative is not None:
+            lines.append(f"    or else: {remedy_text(finding.alternative)}")
+    return "\n".join(lines) + "\n"
+
+
+def remedy_text(remedy: Repairs) -> str:
+    """The keys of a recipe's [recording] that are the remedy, in one line."""
+    return ", ".join(entries(RECORDING.write(rounded(remedy))).splitlines())
+
+
+def rounded(repairs: Repairs) -> Repairs:
+    """To as many digits as mean something."""
+    return Repairs(
+        repairs.up,
+        repairs.trim,
+        repairs.mend,
+        float(f"{repairs.time_scale:.4g}"),
+        float(f"{repairs.scale:.4g}"),
+        (round(repairs.drift[0], 4), round(repairs.drift[1], 4)),
+        round(repairs.floor, 4),
+    )
+
+
+def _where(finding: Finding) -> str:
+    spans = [f"{a:g}" if a == b else f"{a:g} to {b:g}" for a, b in finding.frames]
+    if not spans:
+        return ""
+    more = len(spans) - MOST_PLACES
+    listed = ", ".join(spans[:MOST_PLACES]) + (f" and {more} more places" if more > 0 else "")
+    one = len(spans) == 1 and finding.frames[0][0] == finding.frames[0][1]
+    return f"at frame {listed}" if one else f"in frames {listed}"
+
+
+def _clock(finding: Finding) -> str:
+    scale = finding.remedy.time_scale if finding.remedy is not None else 1.0
+    if scale < 1.0:
+        return f"it is played {1.0 / scale:.2f} times too slowly"
+    return f"it is played {scale:.2f} times too fast"

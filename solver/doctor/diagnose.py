@@ -1,0 +1,93 @@
+"""The examination: each fault is sought in the recording as the remedies before it leave it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import reduce
+
+from ..analysis.performance import perform
+from ..body.character import build_character
+from ..data.recording import Recording
+from ..skeleton.bind_pose import bind_frames
+from .falls import find_scale, refined
+from .figure import figure_of
+from .finding import Finding, FindingKind
+from .footing import find_footing
+from .lengths import find_lengths
+from .noise import find_noise
+from .repair import repaired
+from .repairs import Repairs
+from .single_frames import find_dropped, find_flips, find_held, find_spikes
+from .upright import find_up
+
+MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
+USUAL_MASS_BY_SQUARE = 22.0  # kg/m²
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What was found, in the order in which it is repaired. mass: kg, that fits the size; None
+    where the stated one does, or none was."""
+
+    findings: tuple[Finding, ...]
+    mass: float | None = None
+
+    @property
+    def repairs(self) -> Repairs:
+        """All remedies together."""
+        return reduce(Repairs.joined, (f.remedy for f in self.findings if f.remedy), Repairs())
+
+
+def diagnose(
+    recording: Recording, chosen: Mapping[str, str] | None = None, mass: float | None = None
+) -> Diagnosis:
+    """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist.
+
+    Raises MissingPart, ZeroLengthBone.
+    """
+    found: list[Finding] = []
+
+    def cured(recording: Recording, finding: Finding | None) -> Recording:
+        """Keeps a finding; the recording with its remedy."""
+        if finding is None:
+            return recording
+        found.append(finding)
+        return repaired(recording, finding.remedy or Repairs(), chosen)
+
+    recording = cured(recording, find_up(recording, figure_of(recording, chosen)))
+    recording = cured(recording, _find_bind_pose(recording))
+    figure = figure_of(recording, chosen)
+    for find in (find_flips, find_spikes):
+        recording = cured(recording, find(recording, figure))
+    for look in (find_held, find_dropped):
+        recording = cured(recording, look(recording))
+    for find in (find_lengths, find_noise):
+        recording = cured(recording, find(recording, figure))
+    performance = perform(recording, build_character(recording, chosen=chosen))
+    scale = find_scale(performance)
+    if scale is not None:
+        resized = repaired(recording, scale.remedy or Repairs())
+        performance = perform(resized, build_character(resized, chosen=chosen))
+        if scale.kind is FindingKind.SIZE:
+            # Where soles begin and how high feet are lifted is told best at the right size.
+            scale = refined(scale, performance)
+            resized = repaired(recording, scale.remedy or Repairs())
+            performance = perform(resized, build_character(resized, chosen=chosen))
+        found.append(scale)
+    height = performance.character.height
+    found += find_footing(performance)
+    fitting = None
+    if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
+        fitting = USUAL_MASS_BY_SQUARE * height**2
+        found.append(Finding(FindingKind.MASS, mass, "kg"))
+    return Diagnosis(tuple(found), fitting)
+
+
+def _find_bind_pose(recording: Recording) -> Finding | None:
+    count = bind_frames(recording)
+    if count == 0:
+        return None
+    held = (float(recording.frames[0]), float(recording.frames[count - 1]))
+    remedy = Repairs(trim=count)
+    return Finding(FindingKind.BIND_POSE, float(count), "frames", (held,), remedy=remedy)

@@ -1,0 +1,124 @@
+"""How fast a body falls whose feet are up: the clock's and the ruler's scale in one number.
+
+Lengths that are s times and durations that are t times what they were make of gravity g s / t².
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..analysis.performance import Performance, contact_points
+from ..data.constants import STANDARD_GRAVITY
+from ..data.contacts import PointKind
+from ..scene.fall_rate import USUAL_RATES
+from .finding import Finding, FindingKind
+from .local_poses import runs
+from .repairs import Repairs
+
+CLEAR = 0.02  # of the height, by which all points of the feet are up
+FEWEST = 6  # frames of a fall
+SHORTEST = 0.06  # s, at the recording's own clock, or as much as that many frames
+ROUGH = 0.03  # of the fall's height, rms, by which it may miss a parabola, and
+ROUGH_BY = 0.002  # of the figure's height
+OFF = 0.12  # of a scale of time; a run's short flights are 5 % off in honest recordings
+USUAL_NEAR, PRECISE_FALL = 0.035, 0.35  # a fall of 0.35 s tells the rate to 3.5 %, half of it 7 %
+# A wrong size is mostly a wrong unit: metres, centimetres, millimetres, inches, feet.
+UNITS = (1.0, 0.01, 0.001, 0.0254, 0.3048)  # m
+UNIT_RATIOS = tuple(
+    sorted({float(f"{one / other:.12g}") for one in UNITS for other in UNITS if one != other})
+)
+CLEARLY = 1.5  # times nearer than the next ratio
+HEIGHTS = (1.1, 2.1)  # m; persons; others are read at a wrong scale
+USUAL_HEIGHT = 1.75  # m
+
+
+@dataclass(frozen=True)
+class Falls:
+    """acceleration: m/s², over all. longest: s. frames: (first, last) scene frames of each."""
+
+    acceleration: float
+    longest: float
+    frames: tuple[tuple[float, float], ...]
+
+
+def falls_of(performance: Performance) -> Falls | None:
+    """The falls of a recording; None where there are none that are parabolas."""
+    points, floor = contact_points(performance)
+    feet = [point.track[:, 2] for point in points.values() if point.kind is not PointKind.HAND]
+    height = performance.character.height
+    up = np.min(feet, axis=0) - floor > CLEAR * height
+    times, com, frames = performance.times, performance.com[:, 2], performance.recording.frames
+    found, spans = [], []
+    for first, last in runs(up):
+        cut_off = first == 0 or last == len(up) - 1
+        if cut_off or last - first + 1 < FEWEST or times[last] - times[first] < SHORTEST:
+            continue
+        clock, path = times[first : last + 1] - times[first], com[first : last + 1]
+        curve = np.polyfit(clock, path, 2)
+        missed = float(np.sqrt(np.mean((path - np.polyval(curve, clock)) ** 2)))
+        if curve[0] < 0.0 and missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4):
+            found.append((-2.0 * float(curve[0]), float(clock[-1])))
+            spans.append((float(frames[first]), float(frames[last])))
+    if not found:
+        return None
+    accelerations, durations = np.array(found).T
+    # Of a parabola through evenly spaced noisy samples the curvature's variance goes as T^-5.
+    mean = float(np.average(accelerations, weights=durations**4))
+    return Falls(mean, float(durations.max()), tuple(spans))
+
+
+def find_scale(performance: Performance) -> Finding | None:
+    """A wrong scale of time or of size: whose it is the figure's height tells."""
+    height, falls = performance.character.height, falls_of(performance)
+    person = HEIGHTS[0] < height < HEIGHTS[1]
+    if falls is None:
+        if person:
+            return None
+        remedy = Repairs(scale=USUAL_HEIGHT / height)
+        return Finding(FindingKind.SIZE, height, "m", remedy=remedy)
+    clock = float(np.sqrt(falls.acceleration / STANDARD_GRAVITY))  # durations times this are right
+    if abs(np.log(clock)) < np.log1p(OFF) and person:
+        return None
+    timed = Repairs(time_scale=_usual(clock, performance.recording.rate, falls.longest))
+    sized = Repairs(scale=STANDARD_GRAVITY / falls.acceleration)
+    if person:
+        g = falls.acceleration
+        return Finding(FindingKind.TIME_SCALE, g, "m/s²", falls.frames, "", timed, sized)
+    if not HEIGHTS[0] < height * sized.scale < HEIGHTS[1]:
+        sized = Repairs(scale=USUAL_HEIGHT / height)  # the clock is wrong too
+    return Finding(FindingKind.SIZE, height, "m", falls.frames, "", sized, timed)
+
+
+def refined(size: Finding, resized: Performance) -> Finding:
+    """A finding of a wrong size with a factor that makes the fall right, by the falls of the
+    recording as its remedy leaves it, or else with that of a wrong unit, where it is as near."""
+    if size.remedy is None:
+        return size
+    scale, near = size.remedy.scale, OFF
+    falls, height = falls_of(resized), resized.character.height
+    if falls is not None:
+        factor = STANDARD_GRAVITY / falls.acceleration
+        if HEIGHTS[0] < height * factor < HEIGHTS[1]:
+            scale *= factor
+            near = 2.0 * _uncertainty(falls.longest)
+    apart = np.abs(np.log(np.array(UNIT_RATIOS) / scale))
+    first, second = np.argsort(apart, kind="stable")[:2]
+    if apart[first] < near and apart[second] > CLEARLY * apart[first]:
+        scale = UNIT_RATIOS[first]
+    return replace(size, remedy=Repairs(scale=scale))
+
+
+def _usual(clock: float, rate: float, longest: float) -> float:
+    """The scale of time with which the recording has a usual rate, where that is as near as the
+    falls can tell."""
+    true = rate / clock
+    usual = min(USUAL_RATES, key=lambda each: abs(np.log(each / true)))
+    near = _uncertainty(longest * clock)
+    return rate / usual if abs(np.log(usual / true)) < near else clock
+
+
+def _uncertainty(longest: float) -> float:
+    """Relative, of a scale of time by a fall of so many seconds; of a size twice that."""
+    return min(USUAL_NEAR * max(PRECISE_FALL / longest, 1.0), OFF)

@@ -1,0 +1,56 @@
+"""What the doctor finds in a recording: what, where, how much, and the remedy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from .repairs import Repairs
+
+
+class FindingKind(Enum):
+    """Kinds of findings. The value is the word in files."""
+
+    UP_AXIS = "up axis"
+    BIND_POSE = "bind pose"
+    FLIP = "flip"
+    SPIKE = "spike"
+    HELD_FRAMES = "held frames"
+    DROPPED_FRAMES = "dropped frames"
+    BONE_LENGTH = "bone length"
+    NOISE = "noise"
+    TIME_SCALE = "time scale"
+    SIZE = "size"
+    MASS = "mass"
+    FLOOR = "floor"
+    SLIDING = "sliding"
+    FLICKER = "flicker"
+    UNSEEN_SUPPORT = "unseen support"
+    BEGINS_IN_AIR = "begins in the air"
+    ENDS_IN_AIR = "ends in the air"
+
+    @property
+    def note(self) -> bool:
+        """Whether it is worth knowing and no damage: an honest recording may have it."""
+        return self in _NOTES
+
+
+_NOTES = (FindingKind.UNSEEN_SUPPORT, FindingKind.BEGINS_IN_AIR, FindingKind.ENDS_IN_AIR)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One finding.
+
+    frames: (first, last) scene frames of each place, in order; none where it is the whole clip.
+    part: the bone that shows it most, or the contact point; "" where it is the whole body. amount:
+    in `unit`, at its worst. alternative: another remedy, where the recording cannot tell which.
+    """
+
+    kind: FindingKind
+    amount: float
+    unit: str
+    frames: tuple[tuple[float, float], ...] = ()
+    part: str = ""
+    remedy: Repairs | None = None
+    alternative: Repairs | None = None

@@ -1,0 +1,57 @@
+"""Trembling: joints that jitter from frame to frame, as video capture leaves them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..data.recording import Recording
+from ..numerics.rotations import rotation_matrix, rotation_vector
+from .figure import Figure
+from .finding import Finding, FindingKind
+from .local_poses import LocalPoses, fourth_differences
+from .repairs import Mend, Repairs
+
+TREMBLING = 0.0015  # m, rms of a joint's place; laboratories' recordings have a tenth to a half
+ALTERNATING = -0.5  # correlation of what neighbouring frames are off; noise has -0.8
+GAIN = np.sqrt(70.0 / 36.0)  # of white noise by a fourth difference
+DEVIATION = 0.6745  # of a Gaussian: its median's, in standard deviations
+WIDTH = 2.0  # frames, of the smoothing's Gaussian weight
+REACH = 6  # frames on each side
+
+
+def find_noise(recording: Recording, figure: Figure) -> Finding | None:
+    """White noise on the places of the body's joints."""
+    if len(recording.frames) < 8:
+        return None
+    bones = figure.bones
+    off = fourth_differences(recording.heads[:, bones])[2:-2]
+    rms = np.sqrt(np.mean(np.median(np.abs(off), axis=0) ** 2, axis=1)) / DEVIATION / GAIN
+    power = np.einsum("tbi,tbi->b", off, off)
+    alternation = np.einsum("tbi,tbi->b", off[:-1], off[1:]) / np.maximum(power, 1e-15)
+    usual = float(np.median(rms))
+    if usual < TREMBLING or float(np.median(alternation)) > ALTERNATING:
+        return None
+    worst = recording.bones[bones[int(np.argmax(rms))]].name
+    remedy = Repairs(mend=(Mend.NOISE,))
+    return Finding(FindingKind.NOISE, 1e3 * usual, "mm", part=worst, remedy=remedy)
+
+
+def smoothed(recording: Recording, figure: Figure) -> Recording:
+    """By local regression (Savitzky & Golay 1964): cubics with Gaussian weights.
+
+    Rotations in the chart about the frame itself, where a cubic is a fair curve.
+    """
+    local, count = LocalPoses.of(recording), len(recording.frames)
+    rotations, heads = local.rotations.copy(), local.heads.copy()
+    roots = [b for b, bone in enumerate(recording.bones) if bone.parent < 0]
+    turning = sorted({*figure.bones, *roots})
+    for t in range(count):
+        near = np.arange(max(t - REACH, 0), min(t + REACH, count - 1) + 1)
+        u = (near - t) / WIDTH
+        root = np.exp(-0.25 * u**2)  # of the weight
+        weights = root * np.linalg.pinv(root[:, None] * u[:, None] ** np.arange(4))[0]
+        heads[t, roots] = np.einsum("k,kbi->bi", weights, local.heads[near][:, roots])
+        here = local.rotations[t, turning]
+        turns = rotation_vector(np.swapaxes(here, -1, -2) @ local.rotations[near][:, turning])
+        rotations[t, turning] = here @ rotation_matrix(np.einsum("k,kbi->bi", weights, turns))
+    return LocalPoses(rotations, heads).posed(recording)

@@ -1,0 +1,59 @@
+"""Repairs that a recording gets when it is read; the recorded action is never changed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Mend(Enum):
+    """A repair of poses. Its value is the word in recipes."""
+
+    FLIPS = "flips"
+    SPIKES = "spikes"
+    HELD_FRAMES = "held frames"
+    BONE_LENGTHS = "bone lengths"
+    NOISE = "noise"
+
+
+class UpAxis(Enum):
+    """The axis of the world, as it was read, along which the figure stands."""
+
+    X = "X"
+    Y = "Y"
+    Z = "Z"
+    MINUS_X = "-X"
+    MINUS_Y = "-Y"
+    MINUS_Z = "-Z"
+
+
+@dataclass(frozen=True)
+class Repairs:
+    """What to mend, in this order; the defaults leave a recording as it is.
+
+    up: what becomes Z. trim: frames left out at the beginning. mend: of the poses. time_scale,
+    scale: factors of durations and of lengths. drift: m/s, along the floor, that is taken out, and
+    floor: m, the height that becomes 0; both after the factors.
+    """
+
+    up: UpAxis = UpAxis.Z
+    trim: int = 0
+    mend: tuple[Mend, ...] = ()
+    time_scale: float = 1.0
+    scale: float = 1.0
+    drift: tuple[float, float] = (0.0, 0.0)
+    floor: float = 0.0
+
+    def joined(self, other: Repairs) -> Repairs:
+        """These, and where the other changes something, what it changes."""
+        usual = Repairs()
+        mend = {*self.mend, *other.mend}
+        return Repairs(
+            other.up if other.up is not usual.up else self.up,
+            other.trim or self.trim,
+            tuple(each for each in Mend if each in mend),
+            other.time_scale if other.time_scale != 1.0 else self.time_scale,
+            other.scale if other.scale != 1.0 else self.scale,
+            other.drift if other.drift != usual.drift else self.drift,
+            other.floor or self.floor,
+        )

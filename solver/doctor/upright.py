@@ -1,0 +1,51 @@
+"""The axis along which a figure stands."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..body.anatomy import Part
+from ..data.recording import Recording
+from ..numerics.rotations import shortest_rotation
+from .figure import Figure
+from .finding import Finding, FindingKind
+from .repairs import Repairs, UpAxis
+
+UPRIGHT = 0.8  # of the way from feet to head, along one axis
+
+_AXES = {axis: np.eye(3)["XYZ".index(axis.value[-1])] for axis in UpAxis}
+_SIGNS = {axis: -1.0 if axis.value.startswith("-") else 1.0 for axis in UpAxis}
+
+
+def find_up(recording: Recording, figure: Figure) -> Finding | None:
+    """A figure that stands along another axis than Z, at rest and in most of the clip.
+
+    Who lies or stands on the hands is upright at rest.
+    """
+    feet, heads = figure.of(Part.FOOT), figure.of(Part.HEAD, Part.NECK)
+    if not heads:
+        return None
+    moving = recording.heads[:, heads[0]] - recording.heads[:, feet].mean(axis=1)
+    rest = [recording.bones[bone].head for bone in (heads[0], *feet)]
+    axes = {_along(np.median(moving, axis=0)), _along(rest[0] - np.mean(rest[1:], axis=0))}
+    up = axes.pop()
+    if axes or up in (None, UpAxis.Z):
+        return None
+    return Finding(FindingKind.UP_AXIS, 90.0, "°", remedy=Repairs(up=up))
+
+
+def _along(way: FloatArray) -> UpAxis | None:
+    """The axis that a way (3,) follows, None where it is between two."""
+    length = max(float(np.linalg.norm(way)), 1e-9)
+    shares = {axis: _SIGNS[axis] * float(_AXES[axis] @ way) / length for axis in UpAxis}
+    best = max(UpAxis, key=lambda axis: shares[axis])
+    return best if shares[best] > UPRIGHT else None
+
+
+def turn_upright(up: UpAxis) -> FloatArray:
+    """(3, 3) rotation that takes an axis to Z."""
+    axis = _SIGNS[up] * _AXES[up]
+    if up is UpAxis.MINUS_Z:
+        return np.diag([1.0, -1.0, -1.0])
+    return shortest_rotation(axis, _AXES[UpAxis.Z])

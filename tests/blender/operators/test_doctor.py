@@ -1,0 +1,61 @@
+"""The doctor on the command line, and recipes that repair what it found."""
+
+import json
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.operators.headless.cli import main
+from hangtime.operators.headless.clip import Clip, load
+from hangtime.operators.headless.stages import Stages
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.tests.helpers.clips import begun_at_rest, mocap_path
+
+CLIP = "forward_jump_116cm.bvh"
+TOO_LARGE = 0.12  # m a unit, 2.13 times what is right
+FRAMES = ("--first", "100", "--last", "290")
+
+
+def test_what_is_wrong_is_told_with_its_remedy(tmp_path: Path, capsys) -> None:
+    clip, recipe = begun_at_rest(mocap_path(CLIP), tmp_path), tmp_path / "mend.toml"
+    options = ["--json", "--unit", str(TOO_LARGE), "--write-recipe", str(recipe)]
+    assert main(["doctor", str(clip), *options]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [finding["kind"] for finding in told["findings"]] == ["bind pose", "size"]
+    assert told["recording"]["trim"] == 1
+    repairs = parse_recipe(recipe.read_text(encoding="utf-8")).repairs
+    assert repairs is not None
+    assert repairs.scale == pytest.approx(0.470, rel=0.03)
+
+
+def test_a_clean_clip_is_called_so(capsys) -> None:
+    assert main(["doctor", str(mocap_path(CLIP)), *FRAMES]) == 0
+    assert capsys.readouterr().out == "Nothing is wrong with the recording.\n"
+
+
+def test_a_recipe_is_not_overwritten(tmp_path: Path, capsys) -> None:
+    recipe = tmp_path / "mine.toml"
+    recipe.write_text("mass = 70\n")
+    assert main(["doctor", str(mocap_path(CLIP)), *FRAMES, "--write-recipe", str(recipe)]) == 2
+    assert recipe.read_text() == "mass = 70\n"
+    assert "mine.toml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("read_as", "up"), [("Y", UpAxis.Z), ("Z", UpAxis.Y)])
+def test_a_repaired_clip_is_read_upright_in_its_true_size_and_time(read_as, up) -> None:
+    """2.13 times as large, 0.3 m up, 1.25 times too slow; one lies on its back."""
+    problem, told = MotionProblem(frames=(100.0, 290.0)), Stages(StringIO())
+    right = load(Clip(mocap_path(CLIP)), problem, told).subject
+    repairs = Repairs(up, time_scale=0.8, scale=0.0254 / 0.45 / TOO_LARGE, floor=-0.3)
+    mended = load(Clip(mocap_path(CLIP), TOO_LARGE, read_as), problem, told, repairs).subject
+    assert mended.height == pytest.approx(right.height, rel=1e-3)
+    assert mended.recording.rate == pytest.approx(right.recording.rate / 0.8)
+    np.testing.assert_allclose(
+        mended.recording.heads[..., 2], right.recording.heads[..., 2] + 0.3, atol=1e-3
+    )

@@ -1,0 +1,31 @@
+"""Repairs of the recording in a recipe."""
+
+import pytest
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.recipe.recording import RECORDING
+from hangtime.bridge.recipe_syntax.toml_text import sections
+from hangtime.solver.data.faults import BadRecipe
+from hangtime.solver.doctor.repairs import Mend, Repairs, UpAxis
+
+FULL = Repairs(
+    UpAxis.MINUS_X, 2, (Mend.FLIPS, Mend.HELD_FRAMES), 0.8, 1.6, (0.1, -0.25), floor=0.12
+)
+
+
+def test_repairs_come_back() -> None:
+    (text,) = sections(RECORDING.header, RECORDING.write(FULL))
+    assert parse_recipe(text).repairs == FULL
+
+
+def test_a_recipe_that_says_nothing_repairs_nothing() -> None:
+    assert parse_recipe("mass = 70\n").repairs is None
+    assert RECORDING.write(Repairs()) == {}
+
+
+@pytest.mark.parametrize(
+    "line", ['repair = ["warts"]', "trim = 1.5", "time_scale = 0", 'up = "W"', "drift = [1]"]
+)
+def test_a_mistake_is_told_with_its_line(line: str) -> None:
+    with pytest.raises(BadRecipe) as told:
+        parse_recipe(f"[recording]\n{line}\n")
+    assert told.value.line == 2

@@ -1,0 +1,41 @@
+"""Every finding has a sentence that says what, where and the remedy."""
+
+from hangtime.operators.words.doctor_text import (
+    HEALTHY,
+    SENTENCES,
+    diagnosis_text,
+    finding_sentence,
+)
+from hangtime.solver.doctor.diagnose import Diagnosis
+from hangtime.solver.doctor.finding import Finding, FindingKind
+from hangtime.solver.doctor.repairs import Repairs
+
+
+def test_every_kind_has_a_sentence() -> None:
+    assert set(SENTENCES) == set(FindingKind)
+    for kind in FindingKind:
+        told = finding_sentence(Finding(kind, 2.0, "", ((3.0, 3.0), (5.0, 9.0)), "Hand.L"))
+        assert told.endswith(".")
+        assert "{" not in told
+
+
+def test_a_clock_that_is_wrong_offers_both_remedies() -> None:
+    finding = Finding(
+        FindingKind.TIME_SCALE,
+        *(6.1, "m/s²", ((52.0, 75.0),), ""),
+        remedy=Repairs(time_scale=0.78867),
+        alternative=Repairs(scale=1.60801),
+    )
+    told = diagnosis_text(Diagnosis((finding,)))
+    assert told == (
+        "The body falls at 6.1 m/s² in frames 52 to 75, not at 9.8: it is played 1.27 times too "
+        "slowly.\n    remedy: time_scale = 0.7887\n    or else: scale = 1.608\n"
+    )
+
+
+def test_a_clean_recording_is_called_so_though_there_are_notes() -> None:
+    note = Finding(FindingKind.ENDS_IN_AIR, 0.1, "s", ((20.0, 30.0),))
+    assert diagnosis_text(Diagnosis((note,))).splitlines() == [
+        HEALTHY,
+        "note: The clip ends in the air.",
+    ]

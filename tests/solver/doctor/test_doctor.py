@@ -1,0 +1,182 @@
+"""Each damage is found and mended, and a clean recording has none."""
+
+from dataclasses import replace
+from functools import cache, partial
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages import (
+    Damage,
+    begun_at_rest,
+    dropped,
+    flipped,
+    held,
+    lain,
+    noisy,
+    raised,
+    sized,
+    sliding,
+    slowed,
+    spiked,
+    stretched,
+)
+from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.analysis.performance import perform
+from hangtime.solver.body.character import Character, build_character
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.doctor.diagnose import diagnose
+from hangtime.solver.doctor.falls import find_scale
+from hangtime.solver.doctor.figure import Figure, figure_of
+from hangtime.solver.doctor.finding import Finding, FindingKind
+from hangtime.solver.doctor.footing import find_footing
+from hangtime.solver.doctor.lengths import find_lengths
+from hangtime.solver.doctor.noise import find_noise
+from hangtime.solver.doctor.repair import repaired
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.single_frames import find_dropped, find_flips, find_held, find_spikes
+from hangtime.solver.doctor.upright import find_up
+from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, load_recording
+
+
+@cache
+def jump() -> Recording:
+    return load_recording(JUMP).window(*JUMP_FRAMES)
+
+
+@cache
+def figure() -> Figure:
+    return figure_of(jump())
+
+
+@cache
+def character() -> Character:
+    return build_character(jump())
+
+
+def of_poses(recording: Recording) -> list[Finding]:
+    """What the poses alone tell, each as the remedies before leave them."""
+    found = []
+    for find in (
+        *(partial(each, figure=figure()) for each in (find_flips, find_spikes)),
+        *(find_held, find_dropped),
+        *(partial(each, figure=figure()) for each in (find_lengths, find_noise)),
+    ):
+        if (finding := find(recording)) is not None:
+            found.append(finding)
+            recording = repaired(recording, finding.remedy or Repairs())
+    return found
+
+
+def test_a_clean_recording_has_no_findings() -> None:
+    assert diagnose(jump(), mass=70.0).findings == ()
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [spiked(20.0), spiked(120.0), held(6), stretched(0.05), noisy(3.0, 1.0), dropped(2)],
+    ids=lambda damage: damage.name,
+)
+def test_damage_of_poses_is_named_and_nothing_else(damage: Damage) -> None:
+    damaged = damage.of(jump())
+    assert [finding.kind for finding in of_poses(damaged.recording)] == [damage.kind]
+
+
+def test_a_spike_is_told_with_its_bone_and_frame() -> None:
+    local = jump().rotations.copy()
+    bone = jump().index("LeftArm")
+    turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    local[50, bone] = local[50, bone] @ turned
+    found = find_spikes(replace(jump(), rotations=local), figure())
+    assert found is not None
+    frame = jump().frames[50]
+    assert found.frames == ((frame, frame),)
+    assert found.part in ("LeftArm", "LeftForeArm")
+
+
+@pytest.mark.parametrize(
+    ("damage", "cm"),
+    [(spiked(120.0), 0.05), (flipped(12), 0.1), (held(6), 0.05), (stretched(0.15), 0.15)],
+    ids=["spikes", "flips", "held frames", "bone lengths"],
+)
+def test_the_remedy_brings_the_original_back(damage: Damage, cm: float) -> None:
+    damaged = damage.of(jump())
+    remedies = [finding.remedy for finding in of_poses(damaged.recording)]
+    repairs = Repairs()
+    for remedy in remedies:
+        assert remedy is not None
+        repairs = repairs.joined(remedy)
+    assert 100.0 * apart(repaired(damaged.recording, repairs), damaged.original) < cm
+
+
+def test_noise_of_video_capture_is_smoothed() -> None:
+    damaged = noisy(3.0, 1.0).of(jump())
+    found = find_noise(damaged.recording, figure())
+    assert found is not None
+    assert found.remedy is not None
+    smooth = repaired(damaged.recording, found.remedy)
+    assert apart(smooth, damaged.original) < 0.75 * apart(damaged.recording, damaged.original)
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.8, 1.25, 2.0])
+def test_a_clock_that_is_wrong_is_told_by_the_fall(factor: float) -> None:
+    damaged = slowed(factor).of(jump()).recording
+    found = find_scale(perform(damaged, character()))
+    assert found is not None
+    assert found.kind is FindingKind.TIME_SCALE
+    assert found.remedy is not None
+    assert found.remedy.time_scale * factor == pytest.approx(1.0, abs=1e-9)  # 120 Hz is usual
+    assert found.alternative is not None
+    assert found.alternative.scale == pytest.approx(factor**2, rel=0.05)
+
+
+@pytest.mark.parametrize("factor", [1.6, 0.01, 2.54])
+def test_a_size_that_is_nobodys_is_told_by_the_fall(factor: float) -> None:
+    damaged = sized(factor, "size").of(jump()).recording
+    found = find_scale(perform(damaged, build_character(damaged)))
+    assert found is not None
+    assert found.kind is FindingKind.SIZE
+    assert found.remedy is not None
+    assert found.remedy.scale * factor == pytest.approx(1.0, rel=0.04)
+
+
+@pytest.mark.parametrize("up", [UpAxis.Y, UpAxis.X])
+def test_a_figure_that_lies_is_set_upright(up: UpAxis) -> None:
+    damaged = lain(up).of(jump())
+    found = find_up(damaged.recording, figure())
+    assert found is not None
+    assert found.remedy == Repairs(up=up)
+    assert apart(repaired(damaged.recording, found.remedy), damaged.original) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("damage", "metres"), [(raised(0.1), 0.015), (raised(-0.2), 0.015), (sliding(0.3), 0.02)]
+)
+def test_height_and_drift_are_told_and_taken_out(damage: Damage, metres: float) -> None:
+    damaged = damage.of(jump())
+    (found,) = find_footing(perform(damaged.recording, character()))
+    assert found.kind is damage.kind
+    assert found.remedy is not None
+    assert apart(repaired(damaged.recording, found.remedy), damaged.original) < metres
+
+
+def test_the_rest_pose_is_left_out_before_all_else() -> None:
+    damaged = begun_at_rest(3).of(jump())
+    diagnosis = diagnose(damaged.recording)
+    assert [finding.kind for finding in diagnosis.findings] == [FindingKind.BIND_POSE]
+    assert diagnosis.repairs == Repairs(trim=3)
+
+
+def test_several_damages_are_mended_together() -> None:
+    damaged = spiked(90.0).of(slowed(1.25).of(raised(0.3).of(jump()).recording).recording)
+    diagnosis = diagnose(damaged.recording)
+    kinds = [FindingKind.SPIKE, FindingKind.TIME_SCALE, FindingKind.FLOOR]
+    assert [finding.kind for finding in diagnosis.findings] == kinds
+    mended = repaired(damaged.recording, diagnosis.repairs)
+    assert mended.rate == pytest.approx(jump().rate)
+    assert apart(mended, jump()) < 0.015
+
+
+def test_a_mass_that_does_not_go_with_the_size_is_told() -> None:
+    diagnosis = diagnose(jump(), mass=700.0)
+    assert [finding.kind for finding in diagnosis.findings] == [FindingKind.MASS]
+    assert diagnosis.mass == pytest.approx(63.0, abs=8.0)
