@@ -19,7 +19,17 @@ from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..stages.interactive import Follower, change, pelvis_range
 from ..transcription.motion import Motion
-from .pipeline import ADAPTING, FITTING, StageClock, Subject, fit_subject, measure, no_fit, solve
+from .pipeline import (
+    ADAPTING,
+    FITTING,
+    StageClock,
+    Subject,
+    computable,
+    fit_subject,
+    measure,
+    no_fit,
+    solve,
+)
 from .progress import ProgressFraction
 from .protocol import (
     Adapted,
@@ -115,7 +125,8 @@ class Service:
             following = _Following(fitted, pelvis_range(fitted), follower)
             self._following = following
         follower = following.follower
-        status = follower.follow(problem)
+        with computable():
+            status = follower.follow(problem)
         motion, setup = follower.motion, follower.setup
         traces = subject.motion_traces(motion, setup.schedule, setup.changes, torques=False)
         summary = change(fitted, following.pelvis, setup, motion, traces)
