@@ -19,7 +19,7 @@ from .families.all_families import family_of
 from .protocol.case import CaseOutcome, Ending
 
 LAUNCHER = ROOT / "devtools" / "package.py"
-START = 30.0  # s that a process may take to begin its first case
+START = 120.0  # s that a process may take to begin its first case
 KEPT = 4000  # characters of a crash's last words
 
 
