@@ -1,9 +1,15 @@
-"""Two Blenders on one file: both work on it and save it, at random moments."""
+"""Two Blenders on one file: both work on it, and open and save it in turns.
 
+In turns, for Blender itself spoils a file that two of them write at once.
+"""
+
+import fcntl
 import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import bpy
 
@@ -29,7 +35,8 @@ def shared_file(case: HostileCase) -> None:
     try:
         while other.poll() is None:
             operator(case, "hangtime.analyze")
-            bpy.ops.wm.save_as_mainfile(filepath=path)
+            with _turn(path):
+                bpy.ops.wm.save_as_mainfile(filepath=path)
             time.sleep(case.rng.uniform(0.0, 1.0))
     finally:
         other.kill()
@@ -42,19 +49,29 @@ def shared_file(case: HostileCase) -> None:
     must_be_same(before, marked())
 
 
+@contextmanager
+def _turn(path: str) -> Iterator[None]:
+    """Context in which the other does not have its turn."""
+    with open(f"{path}.lock", "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 def main(argv: list[str]) -> int:
     """The other Blender. Raises Changed where the recording is not the same."""
     path, pause = argv
     enable()
     for _ in range(ROUNDS):
-        bpy.ops.wm.open_mainfile(filepath=path)
+        with _turn(path):
+            bpy.ops.wm.open_mainfile(filepath=path)
         before = marked()
         if "recording" not in before:
             raise Changed(f"no action has the mark '{MARK}'")
         OPERATORS.hangtime.analyze()
         must_be_same(before, marked())
         time.sleep(float(pause))
-        bpy.ops.wm.save_as_mainfile(filepath=path)
+        with _turn(path):
+            bpy.ops.wm.save_as_mainfile(filepath=path)
     return 0
 
 
