@@ -14,6 +14,8 @@ from .played_strips import played_strip, time_of
 SHOWS = "hangtime_shows"  # of the action that holds a result's difference: the result, and
 BESIDE = "hangtime_beside"  # what it is the difference from
 ATTRIBUTE = "hangtime"  # under which scenes, objects, actions and bones carry what is stored
+HOLDS = "hangtime_holds"  # of actions that hold settings: Blender 5.0.1 clears pointers to what is
+# deleted only in actions that have a custom property
 IN_STRIP = "hangtime_in_strip"  # of actions that Hangtime laid into strips; needs no registration
 
 T = TypeVar("T")
@@ -31,10 +33,7 @@ def attached(owner: bpy.types.bpy_struct | None) -> Any:
 
 
 def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
-    """The take that a result was made from; None of an action that is no result.
-
-    Blender 5.0.1 leaves it as it was where the take is deleted, and reading it then may crash.
-    """
+    """The take that a result was made from; None of an action that is no result."""
     recording: bpy.types.Action | None = attached(action).recording
     return recording
 

@@ -10,7 +10,14 @@ import numpy as np
 
 from ...solver.data.faults import Fault, NoAction, UnreadStrips
 from ..accessors import IN_STRIP, mapped_strip, take_strips
-from ..played_strips import StripTime, played_strip, time_of, visible_strips, why_unread
+from ..played_strips import (
+    STARRED,
+    StripTime,
+    played_strip,
+    time_of,
+    visible_strips,
+    why_unread,
+)
 from . import fcurves
 
 _TRIPLES = ("co", "handle_left", "handle_right")
@@ -31,6 +38,18 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
         if why is not None:
             return UnreadStrips(owner.name, tuple(strip.name for strip in strips), why)
     return NoAction(owner.name)
+
+
+def require_unstarred(owner: bpy.types.Object) -> None:
+    """Raises UnreadStrips where a starred track hides the action that is assigned, and would hide
+    every result."""
+    data = owner.animation_data
+    if data is None or data.action is None or not data.use_nla:
+        return
+    starred = [track for track in data.nla_tracks if track.is_solo]
+    if starred:
+        names = tuple(strip.name for track in starred for strip in track.strips)
+        raise UnreadStrips(owner.name, names, STARRED)
 
 
 def adopt_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:

@@ -12,7 +12,7 @@ from ...solver.data.recording import Bone, Recording
 from ..accessors import armature_data, current_action, current_scene, present
 from . import fcurves
 from .channels import proper
-from .played import strip_time, why_no_action
+from .played import require_unstarred, strip_time, why_no_action
 from .poses import Poses, frames_per_second, metres_per_unit, sample
 
 _SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
@@ -47,6 +47,7 @@ def whole_frames(
     Raises as `read_recording`, but for what poses show.
     """
     armature, curves = _require_animated(armature)
+    require_unstarred(armature)
     for curve in curves:
         _require_finite(armature, curve)
     action = present(current_action(armature))

@@ -30,6 +30,37 @@ class Posed:
     bodies: FloatArray
 
 
+@contextmanager
+def _skins_at_rest(armature: bpy.types.Object) -> Iterator[None]:
+    """Context in which an armature bends nothing, which would be bent anew at each look at it."""
+    bent = [
+        modifier
+        for each in present(bpy.context.view_layer).objects
+        for modifier in each.modifiers
+        if isinstance(modifier, bpy.types.ArmatureModifier)
+        and modifier.object == armature
+        and modifier.show_viewport
+    ]
+    for modifier in bent:
+        modifier.show_viewport = False
+    try:
+        yield
+    finally:
+        for modifier in bent:
+            modifier.show_viewport = True
+
+
+def _inverse(matrices: FloatArray) -> FloatArray:
+    """Of affine (C, 4, 4): by cofactors, for LAPACK's threads cost more than so small ones."""
+    x, y, z = np.moveaxis(matrices[:, :3, :3], 1, 0)
+    columns = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=2)
+    inverse = np.zeros_like(matrices)
+    inverse[:, :3, :3] = columns / (x * columns[:, :, 0]).sum(1)[:, None, None]
+    inverse[:, :3, 3] = -(inverse[:, :3, :3] @ matrices[:, :3, 3, None])[..., 0]
+    inverse[:, 3, 3] = 1.0
+    return inverse
+
+
 class Posing:
     """An armature whose controls are posed by matrices, to see what its bodies do."""
 
@@ -42,6 +73,7 @@ class Posing:
         bones, rest = pose_of(armature).bones, armature_data(armature).bones
         self._columns = [bones.find(name) for name in (*controls, *bodies)]
         self._flat = np.empty(16 * len(bones), np.float32)
+        self._bases = np.empty((len(self.controls), 4, 4))
         self._stored: list[list[tuple[float, ...]]] = []
         moved = constrained(armature)
         # What a constraint moves is not where its channels put it, but its parent is.
@@ -56,10 +88,13 @@ class Posing:
 
     @contextmanager
     def kept(self) -> Iterator[None]:
-        """Context after which the controls' channels and the scene's frame are what they were."""
+        """Context after which the controls' channels and the scene's frame are what they were.
+
+        Skins are at rest meanwhile.
+        """
         bones = [pose_of(self.armature).bones[name] for name in self.controls]
         self._stored = [[tuple(getattr(bone, name)) for name in _CHANNELS] for bone in bones]
-        with evaluated([self.armature]):
+        with evaluated([self.armature]), _skins_at_rest(self.armature):
             try:
                 yield
             finally:
@@ -77,16 +112,18 @@ class Posing:
         self._restore()
         whole = int(np.floor(frame))
         current_scene().frame_set(whole, subframe=frame - whole)
+        bones = pose_of(self.armature).bones
+        self._bases = np.array([bones[name].matrix_basis for name in self.controls], float)
 
     def bases(self) -> FloatArray:
-        """(C, 4, 4) pose bases of the controls now."""
-        bones = pose_of(self.armature).bones
-        return np.array([bones[name].matrix_basis for name in self.controls], float)
+        """(C, 4, 4) pose bases of the controls, as they were shown or posed last."""
+        return self._bases.copy()
 
     def pose(self, control: int, basis: FloatArray) -> None:
         """Give a control a pose basis (4, 4)."""
         bone = pose_of(self.armature).bones[self.controls[control]]
         bone.matrix_basis = Matrix(basis.tolist())
+        self._bases[control] = basis
 
     def look(self) -> Posed:
         """Evaluate what was posed."""
@@ -95,7 +132,7 @@ class Posing:
         pose_of(posed).bones.foreach_get("matrix", self._flat)
         every = self._flat.reshape(-1, 4, 4).transpose(0, 2, 1).astype(float)
         matrices, count = every[self._columns], len(self.controls)
-        frames = matrices[:count] @ np.linalg.inv(self.bases())
+        frames = matrices[:count] @ _inverse(self._bases)
         for index, (parent, offset) in self._parents.items():
             frames[index] = every[parent] @ offset
         return Posed(matrices[:count], frames, matrices[count:])

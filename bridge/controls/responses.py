@@ -65,12 +65,14 @@ class Dof:
             changed[:3, :3] = basis[:3, :3] @ rotation_matrix(amount * np.eye(3)[self.axis])
         return changed
 
-    def axes(self, posed: Posed, bases: FloatArray) -> FloatArray:
-        """(3, 3) axes of the response, in the armature's space. bases: (C, 4, 4)."""
-        frame = proper(posed.frames[self.control, :3, :3])
-        if self.freedom is Freedom.SHIFT:
-            return frame
-        return np.asarray(frame @ proper(bases[self.control, :3, :3]))
+
+def axes_of(dofs: Sequence[Dof], posed: Posed, bases: FloatArray) -> FloatArray:
+    """(D, 3, 3) axes of the responses, in the armature's space. bases: (C, 4, 4)."""
+    frames = proper(posed.frames[:, :3, :3])
+    own = frames @ proper(bases[:, :3, :3])
+    controls = [dof.control for dof in dofs]
+    shifts = np.array([dof.shifts for dof in dofs])[:, None, None]
+    return np.where(shifts, frames[controls], own[controls])
 
 
 @dataclass(frozen=True)
@@ -89,12 +91,9 @@ class Responses:
 
     def columns(self, posed: Posed, bases: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Turns and shifts (D, B, 3) in the armature's space, at another pose."""
-        turns, shifts = np.empty_like(self.turns), np.empty_like(self.shifts)
-        for d, dof in enumerate(self.dofs):
-            axes = dof.axes(posed, bases)
-            turns[d] = self.turns[d] @ axes.T
-            shifts[d] = self.shifts[d] @ axes.T + _rigid(dof, turns[d], posed)
-        return turns, shifts
+        to_axes = np.swapaxes(axes_of(self.dofs, posed, bases), 1, 2)
+        turns = self.turns @ to_axes
+        return turns, self.shifts @ to_axes + _rigid(self.dofs, turns, posed)
 
     def part(self, chosen: Sequence[int], controls: Sequence[int]) -> Responses:
         """Those of some dofs, which are of some controls; among these alone."""
@@ -109,12 +108,12 @@ class Responses:
         )
 
 
-def _rigid(dof: Dof, turns: FloatArray, posed: Posed) -> FloatArray:
-    """(B, 3) shifts of heads that turn rigidly about a control."""
-    if dof.freedom is not Freedom.TURN:
-        return np.zeros_like(turns)
-    arms = posed.bodies[:, :3, 3] - posed.controls[dof.control, :3, 3]
-    return np.cross(turns, arms)
+def _rigid(dofs: Sequence[Dof], turns: FloatArray, posed: Posed) -> FloatArray:
+    """(D, B, 3) shifts of heads that turn (D, B, 3) rigidly about their controls."""
+    places = posed.controls[[dof.control for dof in dofs], :3, 3]
+    arms = posed.bodies[:, :3, 3] - places[:, None]
+    rigid = np.array([dof.freedom is Freedom.TURN for dof in dofs])
+    return np.asarray(rigid[:, None, None] * np.cross(turns, arms))
 
 
 def free_dofs(armature: bpy.types.Object, controls: Sequence[str]) -> Iterator[Dof]:
@@ -147,20 +146,28 @@ def measured(
         for dof, _ in group:
             posing.pose(dof.control, dof.applied(bases[dof.control], dof.step))
         after = posing.look()
+        turned = rotation_vector(_turned(before.bodies, after.bodies))
+        apart = after.bodies[:, :3, 3] - before.bodies[:, :3, 3]
+        change = np.abs(after.controls - before.controls).max((1, 2))
         for dof, of in group:
             posing.pose(dof.control, bases[dof.control])
-            turn = rotation_vector(_turned(before.bodies, after.bodies)) / dof.step
-            shift = (after.bodies[:, :3, 3] - before.bodies[:, :3, 3]) / dof.step
+            turn, shift = turned / dof.step, apart / dof.step
             felt = np.maximum(np.abs(turn).max(1), np.abs(shift).max(1)) > FELT
-            keep, axes = (felt & of)[:, None], dof.axes(before, bases)
             dofs.append(dof)
-            turns.append(np.where(keep, turn @ axes, 0.0))
-            shifts.append(np.where(keep, (shift - _rigid(dof, turn, before)) @ axes, 0.0))
-            follow.append(keep[:, 0])
-            change = np.abs(after.controls - before.controls).max((1, 2)) / dof.step
-            moved.append((change > FELT) & (np.arange(len(change)) != dof.control))
+            turns.append(turn)
+            shifts.append(shift)
+            follow.append(felt & of)
+            others = np.arange(len(change)) != dof.control
+            moved.append((change / dof.step > FELT) & others)
+    keep, axes = np.stack(follow), axes_of(dofs, before, bases)
+    turns_of, kept = np.stack(turns), keep[..., None]
+    shifts_of = np.stack(shifts) - _rigid(dofs, turns_of, before)
     return Responses(
-        tuple(dofs), np.stack(turns), np.stack(shifts), np.stack(follow), np.stack(moved)
+        tuple(dofs),
+        np.where(kept, turns_of @ axes, 0.0),
+        np.where(kept, shifts_of @ axes, 0.0),
+        keep,
+        np.stack(moved),
     )
 
 

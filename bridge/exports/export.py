@@ -13,9 +13,9 @@ from ..recipe.export import ExportOptions
 from ..rows.choices import FileFormat, RootMotion
 from .baked_rig import bake
 from .engines import CONVENTIONS, format_of
-from .placed_takes import frames_of, place_takes
+from .placed_takes import frames_of, outline_for, place_takes
 from .skin import copy_skin
-from .writers import write
+from .writers import require_usd, write
 
 AS_IT_IS = ExportOptions()
 
@@ -52,3 +52,12 @@ def export_takes(
             write(rig, names, found.takes, Path(path), options, keeps_frames=keeps)
         finally:
             remove_added(before)
+
+
+def require_exportable(
+    armature: bpy.types.Object, path: str | Path, options: ExportOptions
+) -> None:
+    """What can be told of a file before there is a take for it. Raises OutputNotWritable,
+    SameUsdNames."""
+    if format_of(options) is FileFormat.USD:
+        require_usd(outline_for(armature, options, pelvis=None).names, Path(path))

@@ -54,9 +54,7 @@ def place_takes(
 ) -> PlacedTakes:
     """Evaluate takes and put them where the file has them; otherwise they begin at frame 0."""
     convention, carries = CONVENTIONS[options.engine], options.root is RootMotion.ROOT_BONE
-    found = outline(
-        armature, pelvis, clean=convention.clean, root=carries, one_root=convention.one_root
-    )
+    found = outline_for(armature, options, pelvis)
     poses = [_performed(armature, take) for take in takes]
     space = _space(options, poses)
     from_armature = space.to_file @ space.at_rest
@@ -74,6 +72,14 @@ def place_takes(
         first = frames_of(take)[0] if keeps_frames else 0
         baked.append(BakedTake(name, first, _placed(performed, found, made, space, path, carries)))
     return PlacedTakes(made, tuple(baked), space.placed, from_armature)
+
+
+def outline_for(armature: bpy.types.Object, options: ExportOptions, pelvis: str | None) -> Outline:
+    """The bones that a file gets. pelvis: where it is known."""
+    convention, carries = CONVENTIONS[options.engine], options.root is RootMotion.ROOT_BONE
+    return outline(
+        armature, pelvis, clean=convention.clean, root=carries, one_root=convention.one_root
+    )
 
 
 def _placed(

@@ -13,10 +13,13 @@ def copy_skin(
     armature: bpy.types.Object, rig: bpy.types.Object, to_rig: FloatArray
 ) -> dict[bpy.types.Object, str]:
     """Copies of the meshes that an armature deforms, which a rig deforms instead, and the meshes'
-    names. to_rig (4, 4): from the armature's space to the rig's."""
-    made = {}
+    names. Hidden ones are left out, unless the armature is hidden as well. to_rig (4, 4): from the
+    armature's space to the rig's."""
+    made, all_hidden = {}, not armature.visible_get()
     for thing in list(current_scene().objects):
         if not any(_deforms(armature, modifier) for modifier in thing.modifiers):
+            continue
+        if not (thing.visible_get() or all_hidden):
             continue
         copy = thing.copy()
         mesh = present(thing.data).copy()

@@ -39,8 +39,8 @@ def write(
     """Write a baked rig, at rest where the file tells no take, and its skin, under these names. The
     scene's range and frame are left at the takes'. Raises OutputNotWritable, SameUsdNames."""
     form, convention = format_of(options), CONVENTIONS[options.engine]
-    if form is FileFormat.USD and not bpy.app.build_options.usd:  # as Debian's is
-        raise OutputNotWritable(str(target), "this Blender was built without USD")
+    if form is FileFormat.USD:
+        require_usd((bone.name for bone in armature_data(rig).bones), target)
     scene = current_scene()
     for thing in names:
         thing.select_set(True)
@@ -62,7 +62,6 @@ def write(
             _write_gltf(made)
         else:
             scene.unit_settings.scale_length = 1.0  # the rig is in metres
-            _require_different(bone.name for bone in armature_data(rig).bones)
             _write_usd(made)
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -131,8 +130,11 @@ def usd_name(name: str) -> str:
     return f"_{made}" if made[:1].isdigit() else made
 
 
-def _require_different(bones: Iterable[str]) -> None:
-    """Raises SameUsdNames."""
+def require_usd(bones: Iterable[str], target: Path) -> None:
+    """Raises OutputNotWritable where this Blender writes no USD file, SameUsdNames of bones that
+    one could not tell apart."""
+    if not bpy.app.build_options.usd:  # as Debian's is
+        raise OutputNotWritable(str(target), "this Blender was built without USD")
     taken: dict[str, str] = {}
     for bone in bones:
         other = taken.setdefault(usd_name(bone), bone)

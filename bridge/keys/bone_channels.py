@@ -14,15 +14,16 @@ from ..armature.channels import EULER_ORDERS, proper, rotations_of
 from ..armature.pose_basis import carrier_of
 
 ROTATIONS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
-EULER = "rotation_euler"
+EULER, SCALE = "rotation_euler", "scale"
 
 
 @dataclass(frozen=True)
 class BoneChannels:
     """Keyed channels of a bone at T frames.
 
-    mode: of its rotation; None where that is not keyed. moves: whether its location is keyed.
-    values: (T, n), those of the rotation first. basis: (T, 4, 4), the pose basis they are taken of.
+    mode: of its rotation; None where that is not keyed. moves, sizes: whether its location and its
+    scale are keyed. values: (T, n), of the rotation, location and scale. basis: (T, 4, 4), the pose
+    basis they are taken of.
     """
 
     bone: str
@@ -30,25 +31,33 @@ class BoneChannels:
     moves: bool
     values: FloatArray
     basis: FloatArray
+    sizes: bool = False
 
     @property
     def paths(self) -> list[tuple[str, slice]]:
         """Properties of the pose bone, and the columns of `values` that are theirs."""
-        width = 0 if self.mode is None else self.values.shape[1] - 3 * self.moves
-        rotation = [] if self.mode is None else [(rotation_property(self.mode), slice(0, width))]
-        return rotation + ([("location", slice(width, width + 3))] if self.moves else [])
+        width = self.values.shape[1] - 3 * (self.moves + self.sizes)
+        found = [] if self.mode is None else [(rotation_property(self.mode), slice(0, width))]
+        for path, keyed in (("location", self.moves), (SCALE, self.sizes)):
+            if keyed:
+                found.append((path, slice(width, width + 3)))
+                width += 3
+        return found
 
     def basis_of(self, values: FloatArray) -> FloatArray:
-        """Pose basis (T, 4, 4) with other values (T, n) of the keyed channels; scale stays."""
+        """Pose basis (T, 4, 4) with other values (T, n) of the keyed channels."""
         basis = self.basis.copy()
+        turned = proper(self.basis[:, :3, :3])
+        scale = np.swapaxes(turned, 1, 2) @ self.basis[:, :3, :3]
         for path, columns in self.paths:
             if path == "location":
                 basis[:, :3, 3] = values[:, columns]
+            elif path == SCALE:
+                scale = values[:, columns, None] * np.eye(3)
             elif self.mode is not None:
-                linear = self.basis[:, :3, :3]
-                scale = np.swapaxes(proper(linear), 1, 2) @ linear
                 mode = self.mode if self.mode in (*ROTATIONS, *EULER_ORDERS) else "XYZ"
-                basis[:, :3, :3] = rotations_of(values[:, columns], mode) @ scale
+                turned = rotations_of(values[:, columns], mode)
+        basis[:, :3, :3] = turned @ scale
         return basis
 
 
@@ -69,15 +78,37 @@ def bone_channels(
     carrier = carrier_of(armature_data(armature).bones[bones[0]]).name
     found = []
     for name, basis in bases.items():
-        bone = pose_of(armature).bones[name]
-        mode = str(bone.rotation_mode) if name in bones else None
-        parts = [] if mode is None else [_sampled(bone, rotation_property(mode), curves, frames)]
-        if name == carrier:
-            parts.append(_sampled(bone, "location", curves, frames))
-        if parts:
-            values = np.concatenate(parts, axis=1)
-            found.append(BoneChannels(name, mode, name == carrier, values, basis))
+        if name in bones or name == carrier:
+            keyed = KeyedParts(name in bones, name == carrier)
+            found.append(sampled_channels(armature, name, keyed, basis, curves, frames))
     return found
+
+
+@dataclass(frozen=True)
+class KeyedParts:
+    """Which parts of a bone's transformation are keyed."""
+
+    turns: bool
+    moves: bool
+    sizes: bool = False
+
+
+def sampled_channels(
+    armature: bpy.types.Object,
+    name: str,
+    keyed: KeyedParts,
+    basis: FloatArray,
+    curves: fcurves.CurveHolder,
+    frames: FloatArray,
+) -> BoneChannels:
+    """A bone's channels as curves have them at frames (T,). basis: (T, 4, 4)."""
+    bone = pose_of(armature).bones[name]
+    mode = str(bone.rotation_mode) if keyed.turns else None
+    paths = [] if mode is None else [rotation_property(mode)]
+    paths += ["location"] if keyed.moves else []
+    paths += [SCALE] if keyed.sizes else []
+    values = np.concatenate([_sampled(bone, path, curves, frames) for path in paths], axis=1)
+    return BoneChannels(name, mode, keyed.moves, values, basis, keyed.sizes)
 
 
 def _sampled(

@@ -7,12 +7,50 @@ channels that are off by d turn all that it carries by `turns` d about its head 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray, IntArray
+
+
+class KeyedChannels(Protocol):
+    """Channels that share their keys. samples: (T, n) at every frame. fixed: frames that get a key
+    in any case."""
+
+    @property
+    def samples(self) -> FloatArray: ...
+
+    @property
+    def fixed(self) -> tuple[float, ...]: ...
+
+
+class KeyableFigure(Protocol):
+    """What has keys, at frames (T,), and what it moves, to first order. carried: by its bones."""
+
+    @property
+    def frames(self) -> FloatArray: ...
+
+    @property
+    def bones(self) -> Sequence[KeyedChannels]: ...
+
+    @property
+    def carried(self) -> Sequence[CarriedParts]: ...
+
+    def no_errors(self) -> Errors:
+        """Zero at every frame."""
+
+    def errors_by(self, bone: int, off: FloatArray, frames: slice = slice(None)) -> Errors:
+        """What is off at some frames, of what one carries, if its channels are off by (T', n)."""
+
+    def worst(
+        self, errors: Errors, frames: slice = slice(None), points: IntArray | slice = slice(None)
+    ) -> FloatArray:
+        """Largest error (T',) at each of some frames, over what it may be. points: those that the
+        errors are of."""
 
 
 @dataclass(frozen=True)
@@ -75,11 +113,8 @@ class KeyedFigure:
     def worst(
         self, errors: Errors, frames: slice = slice(None), points: IntArray | slice = slice(None)
     ) -> FloatArray:
-        """Largest error (T',) at each of some frames, over what it may be. points: those that the
-        errors are of."""
-        turned = (errors.turns**2).sum(axis=2).max(axis=1) / self.angle**2
-        moved = (errors.places**2).sum(axis=2) / self.distances[frames][:, points] ** 2
-        return np.asarray(np.sqrt(np.maximum(turned, moved.max(axis=1))))
+        """As of KeyableFigure."""
+        return errors.worst(self.distances[frames][:, points], self.angle)
 
 
 @dataclass(frozen=True)
@@ -100,6 +135,12 @@ class Errors:
 
     def __add__(self, other: Errors) -> Errors:
         return Errors(self.turns + other.turns, self.places + other.places)
+
+    def worst(self, distances: FloatArray, angle: float) -> FloatArray:
+        """(T',) the largest over what it may be: m (T', P), and rad."""
+        turned = (self.turns**2).sum(axis=2).max(axis=1) / angle**2
+        moved = (self.places**2).sum(axis=2) / distances**2
+        return np.asarray(np.sqrt(np.maximum(turned, moved.max(axis=1))))
 
     def of(self, limb: CarriedParts, frames: slice) -> Errors:
         """Of a limb at some frames."""

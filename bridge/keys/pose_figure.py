@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import bpy
@@ -10,6 +11,7 @@ import numpy as np
 from ...solver.arrays import BoolArray, FloatArray
 from ..accessors import armature_data
 from ..armature.channels import proper
+from ..armature.incremental import Incremental
 from ..armature.pose_basis import place
 from ..recipe.keys import KeyOptions
 from .bone_channels import BoneChannels
@@ -20,6 +22,18 @@ STEP = 1e-5  # of a channel, for its effect by central differences
 # Share of the error by which a point that stands may slide: the ground beside it shows that, while
 # nothing shows it of a hand in the air.
 PLANTED = 0.5
+
+
+def nearest_frames(frames: FloatArray, wanted: Iterable[float]) -> tuple[float, ...]:
+    """Those of frames (T,) that are nearest to wanted ones, in order."""
+    return tuple(sorted({float(frames[np.abs(frames - frame).argmin()]) for frame in wanted}))
+
+
+def angles_between(one: FloatArray, other: FloatArray) -> FloatArray:
+    """(T, B) rad between rotations (T, B, 3, 3)."""
+    # The chord of a turn by a is 2 sin(a / 2), and a matrix's norm is that times sqrt(2).
+    chords = np.linalg.norm(one - other, axis=(2, 3)) / np.sqrt(8.0)
+    return np.asarray(2.0 * np.arcsin(np.minimum(chords, 1.0)))
 
 
 @dataclass(frozen=True)
@@ -48,18 +62,21 @@ class PosedBones:
             placed[name] = place(bone, placed[bone.parent.name] if bone.parent else None, basis)
         return placed
 
-    def errors(self, values: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    @property
+    def bones(self) -> tuple[str, ...]:
+        """Names of those with channels."""
+        return tuple(c.bone for c in self.channels)
+
+    def errors(self, values: list[FloatArray]) -> Incremental[tuple[FloatArray, FloatArray]]:
         """Distances (T, B) m of the heads of bones with channels from where they should be, and
         angles (T, B) rad, with other values (T, n) by bone."""
         should, are = self.matrices(), self.matrices(values)
-        names = [c.bone for c in self.channels]
-        apart = [self.heads(are[n]) - self.heads(should[n]) for n in names]
-        turned = [proper(are[n][:, :3, :3]) - proper(should[n][:, :3, :3]) for n in names]
-        # The chord of a turn by a is 2 sin(a / 2), and a matrix's norm is that times sqrt(2).
-        chords = np.linalg.norm(np.stack(turned, axis=1), axis=(2, 3)) / np.sqrt(8.0)
+        yield
+        apart = [self.heads(are[n]) - self.heads(should[n]) for n in self.bones]
+        turned = [proper(each[n][:, :3, :3]) for n in self.bones for each in (are, should)]
         return (
             np.linalg.norm(np.stack(apart, axis=1), axis=2),
-            2.0 * np.arcsin(np.minimum(chords, 1.0)),
+            angles_between(np.stack(turned[::2], axis=1), np.stack(turned[1::2], axis=1)),
         )
 
     def heads(self, matrices: FloatArray) -> FloatArray:
@@ -119,11 +136,8 @@ class PosedBones:
             turns,
             shifts,
             self.heads(placed[own.bone]),
-            tuple(sorted({self._nearest(frame) for frame in (*events.columns, *edges)})),
+            nearest_frames(self.frames, (*events.columns, *edges)),
         )
-
-    def _nearest(self, frame: float) -> float:
-        return float(self.frames[np.abs(self.frames - frame).argmin()])
 
     def _effects(
         self, own: BoneChannels, placed: dict[str, FloatArray]

@@ -15,7 +15,7 @@ from time import perf_counter
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
-from .figure import Errors, KeyedFigure
+from .figure import Errors, KeyableFigure
 from .hermite import HermiteKeys, fitted, refitted
 
 SHARES = (0.8, 1.0, 1.0)  # of what is allowed, pass after pass
@@ -24,7 +24,7 @@ SLICE_S = 0.02
 WINDOW = 2  # keys on each side of a dropped one that are fitted anew
 
 
-def reduced(figure: KeyedFigure) -> Generator[None, None, list[HermiteKeys]]:
+def reduced(figure: KeyableFigure) -> Generator[None, None, list[HermiteKeys]]:
     """Keys by bone, in slices of some 20 ms each."""
     columns = shared_columns(figure)
     yield
@@ -35,7 +35,7 @@ def reduced(figure: KeyedFigure) -> Generator[None, None, list[HermiteKeys]]:
     return thinning.keys
 
 
-def shared_columns(figure: KeyedFigure) -> FloatArray:
+def shared_columns(figure: KeyableFigure) -> FloatArray:
     """Frames (K,) of keys with which the whole figure is near enough: halved where it is not."""
     frames = figure.frames
     fixed = {frame for bone in figure.bones for frame in bone.fixed}
@@ -48,14 +48,14 @@ def shared_columns(figure: KeyedFigure) -> FloatArray:
         at = split
 
 
-def keys_at(figure: KeyedFigure, at: list[FloatArray]) -> list[HermiteKeys]:
+def keys_at(figure: KeyableFigure, at: list[FloatArray]) -> list[HermiteKeys]:
     """Least-squares keys by bone at frames (K,) each."""
     return [
         fitted(bone.samples, figure.frames, own) for bone, own in zip(figure.bones, at, strict=True)
     ]
 
 
-def errors_of(figure: KeyedFigure, keys: list[HermiteKeys]) -> Errors:
+def errors_of(figure: KeyableFigure, keys: list[HermiteKeys]) -> Errors:
     """Errors of the whole figure at all frames."""
     total, always = figure.no_errors(), slice(None)
     for bone, (own, limb) in enumerate(zip(keys, figure.carried, strict=True)):
@@ -81,7 +81,7 @@ def halved(at: FloatArray, frames: FloatArray, bad: BoolArray) -> FloatArray:
 class _Thinning:
     """Keys by bone, with the errors that they leave, while some are dropped."""
 
-    def __init__(self, figure: KeyedFigure, columns: FloatArray) -> None:
+    def __init__(self, figure: KeyableFigure, columns: FloatArray) -> None:
         self.figure = figure
         self.keys = keys_at(figure, [columns] * len(figure.bones))
         self._errors = errors_of(figure, self.keys)

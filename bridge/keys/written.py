@@ -16,12 +16,14 @@ from ..armature import fcurves
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import basis_under, with_ancestors
 from ..armature.poses import Poses, frames_per_second, metres_per_unit
+from ..controls.control_rig import ControlRig
 from ..recipe.keys import KeyOptions
 from .bezier_keys import splice_bezier
 from .bone_channels import bone_channels
 from .choose import chosen_keys
 from .events import KeyEvents
 from .pose_figure import PosedBones
+from .posed_controls import PosedControls, posed_controls
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,8 @@ class KeyedAction:
     """A result's action and slot, of which the keys of some bones are chosen.
 
     bones: whose rotations it keys, the pelvis first. frames: (T,) those that have keys. take: the
-    curves of the take that it was made from, None where there are none.
+    curves of the take that it was made from, None where there are none. rig: whose controls pose
+    the bones, None where they have keys of their own.
     """
 
     action: bpy.types.Action
@@ -37,6 +40,7 @@ class KeyedAction:
     bones: tuple[str, ...]
     frames: FloatArray
     take: fcurves.CurveHolder | None
+    rig: ControlRig | None = None
 
 
 def choose_keys(
@@ -52,23 +56,37 @@ def choose_keys(
     the same for all channels of a bone. All other keys stay as they are, bit by bit. showing: lets
     the armature perform the action.
     """
-    poses = yield from sample_incrementally(armature, keyed.frames, showing)
-    bases = _bases(armature, poses, keyed.bones)
     curves = fcurves.holder_in(keyed.action, keyed.slot)
     assert curves is not None  # the action was written for this slot
-    channels = bone_channels(armature, keyed.bones, bases, curves, keyed.frames)
-    to_world = poses.object_to_world.copy()
-    to_world[:, :3] *= metres_per_unit(current_scene())
-    posed = PosedBones(armature, keyed.frames, tuple(channels), bases, to_world)
+    posed: PosedBones | PosedControls
+    if keyed.rig is None:
+        posed = yield from _posed_bones(armature, keyed, curves, showing)
+    else:
+        posed = yield from posed_controls(keyed.rig, curves, keyed.frames)
     rate = frames_per_second(current_scene())
     chosen = yield from chosen_keys(posed, options, events, _taken(keyed), rate)
-    for own, keys in zip(channels, chosen.keys or (), strict=chosen.keys is not None):
+    for own, keys in zip(posed.channels, chosen.keys or (), strict=chosen.keys is not None):
         bone = present(armature.pose).bones[own.bone]
         for path, columns in own.paths:
             full = bone.path_from_id(path)
             splice_bezier(curves, full, keys.part(columns), events.extremes, own.bone)
     keyed.action.update_tag()
     return chosen.report
+
+
+def _posed_bones(
+    armature: bpy.types.Object,
+    keyed: KeyedAction,
+    curves: fcurves.CurveHolder,
+    showing: Callable[[], AbstractContextManager[object]],
+) -> Incremental[PosedBones]:
+    """The bones' channels, and their poses."""
+    poses = yield from sample_incrementally(armature, keyed.frames, showing)
+    bases = _bases(armature, poses, keyed.bones)
+    channels = bone_channels(armature, keyed.bones, bases, curves, keyed.frames)
+    to_world = poses.object_to_world.copy()
+    to_world[:, :3] *= metres_per_unit(current_scene())
+    return PosedBones(armature, keyed.frames, tuple(channels), bases, to_world)
 
 
 def _bases(

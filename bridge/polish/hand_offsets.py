@@ -1,8 +1,9 @@
 """What was changed by hand, as offsets from what was written: the polish of a result.
 
 Rotations are told by their turn from what was written, in the bone's own axes, as Blender's NLA
-combines quaternions; everything else by its difference. So a hand that was lifted stays as far
-lifted, wherever the arm is in the next result.
+combines quaternions, and the sizes of a difference by how many times they are what was written;
+everything else by its difference. So a hand that was lifted stays as far lifted, wherever the arm
+is in the next result.
 """
 
 from __future__ import annotations
@@ -23,12 +24,14 @@ from .samples import Channel, CurveSamples, Written, edited_action, sampled
 _SAME = 1e-6  # of a channel's value; float32 leaves less
 _ROTATIONS = {"rotation_quaternion": 4, "rotation_axis_angle": 4, "rotation_euler": 3}
 _DEFAULTS = {"scale": 1.0}
+_FACTORS = "FACTORS"
 
 
 @dataclass(frozen=True)
 class HandOffset:
     """Of a property: values (T, n). mode: the rotation mode of one whose values are rotation
-    vectors, rad, in the bone's own axes (n = 3); None of one whose values are summands."""
+    vectors, rad, in the bone's own axes (n = 3); FACTORS of one whose values are logarithms of
+    factors; None of one whose values are summands."""
 
     path: str
     indices: tuple[int, ...]
@@ -44,6 +47,8 @@ class HandOffset:
         """Channels (N, c) of the property with offsets (N, n) on top, on the base's branch."""
         if self.mode is None:
             return np.asarray(base + offsets)
+        if self.mode == _FACTORS:
+            return np.asarray(base * np.exp(offsets))
         turned = rotations_of(base, self.mode) @ rotation_matrix(offsets)
         values = channels(turned, self.mode, base[0])
         if self.mode == "QUATERNION":
@@ -129,6 +134,8 @@ def _offset(
             other[:, k] = one[:, k]
     if np.abs(other - one).max() <= _SAME:
         return None
+    if combined and attribute == "scale" and (one * other > 0.0).all():  # Blender multiplies them
+        return HandOffset(path, indices, _FACTORS, np.log(other / one))
     mode = _mode_of(armature, path) if attribute in _ROTATIONS else None
     if mode is None or (combined and mode != "QUATERNION"):  # Blender adds up angles
         return HandOffset(path, indices, None, other - one)

@@ -320,6 +320,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     stale: declared(text(), options=HIDDEN)  # why it is not what would be made now
     polished: declared(boolean(), options=HIDDEN)  # edited by hand
     holds_polish: declared(boolean(), options=HIDDEN)  # not since, but of the one before it
+    refined: declared(boolean(), options=HIDDEN)  # by Refine, whose weights are of its edit
     performer: declared(target(), options=HIDDEN)  # of other limbs; none: who has the recording
     accepted: declared(boolean(), options=HIDDEN)
     report: declared(text(), options=HIDDEN)  # the report's text

@@ -5,6 +5,7 @@ frames = [140, 260]             # scene frames, optional
 mass = 70.0                     # kg
 height = 1.69                   # m, optional
 mass_table = "thesis"           # or "de leva"
+unseen_support = "show"         # fits and tells where something unseen carries; or "refuse"
 [bones]                         # optional: part of the body = bone
 "left foot" = "Fuss.L"
 [[pin]]                         # any number of them
@@ -32,10 +33,8 @@ written_as = "strip"            # on top of the take, in the NLA; "combine": as 
                                 # the take; default: "action"
 markers = "action"              # where limbs come down and go up; or "timeline"; default: "none"
 contact_channels = true         # a property of the armature for each limb, 1 while it touches
-
 [loop]                          # the motion repeats: its end meets its start, solved so
 root = "hips"                   # carry the travel; or "in place", or "root bone"
-
 [keys]                          # of the adapted frames
 on = "every frame"              # or "reduced": the fewest; "as the take": where the recording has
 distance = 0.002                # m by which reduced keys may move a joint, in the world; and
@@ -75,6 +74,7 @@ from ...solver.data.problem import (
     MotionProblem,
     OffsetAxes,
     Pin,
+    Unseen,
 )
 from ..recipe_syntax.items import (
     TOUCHING,
@@ -112,7 +112,7 @@ OWN_KEYS = (
     "loop",
     "export",
 )
-TOP_KEYS = (*OWN_KEYS, "add_contact", OBJECT, *REQUEST_KEYS, RESULT.header)
+TOP_KEYS = (*OWN_KEYS, "unseen_support", "add_contact", OBJECT, *REQUEST_KEYS, RESULT.header)
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
 PARTS = (
@@ -172,6 +172,7 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
         scene=scene,
         requests=read_requests(table),
         loop=LOOP.header in table.values,
+        unseen=table.choice("unseen_support", Unseen) or MotionProblem.unseen,
     )
     _refuse_same_names(table)
     result = RESULT.read(table) if RESULT.header in table.values else None
@@ -384,6 +385,7 @@ def write_recipe(
         "mass": problem.mass,
         "height": problem.height,
         "mass_table": problem.mass_table.value,
+        "unseen_support": None if problem.unseen is Unseen.SHOW else problem.unseen.value,
     }
     parts = [entries(top)]
     if problem.bones:

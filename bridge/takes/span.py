@@ -8,6 +8,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.stance_move import StanceMove
+from ..controls.control_rig import ControlRig
 from ..controls.kept import KeptByControls
 from .take_time import TakeTime
 
@@ -63,8 +64,8 @@ class WrittenTake:
     """What was done to a take. back: the frame by which it is where it was; None where it is not.
 
     time: where the take's frames are in the result. applied: bones whose curves had modifiers, or
-    were muted, and are keys now. controls: how near the bodies are that controls pose; None where
-    bodies have keys of their own.
+    were muted, and are keys now. controls: how near the bodies are that controls pose, and rig:
+    these controls; None where bodies have keys of their own.
     """
 
     span: ResultSpan
@@ -73,6 +74,7 @@ class WrittenTake:
     time: TakeTime
     applied: tuple[str, ...] = ()
     controls: KeptByControls | None = None
+    rig: ControlRig | None = None
 
     @property
     def later(self) -> int:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..accessors import current_action, source_of
+from ..accessors import HOLDS, current_action, source_of
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
@@ -67,6 +67,7 @@ def derive(action: bpy.types.Action, source: bpy.types.Action, armature: bpy.typ
     """Note that an armature's settings made an action from a take: it is a result now."""
     made = action_settings(action)
     made.recording, made.maker = source, armature
+    action[HOLDS] = True
     adopt_strip(armature, source)
     made.count = 1 + max(action_settings(other).count for other in bpy.data.actions)
 
@@ -140,6 +141,7 @@ def keep_edit(armature: bpy.types.Object) -> None:
     if settings.adapted is not None:
         copy_settings(settings, action_settings(settings.adapted).edit, _NOT_KEPT)
     elif source is not None:
+        source[HOLDS] = True
         copy_settings(settings, action_settings(source).next_edit, _NOT_KEPT)
     owner = settings.adapted or source
     if owner is not None:

@@ -91,7 +91,7 @@ def write_take(
     if rig is not None:
         shown = yield from sample_incrementally(armature, plan.body_frames, showing)
         kept = kept_by(shown, targets_of(armature, poses, body), len(rig.used))
-    return WrittenTake(plan.span, plan.moved, plan.back, plan.time, done, kept)
+    return WrittenTake(plan.span, plan.moved, plan.back, plan.time, done, kept, rig)
 
 
 def _controls(

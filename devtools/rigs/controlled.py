@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ...solver.arrays import FloatArray
 from .limits import RigFigure
 
 OFF_MM, OFF_AIM_MM = 1.0, 0.1
 TURNED_DEGREES, TURNED_AIM_DEGREES = 0.2, 0.05
 DRIFT_MM, DRIFT_AIM_MM = 1.0, 0.1
-# Rigify's limbs in inverse kinematics, and its spine, stretch: bones end where they should, but the
-# halves of a thigh, and the skin about the spine, are not of their usual size.
-KNOWN_OFF_MM, KNOWN_SKIN_MM = 5.0, 30.0
+KEYS_OFF_MM, KEYS_DEGREES = 2.0, 0.2
+KEYS_RATE, KEYS_RATE_AIM = 12.0, 6.0
+KNOWN_KEYS_RATE = 24.0  # the take's own: a key on every frame is the most that there is
+KEYS_DRIFT_MM = 2.0
 COLUMNS = (
     "control rig",
     "bones",
@@ -25,6 +29,11 @@ COLUMNS = (
     "where",
     "foot's keys (mm)",
     "writing (s)",
+    "reduced keys (1/s)",
+    "off (mm)",
+    "turned (°)",
+    "foot (mm)",
+    "choosing (s)",
 )
 NOTES = """
 ## Control rigs
@@ -35,10 +44,17 @@ in inverse kinematics (IK). The landing is moved by 0.3 m, the result written to
 
 - **Places, turns**: every bone that deforms, as Blender evaluates it on every frame, against
   forward kinematics of the solution's joint angles; what the writer says of itself does not count.
-  Bones that share out a limb's twist count by where they point.
-- **Skin**: vertices of a tube about each such bone that move with it alone, likewise.
+  Bones that share out a limb's twist count by where they point, and are at their share of the way
+  between its joints: limbs that stretch are in the take, and in its figure, not as long as at rest.
+- **Skin**: vertices of a tube about each bone of a body that move with it alone, against the same
+  skin on a copy of the rig without controls and constraints, whose deform bones are put where the
+  solution has them. Bendy bones bend there as well, by their own settings, as towards the neck:
+  that is what their rigger wants, and rigid bodies say nothing of it.
 - **Foot's keys**: how far over the ground the keys of a foot's IK control carry its heel while it
   is pinned.
+- **Reduced keys**: Bézier keys within 2 mm and 0.2° instead of one on every frame, by second and
+  channel; how far the bodies then are, on every frame as they play, from where they were with all
+  keys; and the slide of the foot's control with these.
 """
 
 
@@ -54,6 +70,24 @@ class Worst:
     def place(self) -> str:
         """Its bone and frame in words."""
         return f"{self.bone}, frame {self.frame:g}"
+
+
+@dataclass(frozen=True)
+class SparseKeys:
+    """What reduced keys leave: keys a second and channel; by how much bodies, as they play, are off
+    the keys on every frame, mm and degrees; drift: as of ControlResult; seconds: of choosing."""
+
+    rate: float
+    off: Worst
+    turned: Worst
+    seconds: float
+    drift: Worst | None = None
+
+
+def worst_of(values: FloatArray, names: Sequence[str], frames: FloatArray) -> Worst:
+    """The largest of values (T, N), by name and frame."""
+    t, n = np.unravel_index(int(values.argmax()), values.shape)
+    return Worst(float(values[t, n]), names[int(n)], float(frames[t]))
 
 
 @dataclass(frozen=True)
@@ -76,6 +110,7 @@ class ControlResult:
     drift: Worst | None = None
     refused: str = ""
     seconds: float = 0.0
+    sparse: SparseKeys | None = None
 
 
 def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
@@ -105,40 +140,54 @@ def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
             least=True,
         ),
     ]
-    told: tuple[tuple[str, str, str, float, float, float | None], ...] = (
-        (
-            "off",
-            "control rig: deform bones off the solution",
-            "mm",
-            OFF_MM,
-            OFF_AIM_MM,
-            KNOWN_OFF_MM,
-        ),
+    told = (
+        ("off", "control rig: deform bones off the solution", "mm", OFF_MM, OFF_AIM_MM),
         (
             "turned",
             "control rig: deform bones turned off the solution",
             "°",
             TURNED_DEGREES,
             TURNED_AIM_DEGREES,
-            None,
         ),
-        ("skin", "control rig: skin off the solution", "mm", OFF_MM, OFF_AIM_MM, KNOWN_SKIN_MM),
-        (
-            "drift",
-            "control rig: slide of the pinned foot's keys",
-            "mm",
-            DRIFT_MM,
-            DRIFT_AIM_MM,
-            None,
-        ),
+        ("skin", "control rig: skin off the solution", "mm", OFF_MM, OFF_AIM_MM),
+        ("drift", "control rig: slide of the pinned foot's keys", "mm", DRIFT_MM, DRIFT_AIM_MM),
     )
-    for quantity, name, unit, must, aim, known in told:
+    for quantity, name, unit, must, aim in told:
         tried = [(getattr(r, quantity), r.name) for r in results if getattr(r, quantity)]
         if tried:
             worst, rig = max(tried, key=lambda each: each[0].value)
             where = f"{rig}: {worst.place}"
-            found.append(RigFigure(name, worst.value, unit, must, aim, where, known=known))
-    return found
+            found.append(RigFigure(name, worst.value, unit, must, aim, where))
+    return found + _sparse_figures([(r.name, r.sparse) for r in results if r.sparse])
+
+
+def _sparse_figures(found: Sequence[tuple[str, SparseKeys]]) -> list[RigFigure]:
+    """Of reduced keys on controls; the worst rig of each."""
+    figures = []
+    if found:
+        rig, most = max(found, key=lambda each: each[1].rate)
+        figures.append(
+            RigFigure(
+                "reduced keys on controls, a second and channel",
+                most.rate,
+                "1",
+                KEYS_RATE,
+                KEYS_RATE_AIM,
+                rig,
+                known=KNOWN_KEYS_RATE,
+            )
+        )
+    told = (
+        ("off", "reduced keys on controls: bones off", "mm", KEYS_OFF_MM, KEYS_OFF_MM),
+        ("turned", "reduced keys on controls: bones turned", "°", KEYS_DEGREES, KEYS_DEGREES),
+        ("drift", "reduced keys on controls: slide of the pinned foot", "mm", KEYS_DRIFT_MM, 0.5),
+    )
+    for quantity, name, unit, must, aim in told:
+        tried = [(getattr(keys, quantity), rig) for rig, keys in found if getattr(keys, quantity)]
+        if tried:
+            worst, rig = max(tried, key=lambda each: each[0].value)
+            figures.append(RigFigure(name, worst.value, unit, must, aim, f"{rig}: {worst.place}"))
+    return figures
 
 
 def control_line(result: ControlResult) -> str:
@@ -172,6 +221,15 @@ def _cells(result: ControlResult) -> Iterator[str]:
     yield from _worst(result.skin)
     yield f"{result.drift.value:.3f}" if result.drift else ""
     yield f"{result.seconds:.0f}"
+    keys = result.sparse
+    if keys is None:
+        yield from [""] * 5
+        return
+    yield f"{keys.rate:.1f}"
+    yield f"{keys.off.value:.2f}"
+    yield f"{keys.turned.value:.3f}"
+    yield f"{keys.drift.value:.2f}" if keys.drift else ""
+    yield f"{keys.seconds:.0f}"
 
 
 def _worst(worst: Worst | None) -> tuple[str, str]:

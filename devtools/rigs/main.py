@@ -32,7 +32,7 @@ MEASURE_CONTROLS = "devtools.rigs.controls.measure"
 CONTROLS = ("rigify_fk", "rigify_ik", "arp_fk", "arp_ik")
 REFERENCE = "cmu"  # the rig that has the recording's own skeleton
 QUICK = (REFERENCE, "unreal")  # whose edits are compared; all are mapped
-LONGEST = 300.0  # s, that one rig may take, on a busy machine too
+LONGEST = 600.0  # s, that one rig may take, on a busy machine too
 
 
 def main(argv: list[str]) -> int:

@@ -10,7 +10,7 @@ from ...operators.headless.stages import Stages
 from ...solver.analysis.accelerations import com_acceleration
 from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY, UP
-from ...solver.data.problem import MotionProblem
+from ...solver.data.problem import MotionProblem, Unseen
 from ...solver.stages.fit import Fit
 from ...solver.worker.pipeline import fit_subject, no_fit
 from .contacts import joined
@@ -58,7 +58,7 @@ def fit_trial(trial: Trial) -> FittedTrial:
     Raises every Fault that a clip can have, and NoFit.
     """
     stages = Stages(sys.stderr)
-    problem = MotionProblem(frames=trial.frames, mass=trial.mass)
+    problem = MotionProblem(frames=trial.frames, mass=trial.mass, unseen=Unseen.REFUSE)
     loaded = load(Clip(trial.bvh, unit=UNIT, up="Y"), problem, stages)
     fitted = fit_subject(loaded.subject, stages)
     if not fitted.solved:

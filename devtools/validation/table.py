@@ -31,9 +31,9 @@ any folder in the same format will do.
   differences twice, low-passed after. It needs no contacts and no body, and is no floor: the
   recording's own noise is in it. What it gives here is within 0.001 BW at 15 Hz of what the
   trials' files have stored.
-- **A refused trial** is one on which the command line stops with that sentence; it counts as
-  missed, and no mean has it. A walk is judged by its error in body weights, for its baseline is
-  near the noise.
+- **A refused trial** is one in which something unseen carries the body (`unseen_support =
+  "refuse"`): contact forces are not all then. It counts as missed, and no mean has it. A walk is
+  judged by its error in body weights, for its baseline is near the noise.
 - **Known misses** are declared in `devtools/validation/limits.py`, with the value that each must
   not pass meanwhile. The command ends with 1 for any other miss, any other refusal, and any crash.
   Means and medians are judged from five trials on; of fewer they are told.

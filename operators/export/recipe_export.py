@@ -13,6 +13,7 @@ from ...bridge.formats.obj import obj_text
 from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.object_texts import mesh_files
 from ...bridge.recipe.problem import write_recipe
+from ...bridge.recipe.shortest import shortest
 from ...bridge.takes.options import result_options
 from ...solver.data.problem import MotionProblem
 from ...solver.data.scene import SceneObject
@@ -54,7 +55,7 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
     def run(self, context: bpy.types.Context) -> OperatorResult:
         asked = complete(ask_for(context))
         settings = settings_of(required_armature(context))
-        problem = _as_adapted(asked.problem, settings.method)
+        problem = shortest(_as_adapted(asked.problem, settings.method))
         path = Path(bpy.path.abspath(self.filepath))
         files = mesh_files(problem.scene)
         with Outbox(path.parent) as outbox:
@@ -62,8 +63,8 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
                 problem,
                 clip=_clip(path),
                 files=files,
-                result=result_options(settings),
-                keys=key_options(settings),
+                result=shortest(result_options(settings)),
+                keys=shortest(key_options(settings)),
             )
             outbox.write_text(path.name, text)
             for thing in problem.scene:

@@ -18,11 +18,11 @@ from ...solver.data.faults import BadRecipe, Fault, NoSolution, UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
+from ..words.headline import headline
 from ..words.messages import recipe_place, sentence
-from ..words.report_text import headline
 from .clip import Clip, load
 from .outbox import Outbox, not_writable
-from .outputs import Outputs
+from .outputs import Outputs, require_exported
 from .stages import WIDTH, Stages
 
 WRONG_INPUT = 2
@@ -149,15 +149,16 @@ def adapt(options: argparse.Namespace) -> None:
     recipe = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     clip, problem = _clip(options, recipe), overridden(recipe.problem, options)
     wanted, keys = recipe.result or ResultOptions(), recipe.keys or KeyOptions()
+    export = recipe.export or ExportOptions()
     if recipe.loop is not None:
         require_every_frame(keys)
     stages = Stages(sys.stdout)
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
+        require_exported(loaded, options.out, export)
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
-        export = recipe.export or ExportOptions()
         outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop, export)
         if result.fault is not None:
             outputs.write_failure()
@@ -166,7 +167,8 @@ def adapt(options: argparse.Namespace) -> None:
         report = outputs.write(picture=not options.no_picture)
         files = outbox.deliver()
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
-    print(total, *headline(report), "Written:", sep="\n")
+    advice = [explained(each, None) for each in loaded.subject.analysis.unseen]
+    print(total, *headline(report), *advice, "Written:", sep="\n")
     for path in files:
         print(f"  {path}")
 

@@ -30,10 +30,21 @@ from .stages import Stages
 if TYPE_CHECKING:  # as in clip.py
     import bpy
 
+    from ...bridge.controls.control_rig import ControlRig
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
 
+EXPORTED = "adapted"  # file name without ending
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
+
+
+def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> None:
+    """Before a solve takes its seconds. Raises OutputNotWritable, SameUsdNames."""
+    from ...bridge.exports.engines import ENDINGS, format_of
+    from ...bridge.exports.export import require_exportable
+
+    path = folder / f"{EXPORTED}{ENDINGS[format_of(export)]}"
+    require_exportable(clip.armature, path, export)
 
 
 @dataclass(frozen=True)
@@ -62,7 +73,8 @@ class Outputs:
             recorded = present(current_action(self.clip.armature))
             adopt_strip(self.clip.armature, recorded)
             performer, adapted, written = self._write_actions("adapted")
-            keys = self._choose_keys(performer, adapted, recorded)
+            rig = written.rig if written is not None else None
+            keys = self._choose_keys(performer, adapted, recorded, rig)
             self._mark_contacts(performer, adapted)
             if self.loop is None:  # which is an action of its own
                 self._lay_strips(performer, recorded, adapted)
@@ -86,7 +98,7 @@ class Outputs:
 
         form, pelvis = format_of(self.export), self.result.track.bones[0]
         with self.stages.stage(f"Exporting {form.name}"), quiet():
-            path = self.outbox.path(f"adapted{ENDINGS[form]}")
+            path = self.outbox.path(f"{EXPORTED}{ENDINGS[form]}")
             export_takes(performer, [adapted], path, self.export, pelvis)
 
     def _draw(self) -> None:
@@ -209,9 +221,14 @@ class Outputs:
         )
 
     def _choose_keys(
-        self, performer: bpy.types.Object, adapted: bpy.types.Action, recorded: bpy.types.Action
+        self,
+        performer: bpy.types.Object,
+        adapted: bpy.types.Action,
+        recorded: bpy.types.Action,
+        rig: ControlRig | None,
     ) -> KeysReport | None:
-        """Give the action the keys that are asked for; None where every frame has one."""
+        """Give the action the keys that are asked for; None where every frame has one. rig: the
+        controls that pose the performer, if such do."""
         if self.keys.on is KeyChoice.EVERY_FRAME:
             return None
         from ...bridge.armature import fcurves
@@ -225,7 +242,7 @@ class Outputs:
         events = events_of(self.result.schedule, float(track.frames[0]), rate)
         with in_scene_time(self.clip.armature, recorded) as played:
             take = fcurves.holder_in(played, fcurves.slot_identifier(self.clip.armature))
-            keyed = KeyedAction(adapted, slot, track.bones, track.frames, take)
+            keyed = KeyedAction(adapted, slot, track.bones, track.frames, take, rig)
             return complete(choose_keys(performer, keyed, self.keys, events))
 
     def _build_scene(self) -> None:

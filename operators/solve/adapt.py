@@ -144,6 +144,17 @@ def quick_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOp
     return replace(asked, method=Method[settings.method])
 
 
+def refined_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+    """Solver options for the objective that is chosen, or that a recipe asks for."""
+    weights = (
+        (ObjectiveKind[settings.objective], 1.0),
+        (ObjectiveKind.CLOSENESS, settings.stay_close),
+    )
+    if asked.method is Method.EXPLICIT:
+        return asked
+    return replace(asked, method=Method.EXPLICIT, objectives=weights)
+
+
 class AdaptOperator(Adapting, bpy.types.Operator):
     bl_idname = OperatorId.ADAPT
     bl_label = "Adapt"
@@ -167,13 +178,7 @@ class RefineOperator(Adapting, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
-        weights = (
-            (ObjectiveKind[settings.objective], 1.0),
-            (ObjectiveKind.CLOSENESS, settings.stay_close),
-        )
-        if asked.method is Method.EXPLICIT:
-            return asked
-        return replace(asked, method=Method.EXPLICIT, objectives=weights)
+        return refined_solution(settings, asked)
 
 
 class UseBestOperator(TaskOperator, bpy.types.Operator):
@@ -225,6 +230,7 @@ def require_writable(
 ) -> Incremental[None]:
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
+    Controls are tried once for a recording, as that takes long and a drag's ghost waits for it.
     Raises NoControls, NotInLoop, and as `map_anatomy`.
     """
     if not constrained(armature):  # keys of their own pose all bones
@@ -233,7 +239,11 @@ def require_writable(
     segments = map_anatomy(recording.bones, chosen_parts(settings))
     bodies = tuple(recording.bones[segment.bone].name for segment in segments)
     frames = recording.window(*span).frames
-    driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
+    trying = armature.session_uid, analysis_key(settings, recording), bodies
+    driven = session().tried == trying
+    if not driven:
+        driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
+        session().tried = trying if driven else None
     if driven and loop_options(settings) is not None:
         raise NotInLoop("a rig that is posed through controls")
 
@@ -274,6 +284,8 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
         done = yield from _write_own(asked, answer, armature)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
+    refined = asked.problem.requests.solution.method is Method.EXPLICIT
+    action_settings(present(settings.adapted)).refined = refined
     settings.status = "\n".join([settings.status, *remarks])
     return "; ".join([done, *remarks])
 
@@ -309,7 +321,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         rate = answer.report.recording.frames_per_second
         moved = yield from renewal.put_on(action, answer.track.bones, time, answer.schedule, rate)
         _tell_polish(armature, action, renewal, moved)
-        yield from write_keys(armature, armature, action, answer)
+        rig = written.rig if written is not None else None
+        yield from write_keys(armature, armature, action, answer, rig)
     finally:  # cancelled it has a key on every frame
         mark_contacts(armature, action, answer, options)
         if options.written_as is WrittenAs.COMBINE:

@@ -11,14 +11,17 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
 from ...bridge.constraints.motion_problem import analysis_key, problem_of, span_of, write_analysis
-from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ...bridge.properties.settings import (
+    HangtimeSettings,
+    action_settings,
+    scene_settings,
+    settings_of,
+)
 from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import (
-    Fault,
     MissingPart,
     OddHeight,
     OutsideKeys,
-    Treadmill,
     UnseenSupport,
 )
 from ...solver.data.loop import Cycle
@@ -34,7 +37,14 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import higher
 from ..words.shape_text import shapes_told
-from .adapt import Adapting, ask_for, quick_solution, read_wanted, require_writable
+from .adapt import (
+    Adapting,
+    ask_for,
+    quick_solution,
+    read_wanted,
+    refined_solution,
+    require_writable,
+)
 from .common import FaultyOperator, chosen_armature, required_armature, said
 from .scene import read_bound, read_surfaces
 from .session import session
@@ -96,11 +106,13 @@ class UpdateOperator(Adapting, bpy.types.Operator):
     bl_label = "Update"
     bl_description = (
         "Make the result anew from the take and the settings as they are now: analyzes where the "
-        "take below has changed, and adapts"
+        "take below has changed, and adapts, or refines what was refined"
     )
     bl_options = {"UNDO"}
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+        if settings.adapted is not None and action_settings(settings.adapted).refined:
+            return refined_solution(settings, asked)
         return quick_solution(settings, asked)
 
     def task(self, context: bpy.types.Context) -> Task:
@@ -136,29 +148,42 @@ def analysis(context: bpy.types.Context) -> Task:
     yield None
     session().advance(SolveState.SOLVING)
     session().support = None
-    try:
+    answer = yield from _analysed(armature, recording, problem)
+    for _ in range(MOST_SNAPS):
+        if answer.cycle is None or answer.cycle.as_asked:
+            break
+        _take_cycle(settings, answer.cycle)
+        recording = yield from read_wanted(armature)
+        problem = asked(recording)
         answer = yield from _analysed(armature, recording, problem)
-        for _ in range(MOST_SNAPS):
-            if answer.cycle is None or answer.cycle.as_asked:
-                break
-            _take_cycle(settings, answer.cycle)
-            recording = yield from read_wanted(armature)
-            problem = asked(recording)
-            answer = yield from _analysed(armature, recording, problem)
-    except Fault as fault:
-        raise _telling(fault, armature, recording, problem) from None
     contacts, flights = len(answer.schedule.contacts), len(answer.schedule.flights)
     odd = None if problem.height is not None else _odd_height(armature.name, answer.height)
-    if odd is not None and not flights:
+    if odd is not None and (answer.unseen or not flights):
         raise odd
+    unseen = [each for each in answer.unseen if isinstance(each, UnseenSupport)]
+    for each in unseen:
+        if each.rate is not None:  # nothing carries: the scene plays it at a wrong speed
+            raise each
+    boxes = [box for each in unseen for box in each.boxes]
+    if boxes:
+        session().support = (armature.session_uid, tuple(boxes))
     yield None
     write_analysis(settings, recording, answer)
     keep(armature, answer.traces, armature.matrix_world)
     settings.shapes_told = shapes_told(bound, answer)
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
-    found = f"{found}{bind}{_snapped(settings, span)}"
+    found = f"{found}{bind}{_snapped(settings, span)}{_unseen(answer)}"
     return f"{found}; but {said(odd)}" if odd is not None else found
+
+
+def _unseen(answer: Analysed) -> str:
+    """Words on where something unseen carries the body: all frames, and what the first tells."""
+    if not answer.unseen:
+        return ""
+    spans = [f"{u.first:g} to {u.last:g}" for u in answer.unseen if isinstance(u, UnseenSupport)]
+    others = f" Also frames {', '.join(spans[1:])}." if spans[1:] else ""
+    return f". {said(answer.unseen[0])}{others}"
 
 
 def _leave_out_bind_pose(settings: HangtimeSettings, recording: Recording) -> str:
@@ -201,34 +226,18 @@ def _analysed(
 
     Raises any Fault of an analysis, and of reading the scene.
     """
-    try:
-        return (yield from answered(_ask(recording, problem), Analysed))
-    except (UnseenSupport, Treadmill) as fault:
-        unseen = fault
+    found = yield from answered(_ask(recording, problem), Analysed)
+    if not found.unseen:
+        return found
     scene = yield from read_surfaces(armature, recording.frames)
     if not any(thing.role is SceneRole.GROUND for thing in scene.objects):
-        raise unseen
+        return found
     problem = replace(problem, scene=scene.objects)
     return (yield from answered(_ask(recording, problem), Analysed))
 
 
 def _ask(recording: Recording, problem: MotionProblem) -> PendingRequest:
     return shared().ask(RequestKind.ANALYSE, recording, problem)
-
-
-def _telling(
-    fault: Fault, armature: bpy.types.Object, recording: Recording, problem: MotionProblem
-) -> Fault:
-    """Diagnosis of a failed analysis: at a wrong scale feet seem to slide and bodies to float."""
-    if not isinstance(fault, UnseenSupport | Treadmill):
-        return fault
-    from ...solver.body.character import build_character  # numpy's, but half of the solver
-
-    height = build_character(recording, mass=problem.mass, chosen=problem.bones).height
-    odd = _odd_height(armature.name, height)
-    if odd is None and isinstance(fault, UnseenSupport) and fault.boxes:
-        session().support = (armature.session_uid, fault.boxes)
-    return odd or fault
 
 
 def _odd_height(armature: str, height: float) -> OddHeight | None:

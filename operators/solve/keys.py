@@ -9,7 +9,7 @@ from ...bridge.armature import fcurves
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.played import in_scene_time
-from ...bridge.controls.driven import is_driven
+from ...bridge.controls.control_rig import ControlRig
 from ...bridge.keys.contact_marks import limb_contacts, write_contact_channels, write_markers
 from ...bridge.keys.events import events_of
 from ...bridge.keys.written import KeyedAction, choose_keys
@@ -52,11 +52,12 @@ def write_keys(
     performer: bpy.types.Object,
     action: bpy.types.Action,
     answer: Adapted,
+    rig: ControlRig | None = None,
 ) -> Incremental[None]:
     """Give an action that a performer shows the keys that are asked for, and tell what they leave.
 
-    armature: whose settings count. The action has a key on every frame before, and stays so where
-    the artist cancels.
+    armature: whose settings count. rig: the controls that pose the performer, if such do. The
+    action has a key on every frame before, and stays so where the artist cancels.
     """
     settings = settings_of(armature)
     options = key_options(settings)
@@ -65,14 +66,11 @@ def write_keys(
     track, rate = answer.track, answer.report.recording.frames_per_second
     slot = fcurves.slot_identifier(performer)
     events = events_of(answer.schedule, float(track.frames[0]), rate)
-    if is_driven(performer, track.bones):
-        line = "Keys: on every frame, as on all rigs that are posed through controls"
-    else:
-        with in_scene_time(armature, present(recorded_action(armature))) as recording:
-            take = fcurves.holder_in(recording, fcurves.slot_identifier(armature))
-            keyed = KeyedAction(action, slot, track.bones, track.frames, take)
-            report = yield from choose_keys(performer, keyed, options, events)
-        line = f"Keys: {keys_line(report)}"
+    with in_scene_time(armature, present(recorded_action(armature))) as recording:
+        take = fcurves.holder_in(recording, fcurves.slot_identifier(armature))
+        keyed = KeyedAction(action, slot, track.bones, track.frames, take, rig)
+        report = yield from choose_keys(performer, keyed, options, events)
+    line = f"Keys: {keys_line(report)}"
     settings.status = f"{settings.status}\n{line}"
     stored = action_settings(action)
     stored.report = f"{stored.report}\n{line}\n"

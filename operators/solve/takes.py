@@ -6,6 +6,7 @@ from ...bridge.accessors import current_action, present, source_of
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.polish.renewal import is_kept
 from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.takes.options import loop_options
 from ...bridge.takes.takes import (
     look_again,
     polished_result,
@@ -27,6 +28,7 @@ LEFT_BEHIND = (
 )
 TO_KEEP = "To take them along, tick Keep Polish under Rest of the Take"
 TO_BUILD_ON = "To build on them, choose Start From: This Result"
+IN_LOOP = "A loop cannot take them along"
 
 
 def left_behind(armature: bpy.types.Object) -> str:
@@ -36,11 +38,12 @@ def left_behind(armature: bpy.types.Object) -> str:
     try:
         if result is None or is_kept(armature, result):
             return ""
+        looped = loop_options(settings_of(armature)) is not None
     except BadRecipe:  # nothing is made, and the solve says why
         return ""
     result.use_fake_user = True
     source, chosen = present(recorded_action(armature)), settings_of(armature).result.keep_polish
-    way = TO_BUILD_ON if chosen else TO_KEEP
+    way = IN_LOOP if looped else TO_BUILD_ON if chosen else TO_KEEP
     return LEFT_BEHIND.format(result.name, source.name, result.name, way)
 
 

@@ -4,11 +4,13 @@ import json
 import os
 from pathlib import Path
 
-from ...bridge.recipe.object_texts import object_text
+from ...bridge.recipe.object_texts import object_text, support_texts
 from ...solver.analysis.analyse import Analysis
 from ...solver.data.contacts import Phase, PhaseKind
+from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
+from .messages import sentence
 from .report_text import held_at_rest
 
 
@@ -29,6 +31,7 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
         lines.append(f"left out: {held_at_rest(origin.bind_frames)} (else say --first)")
     lines += ["", f"{'phase':<12}{'frames':>17}{'seconds':>9}"]
     lines += [_phase_line(analysis, phase) for phase in analysis.schedule.phases]
+    lines += _unseen(analysis)
     lines += ["", f"{'contact':<16}{'frames':>17}  {'bone':<16}place (m)"]
     for contact in analysis.schedule.contacts:
         span = _span(analysis, contact.start, contact.end)
@@ -36,6 +39,13 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
         on = f" on {contact.on}" if contact.on is not None else ""
         lines.append(f"{contact.name:<16}{span:>17}  {contact.bone:<16}{place}{on}")
     return "\n".join(lines) + "\n"
+
+
+def _unseen(analysis: Analysis) -> list[str]:
+    """Where something unseen carries the body, and a box that would."""
+    told = [sentence(each) for each in analysis.unseen]
+    boxes = [box for u in analysis.unseen if isinstance(u, UnseenSupport) for box in u.boxes]
+    return ["", *told, *support_texts(boxes)] if told else []
 
 
 def _phase_line(analysis: Analysis, phase: Phase) -> str:
@@ -95,7 +105,7 @@ def starter_recipe(analysis: Analysis, problem: MotionProblem, clip: Path, recip
             "# Contacts found, with their frames; correct one by its name:",
             *found,
             "# [[contact]]",
-            f"# name = {_quoted(contacts[0].name)}",
+            f"# name = {_quoted(contacts[0].name if contacts else 'Left heel 1')}",
             "# start_frame = 0  # or end_frame, or remove = true",
             "",
             *(object_text(thing) for thing in problem.scene),

@@ -5,14 +5,22 @@ from math import hypot
 
 from ...bridge.rows.choices import KeyChoice
 from ...solver.data.contacts import PhaseKind
-from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.reports.jumps import PhaseReport
 from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.report import Report
-from ...solver.data.row_kinds import RowKind
-from ...solver.data.status import Durations, Status
-from .messages import length, outcome
+from ...solver.data.status import Durations
+from .headline import (
+    CERTIFICATE,
+    MOST_NAMED,
+    headline,
+    line_place,
+    line_told,
+    most_telling,
+    plain,
+    with_unit,
+)
+from .messages import length
 
 LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,
@@ -21,7 +29,6 @@ LEFT_AT_MOST = {
 LEAST_RETIMED = 0.0005  # s
 LEAST_TURN = 1.0  # degrees of a joint, to be told
 SAME_SPEED = 0.05  # m/s
-MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
 DURATIONS = {  # where they are not as one would expect
     Durations.NONE_FOUND: (
         "As recorded: for the moved landing none were found that go with it. Set a Timing, or move "
@@ -31,30 +38,6 @@ DURATIONS = {  # where they are not as one would expect
         "As recorded: what is asked for was not reached with those that go with the moved landing"
     ),
     Durations.MOVING_GROUND: "As recorded or asked for: ground that moves keeps its own time",
-}
-FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
-
-Item = CertificateItem
-CERTIFICATE = {
-    Item.RESIDUAL_FORCE_RMS_SHARE: "unexplained force, rms, of the peak force",
-    Item.RESIDUAL_FORCE_PEAK_SHARE: "unexplained force, peak, of the same",
-    Item.RESIDUAL_MOMENT_RMS_SHARE: "unexplained moment, rms, of that × height",
-    Item.RESIDUAL_MOMENT_PEAK_SHARE: "unexplained moment, peak, of the same",
-    Item.RESIDUAL_FORCE_RMS: "unexplained force, rms",
-    Item.RESIDUAL_FORCE_PEAK: "unexplained force, peak",
-    Item.RESIDUAL_MOMENT_RMS: "unexplained moment, rms",
-    Item.RESIDUAL_MOMENT_PEAK: "unexplained moment, peak",
-    Item.FRICTION: "friction coefficient used",
-    Item.PEAK_FORCE: "peak force",
-    Item.LOADING_RATE: "loading rate",
-    Item.HIP_TORQUE: "hip torque",
-    Item.KNEE_TORQUE: "knee torque",
-    Item.ANKLE_TORQUE: "ankle torque",
-    Item.SLIDE: "a loaded point slides by",
-    Item.UNDER: "a loaded point is under its surface by",
-    Item.ABOVE: "a loaded point is above its surface by",
-    Item.FIT_RMS: "fit off the recording, rms",
-    Item.FIT_WORST_FRAME: "fit off the recording, worst frame",
 }
 
 
@@ -72,36 +55,6 @@ def as_text(report: Report) -> str:
         lines += [*_conditions(report), *_torque_limits(report), ""]
     lines += [*_objective(report), *_keys(report), *_stages(report)]
     return "\n".join(lines) + "\n"
-
-
-def headline(report: Report) -> list[str]:
-    """How the solve ended, and what the certificate has against the motion: lines."""
-    failed, count = report.failed, len(report.certificate)
-    if report.status is not Status.SOLVED:
-        return [outcome(report.status)]
-    if not failed:
-        return [outcome(report.status), *(f"  {line}" for line in given_up_lines(report))]
-    do = "does" if len(failed) == 1 else "do"
-    first = (
-        f"Solved: everything asked for holds, but {len(failed)} of the certificate's {count} "
-        f"lines {do} not."
-    )
-    told = [*given_up_lines(report), *(_told(line) for line in most_telling(failed))]
-    return [first, *(f"  {line}" for line in told)]
-
-
-def given_up_lines(report: Report) -> list[str]:
-    """What is in each other, and the joints that go beyond their range: lines."""
-    return [
-        f"{_given_up(each)} (frame {each.worst_violation_frame:.0f}), beside what is asked for"
-        for each in report.given_up
-    ]
-
-
-def _given_up(each: ConstraintReport) -> str:
-    if each.kind is RowKind.RANGE:
-        return f"{each.name} {each.worst_violation:.0f}° beyond its range"
-    return f"{each.name}: {each.worst_violation:.0f} mm"
 
 
 def joint_lines(report: Report) -> list[str]:
@@ -123,9 +76,9 @@ def loop_lines(report: Report) -> list[str]:
     if (loop.first_frame, loop.last_frame) != (loop.asked_first, loop.asked_last):
         frames += f" (asked for {loop.asked_first:g} to {loop.asked_last:g})"
     seam = (
-        _amount(loop.seam_pose_mm, "mm"),
-        _amount(loop.seam_velocity_mm_s, "mm/s"),
-        _amount(loop.seam_force_bw, "BW"),
+        with_unit(loop.seam_pose_mm, "mm"),
+        with_unit(loop.seam_velocity_mm_s, "mm/s"),
+        with_unit(loop.seam_force_bw, "BW"),
     )
     return [
         f"Loop: frames {frames}, {loop.travel_m:.2f} m a cycle at {loop.speed_m_s:.2f} m/s",
@@ -138,45 +91,17 @@ def certificate_lines(report: Report) -> list[str]:
     failed, count = report.failed, len(report.certificate)
     if not failed:
         return [f"Certificate: all {count} lines hold"]
-    named = [f"Not: {_told(line)}" for line in most_telling(failed)]
+    named = [f"Not: {line_told(line)}" for line in most_telling(failed)]
     return [f"Certificate: {count - len(failed)} of {count} lines hold", *named]
-
-
-def most_telling(failed: tuple[CertificateLine, ...]) -> list[CertificateLine]:
-    """A bad fit, and the few that are furthest beyond their limits."""
-    fit = [line for line in failed if line.item in FITS]
-    others = [line for line in failed if line.item not in FITS]
-    others.sort(key=lambda line: line.value / line.limit, reverse=True)
-    return [*fit, *others[:MOST_NAMED]]
-
-
-def _told(line: CertificateLine) -> str:
-    """Such as "a loaded point slides by 45 mm (Left toe 2, frame 231)"."""
-    where = f" ({_where(line)})" if _where(line) else ""
-    return f"{CERTIFICATE[line.item]} {_amount(line.value, line.unit)}{where}"
-
-
-def _where(line: CertificateLine) -> str:
-    frame = "" if line.frame is None else f"frame {line.frame:.0f}"
-    return ", ".join(word for word in (line.where, frame) if word)
 
 
 def _certificate(report: Report) -> Iterator[str]:
     yield f"{'Certificate':<42}{'':>16}{'limit':>14}  holds"
     for line in report.certificate:
-        value, limit = _amount(line.value, line.unit), _amount(line.limit, line.unit)
+        value, limit = with_unit(line.value, line.unit), with_unit(line.limit, line.unit)
         holds = "yes" if line.holds else "no"
-        said = f"{CERTIFICATE[line.item]:<42}{value:>16}{limit:>14}  {holds:<3}  {_where(line)}"
+        said = f"{CERTIFICATE[line.item]:<42}{value:>16}{limit:>14}  {holds:<3}  {line_place(line)}"
         yield said.rstrip()
-
-
-def _amount(amount: float, unit: str) -> str:
-    return f"{_plain(amount)} {unit}".rstrip()
-
-
-def _plain(amount: float) -> str:
-    """To three digits, or two places where there is less; without an exponent."""
-    return f"{amount:.0f}" if amount >= 100.0 else f"{amount:.3g}" if amount >= 0.01 else "0"
 
 
 def _input(report: Report) -> Iterator[str]:
@@ -325,7 +250,7 @@ def amount(missed: ConstraintReport) -> str:
             return length(much / 1000.0)
         case "degrees":
             return f"{much:.1f}°" if much < 10.0 else f"{much:.0f}°"
-    return f"{_plain(much)} {unit}"
+    return f"{plain(much)} {unit}"
 
 
 def _torque_limits(report: Report) -> Iterator[str]:

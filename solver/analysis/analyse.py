@@ -8,6 +8,7 @@ adaptation = adapt(fitted, problem)
 track = adaptation.motion.track(analysis.performance.recording)
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from ..body.character import Character, build_character
@@ -20,12 +21,13 @@ from ..data.faults import (
     UnknownContactName,
     UnseenSupport,
 )
-from ..data.problem import MotionProblem
+from ..data.problem import MotionProblem, Unseen
 from ..data.recording import Recording
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
 from .belt import belt_speed
-from .grounding import foot_sized, grounded, parted
+from .contact_detection import unseen_support
+from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
 from .take import take_of
 
@@ -34,10 +36,15 @@ MIN_CLIP_DURATION = 0.3  # s
 
 @dataclass(frozen=True)
 class Analysis:
-    """Result of an analysis: the character's movement and its contacts."""
+    """Result of an analysis: the character's movement and its contacts.
+
+    unseen: what was found where something unseen carries the body, one for each interval of the
+    schedule; of feet that slide steadily one for all.
+    """
 
     performance: Performance
     schedule: ContactSchedule
+    unseen: tuple[UnseenSupport | Treadmill, ...] = ()
 
 
 def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
@@ -45,8 +52,8 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
 
     Frames beyond these tell of contacts that they cut off, and of accelerations near their ends.
 
-    Raises ClipTooShort, UnseenSupport, Treadmill, MissingPart, ZeroLengthBone, UnknownContactName,
-    BadTiming.
+    Raises ClipTooShort, MissingPart, ZeroLengthBone, UnknownContactName, BadTiming; UnseenSupport
+    and Treadmill where the problem refuses what they tell.
     """
     within, character = build_figure(recording, problem)
     performance = perform(within, character)
@@ -55,17 +62,34 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
         performance = replace(performance, longer=perform(take, character))
     # Parted before corrections, for those are the last word.
     found = parted(find_contacts(performance, problem.scene))
-    standing = foot_sized(_corrected(found, problem, performance), performance, problem.scene)
+    corrected = disjoint(_corrected(found, problem, performance))
+    standing = foot_sized(corrected, performance, problem.scene)
     schedule = grounded(standing, performance, problem.scene)
+    known = performance.take
+    unseen = unseen_support(schedule.contacts, schedule.duration, known.times, known.com)
+    schedule = replace(schedule, unseen=unseen)
+    told = tuple(_told(performance, schedule))
+    if told and problem.unseen is Unseen.REFUSE:
+        raise told[0]
+    return Analysis(performance, schedule, told)
+
+
+def _told(
+    performance: Performance, schedule: ContactSchedule
+) -> Iterator[UnseenSupport | Treadmill]:
+    """What is known of each interval in which something unseen carries the body."""
+    if not schedule.unseen:
+        return
+    points, floor_m = contact_points(performance)
+    if speed := belt_speed(performance.times, points):
+        yield Treadmill(speed)
+        return
+    recording = performance.recording
     for gap in schedule.unseen:
-        points, floor_m = contact_points(performance)
-        if speed := belt_speed(performance.times, points):
-            raise Treadmill(speed)
         rate = _fitting_rate(performance, gap)
         boxes = boxes_beneath(performance.times, points, gap, floor_m) if rate is None else ()
-        first, last = _frame(within, gap.start), _frame(within, gap.end)
-        raise UnseenSupport(first, last, boxes, rate, within.rate)
-    return Analysis(performance, schedule)
+        first, last = _frame(recording, gap.start), _frame(recording, gap.end)
+        yield UnseenSupport(first, last, boxes, rate, recording.rate)
 
 
 def _fitting_rate(performance: Performance, gap: Interval) -> int | None:

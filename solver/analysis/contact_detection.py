@@ -78,9 +78,16 @@ def detect_contacts(
     contacts = _within(touches, duration)
     contacts = _kept_off_ends(contacts, duration, shortest_flight_s, times, com)
     contacts = _closed(contacts, duration, shortest_flight_s)
-    carried = ((c.start, c.end) for c in contacts)
-    unseen = tuple(gap for gap in gaps(carried, duration) if not _may_fall(times, com, gap))
+    unseen = unseen_support(contacts, duration, times, com)
     return ContactSchedule(numbered(contacts), duration, floor_m, unseen)
+
+
+def unseen_support(
+    contacts: Iterable[Contact], duration: float, times: FloatArray, com: FloatArray | None
+) -> tuple[Interval, ...]:
+    """Intervals of [0, duration], s, without a contact in which the body does not fall."""
+    carried = ((c.start, c.end) for c in contacts)
+    return tuple(gap for gap in gaps(carried, duration) if not _may_fall(times, com, gap))
 
 
 def _touches(

@@ -60,6 +60,32 @@ def parted(schedule: ContactSchedule) -> ContactSchedule:
     return found
 
 
+def disjoint(schedule: ContactSchedule) -> ContactSchedule:
+    """The schedule with each point in one place at a time, whatever was added to what was found.
+
+    Contacts of a point that overlap are one where they are at the same place; else the overlap is
+    shared out between them.
+    """
+    kept: list[Contact] = []
+    for contact in sorted(schedule.contacts, key=lambda c: (c.start, c.point)):
+        last = next((k for k, c in enumerate(kept) if _overlap(c, contact)), None)
+        if last is None:
+            kept.append(contact)
+            continue
+        before = kept[last]
+        if float(np.linalg.norm(contact.place - before.place)) <= SAME_PLACE:
+            kept[last] = replace(before, end=max(before.end, contact.end))
+        elif contact.end > before.end:
+            turn = 0.5 * (contact.start + before.end)
+            kept[last] = replace(before, end=turn)
+            kept.append(replace(contact, start=turn))
+    return replace(schedule, contacts=tuple(sorted(kept, key=lambda c: (c.start, c.point))))
+
+
+def _overlap(before: Contact, after: Contact) -> bool:
+    return before.point == after.point and before.end > after.start + 1e-9
+
+
 def foot_sized(
     schedule: ContactSchedule, performance: Performance, scene: Sequence[SceneObject] = ()
 ) -> ContactSchedule:

@@ -6,10 +6,11 @@ rest pose, so a body's rotation is its bone's rotation times the inverse of the 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..data.constants import STANDARD_GRAVITY, UP
 from ..data.faults import StillBone, ZeroLengthBone
 from ..data.problem import MassTable
@@ -94,6 +95,31 @@ class Character:
     def n_dofs(self) -> int:
         """Degrees of freedom: the joint angles and the root's three translations."""
         return self.n_angles + 3
+
+    @cached_property
+    def body_of_angle(self) -> IntArray:
+        """(n_angles,) index of the body whose joint each angle belongs to."""
+        return np.repeat(np.arange(len(self.bodies)), [joint.axes.dofs for joint in self.joints])
+
+    @cached_property
+    def path_matrix(self) -> FloatArray:
+        """(B, n_angles) path matrix: 1 where an angle lies between the root and a body."""
+        moves = np.zeros((len(self.bodies), self.n_angles))
+        for i in range(len(self.bodies)):
+            for ancestor in self.ancestors(i):
+                moves[i, self.joints[ancestor].dofs] = 1.0
+        return moves
+
+    @cached_property
+    def mass_shares(self) -> FloatArray:
+        """(B,) each body's share of the mass."""
+        masses = np.array([body.mass for body in self.bodies])
+        return np.asarray(masses / masses.sum())
+
+    @cached_property
+    def body_coms(self) -> FloatArray:
+        """(B, 3) centres of mass of the bodies in their own frames, m."""
+        return np.stack([body.com for body in self.bodies])
 
     def body(self, part: Part, side: Side = Side.MIDDLE) -> int | None:
         """Index of the first such body, None where the figure has none."""

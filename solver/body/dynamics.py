@@ -1,4 +1,4 @@
-"""Centroidal equations of motion as CasADi functions (thesis 3.2.2: the root rows).
+"""Rate of centroidal angular momentum and its derivatives, in arrays (thesis 3.2.2: the root rows).
 
 With the centre of mass as coordinates the six root rows of the Euler-Lagrange equations fall into
     m c'' = m g + sum of contact forces              (linear; see transcription/transcription.py)
@@ -7,90 +7,26 @@ and L' depends on the joint angles alone. Forces are in body weights, so L' is i
 (thesis 4.1: scaling).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
-import casadi as ca
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..data.constants import STANDARD_GRAVITY
-from ..numerics.batch_function import BatchFunction
 from .character import Character
 from .kinematics import Pose, forward_kinematics
 
-
-@dataclass(frozen=True)
-class BodyMotion:
-    """Motion of a body's frame as expressions, world axes.
-
-    R: rotation, body to world. omega, alpha: angular velocity (rad/s) and acceleration (rad/s²).
-    x, v, a: position, velocity, acceleration of its joint's centre from the root's, m, s.
-    """
-
-    R: ca.SX
-    omega: ca.SX
-    alpha: ca.SX
-    x: ca.SX
-    v: ca.SX
-    a: ca.SX
-
-
-def point_motion(frame: BodyMotion, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """Position, velocity, acceleration (3,) of a body-fixed point, world axes, from the root."""
-    arm = frame.R @ local
-    swing = ca.cross(frame.omega, arm)
-    return (
-        frame.x + arm,
-        frame.v + swing,
-        frame.a + ca.cross(frame.alpha, arm) + ca.cross(frame.omega, swing),
-    )
-
-
-def body_frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[BodyMotion]:
-    """Forward pass of the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3).
-
-    q, v, a: (n_angles,) joint angles, rad, and their first two derivatives by s. One per body.
-    """
-    zero = ca.SX.zeros(3)
-    ground = BodyMotion(ca.SX.eye(3), zero, zero, zero, zero, zero)
-    frames: list[BodyMotion] = []
-    for joint in character.joints:
-        parent = frames[joint.parent] if joint.parent >= 0 else ground
-        x, xv, xa = point_motion(parent, ca.SX(joint.offset))
-        R = parent.R @ ca.SX(joint.axes.before)
-        omega, alpha = parent.omega, parent.alpha
-        for k in range(joint.axes.dofs):
-            i = joint.first + k
-            axis = R[:, k]
-            alpha = alpha + axis * a[i] + ca.cross(omega, axis * v[i])
-            omega = omega + axis * v[i]
-            R = times_axis_rotation(R, k, q[i])
-        frames.append(BodyMotion(R @ ca.SX(joint.axes.after), omega, alpha, x, xv, xa))
-    return frames
-
-
-def times_axis_rotation(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
-    """R (3, 3) times the rotation by `angle`, rad, about coordinate axis 0, 1 or 2."""
-    c, s = ca.cos(angle), ca.sin(angle)
-    columns = [R[:, 0], R[:, 1], R[:, 2]]
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    columns[i], columns[j] = R[:, i] * c + R[:, j] * s, R[:, j] * c - R[:, i] * s
-    return ca.horzcat(*columns)
+BATCH = 96  # instants: what they need then stays in the processor's cache
 
 
 class MomentFunction:
     """Rate of centroidal angular momentum L', body weights x m, and its Jacobian, vectorised."""
 
     def __init__(self, character: Character) -> None:
-        n = character.n_angles
-        self.n = n
-        q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
-        rate = momentum_rate(character, q, v, a) / (character.mass * STANDARD_GRAVITY)
-        x = ca.vertcat(q, v, a)
-        self._character, self._rate = character, MomentumRate(character)
-        # No ca.cse: it takes 0.4 s here and saves 3 % of the instructions.
-        self._both = BatchFunction("moment_jacobian", x, [rate, ca.jacobian(rate, x)])
+        self._character, self._momentum = character, MomentumRate(character)
+        self._weight = character.mass * STANDARD_GRAVITY
 
     def value(self, q: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         """(N, 3) L', world axes, at (N, n_angles) angles, velocities, accelerations (rad, s)."""
@@ -98,37 +34,28 @@ class MomentFunction:
 
     def value_at(self, posed: Pose, v: FloatArray, a: FloatArray) -> FloatArray:
         """(N, 3) the same at poses that are known."""
-        return self._rate(posed, v, a) / (self._character.mass * STANDARD_GRAVITY)
+        return self._momentum(posed, v, a) / self._weight
 
     def jacobian(
         self, q: FloatArray, v: FloatArray, a: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """L' (N, 3) and its derivatives (N, 3, 3, n_angles): component, by q, v or a, angle."""
-        x = np.concatenate([q, v, a], axis=1)
-        rate, jacobian = self._both(x)
-        by_order = np.swapaxes(jacobian, 1, 2).reshape(len(x), 3, 3, self.n)
-        return rate, by_order
+        return self.jacobian_at(forward_kinematics(self._character, q), v, a)
 
+    def jacobian_at(
+        self, posed: Pose, v: FloatArray, a: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """The same at poses that are known."""
+        count, n = v.shape
+        rate, by_order = np.empty((count, 3)), np.empty((count, 3, 3, n))
 
-def momentum_rate(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
-    """(3,) rate of change of the angular momentum about the centre of mass, N·m, world axes.
-
-    q, v, a: (n_angles,) rad, s. Sum over bodies of r x m a + I alpha + omega x I omega
-    (Newton-Euler; thesis 3.2.2; Orin, Goswami and Lee 2013).
-    """
-    frames = body_frames(character, q, v, a)
-    moving = []
-    centre = ca.SX.zeros(3)
-    for frame, body in zip(frames, character.bodies, strict=True):
-        x, _, acceleration = point_motion(frame, ca.SX(body.com))
-        moving.append((x, acceleration))
-        centre += body.mass / character.mass * x
-    rate = ca.SX.zeros(3)
-    for (x, acceleration), frame, body in zip(moving, frames, character.bodies, strict=True):
-        inertia = frame.R @ ca.SX(body.inertia) @ frame.R.T
-        spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
-        rate += ca.cross(x - centre, body.mass * acceleration) + spin
-    return rate
+        for first in range(0, count, BATCH):
+            some = slice(first, first + BATCH)
+            found = self._momentum.derivatives(posed.at(some), v[some], a[some])
+            rate[some] = found[0].T
+            for order, each in enumerate(found[1:]):
+                by_order[some, :, order] = each.transpose(2, 1, 0)
+        return rate / self._weight, by_order / self._weight
 
 
 @dataclass(frozen=True)
@@ -163,13 +90,21 @@ class MomentumRate:
         return [int(each) for each in before]
 
     @cached_property
-    def _masses(self) -> FloatArray:
+    def masses(self) -> FloatArray:
+        """(B, 1, 1) kg."""
         return np.array([body.mass for body in self.character.bodies])[:, None, None]
 
     @cached_property
     def _inertias(self) -> FloatArray:
         """(B, 3, 3, 1) kg m², about the centres of mass."""
         return np.stack([body.inertia for body in self.character.bodies])[..., None]
+
+    @cached_property
+    def local_seconds(self) -> FloatArray:
+        """(B, 3, 3) integrals of place times place, kg m², about the centres of mass."""
+        inertias = self._inertias[..., 0]
+        half = 0.5 * np.trace(inertias, axis1=1, axis2=2)
+        return np.asarray(half[:, None, None] * np.eye(3) - inertias)
 
     def __call__(self, posed: Pose, speeds: FloatArray, accelerations: FloatArray) -> FloatArray:
         """(N, 3) L', N·m, world axes, at poses with angles' derivatives (N, n_angles) rad, s.
@@ -194,8 +129,158 @@ class MomentumRate:
         R = _instants_last(posed.rotations)
         omega, alpha = (_times(R.swapaxes(1, 2), each) for each in (omega, alpha))
         spin = _times(self._inertias, alpha) + _cross(omega, _times(self._inertias, omega))
-        moment = _cross(coms, self._masses * carried) + _times(R, spin)
+        moment = _cross(coms, self.masses * carried) + _times(R, spin)
         return np.asarray(moment.sum(axis=0).T)
+
+    def derivatives(
+        self, posed: Pose, speeds: FloatArray, accelerations: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """L' (3, N) and its derivatives by angles, speeds and accelerations, (n_angles, 3, N) each.
+
+        Spatial vectors about the centre of mass, as pairs: a turn and what it does there. With an
+        angle's axis S, and V, A of what it turns in (Singh, Russell and Wensing 2022, table 1),
+
+            by a: I S     by v: 2 (I S' + B S)     by q: S x* F + I S'' + 2 B S'
+            S' = V x S,   S'' = A x S + V x S'
+
+        where I, B, F are sums over the bodies that it turns. Of B only what turns the body counts
+        here: tr(D) - D with D the integral of velocity times place, as tr(Q) - Q is the inertia
+        with Q the integral of place times place.
+        """
+        axes, centres, coms = (
+            _instants_last(v) for v in (posed.axes, posed.centres, posed.body_coms)
+        )
+        S = _Spatial(axes, _cross(centres[self.character.body_of_angle], axes))
+        own = S.scaled(speeds)
+        V = own.summed(self._angles_before)
+        before = V.less(own)
+        rate = before.across(S)
+        gained = S.scaled(accelerations).plus(rate.scaled(speeds))
+        A = gained.summed(self._angles_before)
+        # All bodies share the acceleration that keeps the centre of mass where it is: it has no
+        # moment, and then nothing pulls there.
+        bodies = _BodySums.of(self, posed, coms, V.some(self._last_angle), A.some(self._last_angle))
+        A_before = A.less(gained)
+        A_before = _Spatial(A_before.turn, A_before.move - bodies.shared)
+        second = A_before.across(S).plus(before.across(rate))
+        whole = bodies.outward(self._bodies_before)
+        sums = whole.some(self.character.body_of_angle)
+        by_a = sums.momentum(S)
+        by_v = 2.0 * (sums.momentum(rate) + sums.swept(S.turn))
+        by_q = _cross(S.turn, sums.moment) + _cross(S.move, sums.force) + sums.momentum(second)
+        by_q += 2.0 * sums.swept(rate.turn)
+        return whole.moment[0], by_q, by_v, by_a
+
+
+@dataclass(frozen=True)
+class _Spatial:
+    """K spatial vectors about the centre of mass: turn, and move there; (K, 3, N) each."""
+
+    turn: FloatArray
+    move: FloatArray
+
+    def scaled(self, rates: FloatArray) -> "_Spatial":
+        """Times rates (N, K)."""
+        each = rates.T[:, None]
+        return _Spatial(self.turn * each, self.move * each)
+
+    def plus(self, other: "_Spatial") -> "_Spatial":
+        return _Spatial(self.turn + other.turn, self.move + other.move)
+
+    def less(self, other: "_Spatial") -> "_Spatial":
+        return _Spatial(self.turn - other.turn, self.move - other.move)
+
+    def some(self, which: IntArray | list[int]) -> "_Spatial":
+        return _Spatial(self.turn[which], self.move[which])
+
+    def summed(self, before: list[int]) -> "_Spatial":
+        """Sums along the tree."""
+        return _Spatial(_summed(self.turn, before), _summed(self.move, before))
+
+    def across(self, other: "_Spatial") -> "_Spatial":
+        """Spatial cross product (Featherstone 2008, ch. 2.9)."""
+        move = _cross(self.turn, other.move)
+        move += _cross(self.move, other.turn)
+        return _Spatial(_cross(self.turn, other.turn), move)
+
+
+@dataclass(frozen=True)
+class _BodySums:
+    """Integrals over the mass of bodies, or of all that hangs on them; places p from the centre
+    of mass. second: p p' (B, 3, 3, N) kg m². first: p (B, 3, N) kg m. swept_out: p' p^T. force:
+    p'' and moment: p x p''. shared: (3, N) the mean acceleration, which is left out."""
+
+    second: FloatArray
+    first: FloatArray
+    swept_out: FloatArray
+    force: FloatArray
+    moment: FloatArray
+    shared: FloatArray
+
+    @staticmethod
+    def of(
+        rate: "MomentumRate", posed: Pose, coms: FloatArray, V: _Spatial, A: _Spatial
+    ) -> "_BodySums":
+        """Of each body with its motion; coms (B, 3, N)."""
+        mass = rate.masses
+        local = rate.local_seconds  # about its own centre of mass
+        R = posed.rotations
+        own = _instants_last(R @ local @ np.swapaxes(R, -1, -2))
+        first = mass * coms
+        velocity = V.move + _cross(V.turn, coms)
+        acceleration = A.move + _cross(A.turn, coms) + _cross(V.turn, velocity)
+        shared = (mass * acceleration).sum(axis=0) / mass.sum()
+        force = mass * (acceleration - shared)
+        turning = np.stack([_cross(V.turn, own[:, :, k]) for k in range(3)], axis=2)
+        spin = _trace(own) * A.turn - _times(own, A.turn) - _cross(V.turn, _times(own, V.turn))
+        return _BodySums(
+            own + first[:, :, None] * coms[:, None],
+            first,
+            turning + velocity[:, :, None] * first[:, None],
+            force,
+            spin + _cross(coms, force),
+            shared,
+        )
+
+    def outward(self, before: list[int]) -> "_BodySums":
+        """Sums over each body and all that hangs on it."""
+
+        def summed(each: FloatArray) -> FloatArray:
+            total = each.copy()
+            for i in reversed(range(1, len(before))):
+                total[before[i]] += total[i]
+            return total
+
+        return self._of_each(summed)
+
+    def some(self, which: IntArray) -> "_BodySums":
+        return self._of_each(lambda each: each[which])
+
+    def _of_each(self, work: Callable[[FloatArray], FloatArray]) -> "_BodySums":
+        return _BodySums(
+            work(self.second),
+            work(self.first),
+            work(self.swept_out),
+            work(self.force),
+            work(self.moment),
+            self.shared,
+        )
+
+    def momentum(self, motion: _Spatial) -> FloatArray:
+        """(K, 3, N) angular momentum of motions of each."""
+        found = _trace(self.second) * motion.turn
+        found -= _times(self.second, motion.turn)
+        found += _cross(self.first, motion.move)
+        return found
+
+    def swept(self, turns: FloatArray) -> FloatArray:
+        """(K, 3, N) products of B with turns."""
+        return _trace(self.swept_out) * turns - _times(self.swept_out, turns)
+
+
+def _trace(matrices: FloatArray) -> FloatArray:
+    """(K, 1, N) of (K, 3, 3, N)."""
+    return np.asarray((matrices[:, 0, 0] + matrices[:, 1, 1] + matrices[:, 2, 2])[:, None])
 
 
 def _instants_last(each: FloatArray) -> FloatArray:
@@ -225,5 +310,8 @@ def _swung(omega: FloatArray, alpha: FloatArray, arm: FloatArray) -> FloatArray:
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     """Cross products (K, 3, N) over the middle axis."""
-    parts = [a[:, i - 2] * b[:, i - 1] - a[:, i - 1] * b[:, i - 2] for i in range(3)]
-    return np.stack(parts, axis=1)
+    product = np.empty(a.shape)
+    for i in range(3):
+        np.multiply(a[:, i - 2], b[:, i - 1], out=product[:, i])
+        product[:, i] -= a[:, i - 1] * b[:, i - 2]
+    return product

@@ -1,4 +1,5 @@
-"""Inverse dynamics by the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3)."""
+"""Equations of motion as CasADi functions: inverse dynamics by the recursive Newton-Euler algorithm
+(Featherstone 2008, ch. 5.3)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,8 +10,87 @@ import numpy as np
 from ..arrays import FloatArray
 from ..numerics.batch_function import BatchFunction
 from .character import Character
-from .dynamics import body_frames, point_motion, times_axis_rotation
 from .kinematics import BodyPoint
+
+
+@dataclass(frozen=True)
+class BodyMotion:
+    """Motion of a body's frame as expressions, world axes.
+
+    R: rotation, body to world. omega, alpha: angular velocity (rad/s) and acceleration (rad/s²).
+    x, v, a: position, velocity, acceleration of its joint's centre from the root's, m, s.
+    """
+
+    R: ca.SX
+    omega: ca.SX
+    alpha: ca.SX
+    x: ca.SX
+    v: ca.SX
+    a: ca.SX
+
+
+def point_motion(frame: BodyMotion, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Position, velocity, acceleration (3,) of a body-fixed point, world axes, from the root."""
+    arm = frame.R @ local
+    swing = ca.cross(frame.omega, arm)
+    return (
+        frame.x + arm,
+        frame.v + swing,
+        frame.a + ca.cross(frame.alpha, arm) + ca.cross(frame.omega, swing),
+    )
+
+
+def body_frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[BodyMotion]:
+    """Forward pass of the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3).
+
+    q, v, a: (n_angles,) joint angles, rad, and their first two derivatives by s. One per body.
+    """
+    zero = ca.SX.zeros(3)
+    ground = BodyMotion(ca.SX.eye(3), zero, zero, zero, zero, zero)
+    frames: list[BodyMotion] = []
+    for joint in character.joints:
+        parent = frames[joint.parent] if joint.parent >= 0 else ground
+        x, xv, xa = point_motion(parent, ca.SX(joint.offset))
+        R = parent.R @ ca.SX(joint.axes.before)
+        omega, alpha = parent.omega, parent.alpha
+        for k in range(joint.axes.dofs):
+            i = joint.first + k
+            axis = R[:, k]
+            alpha = alpha + axis * a[i] + ca.cross(omega, axis * v[i])
+            omega = omega + axis * v[i]
+            R = times_axis_rotation(R, k, q[i])
+        frames.append(BodyMotion(R @ ca.SX(joint.axes.after), omega, alpha, x, xv, xa))
+    return frames
+
+
+def times_axis_rotation(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
+    """R (3, 3) times the rotation by `angle`, rad, about coordinate axis 0, 1 or 2."""
+    c, s = ca.cos(angle), ca.sin(angle)
+    columns = [R[:, 0], R[:, 1], R[:, 2]]
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    columns[i], columns[j] = R[:, i] * c + R[:, j] * s, R[:, j] * c - R[:, i] * s
+    return ca.horzcat(*columns)
+
+
+def momentum_rate(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
+    """(3,) rate of change of the angular momentum about the centre of mass, N·m, world axes.
+
+    q, v, a: (n_angles,) rad, s. Sum over bodies of r x m a + I alpha + omega x I omega
+    (Newton-Euler; thesis 3.2.2; Orin, Goswami and Lee 2013).
+    """
+    frames = body_frames(character, q, v, a)
+    moving = []
+    centre = ca.SX.zeros(3)
+    for frame, body in zip(frames, character.bodies, strict=True):
+        x, _, acceleration = point_motion(frame, ca.SX(body.com))
+        moving.append((x, acceleration))
+        centre += body.mass / character.mass * x
+    rate = ca.SX.zeros(3)
+    for (x, acceleration), frame, body in zip(moving, frames, character.bodies, strict=True):
+        inertia = frame.R @ ca.SX(body.inertia) @ frame.R.T
+        spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
+        rate += ca.cross(x - centre, body.mass * acceleration) + spin
+    return rate
 
 
 @dataclass(frozen=True)

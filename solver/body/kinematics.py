@@ -40,7 +40,7 @@ class Pose:
     @cached_property
     def body_coms(self) -> FloatArray:
         """(N, B, 3) centres of mass of the bodies."""
-        local = np.stack([body.com for body in self.character.bodies])
+        local = self.character.body_coms
         return np.asarray(self.centres + np.einsum("nbij,bj->nbi", self.rotations, local))
 
     def points(self, points: Sequence[BodyPoint]) -> FloatArray:
@@ -55,34 +55,70 @@ class Pose:
 
         A column is axis x (point - joint centre), less the centre of mass's own.
         """
-        moves = _path_matrix(self.character)[[p.body for p in points]]  # (P, n)
+        moves = self.character.path_matrix[[p.body for p in points]]  # (P, n)
         at = self.points(points)
         n, count, angles = len(at), len(points), self.axes.shape[1]
         # axis x (point - origin), as one product per instant instead of a cross per pair
         turn = cross_matrix(self.axes)  # (N, n, 3, 3)
         spin = (turn.reshape(n, 3 * angles, 3) @ np.swapaxes(at, 1, 2)).reshape(n, angles, 3, count)
-        about = np.cross(self.axes, self.centres[:, _body_of_angle(self.character)])
+        about = np.cross(self.axes, self.centres[:, self.character.body_of_angle])
         moved = (spin - about[..., None]) * moves.T[None, :, None, :]
         moved -= self._com_jacobian[..., None]
         return np.ascontiguousarray(moved.transpose(0, 3, 2, 1))
+
+    def points_metric(self, points: Sequence[BodyPoint]) -> tuple[FloatArray, FloatArray]:
+        """Sums over points of J'J (N, n_angles, n_angles), m², and of J (N, 3, n_angles), m.
+
+        J is `point_jacobian`, which is not needed: the first is the mass matrix of points of mass
+        1, by composite rigid bodies (Featherstone 2008, ch. 6.2), about the centre of mass.
+        """
+        moves = self.character.path_matrix[[p.body for p in points]]  # (P, n)
+        at, count = self.points(points), len(points)
+        pairs = (at[..., None] * at[..., None, :]).reshape(*at.shape[:2], 9)
+        first = moves.T @ at
+        second = (moves.T @ pairs).reshape(*self.axes.shape, 3)
+        mass, turn, move = moves.sum(axis=0)[:, None], self.axes, self._moves_there
+        force = np.cross(turn, first) + mass * move
+        trace = np.trace(second, axis1=2, axis2=3)[..., None]
+        moment = trace * turn - (second @ turn[..., None])[..., 0] + np.cross(first, move)
+        motion, momentum = (
+            np.concatenate(each, axis=2) for each in ((turn, move), (moment, force))
+        )
+        inner = np.triu(self.character.path_matrix[self.character.body_of_angle].T)
+        half = (motion @ np.swapaxes(momentum, 1, 2)) * (inner - 0.5 * np.eye(len(inner)))
+        half -= (force - 0.5 * count * self._com_jacobian) @ np.swapaxes(self._com_jacobian, 1, 2)
+        total = force - count * self._com_jacobian
+        return half + np.swapaxes(half, 1, 2), np.swapaxes(total, 1, 2)
+
+    def points_gradient(self, points: Sequence[BodyPoint], forces: FloatArray) -> FloatArray:
+        """(N, n_angles) sum over points of J' times forces (N, P, 3), without the Jacobian."""
+        moves = self.character.path_matrix[[p.body for p in points]]
+        moment, force = moves.T @ np.cross(self.points(points), forces), moves.T @ forces
+        found = (self.axes * moment).sum(axis=2) + (self._moves_there * force).sum(axis=2)
+        total = forces.sum(axis=1)
+        return np.asarray(found - (self._com_jacobian @ total[..., None])[..., 0])
+
+    @cached_property
+    def _moves_there(self) -> FloatArray:
+        """(N, n_angles, 3) what each angle does to a point at the centre of mass, m/rad."""
+        return np.cross(self.centres[:, self.character.body_of_angle], self.axes)
 
     def jacobian_at(self, bodies: IntArray, at: FloatArray) -> FloatArray:
         """(N, 3, n_angles) Jacobian of one point an instant, at (N, 3) m on bodies (N,), m/rad.
 
         As `point_jacobian`, of points that slide from instant to instant.
         """
-        arm = at[:, None] - self.centres[:, _body_of_angle(self.character)]
-        moved = np.cross(self.axes, arm) * _path_matrix(self.character)[bodies, :, None]
+        arm = at[:, None] - self.centres[:, self.character.body_of_angle]
+        moved = np.cross(self.axes, arm) * self.character.path_matrix[bodies, :, None]
         return np.swapaxes(moved - self._com_jacobian, 1, 2)
 
     def point_rates(self, points: Sequence[BodyPoint], rates: FloatArray) -> FloatArray:
         """(N, P, 3) product of `point_jacobian` with (N, n_angles) rates, without the Jacobian."""
-        moves, owner = _path_matrix(self.character), _body_of_angle(self.character)
+        moves, owner = self.character.path_matrix, self.character.body_of_angle
         spin = self.axes * rates[..., None]
         turn, moment = moves @ spin, moves @ np.cross(spin, self.centres[:, owner])
-        masses = np.array([body.mass for body in self.character.bodies])
         coms = np.cross(turn, self.body_coms) - moment
-        com = np.einsum("b,nbi->ni", masses / masses.sum(), coms)
+        com = self.character.mass_shares @ coms
         bodies = [p.body for p in points]
         at = np.cross(turn[:, bodies], self.points(points)) - moment[:, bodies]
         return np.asarray(at - com[:, None])
@@ -90,10 +126,9 @@ class Pose:
     @cached_property
     def _com_jacobian(self) -> FloatArray:
         """(N, n_angles, 3) Jacobian of the centre of mass with the root's centre fixed, m/rad."""
-        masses = np.array([body.mass for body in self.character.bodies])
-        share = _path_matrix(self.character) * (masses / masses.sum())[:, None]  # (B, n)
-        moment = np.einsum("bk,nbi->nki", share, self.body_coms)
-        owner = _body_of_angle(self.character)
+        share = self.character.path_matrix * self.character.mass_shares[:, None]  # (B, n)
+        moment = share.T @ self.body_coms
+        owner = self.character.body_of_angle
         carried = moment - share.sum(axis=0)[:, None] * self.centres[:, owner]
         return np.cross(self.axes, carried)
 
@@ -111,8 +146,8 @@ def point_velocity(
     character = posed.character
     places = [BodyPoint(p.body, p.place) for p in points]
     places += [BodyPoint(i, body.com) for i, body in enumerate(character.bodies)]
-    moves = _path_matrix(character)[[p.body for p in places]]
-    arm = posed.points(places)[:, :, None] - posed.centres[:, None, _body_of_angle(character)]
+    moves = character.path_matrix[[p.body for p in places]]
+    arm = posed.points(places)[:, :, None] - posed.centres[:, None, character.body_of_angle]
     columns = np.cross(posed.axes[:, None], arm) * moves[None, :, :, None]  # (N, P + B, n, 3)
     carried = columns * speeds[:, None, :, None]
     outward = np.cumsum(carried[:, :, ::-1], axis=2)[:, :, ::-1]  # sum over j >= k
@@ -122,8 +157,7 @@ def point_velocity(
     by_angle += np.cross(before, columns)
     velocity = carried.sum(axis=2)
     count = len(points)
-    masses = np.array([body.mass for body in character.bodies])
-    share = masses / masses.sum()
+    share = character.mass_shares
 
     def relative(each: FloatArray) -> FloatArray:
         return np.asarray(
@@ -135,22 +169,6 @@ def point_velocity(
         np.swapaxes(relative(by_angle), -1, -2),
         np.swapaxes(relative(columns), -1, -2),
     )
-
-
-def _body_of_angle(character: Character) -> IntArray:
-    """(n_angles,) index of the body whose joint each angle belongs to."""
-    return np.repeat(
-        np.arange(len(character.bodies)), [joint.axes.dofs for joint in character.joints]
-    )
-
-
-def _path_matrix(character: Character) -> FloatArray:
-    """(B, n_angles) path matrix: 1 where an angle lies between the root and a body."""
-    moves = np.zeros((len(character.bodies), character.n_angles))
-    for i in range(len(character.bodies)):
-        for ancestor in character.ancestors(i):
-            moves[i, character.joints[ancestor].dofs] = 1.0
-    return moves
 
 
 def forward_kinematics(character: Character, angles: FloatArray) -> Pose:
@@ -177,11 +195,25 @@ def forward_kinematics(character: Character, angles: FloatArray) -> Pose:
             axes[j] = turn[:, k]
             turn = _times_axis_rotation(turn, k, cosines[j], sines[j])
         rotations[i] = joint.axes.after.T @ turn
-    masses = np.array([body.mass for body in character.bodies])
-    local = np.stack([body.com for body in character.bodies])
-    coms = centres + (local[:, None, None] @ rotations)[:, :, 0]
-    centres -= np.tensordot(masses / masses.sum(), coms, 1)
+    coms = centres + (character.body_coms[:, None, None] @ rotations)[:, :, 0]
+    centres -= np.tensordot(character.mass_shares, coms, 1)
     return Pose(character, *(_instants_first(each) for each in (rotations, centres, axes)))
+
+
+class LastPose:
+    """Forward kinematics that keeps what it found last: a line search asks for its objective and
+    its rows at the same angles, and the step after it for both again."""
+
+    def __init__(self, character: Character) -> None:
+        self._character = character
+        self._angles = np.empty((0, character.n_angles))
+        self._pose: Pose | None = None
+
+    def __call__(self, angles: FloatArray) -> Pose:
+        """As `forward_kinematics`."""
+        if self._pose is None or not np.array_equal(angles, self._angles):
+            self._angles, self._pose = angles, forward_kinematics(self._character, angles)
+        return self._pose
 
 
 def _instants_first(each: FloatArray) -> FloatArray:

@@ -30,8 +30,7 @@ from ..numerics.batch_function import BatchFunction
 from ..numerics.rotations import perpendicular, rotation_matrix, unit
 from .anatomy import Part
 from .character import Body, Character
-from .dynamics import times_axis_rotation
-from .inverse_dynamics import moment_components
+from .inverse_dynamics import moment_components, times_axis_rotation
 
 MEASURED_MASS = 70.0  # kg, of the body that the figures below are for
 

@@ -179,7 +179,6 @@ class ContactSchedule:
         whole, or the clip begins or ends."""
         ends = {0.0, self.duration}
         ends |= {t for flight in self.flights for t in (flight.start, flight.end)}
-        ends |= {t for gap in self.unseen for t in (gap.start, gap.end)}
         return tuple(sorted(ends))
 
     def of_phase(self, phase: Phase) -> tuple[Contact, ...]:

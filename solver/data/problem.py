@@ -15,6 +15,13 @@ class MassTable(Enum):
     DE_LEVA = "de leva"
 
 
+class Unseen(Enum):
+    """What is done where something unseen carries the body: it is fitted and told, or refused."""
+
+    SHOW = "show"
+    REFUSE = "refuse"
+
+
 class OffsetAxes(Enum):
     """Axes of a pin's offset: the world's, or forward, left and up of the travel."""
 
@@ -68,7 +75,8 @@ class MotionProblem:
 
     frames: first and last scene frame, None for all. mass: kg. height: m, None as the armature is.
     loop: whether the motion shall repeat; it is then made of the cycle nearest to the frames.
-    skin: of the recording's figure, where it has one.
+    skin: of the recording's figure, where it has one. unseen: what to do where the recording does
+    not show what carries the body.
     """
 
     frames: tuple[float, float] | None = None
@@ -83,6 +91,7 @@ class MotionProblem:
     requests: Requests = field(default_factory=Requests)
     loop: bool = False
     skin: Skin | None = None
+    unseen: Unseen = Unseen.SHOW
 
     def keeping_times(self) -> "MotionProblem":
         """The same, but for durations that are not asked for."""

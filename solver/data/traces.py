@@ -11,6 +11,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 
+UNSEEN_SUPPORT = "Unseen support"  # the points at which something unseen carries the body
+
 
 @dataclass(frozen=True)
 class FlightParabola:
@@ -31,7 +33,8 @@ class Traces:
 
     frames: (T,) scene frames. bones: of the figure; heads, tails: (T, B, 3) m. com: (T, 3) m;
     velocity: (T, 3) m/s of it; momentum: (T, 3) N·m·s about it. contacts: names of the points that
-    touch; points: (T, C, 3) m; forces: (T, C, 3) N on the body, zero while they do not touch;
+    touch, and UNSEEN_SUPPORT for those at which something unseen carries; points: (T, C, 3) m;
+    forces: (T, C, 3) N on the body, zero while they do not touch;
     weight: N, the body's. joints: bones whose torques are known; torques: (T, J) N·m, the largest
     component of each joint. changes: (T, B) rad that each bone's joint is turned from the
     recording's; (0, 0) where nothing is told. Of a recording the contacts are all points that might

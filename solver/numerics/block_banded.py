@@ -71,19 +71,22 @@ class BlockBanded:
 
         Raises numpy.linalg.LinAlgError if the matrix is not positive definite.
         """
-        lower = self.lower.copy()
-        _, count, n, _ = lower.shape
+        band, count, n, _ = (self.band, *self.lower.shape[1:])
+        # Blocks below each other lie together: column k is (band + 1) n by n. Some columns of zeros
+        # at the end, so that all are alike.
+        columns = np.zeros((count + band, band + 1, n, n))
+        for j, below in enumerate(self.lower):
+            columns[: count - j, j] = below[: count - j]
+        columns = columns.reshape(count + band, (band + 1) * n, n)
         inverse = np.empty((count, n, n))
         for k in range(count):
-            inverse[k] = np.linalg.inv(np.linalg.cholesky(lower[0][k]))
-            reach = min(self.band, count - 1 - k)
-            panel = lower[1 : reach + 1, k].reshape(reach * n, n) @ inverse[k].T
-            lower[1 : reach + 1, k] = panel.reshape(reach, n, n)
-            update = (panel @ panel.T).reshape(reach, n, reach, n)
-            for row in range(reach):
-                for column in range(row + 1):
-                    lower[row - column][k + 1 + column] -= update[row, :, column, :]
-        return CholeskyFactor(inverse, lower[1:])
+            inverse[k] = np.linalg.inv(np.linalg.cholesky(columns[k, :n]))
+            panel = columns[k, n:] @ inverse[k].T
+            columns[k, n:] = panel
+            update = panel @ panel.T
+            for j in range(band):
+                columns[k + 1 + j, : (band - j) * n] -= update[j * n :, j * n : (j + 1) * n]
+        return CholeskyFactor(inverse, columns[:count, n:])
 
 
 @dataclass(frozen=True)
@@ -91,7 +94,7 @@ class CholeskyFactor:
     """Block Cholesky factor L: inverses of its diagonal blocks and the blocks below them."""
 
     inverse: FloatArray  # (K, n, n)
-    below: FloatArray  # (band, K, n, n)
+    below: FloatArray  # (K, band n, n), zeros beyond the last row
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -105,20 +108,23 @@ class CholeskyFactor:
 
     def forward(self, b: FloatArray) -> FloatArray:
         """Forward substitution L^-1 b, b (K, n) or (K, n, m)."""
-        x = np.array(b)
-        band, count = len(self.below), len(x)
-        for k in range(count):
-            x[k] = self.inverse[k] @ x[k]
-            for j in range(1, min(band, count - 1 - k) + 1):
-                x[k + j] -= self.below[j - 1, k] @ x[k]
-        return x
+        x, n = self._padded(b), b.shape[1]
+        for k, (inverse, below) in enumerate(zip(self.inverse, self.below, strict=True)):
+            first, last = k * n, (k + 1) * n
+            x[first:last] = inverse @ x[first:last]
+            x[last : last + len(below)] -= below @ x[first:last]
+        return np.asarray(x[: len(b) * n].reshape(b.shape))
 
     def backward(self, b: FloatArray) -> FloatArray:
         """Back substitution L^-T b, b (K, n) or (K, n, m)."""
-        x = np.array(b)
-        band, count = len(self.below), len(x)
-        for k in reversed(range(count)):
-            for j in range(1, min(band, count - 1 - k) + 1):
-                x[k] -= self.below[j - 1, k].T @ x[k + j]
-            x[k] = self.inverse[k].T @ x[k]
-        return x
+        x, n = self._padded(b), b.shape[1]
+        for k in reversed(range(len(b))):
+            first, last, below = k * n, (k + 1) * n, self.below[k]
+            x[first:last] -= below.T @ x[last : last + len(below)]
+            x[first:last] = self.inverse[k].T @ x[first:last]
+        return np.asarray(x[: len(b) * n].reshape(b.shape))
+
+    def _padded(self, b: FloatArray) -> FloatArray:
+        """(K n + band n, m) or without m: the right side, then zeros."""
+        rows = b.reshape(-1, *b.shape[2:])
+        return np.concatenate([rows, np.zeros((self.below.shape[1], *b.shape[2:]))])

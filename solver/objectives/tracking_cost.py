@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..body.character import Character
 from ..body.kinematics import BodyPoint, Pose, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
@@ -33,7 +33,8 @@ class CostWeights:
     the centre of mass itself. acceleration_time: s, its fourth power weighs marker accelerations.
     com_acceleration: (m/g)², of the centre of mass's acceleration: one of g weighs as much as so
     many metres. force: (m/BW)², of force errors. force_rate_time: s, its square weighs their rate
-    of change. by_range: how much of `shape` is measured by what a change takes of the joints'
+    of change. support: (m/BW)², of what carries the body unseen.
+    by_range: how much of `shape` is measured by what a change takes of the joints'
     ranges instead of by what it moves, where joints have a price. friction: (m/BW)², of each
     point's force across the target's direction. goes_on: whether the target goes on beyond both
     ends, so that markers must come back to it there.
@@ -46,6 +47,7 @@ class CostWeights:
     com_acceleration: float = 0.0
     force: float = 1e-6
     force_rate_time: float = 0.05
+    support: float = 1e-3
     by_range: float = 0.5
     friction: float = 0.0
     goes_on: bool = False
@@ -143,13 +145,13 @@ class TrackingCost:
         for first in range(0, self.transcription.basis.n_spans, POSE_BATCH):
             yield slice(first, min(first + POSE_BATCH, self.transcription.basis.n_spans))
 
-    def _at_nodes(self, x: FloatArray, spans: slice) -> _NodeErrors:
+    def _at_nodes(self, x: FloatArray, all_posed: Pose, spans: slice) -> _NodeErrors:
         t = self.transcription
         nodes = slice(GAUSS_NODES * spans.start, GAUSS_NODES * spans.stop)
         local = t.window(x, t.node_spans[nodes])
         values = [each[nodes] for each in self._values]
         motion, second = (np.einsum("nk,nkj->nj", B, local) for B in values)
-        posed = forward_kinematics(t.character, motion[:, t.layout.angles])
+        posed = all_posed.at(nodes)
         com, target = motion[:, t.layout.com], self.target
         relative = posed.points(self.points)
         markers, centre = target.markers[nodes], target.com[nodes]
@@ -169,8 +171,9 @@ class TrackingCost:
     def value(self, x: FloatArray) -> float:
         """Half the squared distance at unknowns (K, n_block)."""
         p, total = self.weights, 0.0
+        posed = self.transcription.pose_at_nodes(x)
         for spans in self._batches():
-            at = self._at_nodes(x, spans)
+            at = self._at_nodes(x, posed, spans)
             mean = p.position * (at.world**2).sum(axis=(1, 2)) + p.shape * (at.shape**2).sum(
                 axis=(1, 2)
             )
@@ -195,37 +198,37 @@ class TrackingCost:
         t = self.transcription
         gradient = self._force_windows.times(self._force_error(x))
         matrix = self._force_windows.copy()
+        posed = t.pose_at_nodes(x)
         for spans in self._batches():
-            self._expand_batch(x, spans, gradient, matrix)
+            self._expand_batch(self._at_nodes(x, posed, spans), spans, gradient, matrix)
         if self._to_go is not None:
             self._to_go.expand(x, gradient, matrix)
         matrix.add_diagonal((~t.active).astype(float))  # unknowns that do not exist stay put
         return gradient, matrix
 
     def _expand_batch(
-        self, x: FloatArray, spans: slice, gradient: FloatArray, matrix: BlockBanded
+        self, at: _NodeErrors, spans: slice, gradient: FloatArray, matrix: BlockBanded
     ) -> None:
         p, layout = self.weights, self.transcription.layout
-        at, count = self._at_nodes(x, spans), len(self.points)
-        turn = at.posed.point_jacobian(self.points)
-        flat = turn.reshape(len(turn), -1, layout.n_angles)
+        count = len(self.points)
+        squares, turn = at.posed.points_metric(self.points)
         n_motion, com, angles = layout.n_motion, layout.com, layout.angles
         metric = np.zeros((len(turn), n_motion, n_motion))
-        angle = self._marker_weight * np.swapaxes(flat, 1, 2) @ flat + at.turning
-        mean_turn = p.position * turn.mean(axis=1)  # (N, 3, n)
+        angle = self._marker_weight * squares + at.turning
+        mean_turn = p.position / count * turn  # (N, 3, n)
         metric[:, angles, angles] = angle
         metric[:, com, angles] = mean_turn
         metric[:, angles, com] = np.swapaxes(mean_turn, 1, 2)
         diagonal = range(com.stop)
         metric[:, diagonal, diagonal] = p.position + p.com
         slope = np.zeros((len(turn), n_motion))
-        pull = (p.position * at.world + p.shape * at.shape).reshape(len(turn), -1) / count
-        slope[:, angles] = np.einsum("nrj,nr->nj", flat, pull)
+        pull = (p.position * at.world + p.shape * at.shape) / count
+        slope[:, angles] = at.posed.points_gradient(self.points, pull)
         slope[:, angles] += np.einsum("njk,nk->nj", at.turning, at.angles)
         slope[:, com] = p.position * at.world.mean(axis=1) + p.com * at.com
         curvature = self._smooth * np.einsum("njk,nk->nj", angle, at.acceleration)
         first = self.transcription.basis.first_coefficient[spans]
-        matrix.add_windows(first, self._windows(at, metric, angle), layout.motion)
+        self._add_windows(at, metric, angle, first, matrix)
         value, second = at.values
         local = (at.weight[:, None] * value)[..., None] * slope[:, None]
         load = self._load * at.com_acceleration
@@ -235,23 +238,32 @@ class TrackingCost:
         for k in range(ORDER):
             gradient[first + k, layout.motion] += summed[:, k]
 
-    def _windows(self, at: _NodeErrors, metric: FloatArray, angle: FloatArray) -> FloatArray:
-        """(S, 4, n_motion, 4, n_motion) Hessian over each span's blocks."""
-        spans, n_motion, n = len(metric) // GAUSS_NODES, metric.shape[-1], angle.shape[-1]
-        value, second = at.values
-        pairs = _products(value, at.weight).reshape(spans, GAUSS_NODES, ORDER * ORDER)
-        windows = np.swapaxes(pairs, 1, 2) @ metric.reshape(spans, GAUSS_NODES, -1)
-        windows = windows.reshape(spans, ORDER, ORDER, n_motion, n_motion)
-        pairs = self._smooth * _products(second, at.weight).reshape(
-            spans, GAUSS_NODES, ORDER * ORDER
+    def _add_windows(
+        self,
+        at: _NodeErrors,
+        metric: FloatArray,
+        angle: FloatArray,
+        first: IntArray,
+        matrix: BlockBanded,
+    ) -> None:
+        """Adds the Hessian over each span's blocks: metrics of values and of accelerations, times
+        products of two of the four basis functions; of these the lower half."""
+        layout, spans = self.transcription.layout, len(first)
+        forms = np.zeros((spans, 2, GAUSS_NODES, *metric.shape[1:]))
+        forms[:, 0] = metric.reshape(spans, GAUSS_NODES, *metric.shape[1:])
+        forms[:, 1, :, layout.angles, layout.angles] = self._smooth * angle.reshape(
+            spans, GAUSS_NODES, *angle.shape[1:]
         )
-        bending = np.swapaxes(pairs, 1, 2) @ angle.reshape(spans, GAUSS_NODES, -1)
-        angles = self.transcription.layout.angles
-        windows[..., angles, angles] += bending.reshape(spans, ORDER, ORDER, n, n)
-        load = self._load * _products(second, at.weight)
-        for axis in range(self.transcription.layout.com.stop):
-            windows[..., axis, axis] += load.reshape(spans, GAUSS_NODES, ORDER, ORDER).sum(axis=1)
-        return np.asarray(windows.transpose(0, 1, 3, 2, 4))
+        for axis in range(layout.com.stop):
+            forms[:, 1, :, axis, axis] = self._load
+        pairs = np.stack([_products(each, at.weight) for each in at.values], axis=1)
+        pairs = pairs.reshape(spans, GAUSS_NODES, 2, ORDER, ORDER)
+        row, column = np.tril_indices(ORDER)
+        weights = pairs[..., row, column].transpose(0, 3, 2, 1).reshape(spans, len(row), -1)
+        blocks = weights @ forms.reshape(spans, 2 * GAUSS_NODES, -1)
+        blocks = blocks.reshape(spans, len(row), *metric.shape[1:])
+        for k, (i, j) in enumerate(zip(row.tolist(), column.tolist(), strict=True)):
+            matrix.lower[i - j][first + j, layout.motion, layout.motion] += blocks[:, k]
 
     # -- forces ----------------------------------------------------------------------------
 
@@ -273,6 +285,7 @@ class TrackingCost:
         alike = p.force * (mass + p.force_rate_time**2 * stiff)
         matrix = BlockBanded(basis.n_coefficients, layout.n_block)
         exists = t.active[:, layout.forces]
+        unseen = np.diag((np.arange(exists.shape[1]) >= 3 * (layout.n_points - t.n_support)) * 1.0)
         across = self._across()
         first = basis.first_coefficient + FORCE_BLOCKS.start  # of each span's first force value
         identity = np.eye(exists.shape[1])
@@ -280,6 +293,7 @@ class TrackingCost:
             for column in range(row + 1):
                 a, b = first + row, first + column
                 each = alike[:, row, column, None, None] * identity
+                each = each + p.support * mass[:, row, column, None, None] * unseen
                 if p.friction:
                     pair = np.swapaxes(across[a], 1, 2) @ across[b]
                     each = each + p.friction * mass[:, row, column, None, None] * pair

@@ -54,7 +54,7 @@ class _SpanRows:
         jacobian = rows.jacobian if basis is None else rows.jacobian @ basis
         n = jacobian.shape[2]
         J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
-        J[rows.span, place] = jacobian.reshape(len(order), -1) / scale[:, None]
+        J[rows.span, place] = jacobian.reshape(len(order), ORDER * n) / scale[:, None]
         return _SpanRows(J, counts, first, n, (rows.span, place))
 
     def times(self, d: FloatArray) -> FloatArray:

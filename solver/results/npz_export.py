@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import FloatArray
+from ..data.traces import UNSEEN_SUPPORT
 from ..transcription.motion import Motion
 
 
@@ -16,7 +17,8 @@ def sample(motion: Motion, rate: float = 1000.0) -> dict[str, NDArray[Any]]:
 
     time (T,) s; body_names (B,); mass (B,) kg; inertia (B, 3, 3) kg·m² about each centre of mass,
     in the body's frame; com (T, B, 3) m; rotation (T, B, 3, 3) body to world; contact_names (C,)
-    the points that touch; contact_point (T, C, 3) m; contact_force (T, C, 3) N on the body, zero
+    the points that touch, and three called "Unseen support" where something unseen carries;
+    contact_point (T, C, 3) m; contact_force (T, C, 3) N on the body, zero
     when not in contact; gravity (3,) m/s². World, Z up. What holds the points (NaN, False when not
     in contact): contact_place (T, C, 3) m, of the point; contact_normal (T, C, 3), unit, of the
     surface; contact_friction (T, C), infinite for a grip; contact_slides (T, C), whether the point
@@ -36,7 +38,9 @@ def sample(motion: Motion, rate: float = 1000.0) -> dict[str, NDArray[Any]]:
         "inertia": np.stack([body.inertia for body in character.bodies]),
         "com": posed.body_coms + com,
         "rotation": posed.rotations,
-        "contact_names": np.array([names[i] for i in range(len(transcription.points))], dtype=str),
+        "contact_names": np.array(
+            [names.get(i, UNSEEN_SUPPORT) for i in range(len(transcription.points))], dtype=str
+        ),
         "contact_point": points,
         "contact_force": motion.forces(times),
         "gravity": np.array([0.0, 0.0, -character.gravity]),

@@ -48,6 +48,7 @@ from .joint_report import joint_changes, recorded_ranges
 from .moving_ground import moving_ground
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
+from .unseen_support import let_go, unseen_support, worst_joint
 from .violations import condition_violations, pins_of_contacts, worst_constraints
 
 SAMPLE_RATE = 1000.0  # Hz, of what is measured between the nodes
@@ -102,6 +103,8 @@ def report(
         phases=_phases(adaptation),
         times=time_map(adaptation),
         stages=None if stages is None else tuple(stages),
+        unseen_support=tuple(unseen_support(fit, motion)),
+        let_go=tuple(let_go(fit)),
     )
 
 
@@ -270,12 +273,16 @@ def fit_quality(fit: Fit) -> FitQuality:
     performance = fit.performance
     apart = fit.motion.joint_centres(performance.times) - performance.centres
     each = np.sqrt((apart**2).sum(axis=2).mean(axis=1))  # frame by frame
+    name, furthest, frame = worst_joint(fit, apart)
     lost = [apex(fit.motion, f) - recorded_apex(fit, f) for f in flights(fit)]
     return FitQuality(
         joint_centres_rms_cm=100.0 * _rms(each),
         pelvis_apex_difference_cm=100.0 * max(lost, key=abs, default=0.0),
         worst_frame_rms_cm=100.0 * float(each.max()),
         worst_frame=float(performance.recording.frames[each.argmax()]),
+        worst_joint=name,
+        worst_joint_cm=furthest,
+        worst_joint_frame=frame,
     )
 
 

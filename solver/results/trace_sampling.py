@@ -14,7 +14,7 @@ from ..body.inverse_dynamics import InverseDynamics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.recording import Recording
-from ..data.traces import FlightParabola, Traces
+from ..data.traces import UNSEEN_SUPPORT, FlightParabola, Traces
 from ..solid.shape_changes import AS_IS, ShapeChanges
 from ..solid.shapes import Capsules, capsules
 from ..transcription.motion import Motion, motion_inverse_dynamics
@@ -92,7 +92,9 @@ def motion_traces(
         com=motion.com(times),
         velocity=motion.com(times, 1),
         momentum=momentum,
-        contacts=tuple(names.get(i, "") for i in range(len(motion.transcription.points))),
+        contacts=tuple(
+            names.get(i, UNSEEN_SUPPORT) for i in range(len(motion.transcription.points))
+        ),
         points=_points(motion, figure),
         forces=motion.forces(times),
         weight=character.mass * STANDARD_GRAVITY,

@@ -36,7 +36,7 @@ def check_room(
 
     Raises NoRoom.
     """
-    character, points = transcription.character, transcription.points
+    character, points = transcription.character, transcription.touching
     shapes = {s.body: s for s in scene_shapes(character, points, changes)}
     local = {c.contact.point: points[c.point] for c in transcription.contacts}
     meshes = [(thing.name, placed_mesh(thing)) for thing in scene if not thing.moves]

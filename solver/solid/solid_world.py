@@ -211,7 +211,7 @@ def solid_world(
         _surfaces(motion, pairs, floor, changes)
         for motion, floor in zip((reference, fitted), floors, strict=True)
     )
-    shapes = scene_shapes(character, reference.transcription.points, changes)
+    shapes = scene_shapes(character, reference.transcription.touching, changes)
     grounds, soles, obstacles = list[Surface](), list[Surface](), list[Surface]()
     for thing, moves in scene:
         cleared = clears.get(thing.name, {})
@@ -237,7 +237,7 @@ def _surfaces(
 ) -> tuple[Surface, ...]:
     character = motion.transcription.character
     shapes = capsules(character, changes)
-    balls = floor_balls(character, motion.transcription.points, changes)
+    balls = floor_balls(character, motion.transcription.touching, changes)
     names = [body.name for body in character.bodies]
     both = tuple(
         f"{names[shapes[i].body].capitalize()} in {names[shapes[j].body]}" for i, j in pairs

@@ -12,7 +12,7 @@ import numpy as np
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
 from ..body.kinematics import forward_kinematics
-from ..data.contacts import ContactSchedule
+from ..data.contacts import Contact, ContactSchedule
 from ..data.requests import BodyChange
 from ..data.status import Status
 from ..human.human_guard import HumanGuard, recorded_ranges
@@ -50,14 +50,19 @@ FIT_COST_WEIGHTS = CostWeights(
     force=1e-5,
     force_rate_time=0.15,
     friction=1e-3,
+    support=1e-3,
     goes_on=True,
 )
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces
 # weigh too: what a person does to jump further is push longer, not only harder.
-ADAPT_COST_WEIGHTS = CostWeights(shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3)
+# What carries unseen is for the recording to say.
+ADAPT_COST_WEIGHTS = CostWeights(
+    shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3, support=1.0
+)
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
 MAX_PROJECTION_STEPS = 6
+MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
 MAX_IMPROVEMENTS = 4  # Gauss-Newton steps on the refined knots
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
@@ -85,11 +90,20 @@ class SolvedMotion:
 
 
 @dataclass(frozen=True)
+class LetGo:
+    """A contact that a fit could not hold. off: m, by how much its point missed its place."""
+
+    contact: Contact
+    off: float
+
+
+@dataclass(frozen=True)
 class Fit(SolvedMotion):
-    """A fitted performance."""
+    """A fitted performance. let_go: contacts that were found, but that it does not hold."""
 
     performance: Performance
     schedule: ContactSchedule
+    let_go: tuple[LetGo, ...] = ()
 
     @cached_property
     def price(self) -> JointPrice:
@@ -185,7 +199,7 @@ def _improved(
         feasible, cost, outcome.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
     )
     metric = cost.expand(nearer.x)[1]
-    restored = _restored(feasible, metric, nearer.x, human, progress)
+    restored = _restored(feasible, metric, nearer.x, human, performance, progress)
     if not restored.solved:
         return []
     return [nearer, restored, *refine(restored, fit_metric, ADAPT_TOLERANCE, progress=progress)]
@@ -196,14 +210,24 @@ def _restored(
     metric: BlockBanded,
     x: FloatArray,
     human: HumanGuard,
+    performance: Performance,
     progress: Progress | None,
 ) -> Outcome:
-    """Restoration in the ranges of joints, or where no motion is found there, without them."""
+    """Restoration in the ranges of joints, or where no motion near by is found there, without."""
     wider = partial(with_guards, (human,))
     found = restore(feasible, metric, x, stage="fit", progress=progress, wider=wider)
-    if found.solved or not found.transcription.guards:
+    if not found.transcription.guards:
+        return found
+    off, before = (_off(feasible.motion(each), performance) for each in (found.x, x))
+    if found.solved and off < before + MAX_GUARDED:
         return found
     return restore(feasible, metric, x, stage="fit", progress=progress)
+
+
+def _off(motion: Motion, performance: Performance) -> float:
+    """Distance of the joint centres from a recording, m, rms."""
+    apart = motion.joint_centres(performance.times) - performance.centres
+    return float(np.sqrt((apart**2).sum(axis=2).mean()))
 
 
 def reached_places(motion: Motion) -> FloatArray:

@@ -14,6 +14,7 @@ from ..data.requests import PointRequest
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, SplineBasis, dense_instants, phase_breaks
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
+from ..unseen.support_force import harness, support_force
 from .fit import Fit
 from .transcribe import MIN_SPAN, body_points, point_contacts
 
@@ -34,6 +35,10 @@ def resampled_fit(
         return replace(reference, transcription=replace(t, contacts=contacts))
     points, which = body_points(t.character, context.recording, schedule)
     plain, extra = point_contacts(schedule, which)
+    support = support_force(schedule, [*schedule.boundaries, *extra], MIN_SPAN)
+    if support is not None:
+        points += harness(t.character)
+        extra += [t for each in support.intervals for t in (each.start, each.end)]
     contacts = tuple(
         detailed_contact(c, problem, context, added.get(c.contact.name)) for c in plain
     )
@@ -41,7 +46,9 @@ def resampled_fit(
         basis = _mapped_basis(t.basis, context, extra)
     else:
         basis = SplineBasis(*phase_breaks(schedule.jumps, [*schedule.boundaries, *extra], coarse))
-    new = Transcription(t.character, basis, points, contacts, t.moment, periodic=t.periodic)
+    new = Transcription(
+        t.character, basis, points, contacts, t.moment, periodic=t.periodic, support=support
+    )
     x = _resampled(reference, new, context.timeline.eased)
     motion = Motion(new, x, np.zeros((len(contacts), 3)))
     return replace(motion, places=_current_places(motion, fit))
@@ -92,6 +99,9 @@ def _resampled(
                 x[layout.force_block(nodes[:, side]), layout.force(contact.point)] = forces[
                     :, point
                 ]
+        if new.support is not None and old.support is not None:
+            held = forces[:, -new.n_support :].reshape(len(forces), -1)
+            x[layout.force_block(nodes[:, side]), new.support_columns] = held
     x[~new.active] = 0.0
     return x
 

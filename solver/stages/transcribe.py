@@ -20,6 +20,7 @@ from ..objectives.tracking_cost import TrackingTarget, marker_points
 from ..transcription.compliant_sole import sole_trajectory
 from ..transcription.contact_pins import PointContact, touching_spans
 from ..transcription.transcription import Transcription
+from ..unseen.support_force import harness, support_force
 
 CANDIDATE_SPANS = (0.04, 0.03, 0.025)  # s, longest knot spans to choose from
 SPLINE_FIT_TOLERANCE = 0.004  # m, rms spline-fit error of a joint centre
@@ -36,13 +37,19 @@ def transcribe(
     character = performance.character
     points, which = body_points(character, performance.recording, schedule)
     contacts, extra = point_contacts(schedule, which)
+    instants = [*schedule.boundaries, *extra]
+    support = support_force(schedule, instants, MIN_SPAN)
+    if support is not None:
+        points += harness(character)
+        instants += [t for each in support.intervals for t in (each.start, each.end)]
     return Transcription(
         character,
-        _coarsest_basis(performance, schedule.jumps, [*schedule.boundaries, *extra]),
+        _coarsest_basis(performance, schedule.jumps, instants),
         points,
         contacts,
         MomentFunction(character),
         periodic=periodic,
+        support=support,
     )
 
 
@@ -112,6 +119,12 @@ def initial_guess(transcription: Transcription, performance: Performance) -> Flo
         for side in range(2):
             at = blocks[inside, side]
             x[at, layout.vertical_force(contact.point)] = np.clip(load[inside], 0.0, 4.0)
+    if transcription.support is not None:
+        columns = range(layout.n_block)[transcription.support_columns][2::3]
+        for inside in transcription.support.spans(basis):
+            alone = inside[~x[blocks[inside]][:, :, layout.vertical_forces].any(axis=(1, 2))]
+            for side in range(2):
+                x[np.ix_(blocks[alone, side], columns)] = load[alone, None]
     vertical = layout.vertical_forces
     together = np.maximum((x[:, vertical] > 0).sum(axis=1, keepdims=True), 1)
     x[:, vertical] /= together

@@ -174,6 +174,8 @@ def spans_to_refine(motion: Motion, tolerance: DenseTolerance) -> IntArray:
     carried = np.zeros(basis.n_spans, dtype=bool)
     for contact in transcription.contacts:
         carried[touching_spans(basis, contact.contact)] = True
+    if transcription.support is not None:
+        carried[np.concatenate(transcription.support.spans(basis))] = True
     limit = np.where(carried, tolerance.ground, tolerance.flight)
     weak = (np.sqrt(left.mean(axis=1)) > limit) & (length > MIN_SPLIT_SPAN)
     if transcription.points:

@@ -27,12 +27,13 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.character import Character
 from ..body.dynamics import MomentFunction
-from ..body.kinematics import BodyPoint, Pose, forward_kinematics
+from ..body.kinematics import BodyPoint, LastPose, Pose
 from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
 from ..numerics.rotations import cross_matrix
 from ..numerics.seam import Seam
 from ..numerics.splines import ORDER, SplineBasis, gauss_instants
+from ..unseen.support_force import N_POINTS, SupportForce
 from .constraint import Constraint, DiscretisedConstraint
 from .contact_pins import Pins, PointContact, touching_spans
 from .friction_cones import FrictionCones
@@ -48,10 +49,11 @@ GAUSS_NODES = 3  # dynamics nodes a span
 class Transcription:
     """Constraint rows of one motion problem on one basis.
 
-    points: the bodies' points that touch. contacts: when and where they do. moment: the rate of
-    angular momentum about the centre of mass. guards: at most one of a kind. active: which unknowns
-    exist. discretised: the constraints on this basis, guards last. periodic: whether the motion
-    repeats, so that its last instant is tied to its first (`seam`).
+    points: the bodies' points on which forces act: those that touch, then those of the support.
+    contacts: when and where they touch. moment: the rate of angular momentum about the centre of
+    mass. support: what carries the body where nothing that is known does. guards: at most one of a
+    kind. active: which unknowns exist. discretised: the constraints on this basis, guards last.
+    periodic: whether the motion repeats, so that its last instant is tied to its first (`seam`).
     """
 
     character: Character
@@ -62,6 +64,7 @@ class Transcription:
     constraints: tuple[Constraint, ...] = ()
     guards: tuple[GuardRows, ...] = ()
     periodic: bool = False
+    support: SupportForce | None = None
     seam: Seam | None = field(init=False)
     layout: Layout = field(init=False)
     active: BoolArray = field(init=False)  # (K, n_block)
@@ -74,6 +77,7 @@ class Transcription:
         self.node_times = times
         self._node_basis = [self.basis.evaluate(times, k, self.node_spans) for k in range(3)]
         self._node_force = self.basis.force_weights(times, self.node_spans)
+        self._posed = LastPose(self.character)
         self._balance = self._balance_rows()
         self.pins = Pins(self.basis, self.layout, self.contacts)
         self.cones = FrictionCones(self.basis, self.layout, self.contacts)
@@ -127,7 +131,10 @@ class Transcription:
         """
         basis = replace(self.basis, breaks=warp(self.basis.breaks))
         contacts = tuple(contact.retimed(warp) for contact in self.contacts)
-        return replace(self, basis=basis, contacts=contacts, constraints=(), guards=())
+        support = None if self.support is None else self.support.retimed(warp)
+        return replace(
+            self, basis=basis, contacts=contacts, support=support, constraints=(), guards=()
+        )
 
     def riding(self, rides: Sequence[Ride | None]) -> "Transcription":
         """The same unknowns with contacts (n_contacts,) that ride on moving ground."""
@@ -135,6 +142,21 @@ class Transcription:
             replace(contact, ride=ride) for contact, ride in zip(self.contacts, rides, strict=True)
         )
         return replace(self, contacts=contacts)
+
+    @property
+    def touching(self) -> tuple[BodyPoint, ...]:
+        """The bodies' points that touch."""
+        return self.points[: self.layout.n_points - self.n_support]
+
+    @property
+    def n_support(self) -> int:
+        """How many points the unseen support acts on; they are the last."""
+        return 0 if self.support is None else N_POINTS
+
+    @property
+    def support_columns(self) -> slice:
+        """Columns of a block that hold the unseen support's forces."""
+        return slice(self.layout.n_block - 3 * self.n_support, self.layout.n_block)
 
     @property
     def n_unknowns(self) -> int:
@@ -155,7 +177,20 @@ class Transcription:
                 active[layout.force_block(nodes[0, 0]), layout.force(contact.point)] = False
             if contact.contact.end < basis.breaks[-1]:
                 active[layout.force_block(nodes[-1, 1]), layout.force(contact.point)] = False
+        if self.support is not None:
+            self._let_support(active, self.support)
         return active
+
+    def _let_support(self, active: BoolArray, support: SupportForce) -> None:
+        """Likewise what carries unseen."""
+        basis, columns = self.basis, self.support_columns
+        for spans in support.spans(basis):
+            nodes = basis.force_nodes(spans)
+            active[self.layout.force_block(nodes.ravel()), columns] = True
+            if spans[0] > 0:
+                active[self.layout.force_block(nodes[0, 0]), columns] = False
+            if spans[-1] < basis.n_spans - 1:
+                active[self.layout.force_block(nodes[-1, 1]), columns] = False
 
     def _seam(self) -> Seam:
         """Pose, velocities, the joints' accelerations and forces of a motion that repeats.
@@ -212,11 +247,15 @@ class Transcription:
         rows.jacobian[~self.active[blocks]] = 0.0
         return rows
 
+    def pose_at_nodes(self, x: FloatArray) -> Pose:
+        """The figure at the dynamics nodes, relative to the centre of mass."""
+        return self._poses(x)[0]
+
     def _poses(self, x: FloatArray) -> tuple[Pose, Pose]:
         """Forward kinematics at the dynamics nodes and at the pins' breaks, evaluated together."""
         q = self.angles_at_nodes(x, 0)
         pinned = self.pins.angles(self.window(x, self.pins.spans))
-        posed = forward_kinematics(self.character, np.concatenate([q, pinned]))
+        posed = self._posed(np.concatenate([q, pinned]))
         return posed.at(slice(0, len(q))), posed.at(slice(len(q), None))
 
     # -- balance ---------------------------------------------------------------------------
@@ -270,14 +309,17 @@ class Transcription:
 
     def _moment_rows(self, x: FloatArray, posed: Pose) -> Rows:
         layout = self.layout
-        rate, by_order = self.moment.jacobian(*(self.angles_at_nodes(x, k) for k in range(3)))
+        rate, by_order = self.moment.jacobian_at(
+            posed, *(self.angles_at_nodes(x, k) for k in (1, 2))
+        )
         count = len(rate)
         jacobian = np.zeros((count, 3, ORDER, layout.n_block))
         if self.points:
             arms, turn = posed.points(self.points), posed.point_jacobian(self.points)
             forces = self.forces_at_nodes(x)
             rate = rate - np.cross(arms, forces).sum(axis=1)
-            by_order[:, :, 0] += np.einsum("npij,npjk->nik", cross_matrix(forces), turn)
+            pull = cross_matrix(forces).swapaxes(1, 2).reshape(count, 3, 3 * layout.n_points)
+            by_order[:, :, 0] += pull @ turn.reshape(count, 3 * layout.n_points, layout.n_angles)
             lever = -cross_matrix(arms)  # (N, P, 3, 3): d moment / d force
             lever = lever.transpose(0, 2, 1, 3).reshape(count, 3, 3 * layout.n_points)
             for side in range(2):
@@ -285,6 +327,6 @@ class Transcription:
                 jacobian[:, :, FORCE_BLOCKS.start + side, layout.forces] = (
                     weight[:, None, None] * lever
                 )
-        stacked = np.stack(self._node_basis, axis=-1)  # (N, 4, 3)
-        jacobian[..., layout.angles] = np.einsum("nko,niom->nikm", stacked, by_order)
+        stacked = np.stack(self._node_basis, axis=-1)[:, None]  # (N, 1, 4, 3)
+        np.matmul(stacked, by_order, out=jacobian[..., layout.angles])
         return Rows.of(self.node_spans, rate, jacobian, RowKind.MOMENT, self.node_times)

@@ -23,7 +23,7 @@ from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule
-from ..data.faults import NoFit, NoSolution, NotComputable, UnseenSupport
+from ..data.faults import NoFit, NoSolution, NotComputable, Treadmill, UnseenSupport
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
@@ -51,10 +51,11 @@ from ..results.violations import most_telling
 from ..scene.checks import check_scene
 from ..solid.flesh import shape_flesh
 from ..solid.shape_changes import ShapeChanges
-from ..stages.fit import Fit, fit
+from ..stages.fit import Fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion
+from .lasting_fit import lasting_fit
 
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
 
@@ -223,9 +224,16 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
     try:
         analysis, cycle = _analysed(scaled_recording(recording, factor), problem)
     except UnseenSupport as fault:
-        boxes = tuple(scaled_box(box, 1.0 / factor) for box in fault.boxes)
-        raise replace(fault, boxes=boxes) from None
-    return Subject(analysis, problem, height, factor, cycle)
+        raise _unscaled(fault, factor) from None
+    unseen = tuple(_unscaled(each, factor) for each in analysis.unseen)
+    return Subject(replace(analysis, unseen=unseen), problem, height, factor, cycle)
+
+
+def _unscaled(fault: UnseenSupport | Treadmill, factor: float) -> UnseenSupport | Treadmill:
+    """What was found at the stated stature, in the recording's own lengths."""
+    if isinstance(fault, Treadmill):
+        return Treadmill(fault.speed / factor)
+    return replace(fault, boxes=tuple(scaled_box(box, 1.0 / factor) for box in fault.boxes))
 
 
 def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, Cycle | None]:
@@ -248,13 +256,13 @@ def computable() -> Iterator[None]:
 
 def fit_subject(subject: Subject, clock: StageClock) -> Fit:
     """The valid motion nearest to the recording, solved or not. Raises NotComputable."""
-    schedule = subject.analysis.schedule
+    scene, recording = subject.problem.scene, subject.recording
     with clock.stage(FITTING), computable():
-        fitted = fit(
+        fitted = lasting_fit(
             subject.analysis.performance,
-            schedule,
+            subject.analysis.schedule,
+            lambda schedule: recorded_rides(schedule, scene, recording),
             periodic=subject.cycle is not None,
-            rides=recorded_rides(schedule, subject.problem.scene, subject.recording),
             progress=clock.step,
         )
         clock.ended(fitted.outcome.violation)

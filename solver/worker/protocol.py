@@ -27,7 +27,7 @@ from ..data.status import DragStatus
 if TYPE_CHECKING:
     from ..arrays import FloatArray
     from ..data.contacts import ContactSchedule
-    from ..data.faults import Fault, NoSolution
+    from ..data.faults import Fault, NoSolution, Treadmill, UnseenSupport
     from ..data.loop import Cycle
     from ..data.problem import MotionProblem
     from ..data.recording import PoseTrack, Recording
@@ -137,7 +137,7 @@ class Analysed:
     height: m, as measured. axes: (3, 3) by ground phase's name, columns forward, left and up.
     bones: by the part of the body that they move ("left foot"). fleshed: names of the bodies whose
     solid shapes are from the mesh. cycle: whose frames these are,
-    where the motion shall repeat.
+    where the motion shall repeat. unseen: where something unseen carries the body.
     """
 
     id: int
@@ -148,6 +148,7 @@ class Analysed:
     traces: Traces
     fleshed: tuple[str, ...] = ()
     cycle: Cycle | None = None
+    unseen: tuple[UnseenSupport | Treadmill, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -144,13 +144,20 @@ class Service:
         """The analysis, kept for the next request about the same frames and contacts."""
         assert request.recording is not None
         asked = (digest(request.recording), _fit_relevant(request.problem))
-        stood_on = self._subject[1].stood_on if self._subject is not None else ()
-        key = (*asked, _named(stood_on, request.problem.scene))
+        key = (*asked, self._explaining(request.problem.scene))
         if self._subject is None or self._subject[0] != key:
             subject = measure(request.recording, request.problem)
-            key = (*asked, _named(subject.stood_on, request.problem.scene))
+            self._subject = (key, subject)
+            key = (*asked, self._explaining(request.problem.scene))
             self._subject = (key, subject)
         return self._subject[1].asked(request.problem)
+
+    def _explaining(self, scene: tuple[SceneObject, ...]) -> tuple[SceneObject, ...]:
+        """Of the scene what the last subject is on; all where something unseen carries it."""
+        if self._subject is None:
+            return ()
+        subject = self._subject[1]
+        return scene if subject.analysis.unseen else _named(subject.stood_on, scene)
 
     def _fit(self, subject: Subject, clock: StageClock) -> Fit:
         """The remembered fit of this performance, or a new one, which is then remembered."""
@@ -212,6 +219,7 @@ def _analysed(request: int, subject: Subject) -> Analysed:
         subject.recorded_traces(),
         subject.fleshed,
         subject.cycle,
+        subject.analysis.unseen,
     )
 
 

@@ -40,6 +40,22 @@ SHIPPED = {
 ABSENT = ("casadi", "scipy", "mujoco")
 OUTPUTS = {"adapted.blend", "adapted.fbx", "sheet.png", "report.json", "trajectory.npz"}
 
+ANOTHER = """
+schema_version = "1.0.0"
+id = "another"
+version = "1.0.0"
+name = "Another"
+tagline = "Brings wheels that Hangtime has too"
+maintainer = "Nobody"
+type = "add-on"
+blender_version_min = "4.2.0"
+license = ["SPDX:GPL-3.0-or-later"]
+"""
+IMPORTS_BOTH = """
+import casadi, numpy
+def register(): assert casadi.__version__ and numpy.__version__
+def unregister(): pass
+"""
 FOR_UNREAL = """
 [export]
 engine = "unreal"
@@ -61,6 +77,11 @@ print("ANSWER", json.dumps(
     {"casadi": casadi.__file__, "version": casadi.__version__, "numpy": numpy.__file__,
      "enabled": enabled}), flush=True)
 os._exit(0)
+"""
+INSTALL_ANOTHER = """
+bpy.ops.extensions.package_install_files(
+    filepath=sys.argv[2], repo="user_default", enable_on_install=True)
+from bl_ext.user_default import another
 """
 ADAPT = """
 from bl_ext.user_default.hangtime.operators.headless import cli
@@ -110,7 +131,9 @@ def run_installed(python: Path, user: Path, script: str, *arguments: str) -> dic
     return {**answer, "said": done.stdout + done.stderr}
 
 
-@pytest.mark.parametrize("name", ["linux-x64", "windows-x64", "macos-arm64", "macos-x64"])
+@pytest.mark.parametrize(
+    "name", ["linux-x64", "linux-arm64", "windows-x64", "macos-arm64", "macos-x64"]
+)
 def test_a_zip_holds_the_extension_and_its_one_wheel(zips: dict[str, Path], name: str) -> None:
     with zipfile.ZipFile(zips[name]) as archive:
         members = [Path(m) for m in archive.namelist()]
@@ -130,6 +153,40 @@ def test_casadi_comes_from_the_extension(
     assert answer["version"] == "3.8.2"
     assert Path(answer["casadi"]).is_relative_to(user)
     assert not Path(answer["numpy"]).is_relative_to(user), "numpy is Blender's own"
+
+
+def add_wheel(folder: Path, name: str, version: str) -> str:
+    """A wheel of a package that only tells its version; its name."""
+    wheel, info = f"{name}-{version}-py3-none-any.whl", f"{name}-{version}.dist-info"
+    with zipfile.ZipFile(folder / wheel, "w") as archive:
+        archive.writestr(f"{name}/__init__.py", f'__version__ = "{version}"')
+        archive.writestr(f"{info}/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: true\n")
+        archive.writestr(f"{info}/METADATA", f"Name: {name}\nVersion: {version}\n")
+        archive.writestr(f"{info}/RECORD", f"{name}/__init__.py,,\n")
+    return wheel
+
+
+def another_extension(folder: Path) -> Path:
+    """The zip of an extension that brings an older CasADi and a newer numpy."""
+    wheels = [add_wheel(folder, "casadi", "3.6.7"), add_wheel(folder, "numpy", "99.0.0")]
+    manifest = ANOTHER + "wheels = " + json.dumps([f"./wheels/{wheel}" for wheel in wheels])
+    with zipfile.ZipFile(folder / "another-1.0.0.zip", "w") as archive:
+        archive.writestr("blender_manifest.toml", manifest)
+        archive.writestr("__init__.py", IMPORTS_BOTH)
+        for wheel in wheels:
+            archive.write(folder / wheel, f"wheels/{wheel}")
+    return folder / "another-1.0.0.zip"
+
+
+def test_another_extension_s_casadi_and_numpy_break_neither(
+    zips: dict[str, Path], bare_python: Path, tmp_path: Path
+) -> None:
+    user, other = tmp_path / "user", another_extension(tmp_path)
+    given = (str(zips["linux-x64"]), str(other))
+    answer = run_installed(bare_python, user, INSTALL_ANOTHER + REPORT_ORIGINS, *given)
+    assert answer["enabled"], answer["said"]
+    assert answer["version"] == "3.8.2", "of two wheels Blender takes the newer"
+    assert not Path(answer["numpy"]).is_relative_to(user), "Blender's own goes before any wheel"
 
 
 def test_the_installed_extension_does_the_main_job(

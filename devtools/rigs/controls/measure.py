@@ -13,6 +13,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ....bridge.accessors import armature_data, present
 from ....bridge.armature.incremental import complete
 from ....bridge.armature.read import record
 from ....bridge.controls.refusals import require_posable
@@ -23,17 +24,20 @@ from ....operators.headless.quiet import quiet
 from ....operators.words.messages import sentence
 from ....solver.arrays import FloatArray, IntArray
 from ....solver.body.anatomy import map_anatomy
+from ....solver.body.character import Character
 from ....solver.data.contacts import Contact
 from ....solver.data.faults import Fault
 from ....solver.data.recording import Recording
-from ....solver.numerics.rotations import rotation_vector
+from ....solver.numerics.rotations import rotation_matrix, rotation_vector
 from ....solver.worker.pipeline import AdaptationResult, StageClock, measure, solve
 from ...figures.clips import EDITS
 from ...processes import dump
 from ..actor import CLIP
-from ..controlled import ControlResult, Worst
+from ..controlled import ControlResult, Worst, worst_of
 from .cases import ControlCase, cases, performer
-from .skin import add_skin, own_vertices, skin_at, skin_at_rest
+from .reference import skin_on_bones
+from .skin import add_skin, own_vertices, skin_at
+from .sparse import sparse_keys
 
 EDIT = next(iter(EDITS))
 RESULT = "result.pickle"
@@ -64,14 +68,17 @@ def measured(case: ControlCase) -> ControlResult:
         motion = AdaptedMotion(answer.track, answer.times, answer.moved, ResultOptions())
         began = time.perf_counter()
         with quiet():
-            write_result(rig, motion, name=EDIT)
+            action, written = write_result(rig, motion, name=EDIT)
         seconds = time.perf_counter() - began
     except Fault as fault:
         return ControlResult(case.key, case.name, count, mapped, refused=sentence(fault))
     off, turned, skinned = _missed(rig, skin, answer, deforming)
     drift = _drift(rig, answer, case.foot) if case.foot else None
+    sparse = sparse_keys(rig, action, answer, present(present(written).rig))
+    if case.foot:
+        sparse = replace(sparse, drift=_drift(rig, answer, case.foot))
     return ControlResult(
-        case.key, case.name, count, mapped, off, turned, skinned, drift, "", seconds
+        case.key, case.name, count, mapped, off, turned, skinned, drift, "", seconds, sparse
     )
 
 
@@ -84,7 +91,7 @@ def _missed(
     """The largest distance of any deforming bone's head, mm, its largest turn, degrees, and the
     largest distance of its own skin, mm, from the solution.
 
-    Of bones that share out a limb's twist the turn of their direction counts, and no skin.
+    Bones that share out a limb's twist count by where they point, and their skin does not.
     """
     frames, times = answer.adaptation.motion.frames(answer.recording)
     shown = record(rig, frames)
@@ -97,36 +104,63 @@ def _missed(
     whole = np.linalg.norm(rotation_vector(apart.reshape(-1, 3, 3)), axis=1).reshape(off.shape)
     along = np.arctan2(np.linalg.norm(apart[..., [0, 2], 1], axis=-1), apart[..., 1, 1])
     turned = np.degrees(np.where(shares, along, whole))
+    seen = shown.rotations[:, columns]
+    swung = turned_onto(seen, rotations[..., :, 1])
+    wanted = {
+        name: _poses(swung[:, k] if shares[k] else rotations[:, k], heads[:, k])
+        for k, name in enumerate(names)
+    }
+    for bone in (b for b in armature_data(rig).bones if b.use_deform and b.name not in wanted):
+        i = shown.index(bone.name)  # that no body tells of: as the rig has it
+        wanted[bone.name] = _poses(shown.rotations[:, i], shown.heads[:, i])
     return (
-        _worst(off, names, frames),
-        _worst(turned, names, frames),
-        _skin_off(
-            skin,
-            shown,
-            {n: (heads[:, k], rotations[:, k]) for k, n in enumerate(names) if not shares[k]},
-        ),
+        worst_of(off, names, frames),
+        worst_of(turned, names, frames),
+        _skin_off(rig, skin, frames, wanted, {n for n, b in deforming.items() if n != b}),
     )
 
 
 def _skin_off(
-    skin: bpy.types.Object, shown: Recording, wanted: dict[str, tuple[FloatArray, FloatArray]]
+    rig: bpy.types.Object,
+    skin: bpy.types.Object,
+    frames: FloatArray,
+    wanted: dict[str, FloatArray],
+    shares: set[str],
 ) -> Worst:
     """The largest distance, mm, of the vertices that a bone alone moves from where they would be
-    on it at its wanted heads (T, 3) and rotations (T, 3, 3)."""
-    at_rest, seen = skin_at_rest(skin), skin_at(skin, shown.frames)
-    off = []
-    for name, (heads, rotations) in wanted.items():
-        bone, vertices = shown.bones[shown.index(name)], own_vertices(skin, name)
-        local = (at_rest[vertices] - bone.head) @ bone.rotation
-        there = heads[:, None] + local @ np.swapaxes(rotations, -1, -2)
-        off.append(1e3 * np.linalg.norm(seen[:, vertices] - there, axis=2).max(1))
-    return _worst(np.stack(off, axis=1), tuple(wanted), shown.frames)
+    with all bones at wanted poses (T, 4, 4), at frames (T,). shares: bones that share out a limb,
+    whose skin does not count."""
+    apart = skin_at(skin, frames) - skin_on_bones(rig, skin, frames, wanted, set(wanted) - shares)
+    groups = {group.name for group in skin.vertex_groups}
+    names = tuple(name for name in wanted if name in groups - shares)
+    off = [np.linalg.norm(apart[:, own_vertices(skin, name)], axis=2).max(1) for name in names]
+    return worst_of(1e3 * np.stack(off, axis=1), names, frames)
+
+
+def turned_onto(rotations: FloatArray, along: FloatArray) -> FloatArray:
+    """Rotations (..., 3, 3) with their Y axes turned onto directions (..., 3) the nearest way."""
+    axis = np.cross(rotations[..., :, 1], along)
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    angle = np.arctan2(sine, (rotations[..., :, 1] * along).sum(-1, keepdims=True))
+    turns = rotation_matrix((axis / np.maximum(sine, 1e-12) * angle).reshape(-1, 3))
+    return np.asarray(turns.reshape(rotations.shape) @ rotations)
+
+
+def _poses(rotations: FloatArray, heads: FloatArray) -> FloatArray:
+    """(T, 4, 4) of rotations (T, 3, 3) and heads (T, 3)."""
+    poses = np.tile(np.eye(4), (len(heads), 1, 1))
+    poses[:, :3, :3], poses[:, :3, 3] = rotations, heads
+    return poses
 
 
 def _wanted(
     answer: AdaptationResult, times: FloatArray, shown: Recording, deforming: dict[str, str]
 ) -> tuple[FloatArray, FloatArray]:
-    """Heads (T, N, 3) m and rotations (T, N, 3, 3) of deforming bones, each rigid to its body."""
+    """Heads (T, N, 3) m and rotations (T, N, 3, 3) of deforming bones, each rigid to its body.
+
+    The halves of a limb are apart as its joints are in the solution: where inverse kinematics
+    stretches, a take's limb may be longer or shorter than at rest all along, and so is the figure.
+    """
     motion = answer.adaptation.motion
     character = motion.transcription.character
     index = {body.bone: i for i, body in enumerate(character.bodies)}
@@ -137,14 +171,20 @@ def _wanted(
         moves = joined.get(body, body)
         i = index[moves]
         rest, from_body = shown.bones[shown.index(name)], shown.bones[shown.index(moves)].head
-        heads.append(centres[:, i] + posed[:, i] @ (rest.head - from_body))
+        apart = rest.head - from_body
+        if name != body:
+            apart = apart * _longer(character, shown, i)
+        heads.append(centres[:, i] + posed[:, i] @ apart)
         rotations.append(posed[:, i] @ rest.rotation)
     return np.stack(heads, axis=1), np.stack(rotations, axis=1)
 
 
-def _worst(values: FloatArray, names: tuple[str, ...], frames: FloatArray) -> Worst:
-    t, n = np.unravel_index(int(values.argmax()), values.shape)
-    return Worst(float(values[t, n]), names[int(n)], float(frames[t]))
+def _longer(character: Character, shown: Recording, body: int) -> float:
+    """How much longer a body is from its joint to the next in the solution than at rest."""
+    below = next(i for i, joint in enumerate(character.joints) if joint.parent == body)
+    ends = [shown.bones[shown.index(character.bodies[i].bone)].head for i in (body, below)]
+    now = np.linalg.norm(character.joints[below].offset)
+    return float(now / np.linalg.norm(ends[1] - ends[0]))
 
 
 def _drift(rig: bpy.types.Object, answer: AdaptationResult, foot: str) -> Worst:
@@ -173,4 +213,4 @@ def slide(shown: Recording, contact: Contact, rows: IntArray, foot: str) -> Wors
     heel = shown.heads[rows[middle], bone] + shown.rotations[rows[middle], bone] @ contact.offset
     held = heads + turned @ (turned[middle].T @ (heel - heads[middle]))
     slid = 1e3 * np.linalg.norm((held - held[middle])[:, :2], axis=1)
-    return _worst(slid[:, None], (control,), shown.frames[rows])
+    return worst_of(slid[:, None], (control,), shown.frames[rows])

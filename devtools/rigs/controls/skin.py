@@ -3,7 +3,7 @@ bone that ends there too."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from itertools import pairwise
 
 import bpy
@@ -76,19 +76,20 @@ def own_vertices(skin: bpy.types.Object, bone: str) -> list[int]:
     return _vertices(skin.vertex_groups[bone].index, OWN)
 
 
-def skin_at_rest(skin: bpy.types.Object) -> FloatArray:
-    """(V, 3) m, where the skin's vertices are at rest; world."""
+def skin_at(
+    skin: bpy.types.Object, frames: FloatArray, pose: Callable[[int], None] | None = None
+) -> FloatArray:
+    """(T, V, 3) m, where Blender has the skin's vertices at frames (T,); world.
+
+    pose: poses what moves it, by the frame's index, where keys do not.
+    """
     assert isinstance(skin.data, bpy.types.Mesh)
-    flat = np.empty(3 * len(skin.data.vertices))
-    skin.data.vertices.foreach_get("co", flat)
-    return flat.reshape(-1, 3)
-
-
-def skin_at(skin: bpy.types.Object, frames: FloatArray) -> FloatArray:
-    """(T, V, 3) m, where Blender has the skin's vertices at frames (T,); world."""
-    found = np.empty((len(frames), *skin_at_rest(skin).shape))
+    found = np.empty((len(frames), len(skin.data.vertices), 3))
     for t, frame in enumerate(frames):
         current_scene().frame_set(int(frame))
+        if pose is not None:
+            pose(t)
+            present(bpy.context.view_layer).update()
         shown = skin.evaluated_get(bpy.context.evaluated_depsgraph_get())
         flat = np.empty(found[t].size)
         mesh = shown.to_mesh()

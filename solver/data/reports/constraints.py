@@ -75,3 +75,28 @@ class MovingGroundReport:
     moved_m: Vector
     ground_speed_m_s: tuple[float, float]
     kept_speed_share: float | None
+
+
+@dataclass(frozen=True)
+class UnseenSupportReport:
+    """Something that the recording does not show carries the body. At its largest: force_bw, body
+    weights, at peak_frame; moment_bw_m about the pelvis, body weights x m."""
+
+    first_frame: float
+    last_frame: float
+    force_bw: float
+    peak_frame: float
+    moment_bw_m: float
+
+
+@dataclass(frozen=True)
+class LetGoReport:
+    """A contact that was found, but that no valid motion near the recording holds beside others.
+
+    off_mm: by how much its point missed its place.
+    """
+
+    name: str
+    start_frame: float
+    end_frame: float
+    off_mm: float

@@ -14,7 +14,14 @@ from ..row_kinds import RowKind, Violation
 from ..solver_options import ReductionKind
 from ..status import Durations, Status
 from .certificate import CertificateLine
-from .constraints import ConstraintReport, ContactReport, MovingGroundReport, PinReport
+from .constraints import (
+    ConstraintReport,
+    ContactReport,
+    LetGoReport,
+    MovingGroundReport,
+    PinReport,
+    UnseenSupportReport,
+)
 from .dynamics import DenseResiduals, ForcesReport, TorquesReport, TorqueUse
 from .joints import JointChange, RecordedRange
 from .jumps import JumpReport, PhaseReport, TimeMap
@@ -51,12 +58,16 @@ class FitQuality:
     """Distance of the fit from the recording, at the recording's frames.
 
     worst_frame: the one whose joint centres are furthest off, worst_frame_rms_cm of rms.
+    worst_joint: the body whose joint is furthest off in any frame, "" where it is not told.
     """
 
     joint_centres_rms_cm: float
     pelvis_apex_difference_cm: float
     worst_frame_rms_cm: float
     worst_frame: float
+    worst_joint: str = ""
+    worst_joint_cm: float = 0.0
+    worst_joint_frame: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -108,6 +119,8 @@ class Report:
     does not involve them. recorded_overlaps: deepest first; none where nothing is solid.
     recorded_ranges: worst first; none where the figure is no human. joint_changes: the joints that
     changed most. stages: None where nobody timed them. keys: None where none were left out.
+    unseen_support: where something unseen carries the body. let_go: contacts that the fit found
+    no way to hold.
     """
 
     status: Status
@@ -140,11 +153,19 @@ class Report:
     stages: tuple[StageReport, ...] | None = field(default=None, metadata=OMIT_NONE)
     keys: KeysReport | None = field(default=None, metadata=OMIT_NONE)
     loop: LoopReport | None = field(default=None, metadata=OMIT_NONE)
+    unseen_support: tuple[UnseenSupportReport, ...] = ()
+    let_go: tuple[LetGoReport, ...] = ()
 
     @property
     def given_up(self) -> tuple[ConstraintReport, ...]:
         """What the motion could not be guarded from: solids in each other, joints beyond ranges."""
         return tuple(c for c in self.conditions if c.kind.guards and not c.met)
+
+    @property
+    def fit_failed(self) -> bool:
+        """Whether the recording itself was not to be held, before anything was asked of it."""
+        last = self.solves[-1].name if self.solves else ""
+        return self.status is not Status.SOLVED and last == "fit"
 
     @property
     def overlaps(self) -> tuple[ConstraintReport, ...]:

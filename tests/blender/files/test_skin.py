@@ -83,3 +83,18 @@ def test_skin_follows_the_bones_in_the_file_as_it_did(
     apart = np.linalg.norm(found[:, None] - expected[None], axis=2)
     assert apart.min(axis=0).max() < 1e-4
     assert apart.min(axis=1).max() < 1e-4
+
+
+def test_hidden_meshes_stay_out_of_the_file(tmp_path: Path) -> None:
+    armature = animated_rig()
+    body = skinned(armature)
+    proxy = body.copy()
+    proxy.name = "Proxy"
+    bpy.context.collection.objects.link(proxy)
+    proxy.hide_set(True)
+    path = tmp_path / "rig.usda"
+    options = ExportOptions(format=FileFormat.USD, skin=True)
+    export_takes(armature, [armature.animation_data.action], path, options)
+    said = path.read_text()
+    assert '"Body"' in said
+    assert '"Proxy"' not in said

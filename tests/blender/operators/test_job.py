@@ -374,6 +374,20 @@ def test_no_solution_leaves_a_report(clip: Path, tmp_path: Path, capsys) -> None
     assert report["status"] in ("stalled", "too many steps")
 
 
+def test_bones_that_a_usd_could_not_tell_apart_are_told_before_the_solve(
+    clip: Path, tmp_path: Path, monkeypatch, capsys
+) -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bones = import_clip(clip).armature.data.bones
+    bones["LeftToeBase"].name, bones["RightToeBase"].name = "toe!", "toe?"
+    path = tmp_path / "named.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    monkeypatch.setattr(commands, "solve", lambda *_: pytest.fail("it was solved"))
+    text = EDIT + '[export]\nformat = "usd"\n[bones]\n"left toe" = "toe!"\n"right toe" = "toe?"\n'
+    assert run(tmp_path, path, text) == 2
+    assert "would be one name in a USD file" in capsys.readouterr().err
+
+
 def test_a_wrong_option_is_wrong_input(capsys) -> None:
     assert main(["adapt", "x.bvh", "--recipe", "x.toml", "--mass", "-3"]) == 2
     assert main(["adapt", "x.bvh"]) == 2

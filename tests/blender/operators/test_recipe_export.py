@@ -12,6 +12,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.recipe.problem import Recipe, parse_recipe
+from hangtime.bridge.recipe.shortest import shortest
 from hangtime.bridge.takes.options import result_options
 from hangtime.operators.solve.adapt import ask_for
 from hangtime.operators.solve.keys import key_options
@@ -46,7 +47,7 @@ def test_the_world_s_objects_come_along(analysed: bpy.types.Object, tmp_path: Pa
         contact.on = crate if contact.phase == "ground 2" else None
     asked = complete(ask_for(bpy.context)).problem
     found = exported(tmp_path)
-    assert replace(found, scene=()) == replace(asked, scene=())
+    assert replace(found, scene=()) == shortest(replace(asked, scene=()))
     assert {pin.on for pin in found.pins} == {"Crate"}
     (clear,) = found.requests.clears
     assert (clear.thing, clear.by) == ("Ball / 1", pytest.approx(0.05))
@@ -72,7 +73,17 @@ def test_contacts_and_times_that_the_artist_changed_come_along(
     added.name, added.point, added.added, added.used = "Left toe", "Left toe", True, True
     added.bone, added.start_frame, added.end_frame = contact.bone, 200.0, 210.0
     analysed.hangtime.keep_times = True
-    assert exported(tmp_path) == complete(ask_for(bpy.context)).problem
+    assert exported(tmp_path) == shortest(complete(ask_for(bpy.context)).problem)
+
+
+def test_numbers_have_the_digits_that_were_typed(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    contact = next(row for row in analysed.hangtime.contacts if row.phase == "ground 2")
+    contact.at, analysed.hangtime.mass = (0.3, -1.1, 0.25), 70.3
+    exported(tmp_path)
+    said = (tmp_path / "edit.toml").read_text(encoding="utf-8").splitlines()
+    assert {"place = [0.3, -1.1, 0.25]", "mass = 70.3"} <= set(said)
 
 
 def test_the_rest_of_the_take_and_the_keys_come_along(
@@ -88,5 +99,5 @@ def test_the_rest_of_the_take_and_the_keys_come_along(
     options.use_blend, options.blend_in, options.blend_out = True, 7, 11
     settings.result_keys.on, settings.result_keys.distance = "REDUCED", 3.0
     found = recipe(tmp_path)
-    assert found.result == result_options(settings)
-    assert found.keys == key_options(settings)
+    assert found.result == shortest(result_options(settings))
+    assert found.keys == shortest(key_options(settings))

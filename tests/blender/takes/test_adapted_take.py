@@ -82,10 +82,10 @@ def test_a_second_edit_builds_on_the_first(analysed: bpy.types.Object) -> None:
 
 
 @pytest.mark.slow
-def test_update_solves_again_when_the_take_below_was_edited(analysed: bpy.types.Object) -> None:
+def test_update_refines_again_when_the_take_below_was_edited(analysed: bpy.types.Object) -> None:
     take, slot = current_action(analysed), fcurves.slot_identifier(analysed)
     analysed.hangtime.stances["ground 2"].forward = 0.1
-    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert bpy.ops.hangtime.refine() == {"FINISHED"}
     first = current_action(analysed)
     path = analysed.pose.bones["LeftArm"].path_from_id("rotation_quaternion")
     if fcurves.holder_in(take, slot).fcurves.find(path, index=1) is None:
@@ -99,6 +99,7 @@ def test_update_solves_again_when_the_take_below_was_edited(analysed: bpy.types.
     assert bpy.ops.hangtime.update() == {"FINISHED"}
     second = current_action(analysed)
     assert second != first
+    assert second.hangtime.refined
     look_again(analysed)
     assert second.hangtime.stale == ""
     assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1, abs=1e-5)

@@ -176,6 +176,11 @@ def is_starred(armature: bpy.types.Object) -> None:
     armature.animation_data.nla_tracks[0].is_solo = True
 
 
+def is_assigned_beside_a_star(armature: bpy.types.Object) -> None:
+    is_starred(armature)
+    armature.animation_data.action = armature.animation_data.nla_tracks[0].strips[0].action
+
+
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
@@ -184,6 +189,7 @@ def is_starred(armature: bpy.types.Object) -> None:
         (fades, "Take fades in or out"),
         (has_company, "Take, Wave are several"),
         (is_starred, "Take plays on a starred track"),
+        (is_assigned_beside_a_star, "Take plays on a starred track"),
     ],
 )
 def test_what_strips_make_together_is_refused_by_their_names(

@@ -197,6 +197,21 @@ def test_polish_of_a_difference_is_kept_and_edits_of_the_take_count_once(mode: s
     np.testing.assert_allclose(np.delete(lifted, range(24, 30)), 0.0, atol=1e-5)
 
 
+def test_polished_sizes_of_a_difference_stay_as_many_times_as_large() -> None:
+    armature = rig()
+    bone, slot = armature.pose.bones["head"], fcurves.slot_identifier(armature)
+    bone.scale = (2.0, 2.0, 2.0)
+    bone.keyframe_insert("scale", frame=1)
+    adapt(armature, 0.1, written_as=WrittenAs.COMBINE)
+    strip, path = armature.animation_data.nla_tracks[-1].strips[0], bone.path_from_id("scale")
+    more = fcurves.ensured(fcurves.holder_in(strip.action, slot), path, 0, "head")
+    for frame, value in ((20.0, 1.0), (28.0, 1.5), (36.0, 1.0)):
+        more.keyframe_points.insert(frame, value)
+    result = adapt(armature, 0.2, written_as=WrittenAs.COMBINE).action
+    wide = fcurves.holder_in(result, slot).fcurves.find(path, index=0)
+    assert [wide.evaluate(frame) for frame in (10, 28, 50)] == pytest.approx([2.0, 3.0, 2.0])
+
+
 def test_polish_that_moves_a_point_which_the_artist_pinned_is_told() -> None:
     armature = rig()
     adapt(armature, 0.1)

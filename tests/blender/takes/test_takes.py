@@ -32,6 +32,7 @@ from hangtime.bridge.takes.takes import (
 )
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
 from hangtime.operators.solve import adapt as adapt_operators
+from hangtime.operators.solve.takes import left_behind
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
 from hangtime.tests.blender.helpers import rigs
@@ -266,6 +267,8 @@ def test_keys_edited_by_hand_are_seen_before_they_are_left_behind(
     assert polished_result(armature) == first
     look_again(armature)
     assert first.hangtime.polished
+    armature.hangtime.loop.use = True
+    assert left_behind(armature).endswith("A loop cannot take them along")
 
 
 class Probe(adapt_operators.AdaptOperator.__bases__[0], bpy.types.Operator):

@@ -24,7 +24,14 @@ from hangtime.solver.data.faults import (
     UnknownPhase,
     UnseenSupport,
 )
-from hangtime.solver.data.problem import ContactEdit, MassTable, MotionProblem, OffsetAxes, Pin
+from hangtime.solver.data.problem import (
+    ContactEdit,
+    MassTable,
+    MotionProblem,
+    OffsetAxes,
+    Pin,
+    Unseen,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -156,6 +163,7 @@ PROBLEMS = st.builds(
     mass=POSITIVE,
     height=st.none() | POSITIVE,
     mass_table=st.sampled_from(MassTable),
+    unseen=st.sampled_from(Unseen),
     bones=st.dictionaries(st.sampled_from(PARTS), NAMES, max_size=3),
     contacts=st.lists(EDITS, max_size=3).map(tuple),
     pins=st.lists(PINS, max_size=3, unique_by=lambda pin: pin.name).map(tuple),

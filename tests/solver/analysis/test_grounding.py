@@ -10,6 +10,7 @@ from hangtime.solver.analysis.grounding import (
     MIN_STEP_TIME,
     SAME_PLACE,
     SOLE_COMPLIANCE,
+    disjoint,
     foot_sized,
     grounded,
     parted,
@@ -31,6 +32,27 @@ def raised(schedule: ContactSchedule, height: float) -> ContactSchedule:
     return replace(
         schedule, contacts=tuple(replace(c, place=c.place + up) for c in schedule.contacts)
     )
+
+
+def overlapping(apart: float) -> ContactSchedule:
+    """The first contact, and the same point once more from its middle until 0.2 s after its end."""
+    first = found().contacts[0]
+    place = first.place + np.array([apart, 0.0, 0.0])
+    start = 0.5 * (first.start + first.end)
+    again = replace(first, name=first.point, start=start, end=first.end + 0.2, place=place)
+    return replace(found(), contacts=(first, again))
+
+
+def test_one_point_is_in_one_place_at_a_time() -> None:
+    first, again = overlapping(0.0).contacts
+    (merged,) = disjoint(overlapping(0.5 * SAME_PLACE)).contacts
+    assert (merged.start, merged.end) == (first.start, again.end)
+    one, other = disjoint(overlapping(0.1)).contacts
+    assert one.end == other.start == pytest.approx(0.5 * (again.start + first.end))
+    kept = disjoint(found()).contacts
+    assert [(c.name, c.start, c.end) for c in kept] == [
+        (c.name, c.start, c.end) for c in found().contacts
+    ]
 
 
 def test_places_near_the_floor_are_put_upon_it() -> None:

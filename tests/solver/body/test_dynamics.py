@@ -11,8 +11,12 @@ from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
-from hangtime.solver.body.dynamics import MomentFunction, momentum_rate
-from hangtime.solver.body.inverse_dynamics import InverseDynamics, moment_components
+from hangtime.solver.body.dynamics import MomentFunction
+from hangtime.solver.body.inverse_dynamics import (
+    InverseDynamics,
+    moment_components,
+    momentum_rate,
+)
 from hangtime.solver.body.joint_axes import JointAxes
 from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics, point_velocity
 from hangtime.solver.data.constants import STANDARD_GRAVITY
@@ -185,6 +189,23 @@ def test_moment_jacobian(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+def test_moment_jacobian_is_the_expressions(seed: int) -> None:
+    """Against CasADi's derivatives of the same equations, to rounding."""
+    character = random_tree(seed)
+    x = [ca.SX.sym(name, character.n_angles) for name in "qva"]
+    rate = momentum_rate(character, *x) / (character.mass * STANDARD_GRAVITY)
+    every = ca.vertcat(*x)
+    function = BatchFunction("rate", every, [rate, ca.jacobian(rate, every)])
+    state = random_movement(seed, character.n_angles)
+    value, jacobian = function(np.concatenate(state, axis=1))
+    ours_value, ours = MomentFunction(character).jacobian(*state)
+    assert relative(ours_value, value) < 1e-12
+    theirs = np.swapaxes(jacobian, 1, 2).reshape(ours.shape)
+    for order in range(3):
+        assert relative(ours[:, :, order], theirs[:, :, order]) < 1e-12
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_point_jacobian(seed: int) -> None:
     character = random_tree(seed)
     points = random_points(seed, character)
@@ -193,6 +214,20 @@ def test_point_jacobian(seed: int) -> None:
     for i in range(2):
         numeric = central(lambda x: forward_kinematics(character, x[None]).points(points)[0], q[i])
         assert relative(jacobian[i], numeric) < 1e-7
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_metric_and_gradient_of_points_are_their_jacobians(seed: int) -> None:
+    character = random_tree(seed)
+    points = random_points(seed, character, 7)
+    posed = forward_kinematics(character, random_movement(seed, character.n_angles)[0])
+    jacobian = posed.point_jacobian(points)
+    squares, total = posed.points_metric(points)
+    assert relative(squares, np.einsum("npij,npik->njk", jacobian, jacobian)) < 1e-12
+    assert relative(total, jacobian.sum(axis=1)) < 1e-12
+    forces = np.random.default_rng(seed).normal(size=(INSTANTS, len(points), 3))
+    expected = np.einsum("npij,npi->nj", jacobian, forces)
+    assert relative(posed.points_gradient(points, forces), expected) < 1e-12
 
 
 @pytest.mark.parametrize("seed", SEEDS)

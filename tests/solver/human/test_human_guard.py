@@ -6,7 +6,7 @@ from math import radians
 
 import numpy as np
 import pytest
-from hangtime.operators.words.report_text import headline
+from hangtime.operators.words.headline import headline
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.requests import AngleLimit, OrientationRequest, Requests, Shape, When

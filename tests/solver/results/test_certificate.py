@@ -1,5 +1,6 @@
 """The certificate of a real hop: against the motion's own samples, and what spoilt ones fail."""
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -123,9 +124,17 @@ def test_headlines_say_no_more_than_is_true() -> None:
         )
         return as_text(replace(found(), certificate=made)).partition("\n\n")[0]
 
-    assert text() == "Solved: the motion obeys physics and everything asked for holds."
+    first, _, nearness = text().partition("\n")
+    assert first == "Solved: the motion obeys physics and everything asked for holds."
+    assert re.fullmatch(
+        r"  The fit is within [\d.]+ cm of the recording \(rms\); worst [\d.]+ cm, "
+        r"(left|right) \w+, frame \d+",
+        nearness,
+    )
     far = text(FIT_RMS=9.2, SLIDE=80.0, KNEE_TORQUE=60.0, UNDER=40.0, LOADING_RATE=211.0)
+    assert far.startswith("Solved, but the fit is far from the recording")
     assert "obeys physics" not in far
+    assert "everything asked for holds" not in far
     assert "5 of the certificate's 19 lines do not" in far
     assert "fit off the recording, rms 9.2 cm (frame 12)" in far
     assert "a loaded point slides by 80 mm" in far

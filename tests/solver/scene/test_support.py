@@ -10,11 +10,11 @@ from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.analysis.grounding import PLACE_BAND
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.faults import UnseenSupport
-from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.problem import MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scene import SceneObject, SceneRole, SupportBox
 from hangtime.solver.worker.pipeline import measure
-from hangtime.solver.worker.protocol import Analysed, Failed, Request, RequestKind
+from hangtime.solver.worker.protocol import Analysed, Request, RequestKind
 from hangtime.solver.worker.service import Service
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
@@ -33,9 +33,9 @@ def drop() -> Recording:
 
 
 def offered(problem: MotionProblem | None = None) -> tuple[SupportBox, ...]:
-    with pytest.raises(UnseenSupport) as caught:
-        measure(drop(), problem or MotionProblem())
-    return caught.value.boxes
+    (found,) = measure(drop(), problem or MotionProblem()).analysis.unseen
+    assert isinstance(found, UnseenSupport)
+    return found.boxes
 
 
 def boxes(**changed: object) -> tuple[SceneObject, ...]:
@@ -99,10 +99,17 @@ def test_only_ground_at_rest_beneath_the_feet_explains_anything() -> None:
         {"role": SceneRole.OBSTACLE},
         {"positions": np.array([[5.0, 0.0, 0.0]])},
     ):
-        with pytest.raises(UnseenSupport):
-            analyse(drop(), MotionProblem(scene=boxes(**changed)))
-    with pytest.raises(UnseenSupport):
-        analyse(drop(), MotionProblem(scene=(sinking(-0.1),)))
+        assert analyse(drop(), MotionProblem(scene=boxes(**changed))).unseen
+    assert analyse(drop(), MotionProblem(scene=(sinking(-0.1),))).unseen
+
+
+def test_who_asks_for_it_is_refused_what_something_unseen_carries() -> None:
+    (box,) = boxes()
+    refusing = MotionProblem(unseen=Unseen.REFUSE)
+    with pytest.raises(UnseenSupport) as caught:
+        measure(drop(), replace(refusing, height=1.2 * hop().performance.character.height))
+    np.testing.assert_allclose(caught.value.boxes[0].size, offered()[0].size, atol=0.02)
+    assert measure(drop(), replace(refusing, scene=(box,))).analysis.unseen == ()
 
 
 def test_a_scene_changes_nothing_where_the_floor_explains_all() -> None:
@@ -125,24 +132,22 @@ def test_a_body_that_hangs_has_no_box() -> None:
     recording = replace(recording, heads=recording.heads.copy())
     recording.heads[..., 2] += 1.0 + 0.5 * np.sin(6.0 * recording.times)[:, None]
     recording.heads[:8, :, 2] -= recording.heads[:8, :, 2].min()  # the floor is told
-    with pytest.raises(UnseenSupport) as caught:
-        analyse(recording, MotionProblem())
-    assert caught.value.boxes == ()
+    found = analyse(recording, MotionProblem()).unseen
+    assert found
+    assert all(isinstance(each, UnseenSupport) and each.boxes == () for each in found)
 
 
 def test_a_worker_looks_again_where_what_was_stood_on_is_another() -> None:
     service, recording = Service(), drop()
 
-    def kind(*scene: SceneObject) -> type:
+    def explained(*scene: SceneObject) -> bool:
         request = Request(1, RequestKind.ANALYSE, recording, MotionProblem(scene=scene))
-        return type(service.answer(request, lambda _: None))
+        answer = service.answer(request, lambda _: None)
+        assert isinstance(answer, Analysed)
+        return not answer.unseen
 
     (box,) = boxes()
     aside = replace(box, name="Crate", positions=np.array([[5.0, 0.0, 0.0]]))
-    assert [kind(), kind(box), kind(box, aside), kind(aside)] == [
-        Failed,
-        Analysed,
-        Analysed,
-        Failed,
-    ]
-    assert kind(replace(box, positions=box.positions - [0.0, 0.0, 0.1])) is Failed
+    scenes = ((), (box,), (box, aside), (aside,))
+    assert [explained(*scene) for scene in scenes] == [False, True, True, False]
+    assert not explained(replace(box, positions=box.positions - [0.0, 0.0, 0.1]))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.operators.words.report_text import headline
+from hangtime.operators.words.headline import headline
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.requests import PointRequest, Requests, When

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....solver.arrays import FloatArray
 from ....solver.data.constants import STANDARD_GRAVITY
-from ....solver.data.traces import Traces
+from ....solver.data.traces import UNSEEN_SUPPORT, Traces
 from ...drawing.sketch import Colour
 from ..context.layer import Layer, Part
 from ..context.view_context import ShownMotion, ViewContext
@@ -38,6 +38,10 @@ def force_shapes(traces: Traces, frame: float, size: float) -> Iterator[Shape | 
         return
     points, pushes = (interpolated(traces, a, frame) for a in (traces.points, traces.forces))
     weights = pushes / max(traces.weight, 1e-9)
+    unseen = np.array([name == UNSEEN_SUPPORT for name in traces.contacts])
+    if unseen.any():
+        yield from _unseen(points[unseen].mean(axis=0), weights[unseen].sum(axis=0), size)
+        points, weights = points[~unseen], weights[~unseen]
     total, strength = weights.sum(axis=0), np.linalg.norm(weights, axis=1)
     shown = strength > LEAST_FORCE
     vectors = PER_WEIGHT * size * weights[shown]
@@ -47,6 +51,16 @@ def force_shapes(traces: Traces, frame: float, size: float) -> Iterator[Shape | 
         tip = points[largest] + PER_WEIGHT * size * weights[largest]
         words = f"{np.linalg.norm(total):.1f} × weight"
         yield Label(words, tuple(tip.tolist()), palette.FORCE)
+
+
+def _unseen(point: FloatArray, weights: FloatArray, size: float) -> Iterator[Shape | Label]:
+    """What carries the body unseen: one arrow, in a colour of its own."""
+    strength = float(np.linalg.norm(weights))
+    if strength > LEAST_FORCE:
+        vector = PER_WEIGHT * size * weights
+        yield solids.arrows(point[None], vector[None], SHAFT * size, palette.UNSEEN)
+        words = f"Unseen: {strength:.1f} × weight"
+        yield Label(words, tuple((point + vector).tolist()), palette.UNSEEN)
 
 
 def path(view: ViewContext, shown: ShownMotion, part: Part) -> Layer:

@@ -1,0 +1,130 @@
+"""Wording of a result's headline: how it ended, how near it is, what was accepted, what failed."""
+
+from ...solver.data.faults import NoFit
+from ...solver.data.reports.certificate import CertificateItem, CertificateLine
+from ...solver.data.reports.constraints import ConstraintReport
+from ...solver.data.reports.report import FitQuality, Report
+from ...solver.data.row_kinds import RowKind
+from ...solver.data.status import Status
+from .messages import length, outcome, sentence
+
+MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
+FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
+
+Item = CertificateItem
+CERTIFICATE = {
+    Item.RESIDUAL_FORCE_RMS_SHARE: "unexplained force, rms, of the peak force",
+    Item.RESIDUAL_FORCE_PEAK_SHARE: "unexplained force, peak, of the same",
+    Item.RESIDUAL_MOMENT_RMS_SHARE: "unexplained moment, rms, of that × height",
+    Item.RESIDUAL_MOMENT_PEAK_SHARE: "unexplained moment, peak, of the same",
+    Item.RESIDUAL_FORCE_RMS: "unexplained force, rms",
+    Item.RESIDUAL_FORCE_PEAK: "unexplained force, peak",
+    Item.RESIDUAL_MOMENT_RMS: "unexplained moment, rms",
+    Item.RESIDUAL_MOMENT_PEAK: "unexplained moment, peak",
+    Item.FRICTION: "friction coefficient used",
+    Item.PEAK_FORCE: "peak force",
+    Item.LOADING_RATE: "loading rate",
+    Item.HIP_TORQUE: "hip torque",
+    Item.KNEE_TORQUE: "knee torque",
+    Item.ANKLE_TORQUE: "ankle torque",
+    Item.SLIDE: "a loaded point slides by",
+    Item.UNDER: "a loaded point is under its surface by",
+    Item.ABOVE: "a loaded point is above its surface by",
+    Item.FIT_RMS: "fit off the recording, rms",
+    Item.FIT_WORST_FRAME: "fit off the recording, worst frame",
+}
+
+
+def headline(report: Report) -> list[str]:
+    """How the solve ended, how near the fit is, what was accepted, and what the certificate has
+    against the motion: lines."""
+    if report.fit_failed:
+        return [sentence(NoFit(report.status))]
+    if report.status is not Status.SOLVED:
+        return [outcome(report.status)]
+    accepted = accepted_lines(report)
+    told = [nearness(report.fit_to_recording), *accepted, *given_up_lines(report)]
+    told += [line_told(line) for line in most_telling(report.failed)]
+    return [_solved(report, shown=not accepted), *(f"  {line}" for line in told)]
+
+
+def _solved(report: Report, *, shown: bool) -> str:
+    """The first line of what is solved. shown: whether the recording shows all that carries."""
+    failed, count = report.failed, len(report.certificate)
+    do = "does" if len(failed) == 1 else "do"
+    lines = f"{len(failed)} of the certificate's {count} lines {do} not hold"
+    if any(line.item in FITS for line in failed):
+        return f"Solved, but the fit is far from the recording: {lines}."
+    if not shown:
+        said = "Solved, but not with what the recording shows alone"
+        return f"{said}, and {lines}." if failed else f"{said}."
+    return f"Solved: everything asked for holds, but {lines}." if failed else outcome(report.status)
+
+
+def nearness(fit: FitQuality) -> str:
+    """Such as "The fit is within 1.4 cm of the recording; worst 5 cm, left hand, frame 161"."""
+    said = f"The fit is within {plain(fit.joint_centres_rms_cm)} cm of the recording (rms)"
+    if not fit.worst_joint:
+        return said
+    worst = f"{plain(fit.worst_joint_cm)} cm, {fit.worst_joint}"
+    return f"{said}; worst {worst}, frame {fit.worst_joint_frame:.0f}"
+
+
+def accepted_lines(report: Report) -> list[str]:
+    """What the motion needs beside what the recording shows, all frames at once: lines."""
+    lines = []
+    if report.unseen_support:
+        spans = ", ".join(
+            f"{each.first_frame:.0f} to {each.last_frame:.0f} ({plain(each.force_bw)})"
+            for each in report.unseen_support
+        )
+        lines.append(f"Something unseen carries the body in frames (by body weights) {spans}")
+    if report.let_go:
+        names = ", ".join(
+            f"{each.name} ({length(each.off_mm / 1000.0)} off)" if each.off_mm else each.name
+            for each in report.let_go
+        )
+        lines.append(f"Contacts let go, as they cannot be held with the others: {names}")
+    return lines
+
+
+def given_up_lines(report: Report) -> list[str]:
+    """What is in each other, and the joints that go beyond their range: lines."""
+    return [
+        f"{_given_up(each)} (frame {each.worst_violation_frame:.0f}), beside what is asked for"
+        for each in report.given_up
+    ]
+
+
+def _given_up(each: ConstraintReport) -> str:
+    if each.kind is RowKind.RANGE:
+        return f"{each.name} {each.worst_violation:.0f}° beyond its range"
+    return f"{each.name}: {each.worst_violation:.0f} mm"
+
+
+def most_telling(failed: tuple[CertificateLine, ...]) -> list[CertificateLine]:
+    """A bad fit, and the few that are furthest beyond their limits."""
+    fit = [line for line in failed if line.item in FITS]
+    others = [line for line in failed if line.item not in FITS]
+    others.sort(key=lambda line: line.value / line.limit, reverse=True)
+    return [*fit, *others[:MOST_NAMED]]
+
+
+def line_told(line: CertificateLine) -> str:
+    """Such as "a loaded point slides by 45 mm (Left toe 2, frame 231)"."""
+    where = f" ({line_place(line)})" if line_place(line) else ""
+    return f"{CERTIFICATE[line.item]} {with_unit(line.value, line.unit)}{where}"
+
+
+def line_place(line: CertificateLine) -> str:
+    frame = "" if line.frame is None else f"frame {line.frame:.0f}"
+    return ", ".join(word for word in (line.where, frame) if word)
+
+
+def with_unit(amount: float, unit: str) -> str:
+    return f"{plain(amount)} {unit}".rstrip()
+
+
+def plain(amount: float) -> str:
+    """To three digits, or two places where there is less; without an exponent."""
+    return f"{amount:.0f}" if amount >= 100.0 else f"{amount:.3g}" if amount >= 0.01 else "0"

@@ -1,0 +1,58 @@
+"""What the report tells of what carries the body unseen, and of contacts that were let go."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.constants import STANDARD_GRAVITY
+from ..data.reports.constraints import LetGoReport, UnseenSupportReport
+from ..stages.fit import Fit
+from ..transcription.motion import Motion
+from .flight_summary import scene_frame
+
+SAMPLE_RATE = 500.0  # Hz
+CARRIES = 0.05  # body weights; less is within the error of forces that are told from recordings
+APART = 0.1  # s; what is nearer is one interval
+
+
+def unseen_support(fit: Fit, motion: Motion) -> Iterator[UnseenSupportReport]:
+    """The intervals of a motion in which something unseen carries the body."""
+    t = motion.transcription
+    if t.support is None:
+        return
+    times = np.linspace(0.0, motion.duration, max(2, round(motion.duration * SAMPLE_RATE)))
+    weight = t.character.mass * STANDARD_GRAVITY
+    each = motion.forces(times)[:, -t.n_support :] / weight
+    arms = motion.pose(times).points(t.points[-t.n_support :])
+    moment = np.cross(arms - arms.mean(axis=1, keepdims=True), each).sum(axis=1)
+    sizes, moments = (np.linalg.norm(v, axis=1) for v in (each.sum(axis=1), moment))
+    busy = np.flatnonzero(np.linalg.norm(each, axis=2).sum(axis=1) > CARRIES)
+    breaks = np.flatnonzero(np.diff(times[busy]) > APART) + 1
+    for part in np.split(busy, breaks) if len(busy) else ():
+        peak = part[sizes[part].argmax()]
+        yield UnseenSupportReport(
+            first_frame=scene_frame(fit, float(times[part[0]])),
+            last_frame=scene_frame(fit, float(times[part[-1]])),
+            force_bw=float(sizes[peak]),
+            peak_frame=scene_frame(fit, float(times[peak])),
+            moment_bw_m=float(moments[part].max()),
+        )
+
+
+def let_go(fit: Fit) -> Iterator[LetGoReport]:
+    """The contacts that a fit does not hold."""
+    for each in fit.let_go:
+        start, end = (scene_frame(fit, t) for t in (each.contact.start, each.contact.end))
+        yield LetGoReport(each.contact.name, start, end, 1000.0 * each.off)
+
+
+def worst_joint(fit: Fit, apart: FloatArray) -> tuple[str, float, float]:
+    """The body whose joint is furthest off the recording, how far, cm, and in which frame.
+
+    apart: (T, B, 3) m.
+    """
+    off = np.linalg.norm(apart, axis=2)
+    frame, body = divmod(int(off.argmax()), off.shape[1])
+    name = fit.performance.character.bodies[body].name
+    return name, 100.0 * float(off[frame, body]), float(fit.performance.recording.frames[frame])

@@ -1,0 +1,1 @@
+"""What carries the body though the recording does not show it."""

@@ -1,0 +1,141 @@
+"""A fit that ends: what a recording contradicts itself in is let go, step by step, and told.
+
+Contacts that cannot be held together, and phases that what touches does not explain, are found
+from the rows that the fit could not meet. A contact that is let go leaves its point to the
+recording; what it carried something unseen carries (unseen/support_force.py). With no contact left
+and such a force throughout, any motion can be had: so the fit ends.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..analysis.performance import Performance
+from ..data.contacts import ContactSchedule, Interval, gaps
+from ..data.row_kinds import RowKind
+from ..optimisation.sqp import Progress
+from ..stages.fit import Fit, LetGo, fit
+from ..transcription.ride import Ride
+from ..transcription.rows import Rows
+
+MAX_ROUNDS = 6  # then everything is let go
+WORST_SHARE = 0.5  # of the worst contact's miss: who misses more is let go with it
+FAR = 0.03  # m, rms over joint centres; further off a fit's flights are doubted
+OFF_PARABOLA = 0.03  # m, by which the recorded centre of mass leaves the fit's parabola
+MUCH_NEARER = 0.8  # times as far: what something unseen must gain
+CONTRADICTORY = 1e-3  # m; contacts that miss by less follow what else does not hold
+
+Rides = Callable[[ContactSchedule], Sequence[Ride | None]]
+
+
+def lasting_fit(
+    performance: Performance,
+    schedule: ContactSchedule,
+    rides: Rides,
+    *,
+    periodic: bool = False,
+    progress: Progress | None = None,
+) -> Fit:
+    """The valid motion nearest to the recording, with as many of its contacts as go together.
+
+    rides: of a schedule's contacts. Of a motion that repeats nothing is let go: as `fit` has it.
+    """
+    let_go: list[LetGo] = []
+    for remaining in reversed(range(MAX_ROUNDS + 1)):
+        found = fit(
+            performance, schedule, periodic=periodic, rides=rides(schedule), progress=progress
+        )
+        if found.solved or periodic or remaining == 0:
+            break
+        released = _contradictory(found) if remaining > 1 else _every(schedule)
+        schedule = _without(schedule, released) if released else _carried(found)
+        if remaining == 1:
+            schedule = replace(schedule, unseen=(Interval(0.0, schedule.duration),))
+        let_go += released
+    never = () if periodic or not found.solved else _never_flown(found)
+    if never:
+        told = _unseen_too(schedule, never)
+        again = fit(performance, told, rides=rides(told), progress=progress)
+        if again.solved and _off(again) < MUCH_NEARER * _off(found):
+            found = again
+    return replace(found, let_go=tuple(let_go))
+
+
+def _off(found: Fit) -> float:
+    """Distance of a fit from its recording, m, rms over joint centres."""
+    apart = found.motion.joint_centres(found.performance.times) - found.performance.centres
+    return float(np.sqrt((apart**2).sum(axis=2).mean()))
+
+
+def _never_flown(found: Fit) -> tuple[Interval, ...]:
+    """The flights of a fit far from its recording in which the centre of mass was recorded away
+    from any parabola near by: those that never were."""
+    if _off(found) < FAR:
+        return ()
+    performance = found.performance
+    away = np.linalg.norm(found.motion.com(performance.times) - performance.com, axis=1)
+    times, flights = performance.times, found.schedule.flights
+    return tuple(
+        f
+        for f in flights
+        if away[(times >= f.start) & (times <= f.end)].max(initial=0.0) > OFF_PARABOLA
+    )
+
+
+def _every(schedule: ContactSchedule) -> list[LetGo]:
+    return [LetGo(contact, 0.0) for contact in schedule.contacts]
+
+
+def _contradictory(failed: Fit) -> list[LetGo]:
+    """The contacts that a failed fit misses the furthest; none where others are to blame."""
+    rows = _rows(failed)
+    missed = np.abs(rows.violation())
+    pinned = rows.kind == RowKind.PIN
+    worst = [
+        (float(missed[pinned & (rows.owner == i)].max(initial=0.0)), contact)
+        for i, contact in enumerate(failed.schedule.contacts)
+    ]
+    most = max((off for off, _ in worst), default=0.0)
+    if most < CONTRADICTORY and _violated_phases(failed, rows):
+        return []
+    if most <= RowKind.PIN.tolerance:
+        return _every(failed.schedule)
+    return [LetGo(contact, off) for off, contact in worst if off >= WORST_SHARE * most]
+
+
+def _rows(failed: Fit) -> Rows:
+    outcome = failed.outcome
+    return outcome.transcription.rows(outcome.x, outcome.places)
+
+
+def _violated_phases(failed: Fit, rows: Rows) -> list[Interval]:
+    """The phases whose equations do not hold, but those that something unseen carries through."""
+    over = (rows.owner < 0) & (np.abs(rows.violation()) > rows.tolerance)
+    times = rows.time[over]
+    return [
+        Interval(phase.start, phase.end)
+        for phase in failed.schedule.phases
+        if ((times >= phase.start) & (times <= phase.end)).any()
+        and not any(u.start <= phase.start and u.end >= phase.end for u in failed.schedule.unseen)
+    ]
+
+
+def _carried(failed: Fit) -> ContactSchedule:
+    """The schedule with unseen support in the phases whose equations do not hold."""
+    return _unseen_too(failed.schedule, _violated_phases(failed, _rows(failed)))
+
+
+def _unseen_too(schedule: ContactSchedule, added: Sequence[Interval]) -> ContactSchedule:
+    """The schedule with unseen support in more intervals."""
+    free = gaps([(u.start, u.end) for u in (*schedule.unseen, *added)], schedule.duration)
+    unseen = gaps([(f.start, f.end) for f in free], schedule.duration)
+    return replace(schedule, unseen=unseen)
+
+
+def _without(schedule: ContactSchedule, released: Sequence[LetGo]) -> ContactSchedule:
+    """The schedule without these contacts; what nothing else carries then something unseen does."""
+    names = {each.contact.name for each in released}
+    kept = tuple(c for c in schedule.contacts if c.name not in names)
+    spans = [(c.start, c.end) for c in kept] + [(f.start, f.end) for f in schedule.flights]
+    return _unseen_too(replace(schedule, contacts=kept), gaps(spans, schedule.duration))

@@ -1,0 +1,149 @@
+"""The fit always ends: something unseen carries where it must, what contradicts is let go."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from hangtime.operators.words.headline import headline
+from hangtime.operators.words.report_text import as_text
+from hangtime.solver.data.contacts import PhaseKind
+from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.reports.report import Report
+from hangtime.solver.data.traces import UNSEEN_SUPPORT
+from hangtime.solver.results.report import fit_quality
+from hangtime.solver.stages.fit import Fit
+from hangtime.solver.transcription.motion import dynamics_residual
+from hangtime.solver.worker.lasting_fit import lasting_fit
+from hangtime.solver.worker.pipeline import (
+    AdaptationResult,
+    StageClock,
+    Subject,
+    adapt_fit,
+    fit_subject,
+    measure,
+    solve,
+)
+from hangtime.tests.helpers.clips import JUMP, load_recording
+from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
+
+DROP = 0.3  # m
+AROUND = 0.3  # s, of the flight
+
+
+def dropped() -> Recording:
+    """The hop as a jump down, around its flight: nothing that it shows carries it at first."""
+    recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
+    (flight,) = (p for p in hop().schedule.phases if p.kind is PhaseKind.FLIGHT)
+    share = np.clip((recording.times - flight.start) / (flight.end - flight.start), 0.0, 1.0)
+    heads = recording.heads.copy()
+    heads[..., 2] += DROP * (1.0 - share[:, None])
+    first, rate = float(recording.frames[0]), recording.rate
+    ends = (flight.start - AROUND, flight.end + AROUND)
+    return replace(recording, heads=heads).window(*(first + round(t * rate) for t in ends))
+
+
+@cache
+def subject() -> Subject:
+    return measure(dropped(), MotionProblem())
+
+
+@cache
+def fitted() -> Fit:
+    return fit_subject(subject(), StageClock())
+
+
+@cache
+def adapted(up: float = 0.0) -> AdaptationResult:
+    pins = (Pin("Landing", "ground 1", offset=(0.0, 0.0, up)),) if up else ()
+    return adapt_fit(subject().asked(MotionProblem(pins=pins)), fitted(), StageClock())
+
+
+def report() -> Report:
+    return adapted().report(Origin("drop"))
+
+
+def test_a_body_that_hangs_is_fitted_without_any_contact() -> None:
+    """A jumper, lifted and swung up and down: nothing that the recording shows carries it."""
+    jump = load_recording(JUMP).window(100.0, 180.0)
+    heads = jump.heads.copy()
+    heads[..., 2] += 1.0 + 0.5 * np.sin(6.0 * jump.times)[:, None]
+    heads[:8, :, 2] -= heads[:8, :, 2].min()  # the floor is told
+    hanging = measure(replace(jump, heads=heads).window(110.0, 180.0), MotionProblem())
+    assert hanging.schedule.contacts == ()
+    made = solve(hanging, StageClock())
+    assert made.fault is None
+    told = made.report(Origin("hang"))
+    (unseen,) = told.unseen_support
+    assert (unseen.first_frame, unseen.last_frame) == pytest.approx((110.0, 180.0), abs=0.5)
+    assert unseen.force_bw > 1.0
+    assert told.fit_to_recording.joint_centres_rms_cm < 1.0
+    text = as_text(told)
+    assert text.startswith("Solved, but not with what the recording shows alone")
+    assert "Something unseen carries the body in frames (by body weights) 110 to 180" in text
+    assert UNSEEN_SUPPORT in made.traces().contacts
+
+
+@pytest.mark.slow
+def test_what_is_unseen_carries_the_body() -> None:
+    assert fitted().solved
+    t = fitted().motion.transcription
+    times = np.linspace(0.01, AROUND - 0.05, 40)
+    weight = t.character.mass * 9.80665
+    carried = fitted().motion.forces(times)[:, -t.n_support :].sum(axis=1) / weight
+    recorded = np.linalg.norm(carried, axis=1)
+    assert recorded.mean() > 0.8
+    left = dynamics_residual(fitted().motion, np.linspace(0.0, fitted().motion.duration, 200))
+    assert np.abs(left.force).max() < 1e-6
+    assert np.abs(left.moment).max() < 0.01
+    apart = fitted().motion.joint_centres(subject().recording.times)
+    apart = apart - fitted().performance.centres
+    assert np.sqrt((apart**2).sum(axis=2).mean()) < 0.025
+
+
+@pytest.mark.slow
+def test_the_headline_tells_where_and_how_much() -> None:
+    (unseen,) = report().unseen_support
+    first = float(subject().recording.frames[0])
+    assert unseen.first_frame == pytest.approx(first, abs=1.0)
+    assert unseen.force_bw > 0.8
+    told = headline(report())
+    assert told[0].startswith("Solved, but not with what the recording shows alone")
+    assert "everything asked for holds" not in told[0]
+    assert any("Something unseen carries the body" in line for line in told)
+
+
+@pytest.mark.slow
+def test_what_is_carried_so_is_adapted() -> None:
+    made = adapted(0.1)
+    assert made.fault is None
+    assert made.adaptation.motion.places[-1, 2] == pytest.approx(0.1, abs=0.01)
+
+
+@pytest.mark.slow
+def test_a_dance_without_a_flight_is_fitted() -> None:
+    """Feet and hands support in turn, the feet drift with the suit, and there is no flight."""
+    recording = load_recording("rokoko_jesse_dance.bvh")
+    dance = measure(recording, MotionProblem(frames=(1.0, 250.0)))
+    found = fit_subject(dance, StageClock())
+    assert found.solved
+    assert found.schedule.flights == ()
+    assert fit_quality(found).joint_centres_rms_cm < 2.5
+
+
+@pytest.mark.slow
+def test_a_contact_that_contradicts_the_others_is_let_go_and_told() -> None:
+    """One point of a standing foot is said to be a hand's breadth from where it is."""
+    schedule, performance = hop().schedule, hop().performance
+    shifted = schedule.contacts[-1]
+    wrong = replace(shifted, place=shifted.place + np.array([0.0, 0.08, 0.0]))
+    contacts = (*schedule.contacts[:-1], wrong)
+    found = lasting_fit(
+        performance, replace(schedule, contacts=contacts), lambda s: [None] * len(s.contacts)
+    )
+    assert found.solved
+    assert {each.contact.point.split()[0] for each in found.let_go} == {wrong.point.split()[0]}
+    assert all(each.off > 0.005 for each in found.let_go)
+    assert [p.name for p in found.schedule.phases] == [p.name for p in schedule.phases]
