@@ -17,6 +17,7 @@
   loop [--out DIR]                        runs made loops: the seam in Blender, and by MuJoCo
   validate [FOLDER] [--out DIR]           forces of the fit against force plates, with a table
   compare BEFORE AFTER [--within X]       whether two folders of results hold the same motions
+  campaign [--cases N] [--seed S]         thousands of hostile cases: files, requests, sessions
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
   benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
   build [--out DIR]                       make and validate the extension's zips
@@ -55,6 +56,7 @@ COMMANDS = {
     "validate": ("devtools.validation.main", [], True),
     "compare": ("devtools.gallery.compare", [], False),
     "window": ("devtools.window.main", [], False),
+    "campaign": ("devtools.campaign.main", [], True),
     PEERS: ("benchmarks.benchmark", [], False),
     "build": ("devtools.build", [], False),
     "lint": ("devtools.checks.lint", [], True),

@@ -354,6 +354,9 @@ class _Process:
 
     def _last_words(self) -> str:
         """Cause of its end: the last line of its error stream, and its exit code."""
+        with suppress(subprocess.TimeoutExpired):
+            self._popen.wait(_LAST_WORDS_S)
+        self._popen.kill()  # one that has closed its pipe and stays would be waited for in vain
         code = self._popen.wait()
         self._listener.join(_LAST_WORDS_S)
         said = [line for line in self._last_lines if line]

@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING, Literal
 
 import bpy
 
+from .names import OperatorId
+
 OperatorResult = set[Literal["RUNNING_MODAL", "CANCELLED", "FINISHED", "PASS_THROUGH", "INTERFACE"]]
+
+NOT_OURS = "Hangtime has no operator “{}”"
 
 if TYPE_CHECKING:
     OperatorMixin = bpy.types.Operator
@@ -33,3 +37,11 @@ class PolledOperator(OperatorMixin):
         """Reports why nothing is done."""
         self.report({level}, why)
         return {"CANCELLED"}
+
+    def go_on_with(self, name: str, **values: object) -> OperatorResult:
+        """Invokes another of Hangtime's operators, by its bl_idname."""
+        if name not in list(OperatorId):
+            return self.refuse(NOT_OURS.format(name))
+        category, _, own = name.partition(".")
+        getattr(getattr(bpy.ops, category), own)("INVOKE_DEFAULT", **values)
+        return {"FINISHED"}

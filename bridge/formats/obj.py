@@ -5,6 +5,7 @@ Polygons become fans; materials, normals and all else are left aside.
 """
 
 from itertools import pairwise
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,8 @@ def read_obj(path: Path) -> tuple[FloatArray, IntArray]:
         try:
             if kind == "v":
                 x, y, z = map(float, words[:3])
+                if not isfinite(x + y + z):
+                    raise ValueError(line)
                 vertices.append([x, y, z])
             elif kind == "f":
                 corners = [_index(word, len(vertices)) for word in words]

@@ -1,6 +1,8 @@
 """Files that appear in the output folder together or not at all."""
 
 import os
+from contextlib import suppress
+from errno import EISDIR
 from pathlib import Path
 from types import TracebackType
 
@@ -41,7 +43,9 @@ class Outbox:
         trace: TracebackType | None,
     ) -> None:
         for name in self._names:
-            self._part(name).unlink(missing_ok=True)
+            # the folder may have gone, or a file may have its name
+            with suppress(FileNotFoundError, NotADirectoryError):
+                self._part(name).unlink()
         self._remove_made()
 
     def path(self, name: str) -> Path:
@@ -64,6 +68,9 @@ class Outbox:
         """
         delivered = []
         for name in self._names:
+            if (self.folder / name).is_dir():  # before any other gets its name
+                raise OutputNotWritable(str(self.folder / name), os.strerror(EISDIR))
+        for name in self._names:
             try:
                 os.replace(self._part(name), self.folder / name)
             except OSError as error:
@@ -77,9 +84,10 @@ class Outbox:
         return self.folder / f"{PART}{name}"
 
     def _remove_made(self) -> None:
-        """Takes back the folders made, deepest first."""
-        for folder in self._made:
-            folder.rmdir()
+        """Takes back the folders made, deepest first, as far as nothing else is in them."""
+        with suppress(OSError):
+            for folder in self._made:
+                folder.rmdir()
         self._made = []
 
 

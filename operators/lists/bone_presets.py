@@ -23,6 +23,7 @@ from ..solve.common import FaultyOperator, chosen_armature, required_armature
 
 NO_ARMATURE = "Choose or select an armature first"
 THERE_ALREADY = "There is a bone preset “{}” already: choose another name, or tick Replace"
+NO_NAME = "Give the file a name"
 NO_BONES = "No bones are mapped: press Find Bones, or choose them"
 MOST_NAMED = 4  # in a message
 
@@ -142,6 +143,8 @@ class ExportBonePresetOperator(_BonePreset, bpy.types.Operator, ExportHelper):  
         bones = _mapped(context)
         if not bones:
             return self.refuse(NO_BONES)
+        if not bpy.path.basename(self.filepath):
+            return self.refuse(NO_NAME)
         path = Path(bpy.path.abspath(self.filepath)).with_suffix(SUFFIX)
         write_preset(path, bones)
         self.report({"INFO"}, f"Exported {path.name}")

@@ -81,7 +81,4 @@ class TickNamedOperator(PolledOperator, bpy.types.Operator):
         row.used = not row.used
         choose_named(settings, self.name)
         redraw("VIEW_3D")
-        if self.then:
-            category, _, name = self.then.partition(".")
-            getattr(getattr(bpy.ops, category), name)("INVOKE_DEFAULT")
-        return {"FINISHED"}
+        return self.go_on_with(self.then) if self.then else {"FINISHED"}

@@ -138,6 +138,4 @@ class LeaveEditsOperator(PolledOperator, bpy.types.Operator):
         )
 
     def execute(self, _context: bpy.types.Context) -> OperatorResult:
-        category, _, name = self.then.partition(".")
-        getattr(getattr(bpy.ops, category), name)("INVOKE_DEFAULT", leave_edits=True)
-        return {"FINISHED"}
+        return self.go_on_with(self.then, leave_edits=True)

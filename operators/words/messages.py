@@ -138,6 +138,10 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "choose one of its bones.",
     faults.NotAboveZero: "“{request}” asks for a mass or a factor of {amount:g}; give it one above "
     "zero.",
+    faults.NotComputable: "What is asked for is too large or too small to compute with; give "
+    "masses, gravity, lengths, times and weights as they are in the world.",
+    faults.BeyondReason: "“{request}” asks for a factor of {amount:g}; give it one of at most "
+    "{most:g}.",
     faults.UnknownPhaseIn: "“{request}” is about the phase “{phase}”, which the clip does not "
     "have; it has {known:names}.",
     faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "

@@ -99,12 +99,17 @@ class BoundedStep:
 
 
 def solve_dual_qp(root: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper, root (m, m)."""
+    """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper, root (m, m).
+
+    Raises LinAlgError where these are not finite.
+    """
     m = len(root)
     # DAQP's tolerances are absolute: rows of length 1, and a violation of 1 to begin with.
     row = 1.0 / np.linalg.norm(root, axis=1)
     lower, upper = row * lower, row * upper
     size = max(float(lower.max()), float(-upper.min()))
+    if not (np.isfinite(size) and np.isfinite(root).all()):  # DAQP has an error of its own for it
+        raise np.linalg.LinAlgError("rows or bounds are not finite")
     if size <= 0.0:
         return np.zeros(m)
     solver = ca.conic(

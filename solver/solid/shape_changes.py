@@ -5,10 +5,11 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from ..body.character import Character
-from ..data.faults import NotAboveZero
+from ..data.faults import BeyondReason, NotAboveZero
 from ..data.requests import Shape, Through
 from .flesh import Flesh
 
+MOST_THICKNESS = 10.0  # a shin as wide as two metres
 NO_FLESH: Mapping[int, Flesh] = MappingProxyType({})
 
 
@@ -28,7 +29,8 @@ class ShapeChanges:
     def of(
         shapes: Sequence[Shape], character: Character, flesh: Mapping[int, Flesh] = NO_FLESH
     ) -> "ShapeChanges":
-        """As the requests say; factors of one bone multiply. Raises StillBone, NotAboveZero."""
+        """As the requests say; factors of one bone multiply. Raises StillBone, NotAboveZero,
+        BeyondReason."""
         thickness: dict[int, float] = {}
         loose: set[int] = set()
         together: list[frozenset[int]] = []
@@ -38,6 +40,8 @@ class ShapeChanges:
             bodies = frozenset(character.moved_by(shape.name, bone) for bone in shape.bones)
             for body in bodies:
                 thickness[body] = shape.thickness * thickness.get(body, 1.0)
+                if thickness[body] > MOST_THICKNESS:
+                    raise BeyondReason(shape.name, thickness[body], MOST_THICKNESS)
             if shape.through is Through.ALL:
                 loose |= bodies
             elif shape.through is Through.EACH_OTHER:

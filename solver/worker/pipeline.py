@@ -16,12 +16,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ..analysis.analyse import Analysis, analyse, build_figure
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule
-from ..data.faults import NoFit, NoSolution, Treadmill, UnseenSupport
+from ..data.faults import NoFit, NoSolution, NotComputable, Treadmill, UnseenSupport
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
@@ -244,10 +246,19 @@ def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, C
     return analyse(recording, replace(problem, frames=cycle.frames)), cycle
 
 
+@contextmanager
+def computable() -> Iterator[None]:
+    """Context of a solve. Raises NotComputable where its equations cannot be solved in numbers."""
+    try:
+        yield
+    except np.linalg.LinAlgError as error:
+        raise NotComputable from error
+
+
 def fit_subject(subject: Subject, clock: StageClock) -> Fit:
-    """The valid motion nearest to the recording, solved or not."""
+    """The valid motion nearest to the recording, solved or not. Raises NotComputable."""
     scene, recording = subject.problem.scene, subject.recording
-    with clock.stage(FITTING):
+    with clock.stage(FITTING), computable():
         fitted = lasting_fit(
             subject.analysis.performance,
             subject.analysis.schedule,
@@ -260,10 +271,10 @@ def fit_subject(subject: Subject, clock: StageClock) -> Fit:
 
 
 def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationResult:
-    """Adapts the subject's fit to its problem. Raises what `adapt` does."""
+    """Adapts the subject's fit to its problem. Raises what `adapt` does, and NotComputable."""
     if not fitted.solved:
         return AdaptationResult(subject, unadapted(fitted), no_fit(fitted))
-    with clock.stage(ADAPTING):
+    with clock.stage(ADAPTING), computable():
         adaptation = adapt(fitted, subject.problem, progress=clock.step)
         clock.ended(adaptation.outcome.violation)
     fault = None if adaptation.solved else _unsolved(NoSolution, adaptation, subject.problem)

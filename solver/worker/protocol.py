@@ -230,10 +230,10 @@ def receive(stream: IO[bytes]) -> Message | None:
     (length,) = _HEAD.unpack(head)
     if length > LARGEST:
         raise ProtocolError(f"a message of {length} bytes is announced")
-    body = stream.read(length)
-    if len(body) < length:
-        raise ProtocolError("a message breaks off")
     try:
+        body = stream.read(length)
+        if len(body) < length:
+            raise ProtocolError("a message breaks off")
         message = _Reader(BytesIO(body)).load()
     except _UNREADABLE as problem:
         raise ProtocolError(f"a message cannot be read: {problem}") from problem

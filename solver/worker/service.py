@@ -25,6 +25,7 @@ from .pipeline import (
     FITTING,
     StageClock,
     Subject,
+    computable,
     fit_possible,
     fit_subject,
     measure,
@@ -126,7 +127,8 @@ class Service:
             following = _Following(fitted, pelvis_range(fitted), follower)
             self._following = following
         follower = following.follower
-        status = follower.follow(problem)
+        with computable():
+            status = follower.follow(problem)
         motion, setup = follower.motion, follower.setup
         traces = subject.motion_traces(motion, setup.schedule, setup.changes, torques=False)
         summary = change(fitted, following.pelvis, setup, motion, traces)

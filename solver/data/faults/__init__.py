@@ -35,6 +35,7 @@ from .recordings import ZeroLengthBone as ZeroLengthBone
 from .requests import AsksNothing as AsksNothing
 from .requests import BadDimensions as BadDimensions
 from .requests import BadTiming as BadTiming
+from .requests import BeyondReason as BeyondReason
 from .requests import CrossedBounds as CrossedBounds
 from .requests import DependentRows as DependentRows
 from .requests import EmptyRange as EmptyRange
@@ -84,5 +85,6 @@ from .solving import BadRecipe as BadRecipe
 from .solving import ContradictoryPins as ContradictoryPins
 from .solving import NoFit as NoFit
 from .solving import NoSolution as NoSolution
+from .solving import NotComputable as NotComputable
 from .solving import OutputNotWritable as OutputNotWritable
 from .solving import WorkerDied as WorkerDied

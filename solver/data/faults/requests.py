@@ -21,6 +21,14 @@ class NotAboveZero(RequestFault):
 
 
 @dataclass
+class BeyondReason(RequestFault):
+    """A request's factor is so large that nobody means it, and no memory has room for it."""
+
+    amount: float
+    most: float
+
+
+@dataclass
 class ReturnTooEarly(Fault):
     """A take is to be back where it was by a frame of the recording that is adapted itself."""
 

@@ -55,3 +55,9 @@ class WorkerDied(Fault):
     """The process that solves ended without an answer; detail: what it last said, or its code."""
 
     detail: str
+
+
+@dataclass
+class NotComputable(Fault):
+    """Masses, forces and weights so far apart that the solver's equations have no solution in
+    floating-point numbers."""

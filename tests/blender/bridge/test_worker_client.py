@@ -303,6 +303,19 @@ def test_a_worker_that_talks_nonsense_is_not_believed(
     assert "bytes is announced" in answer.fault.detail
 
 
+def test_a_worker_that_closes_its_pipe_and_stays_is_not_waited_for(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    program = tmp_path / "silent.py"
+    program.write_text("import os, time; os.close(1); time.sleep(100)")
+    monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
+    monkeypatch.setattr("hangtime.bridge.worker_client._LAST_WORDS_S", 0.1)
+    began = time.monotonic()
+    answer = worker.ask(RequestKind.ANALYSE, jump, UP).wait()
+    assert answer == Failed(answer.id, WorkerDied("exit code -9"))
+    assert time.monotonic() - began < 30.0
+
+
 def test_without_a_python_there_is_a_fault(
     worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -9,6 +9,7 @@ from hangtime.bridge.formats.acclaim import find_asf, read_acclaim
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.guess import ACCLAIM_UNIT, guess_unit, guess_up
 from hangtime.bridge.formats.motion_clip import forward_kinematics, rest_axes, to_recording
+from hangtime.bridge.formats.obj import UnreadableMesh, read_obj
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
 from hangtime.tests.helpers.clips import load_clip, load_recording
@@ -369,3 +370,13 @@ def test_recording_of_the_hops_flies_where_the_list_says() -> None:
     flight = (recording.times > 1.96) & (recording.times < 2.20)
     stance = (recording.times > 2.59) & (recording.times < 3.19)
     assert lowest[flight].min() > lowest[stance].max()
+
+
+@pytest.mark.parametrize("vertex", ["v 0 nan 1", "v 0 0 inf", "v 1e400 0 0"])
+def test_a_mesh_with_a_place_that_is_no_number(vertex: str, tmp_path: Path) -> None:
+    """The analysis would look for ground at no place at all."""
+    path = tmp_path / "crate.obj"
+    path.write_text(f"v 0 0 0\n{vertex}\n")
+    with pytest.raises(UnreadableMesh) as caught:
+        read_obj(path)
+    assert caught.value.line == 2

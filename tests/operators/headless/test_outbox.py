@@ -1,5 +1,6 @@
 """Files of a job are delivered together, or not at all."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -29,3 +30,41 @@ def test_delivered_files_replace_the_old_ones(tmp_path: Path) -> None:
         assert outbox.deliver() == [tmp_path / "a.txt"]
     assert (tmp_path / "a.txt").read_text() == "new"
     assert len(list(tmp_path.iterdir())) == 1
+
+
+def write_where_nothing_is(folder: Path) -> None:
+    with Outbox(folder) as outbox:
+        outbox.write_text("report.txt", "new")
+        shutil.rmtree(folder.parent)
+        outbox.deliver()
+
+
+def write_below_a_file(folder: Path) -> None:
+    with Outbox(folder) as outbox:
+        shutil.rmtree(folder)
+        folder.write_text("a file of its name")
+        outbox.write_text("report.txt", "new")
+
+
+def write_over_a_folder(folder: Path) -> None:
+    with Outbox(folder) as outbox:
+        outbox.write_text("report.json", "new")
+        outbox.write_text("report.txt", "new")
+        outbox.deliver()
+
+
+def test_a_folder_that_goes_away_meanwhile(tmp_path: Path) -> None:
+    folder = tmp_path / "made" / "out"
+    for write in (write_where_nothing_is, write_below_a_file):
+        with pytest.raises(OutputNotWritable):
+            write(folder)
+    assert folder.read_text() == "a file of its name"
+
+
+def test_nothing_is_delivered_where_a_folder_has_a_files_name(tmp_path: Path) -> None:
+    (tmp_path / "report.txt").mkdir()
+    (tmp_path / "report.json").write_text("old")
+    with pytest.raises(OutputNotWritable):
+        write_over_a_folder(tmp_path)
+    assert (tmp_path / "report.json").read_text() == "old"
+    assert len(list(tmp_path.iterdir())) == 2

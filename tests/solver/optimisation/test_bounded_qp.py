@@ -47,6 +47,13 @@ def test_the_small_program_s_answer_is_scipy_s(seed: int, m: int) -> None:
     assert root @ w == pytest.approx(best.x, abs=1e-5 * (1.0 + np.abs(best.x).max()))
 
 
+@pytest.mark.parametrize("worst", [np.nan, np.inf])
+def test_no_program_is_solved_that_is_not_of_numbers(worst: float) -> None:
+    """CasADi would end it with an error of its own."""
+    with pytest.raises(np.linalg.LinAlgError):
+        solve_dual_qp(np.eye(2), np.array([0.0, worst]), np.array([1.0, worst]))
+
+
 @settings(max_examples=60, deadline=None)
 @given(SEED, st.integers(1, 30))
 def test_multipliers_push_from_the_bound_they_are_at(seed: int, m: int) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hangtime.solver.arrays import IntArray
 from hangtime.solver.body.anatomy import Part
-from hangtime.solver.data.faults import NotAboveZero, StillBone
+from hangtime.solver.data.faults import BeyondReason, NotAboveZero, StillBone
 from hangtime.solver.data.requests import Shape, Through
 from hangtime.solver.solid.mesh_surface import scene_shapes
 from hangtime.solver.solid.penetrations import Penetrations, placed_at
@@ -213,10 +213,14 @@ def test_thickness_is_a_factor_on_the_radius() -> None:
         assert after.radius == pytest.approx(thick * before.radius)
 
 
-def test_a_shape_of_no_thickness_or_of_no_body_is_refused() -> None:
+def test_a_shape_of_no_thickness_or_too_much_or_of_no_body_is_refused() -> None:
     character = fitted_hop().motion.transcription.character
     with pytest.raises(NotAboveZero):
         ShapeChanges.of((Shape("Ghost", ("Head",), thickness=0.0),), character)
+    for beyond in (1e12, 4.0):  # which four times four is, too
+        shape = Shape("Giant", ("Head",), thickness=beyond)
+        with pytest.raises(BeyondReason):  # arrays larger than any memory
+            ShapeChanges.of((shape, replace(shape, name="Again")), character)
     with pytest.raises(StillBone):
         ShapeChanges.of((Shape("Tail", ("Tail",)),), character)
 

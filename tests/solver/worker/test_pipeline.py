@@ -8,6 +8,7 @@ from hangtime.solver.data.faults import (
     BadTiming,
     ContradictoryPins,
     Fault,
+    NotComputable,
     OutOfReach,
     StillBone,
     UnknownBone,
@@ -169,3 +170,11 @@ def test_a_solution_is_timed_and_has_all_its_parts() -> None:
     assert clock.done[0].seconds > 0.0
     np.testing.assert_array_equal(result.track.frames, result.traces().frames)
     assert result.recording.frames[0] == result.track.frames[0]
+
+
+def test_what_no_numbers_can_hold_is_a_fault() -> None:
+    """Matrices that are not positive definite ended in a traceback."""
+    requests = Requests(body=BodyChange(mass=1e-7, gravity=1e13))
+    asked = subject().asked(MotionProblem(frames=FRAMES, requests=requests))
+    with pytest.raises(NotComputable):
+        adapt_fit(asked, fitted_hop(), StageClock())

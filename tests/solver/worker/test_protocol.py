@@ -239,6 +239,22 @@ class Trap:
         return print, ("sprung",)
 
 
+class _Starved(io.BytesIO):
+    """There is no memory for as much as is announced."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        if size is not None and size > 100:
+            raise MemoryError
+        return super().read(size)
+
+
+def test_a_message_that_memory_has_no_room_for_is_refused() -> None:
+    """The thread that listens would end without a word, and whoever asked would wait for ever."""
+    stream = _Starved((1000).to_bytes(8, "little"))
+    with pytest.raises(ProtocolError, match="cannot be read"):
+        receive(stream)
+
+
 @pytest.mark.parametrize(
     "content",
     [Trap(), io.BytesIO, np.testing.assert_allclose, ("Ready", PROTOCOL), PROBLEM],

@@ -78,6 +78,13 @@ def test_presets_are_exported_and_imported(tmp_path: Path) -> None:
     assert bone_presets.preset_names() == ["handed on"]
 
 
+@pytest.mark.parametrize("path", ["", "/"])
+def test_a_preset_is_not_exported_without_a_name(path: str) -> None:
+    made("spanish")
+    with pytest.raises(RuntimeError, match="Error: Give the file a name"):
+        bpy.ops.hangtime.export_bone_preset(filepath=path)
+
+
 def test_a_preset_is_overwritten_only_where_that_is_asked_for() -> None:
     armature = made("spanish")
     assert bpy.ops.hangtime.save_bone_preset(name="Mine") == {"FINISHED"}

@@ -97,3 +97,11 @@ def test_what_a_failure_names_is_unticked_and_ticked_again(analysed: bpy.types.O
     assert bpy.ops.hangtime.tick_named(name="Left heel 1") == {"FINISHED"}
     assert row.used
     assert bpy.ops.hangtime.tick_named(name="Nobody") == {"CANCELLED"}
+
+
+@pytest.mark.usefixtures("analysed")
+def test_what_is_no_operator_of_ours_does_not_go_on() -> None:
+    with pytest.raises(RuntimeError, match="Error: Hangtime has no operator “Landing”"):
+        bpy.ops.hangtime.leave_edits(then="Landing")
+    with pytest.raises(RuntimeError, match=r"Error: Hangtime has no operator “wm\.quit_blender”"):
+        bpy.ops.hangtime.tick_named(name="Left heel 1", then="wm.quit_blender")

@@ -1,0 +1,1 @@
+"""The hostile campaign: damaged files, random requests, abused processes and sessions."""

@@ -1,0 +1,111 @@
+"""Motion files and meshes, damaged: a reader reads them, or names the fault."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from ....bridge.formats.acclaim import find_asf, read_acclaim
+from ....bridge.formats.bvh import read_bvh
+from ....bridge.formats.guess import guess_unit, guess_up
+from ....bridge.formats.motion_clip import MotionClip, to_recording
+from ....bridge.formats.obj import UnreadableMesh, read_obj
+from ....solver.data.problem import MotionProblem
+from ....solver.data.recording import Recording
+from ....solver.worker.pipeline import measure
+from ...environment.virtual_environment import ROOT
+from ...recordings import HELD, HOPS, JUMP, find
+from ..protocol.case import Family, HostileCase
+from ..protocol.damage import damaged_bytes, damaged_text
+
+FRAMES = 5  # of a file that is only read
+ANALYSED = 60  # of one that is also analysed
+
+
+def bvh(case: HostileCase) -> None:
+    """A few frames of the jump's BVH."""
+    path = case.folder / "clip.bvh"
+    _write_damaged(case, path, short_bvh(FRAMES))
+    _check(_recording(read_bvh(path)))
+
+
+def acclaim(case: HostileCase) -> None:
+    """A few frames of a hop, with its skeleton; one of the two is damaged."""
+    asf, amc = case.folder / "01.asf", case.folder / "01_01.amc"
+    texts = [_text(find_asf(find(HOPS))), short_amc(FRAMES)]
+    hurt = int(case.rng.integers(2))
+    for i, path in enumerate((asf, amc)):
+        if i == hurt:
+            _write_damaged(case, path, texts[i])
+        else:
+            path.write_text(texts[i], encoding="utf-8")
+    _check(_recording(read_acclaim(find_asf(amc), amc)))
+
+
+def obj(case: HostileCase) -> None:
+    """The examples' meshes."""
+    path = case.folder / "mesh.obj"
+    meshes = sorted((ROOT / "examples" / "world").glob("*.obj"))
+    _write_damaged(case, path, _text(case.pick(meshes)))
+    try:
+        vertices, triangles = read_obj(path)
+    except (UnreadableMesh, UnicodeDecodeError):  # as the recipe's reader expects
+        return
+    if not np.isfinite(vertices).all():
+        raise ValueError("a vertex is not finite")
+    assert triangles.min(initial=0) >= 0
+    assert triangles.max(initial=-1) < len(vertices)
+
+
+def analysed(case: HostileCase) -> None:
+    """A damaged piece of the jump that is still a clip, analysed."""
+    path = case.folder / "clip.bvh"
+    path.write_text(damaged_text(case, short_bvh(ANALYSED)), encoding="utf-8", newline="")
+    measure(_recording(read_bvh(path)), MotionProblem())
+
+
+@cache
+def short_bvh(frames: int) -> str:
+    """The jump's BVH, from its middle on."""
+    head, _, motion = _text(HELD / JUMP).partition("MOTION")
+    _, time, *rows = motion.strip().splitlines()
+    kept = rows[160 : 160 + frames]
+    return "\n".join([f"{head}MOTION", f"Frames: {len(kept)}", time, *kept, ""])
+
+
+@cache
+def short_amc(frames: int) -> str:
+    """The first frames of the hops."""
+    lines = _text(find(HOPS)).splitlines()
+    return "\n".join(lines[: lines.index(str(frames + 1))])
+
+
+@cache
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def _write_damaged(case: HostileCase, path: Path, text: str) -> None:
+    if case.chance(0.4):
+        path.write_bytes(damaged_bytes(case, text.encode()))
+    else:
+        path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
+
+
+def _recording(clip: MotionClip) -> Recording:
+    up = guess_up(clip)
+    return to_recording(clip, clip.unit or guess_unit(clip, up), up)
+
+
+def _check(recording: Recording) -> None:
+    for part in (recording.times, recording.heads, recording.rotations):
+        if not np.isfinite(part).all():
+            raise ValueError("a pose is not finite")
+
+
+FAMILIES = (
+    Family("BVH files", 20.0, 10.0, bvh),
+    Family("ASF/AMC files", 10.0, 10.0, acclaim),
+    Family("OBJ files", 5.0, 10.0, obj),
+    Family("damaged clips, analysed", 4.0, 30.0, analysed),
+)

@@ -1,0 +1,110 @@
+"""Recipes: those of the examples, damaged; and any keys with any values."""
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from ....bridge.recipe.export import EXPORT
+from ....bridge.recipe.keys import KEYS
+from ....bridge.recipe.loop import LOOP
+from ....bridge.recipe.objects import HEADER
+from ....bridge.recipe.objects import KEYS as OBJECT_KEYS
+from ....bridge.recipe.problem import (
+    ADDED,
+    CONTACT,
+    OWN_KEYS,
+    PIN,
+    locate,
+    parse_recipe,
+    read_recipe_text,
+    write_recipe,
+)
+from ....bridge.recipe.requests import BODY, NAMED
+from ....bridge.recipe.result import RESULT
+from ....bridge.recipe.solution import REDUCTION, SOLUTION
+from ....bridge.recipe_syntax.items import Kind
+from ....solver.data.faults import UnknownBone, UnknownPhase
+from ...environment.virtual_environment import ROOT
+from ..protocol.case import Family, HostileCase
+from ..protocol.damage import damaged_bytes, damaged_text
+
+ARRAYS: tuple[Kind[Any], ...] = (PIN, CONTACT, ADDED, *NAMED)
+TABLES: tuple[Kind[Any], ...] = (BODY, SOLUTION, RESULT, KEYS, LOOP, EXPORT)
+MANY = {kind.header: kind.keys for kind in ARRAYS} | {HEADER: OBJECT_KEYS}
+ONCE = {
+    **{kind.header: kind.keys for kind in TABLES},
+    "solution.reduction": REDUCTION.keys,
+    "solution.objectives": ("closeness", "power", '"mass displacement"', '"torque output"'),
+}
+VALUES = (
+    *("0", "1", "-1", "0.5", "1e300", "-1e300", "1e-300", "nan", "inf", "-inf", "150", "200.5"),
+    *("9" * 400, "9" * 5000, "true", "false", '""', '" "', '"ground 2"', '"flight 1"', '"pca"'),
+    *('"LeftFoot"', '"Hips"', '"explicit"', '"world"', '"surface"', '"apex"', '"fit"', '"\\u0000"'),
+    *("[]", "[0, 0, 1]", "[1, nan, 0]", "[0, 0]", '["LeftFoot"]', "[[]]", "{}", "[{}]", "[1, [2]]"),
+    *("{ z = 1 }", "{ z = nan }", "[{ frame = 1, place = [0, 0, 1] }]", "1979-05-27", "07:32:00"),
+    *("{ up = 1e300 }", '[[{ bone = "Hips", weights = [1] }]]', "[[0, 0, 0], [1, 0, 0]]"),
+    *("[[0, 1, 2]]", "[0.1, 0.1, 0.1]", '"crate.obj"', '"."', '"/dev/full"', '"matrix"'),
+)
+
+
+def damaged(case: HostileCase) -> None:
+    """An example's recipe."""
+    text = _examples()[int(case.rng.integers(len(_examples())))]
+    path = case.folder / "recipe.toml"
+    if case.chance(0.3):
+        path.write_bytes(damaged_bytes(case, text.encode()))
+    else:
+        path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
+    _read(path)
+
+
+def made_up(case: HostileCase) -> None:
+    """Any tables, keys and values, most of the keys where they belong."""
+    lines = [_entry(case, OWN_KEYS) for _ in range(int(case.rng.integers(3)))]
+    for _ in range(int(case.rng.integers(1, 5))):
+        many = case.chance(0.7)
+        header = case.pick(list(MANY if many else ONCE))
+        lines.append(f"[[{header}]]" if many != case.chance(0.03) else f"[{header}]")
+        keys = (MANY | ONCE)[header]
+        chosen = [k for k in keys if case.chance(min(1.0, 3.0 / len(keys)))]
+        lines += [_entry(case, (key,)) for key in chosen]
+    path = case.folder / "recipe.toml"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    _read(path)
+
+
+def as_json(case: HostileCase) -> None:
+    """JSON, which starts with a brace, damaged."""
+    values = {"frames": [1, 9], "pin": [{"phase": "ground 2", "up": 0.1, "points": ["Left heel"]}]}
+    path = case.folder / "recipe.json"
+    text = json.dumps(values, indent=1)
+    path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
+    _read(path)
+
+
+def _entry(case: HostileCase, keys: tuple[str, ...]) -> str:
+    return f"{case.pick(keys)} = {case.pick(VALUES)}"
+
+
+def _read(path: Path) -> None:
+    """As the command line does; what is read must be written so that it is read the same."""
+    text = read_recipe_text(path)
+    recipe = parse_recipe(text, str(path))
+    for fault in (UnknownPhase("Landing", "x", ()), UnknownBone("Pin 1", "LeftFoot")):
+        locate(text, fault)
+    again = write_recipe(recipe.problem, result=recipe.result, keys=recipe.keys)
+    if parse_recipe(again).problem.requests != recipe.problem.requests:
+        raise ValueError(f"written otherwise than read:\n{again}")
+
+
+@cache
+def _examples() -> list[str]:
+    return [p.read_text(encoding="utf-8") for p in sorted((ROOT / "examples").rglob("*.toml"))]
+
+
+FAMILIES = (
+    Family("recipes, damaged", 15.0, 10.0, damaged),
+    Family("recipes, made up", 25.0, 10.0, made_up),
+    Family("recipes in JSON", 3.0, 10.0, as_json),
+)
