@@ -72,11 +72,18 @@ class BlockBanded:
         Raises numpy.linalg.LinAlgError if the matrix is not positive definite.
         """
         band, count, n, _ = (self.band, *self.lower.shape[1:])
+        # Forces and angles differ by 1e9. To unit diagonal first: inverting blocks that are scaled as
+        # badly as these loses the small unknowns (Higham 2002, 10.1).
+        diagonal = np.diagonal(self.lower[0], axis1=1, axis2=2)
+        if not (diagonal > 0.0).all():
+            raise np.linalg.LinAlgError("the matrix is not positive definite")
+        size = np.concatenate([np.sqrt(diagonal), np.ones((band, n))])  # (K + band, n)
         # Blocks below each other lie together: column k is (band + 1) n by n. Some columns of zeros
         # at the end, so that all are alike.
         columns = np.zeros((count + band, band + 1, n, n))
         for j, below in enumerate(self.lower):
-            columns[: count - j, j] = below[: count - j]
+            scaled = below[: count - j] / size[j:count, :, None]
+            columns[: count - j, j] = scaled / size[: count - j, None, :]
         columns = columns.reshape(count + band, (band + 1) * n, n)
         inverse = np.empty((count, n, n))
         for k in range(count):
@@ -86,6 +93,8 @@ class BlockBanded:
             update = panel @ panel.T
             for j in range(band):
                 columns[k + 1 + j, : (band - j) * n] -= update[j * n :, j * n : (j + 1) * n]
+            columns[k, n:] *= size[k + 1 : k + 1 + band].reshape(-1, 1)
+            inverse[k] /= size[k]
         return CholeskyFactor(inverse, columns[:count, n:])
 
 
