@@ -155,7 +155,7 @@ def restore(
     steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
     Jacobian and factor, which costs a third of a new one (chord steps). wider: asked where
     the rows nearly hold, and where they hold, for a set with more guard rows to go on in, or the
-    same.
+    same; with more rows the next step has a new Jacobian.
     """
     iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
     steps: list[Step] = []
@@ -213,7 +213,8 @@ class _ChordIterate:
         return Step(stage, before, trial.length, worst)
 
     def widen(self, feasible: FeasibleSet) -> None:
-        """Goes on in a set with other guard rows, by the Jacobian and factor that are there."""
+        """Goes on in a set with other guard rows, and with a new Jacobian: the steps before tell
+        how well the old one serves near by, but a guard that joins may ask for a long way."""
         t, self._feasible = feasible.transcription, feasible
         guards = t.guard_rows(self.x)
         if self._linearised is not None:
@@ -222,7 +223,7 @@ class _ChordIterate:
             self._rows = Rows.join([self._rows.some(~self._rows.guards), guards])
         kept = np.arange(len(self._value)) < len(self._value) - self._guards
         self._value = np.concatenate([self._value[kept], guards.value])
-        self._guards = len(guards.value)
+        self._guards, self._stale = len(guards.value), True
         self.violation, self._before = max(self.violation, worst_violation(guards)), np.inf
 
     def _linearise(self) -> LinearisedProblem:
