@@ -5,6 +5,7 @@ The solver's metres and seconds become Blender's units and scene frames here, an
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...solver.data.contacts import Contact, ContactSchedule, Phase, PhaseKind, numbered
+from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
 from ...solver.data.faults import EmptyRange
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import Recording, Skin, digest
@@ -26,7 +27,7 @@ from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
-from ..rows.phases import phases_of
+from ..rows.phases import phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options
 from .bone_mapping import chosen_parts
@@ -187,7 +188,10 @@ def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, .
     ground = ground_members(settings, current_scene())
     used = [row for row in settings.contacts if row.used]
     bare = [_bare_contact(row, span[0], rate, duration) for row in used]
-    schedule = ContactSchedule(numbered(bare), duration, floor_m=0.0)
+    unseen = tuple(
+        Interval(*((frame - span[0]) / rate for frame in ends)) for ends in unseen_frames(settings)
+    )
+    schedule = ContactSchedule(numbered(bare), duration, 0.0, unseen)
     called = {(c.point, c.start): c.name for c in schedule.contacts}
     pins = []
     for row, contact in zip(used, bare, strict=True):
@@ -243,6 +247,8 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     first, rate = span_of(settings, recording)[0], frames_per_second(current_scene())
     settings.measured_height = found.height
     settings.analysed = analysis_key(settings, recording)
+    unseen = [[first + u.start * rate, first + u.end * rate] for u in found.schedule.unseen]
+    settings.unseen = json.dumps(unseen) if unseen else ""
     for stance, (name, axes) in zip(
         _resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
     ):

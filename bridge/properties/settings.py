@@ -114,6 +114,7 @@ class HangtimeSettings(bpy.types.PropertyGroup):
 
     fit_quality: hidden(text())
     analysed: hidden(text())  # digest
+    unseen: hidden(text())  # JSON: [first, last frame] of each span that something unseen carries
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
     active_contact: hidden(whole())
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -49,8 +50,15 @@ def phases(
 
 
 def carried(settings: Settings) -> list[tuple[float, float]]:
-    """When contacts that count touch, as the artist has them."""
-    return [(row.start_frame, row.end_frame) for row in settings.contacts if row.used]
+    """When contacts that count touch, as the artist has them, or something unseen carries."""
+    touching = [(row.start_frame, row.end_frame) for row in settings.contacts if row.used]
+    return [*touching, *unseen_frames(settings)]
+
+
+def unseen_frames(settings: Settings) -> list[tuple[float, float]]:
+    """First and last scene frame of each interval in which something unseen carries the body; they
+    overlap the contacts beside them, whose frames have single precision, by a hair."""
+    return [(first - SAME, last + SAME) for first, last in json.loads(settings.unseen or "[]")]
 
 
 def clip_ends(settings: Settings) -> tuple[float, float] | None:

@@ -61,6 +61,7 @@ class Settings(Protocol):
     last_frame: int
     whole_stance: bool
     active_contact: int
+    unseen: str
 
     @property
     def id_data(self) -> Any: ...  # the armature

@@ -33,7 +33,7 @@ from .span import ResultSpan
 
 _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
-    "shapes_told",
+    *("shapes_told", "unseen"),
     *("whole_stance", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
     "keep_polish",
@@ -188,7 +188,7 @@ def start_from_result(armature: bpy.types.Object, result: bpy.types.Action) -> N
         if settings.constraints[index].span != Span.ALWAYS.name:
             settings.constraints.remove(index)
     forget(armature)
-    settings.analysed = settings.fit_quality = settings.status = ""
+    settings.analysed = settings.unseen = settings.fit_quality = settings.status = ""
     result.use_fake_user = True
     show(armature, result)
 

@@ -211,6 +211,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "({acceleration:.0f} m/s²), and nobody could stay on it; smooth its keys there.",
     faults.UnknownContact: "The pin “{pin}” names “{what}”, which does not touch in its phase; "
     "what touches is {known:names}.",
+    faults.PinLetGo: "The pin “{pin}” moves {contacts:names}, which cannot be held beside the "
+    "recording's other contacts, so the fit let go of what it moves; correct these contacts' "
+    "frames, or pin others.",
     faults.NoFaces: "The object “{thing}” has no faces, so nothing can stand on it or run into it; "
     "choose a mesh with faces.",
     faults.NotFinite: "The object “{thing}” has a vertex or a place that is no number; mend its "

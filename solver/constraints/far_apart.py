@@ -25,7 +25,8 @@ LONGER = 2.0  # times the recording's, that a flight may last in the end
 class HeldPoint:
     """A point of the body that is held from start to end, s.
 
-    place: m, world, (U, 3) at instants (U,) s. asked: whether the artist put it there.
+    place: m, world, (U, 3) at instants (U,) s. asked: whether the artist put it there. was: (3,) m,
+    where a contact was recorded; None of what was never there.
     """
 
     name: str
@@ -34,39 +35,55 @@ class HeldPoint:
     end: float
     place: Callable[[FloatArray], FloatArray]
     asked: bool
+    was: FloatArray | None = None
 
 
 def check_apart(
-    requests: Requests, context: EvaluationContext, motion: Motion, pinned: Mapping[str, str]
+    requests: Requests,
+    context: EvaluationContext,
+    motion: Motion,
+    recorded: FloatArray,
+    pinned: Mapping[str, str],
 ) -> None:
     """Refuses places that are further apart than the body is long, or than it can go in time.
 
-    motion: with the contacts at their places. pinned: the pin that moves a contact, by names.
+    motion: with the contacts at their places. recorded: (n_contacts, 3) m, where they were; what
+    was as far apart there is the fit's affair. pinned: the pin that moves a contact, by names.
     Raises ContradictoryPins, OutOfReach.
     """
-    held = [*_contacts(motion, pinned), *_points(requests, context)]
+    held = [*_contacts(motion, recorded, pinned), *_points(requests, context)]
     for one, other in combinations(held, 2):
         if not (one.asked or other.asked):
             continue  # what was recorded is the fit's affair
         least, most = _reach(context.character, one.point, other.point)
+        was = _recorded_apart(one, other)
         first, second = (one, other) if one.asked else (other, one)
         if _together(one, other):
             times = np.linspace(max(one.start, other.start), min(one.end, other.end), INSTANTS)
             apart = np.linalg.norm(one.place(times) - other.place(times), axis=1)
+            if was is not None:
+                least, most = min(least, was), max(most, was)
             wrong = float(max(apart.max() - most, least - apart.min()))
             if wrong > SLACK:
                 raise ContradictoryPins(first.name, second.name, wrong)
         elif requests.solution.human:
-            _check_speed(first, second, most)
+            _check_speed(first, second, most, 0.0 if was is None else was)
 
 
-def _check_speed(one: HeldPoint, other: HeldPoint, most: float) -> None:
-    """most: m, by which the two points of the body are apart at most."""
+def _recorded_apart(one: HeldPoint, other: HeldPoint) -> float | None:
+    """Distance of two recorded contacts, m; None where one of the two was not recorded."""
+    if one.was is None or other.was is None:
+        return None
+    return float(np.linalg.norm(one.was - other.was))
+
+
+def _check_speed(one: HeldPoint, other: HeldPoint, most: float, was: float) -> None:
+    """most: m, by which the two points of the body are apart at most. was: m, in the recording."""
     former, latter = (one, other) if one.end <= other.start else (other, one)
     seconds = latter.start - former.end
     ends = former.place(np.array([former.end])), latter.place(np.array([latter.start]))
     apart = float(np.linalg.norm(ends[0] - ends[1]))
-    if apart > most + FASTEST * LONGER * seconds:
+    if apart > max(most + FASTEST * LONGER * seconds, was + SLACK):
         raise OutOfReach(one.name, other.name, apart, seconds)
 
 
@@ -77,10 +94,12 @@ def _together(one: HeldPoint, other: HeldPoint) -> bool:
     return end > start or (instant and end == start)
 
 
-def _contacts(motion: Motion, pinned: Mapping[str, str]) -> Iterator[HeldPoint]:
+def _contacts(
+    motion: Motion, recorded: FloatArray, pinned: Mapping[str, str]
+) -> Iterator[HeldPoint]:
     """Those that stand on ground that is still."""
     t = motion.transcription
-    for contact, place in zip(t.contacts, motion.places, strict=True):
+    for contact, place, was in zip(t.contacts, motion.places, recorded, strict=True):
         free = contact.held is not None or contact.track is not None or contact.ride is not None
         if not free:
             name, point = contact.contact.name, t.points[contact.point]
@@ -91,6 +110,7 @@ def _contacts(motion: Motion, pinned: Mapping[str, str]) -> Iterator[HeldPoint]:
                 contact.contact.end,
                 _still(place),
                 name in pinned or contact.contact.asked_for,
+                None if contact.contact.asked_for else was,
             )
 
 

@@ -79,7 +79,7 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     `progress` ends by raising Stopped, with the motion as it stood.
     """
     setup = set_up(fit, problem)
-    check_places(fit, problem, setup.context, setup.start, setup.target)
+    check_places(fit, problem, setup.context, setup.start, setup.fitted, setup.target)
     _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)

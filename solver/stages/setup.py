@@ -213,15 +213,21 @@ def requested(fit: Fit, problem: MotionProblem) -> Requested:
 
 
 def check_places(
-    fit: Fit, problem: MotionProblem, context: EvaluationContext, start: Motion, target: Standing
+    fit: Fit,
+    problem: MotionProblem,
+    context: EvaluationContext,
+    start: Motion,
+    fitted: Standing,
+    target: Standing,
 ) -> None:
     """Refuses what is too far apart for any body. Raises ContradictoryPins, OutOfReach.
 
-    context, start: of the problem; target: where its contacts shall be.
+    context, start: of the problem; fitted: where its contacts were; target: where they shall be.
     """
     if not target.moves:  # a train takes its riders further than they could go
         pinned = pinned_by(problem.pins, fit.schedule)
-        check_apart(problem.requests, context, replace(start, places=target.places), pinned)
+        moved = replace(start, places=target.places)
+        check_apart(problem.requests, context, moved, fitted.places, pinned)
 
 
 def set_up(fit: Fit, problem: MotionProblem) -> Setup:

@@ -49,9 +49,12 @@ def lasting_fit(
         if found.solved or periodic or remaining == 0:
             break
         released = _contradictory(found) if remaining > 1 else _every(schedule)
-        schedule = _without(schedule, released) if released else _carried(found)
+        easier = _without(schedule, released) if released else _carried(found)
         if remaining == 1:
-            schedule = replace(schedule, unseen=(Interval(0.0, schedule.duration),))
+            easier = replace(easier, unseen=(Interval(0.0, schedule.duration),))
+        if not released and easier.unseen == schedule.unseen:
+            break  # nothing is left to let go of
+        schedule = easier
         let_go += released
     never = () if periodic or not found.solved else _never_flown(found)
     if never:

@@ -56,6 +56,7 @@ from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion
 from .lasting_fit import lasting_fit
+from .other_phases import on_phases_of
 from .possible import check_requested
 
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
@@ -271,14 +272,23 @@ def fit_subject(subject: Subject, clock: StageClock) -> Fit:
 
 
 def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationResult:
-    """Adapts the subject's fit to its problem. Raises what `adapt` does, and NotComputable."""
+    """Adapts the subject's fit to its problem. Raises what `adapt` and `on_fit` do, and
+    NotComputable."""
     if not fitted.solved:
         return AdaptationResult(subject, unadapted(fitted), no_fit(fitted))
+    subject = on_fit(subject, fitted)
     with clock.stage(ADAPTING), computable():
         adaptation = adapt(fitted, subject.problem, progress=clock.step)
         clock.ended(adaptation.outcome.violation)
     fault = None if adaptation.solved else _unsolved(NoSolution, adaptation, subject.problem)
     return AdaptationResult(subject, adaptation, fault)
+
+
+def on_fit(subject: Subject, fitted: Fit) -> Subject:
+    """The subject, its problem in the fit's phases and contacts. Raises as `on_phases_of` does."""
+    found = subject.analysis.schedule
+    problem = on_phases_of(subject.problem, found, fitted.schedule, subject.recording)
+    return replace(subject, problem=problem)
 
 
 def fit_possible(subject: Subject, clock: StageClock) -> Fit:

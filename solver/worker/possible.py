@@ -35,4 +35,4 @@ def check_requested(
     fit = Fit((outcome,), guess.places, performance, schedule)
     asked = requested(fit, problem)
     build_constraints(problem.requests, asked.context, asked.start.transcription)
-    check_places(fit, problem, asked.context, asked.start, asked.target)
+    check_places(fit, problem, asked.context, asked.start, asked.fitted, asked.target)

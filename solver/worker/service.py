@@ -30,6 +30,7 @@ from .pipeline import (
     fit_subject,
     measure,
     no_fit,
+    on_fit,
     solve,
 )
 from .progress import ProgressFraction
@@ -121,7 +122,7 @@ class Service:
         )
 
     def _followed(self, request: int, subject: Subject, fitted: Fit) -> Followed:
-        problem, following = subject.problem, self._following
+        problem, following = on_fit(subject, fitted).problem, self._following
         if following is None or following.fit is not fitted:
             follower = Follower(fitted, problem, self._similar(fitted, problem))
             following = _Following(fitted, pelvis_range(fitted), follower)

@@ -87,4 +87,5 @@ from .solving import NoFit as NoFit
 from .solving import NoSolution as NoSolution
 from .solving import NotComputable as NotComputable
 from .solving import OutputNotWritable as OutputNotWritable
+from .solving import PinLetGo as PinLetGo
 from .solving import WorkerDied as WorkerDied

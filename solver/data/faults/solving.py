@@ -51,6 +51,14 @@ class NoFit(NoSolution):
 
 
 @dataclass
+class PinLetGo(Fault):
+    """A pin moves only contacts that the fit let go, as no motion holds them beside the others."""
+
+    pin: str
+    contacts: tuple[str, ...]
+
+
+@dataclass
 class WorkerDied(Fault):
     """The process that solves ended without an answer; detail: what it last said, or its code."""
 

@@ -137,6 +137,18 @@ def test_what_nobody_can_do_is_said_before_the_fit(
     assert {said[key] for key in ("first", "second", "request", "other") if key in said} == named
 
 
+def test_a_pin_is_not_blamed_for_places_that_the_recording_has_apart() -> None:
+    """A foot that is found in two places, one right after the other, and moved as a whole."""
+    schedule = hop().schedule
+    toe = next(c for c in schedule.contacts if c.name == "Right toe 1")
+    turn = 0.5 * (toe.start + toe.end)
+    away = replace(toe, name="Right toe 9", start=turn, place=toe.place + np.array([0.0, 0.3, 0.0]))
+    contacts = [*(c for c in schedule.contacts if c is not toe), replace(toe, end=turn), away]
+    torn = replace(schedule, contacts=tuple(sorted(contacts, key=lambda c: (c.start, c.point))))
+    pin = Pin("Stance", "ground 1", offset=(0.1, 0.0, 0.0))
+    check_requested(hop().performance, torn, pinned(pin))
+
+
 def test_what_can_be_done_is_not_refused_before_the_fit() -> None:
     reach = PointRequest("Reach", "LeftHand", TOP, relative=(0.3, 0, 0), axes=PointAxes.TRAVEL)
     steps = PointRequest("Then", "LeftHand", STANDING, relative=(0, 0, 0.2))

@@ -1,0 +1,105 @@
+"""What a problem names by phase, on a fit whose phases are others than the analysis's.
+
+A fit that lets contacts go, or doubts a flight, joins phases and counts those behind anew. Who
+asked for "ground 2" saw the analysis: the same contacts and instants are meant.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from ..analysis.pinned_places import chosen_contacts, phase_of
+from ..data.contacts import ContactSchedule, Phase
+from ..data.faults import PinLetGo, UnknownPhaseIn
+from ..data.problem import MotionProblem, Pin
+from ..data.recording import Recording
+from ..data.requests import Lift, PhaseTiming, Requests, When
+
+
+def on_phases_of(
+    problem: MotionProblem, found: ContactSchedule, fitted: ContactSchedule, recording: Recording
+) -> MotionProblem:
+    """The problem in the phases and contacts of a fit; itself where these are those found.
+
+    Raises PinLetGo, UnknownPhaseIn, and as `chosen_contacts` does.
+    """
+    same = [c.name for c in found.contacts] == [c.name for c in fitted.contacts]
+    if same and found.phases == fitted.phases:
+        return problem
+    change = _Change(found, fitted, recording)
+    return replace(
+        problem,
+        pins=tuple(change.pin(pin) for pin in problem.pins),
+        requests=change.requests(problem.requests),
+    )
+
+
+@dataclass(frozen=True)
+class _Change:
+    """From the schedule that the analysis found to that of the fit, on the same time."""
+
+    found: ContactSchedule
+    fitted: ContactSchedule
+    recording: Recording
+
+    def pin(self, pin: Pin) -> Pin:
+        """The pin on those of its contacts that are left."""
+        chosen = chosen_contacts(pin, phase_of(pin, self.found), self.found)
+        names = [self.found.contacts[i].name for i in chosen]
+        left = [c for c in self.fitted.contacts if c.name in names]
+        if not left:
+            raise PinLetGo(pin.name, tuple(names))
+        phase = self.fitted.stance(left[0])
+        every = len(left) == len(self.fitted.of_phase(phase))
+        touching = () if every and not pin.touching else tuple(c.name for c in left)
+        return replace(pin, phase=phase.name, touching=touching)
+
+    def requests(self, asked: Requests) -> Requests:
+        """The requests, each in the phase or the frames that it was about."""
+        lists = {f.name: getattr(asked, f.name) for f in fields(asked)}
+        moved: dict[str, Any] = {
+            name: tuple(self._at(request) for request in each)
+            for name, each in lists.items()
+            if isinstance(each, tuple)
+        }
+        return replace(asked, **moved)
+
+    def _at(self, request: Any) -> Any:
+        if isinstance(request, Lift | PhaseTiming):
+            return self._of_phase(request)
+        when = getattr(request, "when", None)
+        return request if when is None else replace(request, when=self._when(when))
+
+    def _when(self, when: When) -> When:
+        phase = _named(when.phase, self.found.phases)
+        if phase is None:  # throughout, by frames, or in a hold
+            return when
+        name = self._renamed(phase)
+        if name is not None:
+            return replace(when, phase=name)
+        first = float(self.recording.frames[0])
+        start, end = (first + t * self.recording.rate for t in (phase.start, phase.end))
+        if when.frames is not None:
+            start, end = max(start, when.frames[0]), min(end, when.frames[1])
+        return replace(when, phase=None, frames=(start, end))
+
+    def _of_phase(self, request: Lift | PhaseTiming) -> Lift | PhaseTiming:
+        phase = _named(request.phase, self.found.phases)
+        name = None if phase is None else self._renamed(phase)
+        if name is None:
+            raise UnknownPhaseIn(request.name, request.phase, self._kept)
+        return replace(request, phase=name)
+
+    @property
+    def _kept(self) -> tuple[str, ...]:
+        """Names of the found phases that the fit has, too."""
+        return tuple(p.name for p in self.found.phases if self._renamed(p) is not None)
+
+    def _renamed(self, phase: Phase) -> str | None:
+        """The name that a found phase has in the fit; None where it is joined with others."""
+        same = (phase.kind, phase.start, phase.end)
+        return next((p.name for p in self.fitted.phases if (p.kind, p.start, p.end) == same), None)
+
+
+def _named(name: str | None, phases: Sequence[Phase]) -> Phase | None:
+    return next((phase for phase in phases if phase.name == name), None)

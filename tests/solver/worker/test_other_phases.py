@@ -1,0 +1,88 @@
+"""A problem goes on about the contacts and instants that it named, whatever the fit let go."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.operators.words.messages import sentence
+from hangtime.solver.data.contacts import ContactSchedule, Interval
+from hangtime.solver.data.faults import PinLetGo, UnknownPhaseIn
+from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.requests import AngleLimit, Lift, PhaseTiming, Requests, When
+from hangtime.solver.worker.other_phases import on_phases_of
+from hangtime.tests.helpers.clips import JUMP, load_recording
+from hangtime.tests.helpers.fitted_hop import hop
+
+STANCES = ((0.0, 0.5), (0.8, 1.3), (1.6, 2.0))  # s
+
+
+def found() -> ContactSchedule:
+    """Three stances of a foot, two flights between them."""
+    like = hop().schedule.contacts[0]
+    contacts = tuple(
+        replace(like, name=f"{like.point} {i}", start=start, end=end, place=np.zeros(3))
+        for i, (start, end) in enumerate(STANCES, start=1)
+    )
+    return ContactSchedule(contacts, 2.0, 0.0)
+
+
+def doubted() -> ContactSchedule:
+    """The same, the first flight carried by something unseen: ground 3 is ground 2 now."""
+    return replace(found(), unseen=(Interval(0.5, 0.8),))
+
+
+def name(number: int) -> str:
+    return found().contacts[number - 1].name
+
+
+def recording() -> Recording:
+    return load_recording(JUMP)
+
+
+def mapped(problem: MotionProblem, fitted: ContactSchedule) -> MotionProblem:
+    return on_phases_of(problem, found(), fitted, recording())
+
+
+def test_where_nothing_was_let_go_the_problem_stays() -> None:
+    problem = MotionProblem(pins=(Pin("Landing", "ground 2"),))
+    assert mapped(problem, found()) is problem
+
+
+def test_a_pin_stays_with_its_contacts() -> None:
+    pins = (Pin("First", "ground 1"), Pin("Middle", "ground 2"), Pin("Last", "ground 3"))
+    first, middle, last = mapped(MotionProblem(pins=pins), doubted()).pins
+    assert (first.phase, first.touching) == ("ground 1", (name(1),))
+    assert (middle.phase, middle.touching) == ("ground 1", (name(2),))
+    assert (last.phase, last.touching) == ("ground 2", ())
+
+
+def test_a_pin_of_what_was_let_go_is_told() -> None:
+    schedule = found()
+    left = replace(schedule, contacts=schedule.contacts[::2], unseen=(Interval(0.8, 1.3),))
+    with pytest.raises(PinLetGo) as caught:
+        mapped(MotionProblem(pins=(Pin("Middle", "ground 2"),)), left)
+    assert name(2) in sentence(caught.value)
+    assert "Middle" in sentence(caught.value)
+
+
+def test_requests_stay_with_their_instants() -> None:
+    limits = tuple(
+        AngleLimit(phase, "LeftLeg", None, None, when=When(phase))
+        for phase in ("ground 2", "flight 2")
+    )
+    requests = Requests(angles=limits, lifts=(Lift("Lift", "ground 3"),))
+    told = mapped(MotionProblem(requests=requests), doubted()).requests
+    first, rate = float(recording().frames[0]), recording().rate
+    joined, counted = (limit.when for limit in told.angles)
+    assert joined.phase is None
+    assert joined.frames == pytest.approx((first + 0.8 * rate, first + 1.3 * rate))
+    assert counted == When("flight 1")
+    assert told.lifts[0].phase == "ground 2"
+
+
+def test_a_phase_that_is_no_more_is_not_retimed() -> None:
+    requests = Requests(timings=(PhaseTiming("Longer", "flight 1", factor=1.2),))
+    with pytest.raises(UnknownPhaseIn) as caught:
+        mapped(MotionProblem(requests=requests), doubted())
+    assert caught.value.known == ("flight 2", "ground 3")
