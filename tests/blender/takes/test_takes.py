@@ -31,6 +31,7 @@ from hangtime.bridge.takes.takes import (
     takes_of,
 )
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.operators import operator_types
 from hangtime.operators.solve import adapt as adapt_operators
 from hangtime.operators.solve.takes import left_behind
 from hangtime.solver.data.recording import PoseTrack
@@ -292,6 +293,7 @@ def test_adapt_anyway_goes_on_to_adapt(
     ours = SimpleNamespace(leave_edits=lambda _how, **told: asked.update(told))
     ops, app = SimpleNamespace(hangtime=ours), SimpleNamespace(background=False)
     monkeypatch.setattr(adapt_operators, "bpy", SimpleNamespace(app=app, ops=ops))
+    monkeypatch.setattr(operator_types, "OperatorId", [Probe.bl_idname])  # it is one of ours here
     bpy.utils.register_class(Probe)
     try:
         assert bpy.ops.hangtime.probe() == {"CANCELLED"}
