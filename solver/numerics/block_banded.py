@@ -72,8 +72,8 @@ class BlockBanded:
         Raises numpy.linalg.LinAlgError if the matrix is not positive definite.
         """
         band, count, n, _ = (self.band, *self.lower.shape[1:])
-        # Forces and angles differ by 1e9. To unit diagonal first: inverting blocks that are scaled as
-        # badly as these loses the small unknowns (Higham 2002, 10.1).
+        # To unit diagonal first, for a force's differs from an angle's by 1e9: inverting blocks that
+        # are scaled as badly loses the small unknowns (Higham 2002, 10.1).
         diagonal = np.diagonal(self.lower[0], axis1=1, axis2=2)
         if not (diagonal > 0.0).all():
             raise np.linalg.LinAlgError("the matrix is not positive definite")

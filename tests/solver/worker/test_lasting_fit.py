@@ -136,7 +136,7 @@ def test_a_dance_without_a_flight_is_fitted() -> None:
 
 @pytest.mark.slow
 def test_a_contact_that_contradicts_the_others_is_let_go_and_told() -> None:
-    """One point of a standing foot is said to be further from where it is than the foot can turn."""
+    """One point of a standing foot is said to be further off than the foot can turn."""
     schedule, performance = hop().schedule, hop().performance
     shifted = schedule.contacts[-1]
     wrong = replace(shifted, place=shifted.place + np.array([0.0, 0.3, 0.0]))
