@@ -72,7 +72,7 @@ class BlockBanded:
         Raises numpy.linalg.LinAlgError if the matrix is not positive definite.
         """
         band, count, n, _ = (self.band, *self.lower.shape[1:])
-        # To unit diagonal first, for a force's differs from an angle's by 1e9: inverting blocks that
+        # To unit diagonal first: a force's and an angle's differ by 1e9, and inverting blocks that
         # are scaled as badly loses the small unknowns (Higham 2002, 10.1).
         diagonal = np.diagonal(self.lower[0], axis1=1, axis2=2)
         if not (diagonal > 0.0).all():
