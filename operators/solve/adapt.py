@@ -54,7 +54,7 @@ from ...solver.body.anatomy import map_anatomy
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault, NotInLoop
 from ...solver.data.recording import BEYOND, Recording, same_motion
-from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
+from ...solver.data.solver_options import Method, SolverOptions
 from ...solver.data.status import Status
 from ...solver.worker.protocol import Adapted, RequestKind
 from ..names import OperatorId
@@ -64,7 +64,7 @@ from ..words.report_text import as_text
 from ..words.summary_text import summary
 from ..words.take_text import pin_lines, polish_lines, take_lines
 from ..words.warning_text import warnings_of
-from .common import hindrance, required_armature
+from .common import hindrance, quick_solution, refined_solution, required_armature
 from .keys import key_options, mark_contacts, write_keys
 from .live import live
 from .scene import note_surfaces, read_bound, read_surfaces, stale_surfaces
@@ -141,24 +141,6 @@ class Adapting(TaskOperator):
         for doubt in doubts_of(meant, settings.measured_height, asked.recording.frames):
             self.report({"WARNING"}, doubt)
         return replace(asked, problem=replace(asked.problem, requests=requests))
-
-
-def quick_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
-    """Solver options by the method that is chosen, or that a recipe asks for."""
-    if asked.method is not Method.IMPLICIT:  # a recipe's own choice
-        return asked
-    return replace(asked, method=Method[settings.method])
-
-
-def refined_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
-    """Solver options for the objective that is chosen, or that a recipe asks for."""
-    weights = (
-        (ObjectiveKind[settings.objective], 1.0),
-        (ObjectiveKind.CLOSENESS, settings.stay_close),
-    )
-    if asked.method is Method.EXPLICIT:
-        return asked
-    return replace(asked, method=Method.EXPLICIT, objectives=weights)
 
 
 class AdaptOperator(Adapting, bpy.types.Operator):

@@ -37,15 +37,15 @@ from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.report_text import higher
 from ..words.shape_text import shapes_told
-from .adapt import (
-    Adapting,
-    ask_for,
+from .adapt import Adapting, ask_for, read_wanted, require_writable
+from .common import (
+    FaultyOperator,
+    chosen_armature,
     quick_solution,
-    read_wanted,
     refined_solution,
-    require_writable,
+    required_armature,
+    said,
 )
-from .common import FaultyOperator, chosen_armature, required_armature, said
 from .scene import read_bound, read_surfaces
 from .session import session
 from .solving import SolveState

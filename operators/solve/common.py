@@ -1,12 +1,20 @@
-"""The operators' common base: target armature, preconditions, fault reporting."""
+"""The operators' common base: target armature, preconditions, fault reporting, solver options."""
+
+from dataclasses import replace
 
 import bpy
 
 from ...bridge.accessors import current_action, present
 from ...bridge.armature.played import why_no_action
-from ...bridge.properties.settings import action_settings, scene_settings, settings_of
+from ...bridge.properties.settings import (
+    HangtimeSettings,
+    action_settings,
+    scene_settings,
+    settings_of,
+)
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault, NoArmature
+from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
 from ..operator_types import OperatorResult, PolledOperator
 from ..words.failure_text import Failure, failure_of
 from ..words.messages import sentence
@@ -94,3 +102,21 @@ class FaultyOperator(PolledOperator):
     def run(self, context: bpy.types.Context) -> OperatorResult:
         """Does the work. Raises any Fault, having changed nothing."""
         raise NotImplementedError
+
+
+def quick_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+    """Solver options by the method that is chosen, or that a recipe asks for."""
+    if asked.method is not Method.IMPLICIT:  # a recipe's own choice
+        return asked
+    return replace(asked, method=Method[settings.method])
+
+
+def refined_solution(settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
+    """Solver options for the objective that is chosen, or that a recipe asks for."""
+    weights = (
+        (ObjectiveKind[settings.objective], 1.0),
+        (ObjectiveKind.CLOSENESS, settings.stay_close),
+    )
+    if asked.method is Method.EXPLICIT:
+        return asked
+    return replace(asked, method=Method.EXPLICIT, objectives=weights)

@@ -25,8 +25,8 @@ from .bounded_qp import BoundedStep
 # Velocities are weighed against positions by the time in which they would move as far.
 ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
 # With ten times as much rounding leaves a step few digits in the directions that cost least, with a
-# tenth of it the sweeps take twice as many.
-PENALTY = 1e3
+# tenth of it the sweeps of weak rows do not end in time.
+PENALTY = 3e3
 NORMAL_BATCH = 32  # spans
 MIN_SPANS_PER_THREAD = 8
 MAX_SWEEPS = 8

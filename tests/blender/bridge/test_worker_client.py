@@ -175,6 +175,7 @@ def started(worker: Worker, recording: Recording, problem: MotionProblem) -> Pen
     return job
 
 
+@pytest.mark.slow
 def test_a_request_that_is_dropped_costs_neither_worker_nor_fit(
     fitted: Worker, jump: Recording
 ) -> None:

@@ -136,6 +136,7 @@ def test_a_weight_is_carried_at_each_selected_bone(jump: bpy.types.Object) -> No
 # ---------------------------------------------------------------- end to end
 
 
+@pytest.mark.slow
 def test_an_adaptation_keeps_a_cone_of_the_list(analysed: bpy.types.Object) -> None:
     flight = next(phase for phase in phases_of(analysed.hangtime) if not phase.is_ground)
     before = seen(analysed, "LeftArm", flight.start, flight.end)

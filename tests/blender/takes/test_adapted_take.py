@@ -181,6 +181,7 @@ def basis(armature: bpy.types.Object, bone: str, frame: float) -> np.ndarray:
     return np.array(armature.pose.bones[bone].matrix_basis.to_3x3())
 
 
+@pytest.mark.slow
 def test_hand_polish_is_kept_when_the_landing_is_moved_again(analysed: bpy.types.Object) -> None:
     scene, stance = bpy.context.scene, analysed.hangtime.stances["ground 2"]
     analysed.hangtime.keep_times = True

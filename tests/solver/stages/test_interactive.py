@@ -82,6 +82,7 @@ def furthest_bent(follower: Follower) -> float:
     return max((degrees(each.amount) for each in human.violations(follower.motion)), default=0.0)
 
 
+@pytest.mark.slow
 def test_joints_keep_to_their_ranges_while_the_pin_is_dragged() -> None:
     kept, any_body = Follower(fitted_hop(), moved(0.0)), Follower(fitted_hop(), free(moved(0.0)))
     beyond = []

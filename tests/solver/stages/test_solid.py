@@ -49,6 +49,7 @@ def in_thigh() -> MotionProblem:
     return at_bone("LeftHand", 0.3, 0.5 * (hip + knee))
 
 
+@pytest.mark.slow
 def test_a_foot_stays_above_the_floor() -> None:
     """In flight the ankle is asked nearly as low as it stands, which pushes the ball in."""
     height = np.array([0.0, 0.0, fitted_hop().schedule.floor_m + 0.1])
@@ -102,6 +103,7 @@ def test_what_is_off_has_no_rows() -> None:
     assert all(each.kind is not RowKind.SOLID for each in told.conditions)
 
 
+@pytest.mark.slow
 def test_what_is_asked_for_under_the_floor_is_reached_and_told() -> None:
     """The ball of the foot is asked lower than a foot is thick, which no foot can be; how far its
     joints may go is not the question here."""

@@ -28,9 +28,18 @@ from hangtime.solver.data.requests import (
     TorqueLimit,
     When,
 )
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.stages.fit import Fit
-from hangtime.solver.worker.pipeline import ADAPTING, StageClock, Subject, adapt_fit, measure, solve
+from hangtime.solver.worker.pipeline import (
+    ADAPTING,
+    StageClock,
+    Subject,
+    adapt_fit,
+    computable,
+    measure,
+    solve,
+)
 from hangtime.solver.worker.possible import check_requested
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
@@ -185,8 +194,14 @@ def test_a_solution_is_timed_and_has_all_its_parts() -> None:
 
 
 def test_what_no_numbers_can_hold_is_a_fault() -> None:
-    """Matrices that are not positive definite ended in a traceback."""
+    with pytest.raises(NotComputable), computable():
+        np.linalg.cholesky(-np.eye(2))
+
+
+def test_what_is_beyond_reason_ends_with_what_could_not_be_met() -> None:
+    """Matrices that were not positive definite ended in a traceback."""
     requests = Requests(body=BodyChange(mass=1e-7, gravity=1e13))
     asked = subject().asked(MotionProblem(frames=FRAMES, requests=requests))
-    with pytest.raises(NotComputable):
-        adapt_fit(asked, fitted_hop(), StageClock())
+    fault = adapt_fit(asked, fitted_hop(), StageClock()).fault
+    assert fault is not None
+    assert {each.kind for each in fault.worst} <= {RowKind.MOMENT, RowKind.BALANCE}
