@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from ...solver.human.human_guard import MOST_NEW
+from ...solver.human.human_guard import MOST_BEYOND
 from .jobs import Json, Page
 
 METHODS = ("implicit", "implicit with torques", "explicit")
@@ -44,7 +44,7 @@ LOOKS = {  # what a picture must not show, at any instant
 }
 DEPTH = GalleryLimit("mm", 5.0, 1.0)  # by which anything is in floor, scene or body, by MuJoCo
 STANDING = GalleryLimit("mm", 2.0, 0.5)  # that a foot stands off the face it was put on
-LEAST_KNEE = -math.degrees(MOST_NEW)  # below zero a knee is bent backwards; ranges let so much be
+LEAST_KNEE = -math.degrees(MOST_BEYOND)  # below zero a knee is bent backwards; ranges let that be
 
 
 @dataclass(frozen=True)
