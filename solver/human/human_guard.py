@@ -91,13 +91,14 @@ class HumanGuard:
     """Ranges of a motion's joints. human: those of any person; reference: the fit on this body.
 
     own: bones whose joints have limits of the artist's, and none of these. hard: whether none of
-    them may be given up.
+    them may be given up. spacing: s, of the instants at which a motion is looked at.
     """
 
     human: tuple[JointRange, ...]
     reference: Motion
     own: frozenset[str] = frozenset()
     hard: bool = False
+    spacing: float = SPACING
     kind: RowKind = RowKind.RANGE
 
     @cached_property
@@ -108,7 +109,7 @@ class HumanGuard:
     @cached_property
     def ranges(self) -> tuple[JointRange, ...]:
         """As wide as the reference and its rest pose ask for; endless where the artist limits."""
-        turned = self.reference.joint_rotations(_grid(self.reference.duration))
+        turned = self.reference.joint_rotations(_grid(self.reference.duration, SPACING))
         turned = np.concatenate([turned, np.broadcast_to(np.eye(3), (1, *turned.shape[1:]))])
         bodies = self.reference.transcription.character.bodies
         return tuple(
@@ -121,11 +122,15 @@ class HumanGuard:
     @cached_property
     def recorded(self) -> list[DenseViolation]:
         """How far the recording itself (its fit) goes beyond human ranges; it may."""
-        return _beyond(self.human, self.reference).worst(self.names)
+        return _beyond(self.human, self.reference, SPACING).worst(self.names)
+
+    def sparse(self) -> "HumanGuard":
+        """The same, for which half as many instants are looked at."""
+        return replace(self, spacing=2.0 * SPACING)
 
     def violations(self, motion: Motion) -> list[DenseViolation]:
         """The worst of each joint beyond its range, worst first."""
-        return _beyond(self.ranges, motion).worst(self.names)
+        return _beyond(self.ranges, motion, self.spacing).worst(self.names)
 
     def rows(self, motion: Motion, given_up: Set[str]) -> GuardRows | None:
         """A motion's range rows, with more where it goes beyond; the same where it does not.
@@ -133,11 +138,11 @@ class HumanGuard:
         given_up: names of items that have no rows.
         """
         old = motion.transcription.guard(self.kind)
-        found = _beyond(self.ranges, motion)
+        found = _beyond(self.ranges, motion, self.spacing)
         found = found.some(~named(self.names, found.items, given_up))
         if not len(found.items):
             return old
-        found = found.some(chosen(found, SPACING, ROW_SPACING))
+        found = found.some(chosen(found, self.spacing, ROW_SPACING))
         items, times, upper = found.items, found.times, found.upper
         if old is not None:
             assert isinstance(old.function, RangeLeft)
@@ -155,9 +160,9 @@ def recorded_ranges(reference: Motion) -> tuple[JointRange, ...]:
     return joint_ranges(reference.transcription.character, reference.angles(times))
 
 
-def _beyond(ranges: tuple[JointRange, ...], motion: Motion) -> BeyondRange:
+def _beyond(ranges: tuple[JointRange, ...], motion: Motion, spacing: float) -> BeyondRange:
     """Where a motion's joints are beyond their ranges, by MOST_NEW."""
-    times = _grid(motion.duration)
+    times = _grid(motion.duration, spacing)
     turned = motion.joint_rotations(times)
     found = [each.measure.of(turned[:, each.body]) for each in ranges]
     high = np.stack([f - each.upper for f, each in zip(found, ranges, strict=True)], axis=1)
@@ -168,5 +173,5 @@ def _beyond(ranges: tuple[JointRange, ...], motion: Motion) -> BeyondRange:
     return BeyondRange(items, times[instants], over[instants, items], upper)
 
 
-def _grid(duration: float) -> FloatArray:
-    return np.linspace(0.0, duration, 1 + int(np.ceil(duration / SPACING)))
+def _grid(duration: float, spacing: float) -> FloatArray:
+    return np.linspace(0.0, duration, 1 + int(np.ceil(duration / spacing)))

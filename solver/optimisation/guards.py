@@ -43,6 +43,9 @@ class Guard(Protocol):
         given_up: names of items that get no rows.
         """
 
+    def sparse(self) -> "Guard":
+        """The same, for which fewer instants are looked at: a drag's, which is in a hurry."""
+
     def violations(self, motion: Motion) -> list[DenseViolation]:
         """The worst of each item that a motion violates at all, worst first."""
 

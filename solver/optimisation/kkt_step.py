@@ -174,11 +174,15 @@ class LinearisedProblem:
 
     def violation(self, value: FloatArray) -> float:
         """The worst violation by values (R,) over its tolerance; at most 1: all rows hold."""
-        return float((np.abs(self.rows.violation(value)) / self._tolerance).max())
+        return float(self.violations(value).max())
+
+    def violations(self, value: FloatArray) -> FloatArray:
+        """(R,) violations by values (R,) over their tolerances."""
+        return np.asarray(np.abs(self.rows.violation(value)) / self._tolerance)
 
     def worst_owner(self, value: FloatArray) -> str:
         """Name of the worst row's contact or constraint, else of its kind; value (R,)."""
-        worst = int(np.argmax(np.abs(self.rows.violation(value)) / self._tolerance))
+        worst = int(np.argmax(self.violations(value)))
         owner = int(self.rows.owner[worst])
         kind: RowKind = self.rows.kind[worst]
         return self._transcription.owners[owner] if owner >= 0 else kind.label

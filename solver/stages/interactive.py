@@ -32,6 +32,7 @@ from .setup import Setup, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 CHORD_STEPS = 2  # an update, on the same factor
+NEAR_VIOLATION = 30.0  # times the tolerances (0.3 mm), that suffice while a pin is on its way
 SWEEPS = 2  # a step; the next update goes on with what they leave
 MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
@@ -52,8 +53,9 @@ class Follower:
 
     def __init__(self, fit: Fit, problem: MotionProblem, last: Adaptation | None = None) -> None:
         self._fit, self._problem = fit, problem
-        if last is None:
-            self.setup = set_up(fit, problem)
+        self._timed: MotionProblem | None = problem  # whose durations these are
+        if last is None:  # with the recording's durations, which no search is needed for
+            self.setup, self._timed = set_up(fit, problem.keeping_times()), None
             self.motion, self._metric = self.setup.start, self.setup.metric
             self._standing = self.setup.fitted.with_places(self.motion.places)
         else:
@@ -61,10 +63,11 @@ class Follower:
             self.motion = Motion(last.outcome.transcription, last.outcome.x, last.places)
             self._metric = self.setup.metric_of(self.motion)
             self._standing = Standing.of(self.motion)
-        self._timed, self._rested = problem, 0  # whose durations these are; updates at one place
+        self._rested = 0  # updates at one place
         self._linearised: LinearisedProblem | None = None
         self._held = self.motion, self._standing
         self._given_up: set[str] = set()  # solids and ranges that are let be
+        self._off = np.zeros(0)  # of the guard rows, over their tolerances
         self._blocked = 0  # updates in which one of them is furthest from where it should be
         self.violation = np.inf
 
@@ -126,7 +129,7 @@ class Follower:
         x = warm_start(start, stance_moves(setup.schedule, still, target))
         found = restore(feasible, setup.metric, x, stage="drag", max_steps=RETIMING_STEPS)
         motion = feasible.motion(found.x)
-        if found.violation < HELD_VIOLATION and not _astray(motion, setup.guards):
+        if found.violation < HELD_VIOLATION and not _astray(motion, setup.sparse_guards):
             self._begin(setup, motion, target, problem)
 
     def _begin(
@@ -139,10 +142,10 @@ class Follower:
     def _guard(self) -> None:
         """Rows for what is in each other, or beyond its range, now; without those that are far
         from it by now."""
-        x, setup = self.motion.x, self.setup
+        x = self.motion.x
         if self.violation > HELD_VIOLATION:
             return
-        t = guarded(self.motion, setup.guards, self._given_up)
+        t = guarded(self.motion, self.setup.sparse_guards, self._given_up)
         if not t.guards:
             return
         rows = t.guard_rows(x)
@@ -155,14 +158,10 @@ class Follower:
 
     def _watch_guards(self) -> None:
         """Lets those be that what is asked for has kept from their place for some updates."""
-        t = self.motion.transcription
-        if not t.guards:
-            return
-        rows = t.guard_rows(self.motion.x)
-        off = np.abs(rows.violation()) / rows.tolerance
-        self._blocked = self._blocked + 1 if self.violation > 1.0 and off.max() > 1.0 else 0
+        off = self._off > 1.0
+        self._blocked = self._blocked + 1 if self.violation > 1.0 and off.any() else 0
         if self._blocked > MAX_BLOCKED_UPDATES:
-            self._let_be(off > 1.0)
+            self._let_be(off)
             self._blocked = 0
 
     def _let_be(self, which: BoolArray | None = None) -> None:
@@ -179,7 +178,7 @@ class Follower:
         if Standing.of(self.motion).rides != standing.rides:
             t = t.riding(standing.rides)
         feasible = self.setup.feasible_set(t, standing.places)
-        value = feasible.values(x)
+        value, moving = feasible.values(x), self._rested == 0
         try:
             linearised = self._linearised or feasible.linearise(feasible.rows(x), self._metric)
         except np.linalg.LinAlgError:  # too far from any motion
@@ -190,12 +189,14 @@ class Follower:
             value = feasible.values(x)
             after = linearised.violation(value)
             stale = after > MAX_DRAG_CHORD_RATIO * before
-            if after <= 1.0 or stale:
+            if after <= (NEAR_VIOLATION if moving else 1.0) or stale:
                 break
         if not after < DIVERGED_VIOLATION:
             return False
         self.violation = after
-        self._linearised = None if stale and after > 1.0 else linearised
+        renew = stale and after > (HELD_VIOLATION if moving else 1.0)
+        self._linearised = None if renew else linearised
+        self._off = linearised.violations(value)[linearised.rows.guards]
         self.motion, self._standing = feasible.motion(x), standing
         return True
 

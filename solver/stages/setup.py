@@ -165,6 +165,11 @@ class Setup:
         return tuple(guard for guard in (self.solid, self.human) if guard is not None)
 
     @cached_property
+    def sparse_guards(self) -> tuple[Guard, ...]:
+        """The same, as a drag looks at them."""
+        return tuple(guard.sparse() for guard in self.guards)
+
+    @cached_property
     def torques(self) -> TorqueFunction:
         """Torque function of every joint; the fit's own where it serves."""
         t, old = self.start.transcription, self.fit.motion.transcription
