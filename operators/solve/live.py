@@ -1,13 +1,17 @@
 """Live preview: the motion that follows a dragged pin, shown as a ghost, never written."""
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
 import bpy
 
+from ...solver.data.status import DragStatus
 from ...solver.data.traces import Traces
 from ...solver.worker.protocol import Followed
+
+SIDEBAR_EVERY = 0.5  # s; nobody reads numbers that change faster, and drawing it takes longest
 
 
 @dataclass
@@ -17,12 +21,18 @@ class Live:
     armature: str = ""
     seen: Followed | None = None
     version: int = 0
+    told: float = 0.0  # s, when the sidebar was last drawn for it
 
     def show(self, armature: str, seen: Followed) -> None:
         """The motion has come a little further."""
         self.armature, self.seen = armature, seen
         self.version += 1
-        redraw_viewports()
+        now = time.monotonic()
+        if seen.status is DragStatus.CONVERGING and now - self.told < SIDEBAR_EVERY:
+            redraw_views()
+        else:
+            self.told = now
+            redraw_viewports()
 
     def clear(self) -> None:
         """No ghost any more."""
