@@ -7,7 +7,7 @@ near to what the solve will find and does not jitter. Far moves are made by cont
 an update; moving ground comes up to its speed likewise. The solve proper, once the pin is let go,
 starts from the fit again. While a pin moves phases last as long as they did; once it rests they
 take the durations that go with its place. What is in something, and joints beyond their ranges, are
-looked for in the motion before each update, and mended by the update.
+looked for in the motion before every other update, and mended by the update.
 """
 
 from collections.abc import Sequence
@@ -67,6 +67,7 @@ class Follower:
         self._linearised: LinearisedProblem | None = None
         self._held = self.motion, self._standing
         self._given_up: set[str] = set()  # solids and ranges that are let be
+        self._looked = False  # for guards, in the last update
         self._off = np.zeros(0)  # of the guard rows, over their tolerances
         self._blocked = 0  # updates in which one of them is furthest from where it should be
         self.violation = np.inf
@@ -141,9 +142,11 @@ class Follower:
 
     def _guard(self) -> None:
         """Rows for what is in each other, or beyond its range, now; without those that are far
-        from it by now."""
+        from it by now. To look takes as long as a step, so while a pin moves every other update
+        goes without."""
         x = self.motion.x
-        if self.violation > HELD_VIOLATION:
+        self._looked = not self._looked or self._rested > 0
+        if self.violation > HELD_VIOLATION or not self._looked:
             return
         t = guarded(self.motion, self.setup.sparse_guards, self._given_up)
         if not t.guards:
