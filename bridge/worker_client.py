@@ -24,7 +24,7 @@ from typing import cast
 
 from ..solver.data.faults import WorkerDied
 from ..solver.data.problem import MotionProblem
-from ..solver.data.recording import Recording
+from ..solver.data.recording import Recording, digest
 from ..solver.data.status import DragStatus
 from ..solver.one_thread import ONE_THREAD
 from ..solver.worker.protocol import (
@@ -152,6 +152,7 @@ class Worker:
         self._pending: PendingRequest | None = None
         self._stream: DragStream | None = None
         self._dropped: tuple[PendingRequest, float] | None = None  # and when
+        self._prepared: PendingRequest | None = None  # nobody waits for it
         self._ids = count(1)
 
     @property
@@ -174,9 +175,33 @@ class Worker:
         RuntimeError while another is under way.
         """
         process = self._free_process()
+        self._end_preparation(process, recording, problem)
         self._pending = PendingRequest(Request(next(self._ids), kind, recording, problem))
         process.ask(self._pending)
         return self._pending
+
+    def prepare(self, recording: Recording, problem: MotionProblem) -> PendingRequest:
+        """Has the worker make what a drag begins with, so that the first ghost need not wait for
+        the fit. Nobody need wait for it: a request about another fit ends it. Raises as `ask` does.
+        """
+        process = self._free_process()
+        self._end_preparation(process, recording, problem)
+        request = Request(next(self._ids), RequestKind.FOLLOW, recording, problem)
+        self._prepared = PendingRequest(request)
+        process.ask(self._prepared)
+        return self._prepared
+
+    def _end_preparation(
+        self, process: _Process, recording: Recording | None, problem: MotionProblem
+    ) -> None:
+        prepared, self._prepared = self._prepared, None
+        if prepared is None:
+            return
+        begun = prepared.request
+        assert begun.recording is not None
+        of_same = recording is None or digest(recording) == digest(begun.recording)
+        if not (of_same and problem.known_to_fit() == begun.problem.known_to_fit()):
+            process.halt(prepared, Ending.CANCEL)
 
     def follow(self, recording: Recording) -> DragStream:
         """Begins a drag stream about a recording. Raises as `ask` does."""

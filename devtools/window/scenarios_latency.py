@@ -79,9 +79,11 @@ def drags_landing(driver: Driver) -> Actions:
     handler = space.draw_handler_add(ghosts.look, (), "WINDOW", "POST_PIXEL")
     try:
         yield driver.input.press(start, "the landing's pin")
+        gripped = time.monotonic()
         yield driver.input.move(end, 0.5)
         assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
         yield Until("the ghost", lambda: len(ghosts.seen) > 0, 40)
+        driver.figures["first ghost after the mouse moves"] = 1000.0 * (ghosts.seen[0][0] - gripped)
         begun, first, taken = time.monotonic(), live().version, worker_seconds()
         driver.profiler.start(lambda: "drag")
         for place in islice(cycle(about(end)), LEGS):

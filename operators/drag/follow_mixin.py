@@ -6,7 +6,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.incremental import Incremental
-from ...bridge.constraints.motion_problem import problem_of
+from ...bridge.constraints.motion_problem import analysis_key, problem_of
 from ...bridge.properties.settings import settings_of
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
@@ -16,7 +16,7 @@ from ..operator_types import OperatorResult, PolledOperator
 from ..solve.adapt import ask_for, unanalysed
 from ..solve.common import required_armature, said
 from ..solve.live import live, redraw_viewports, redraw_views
-from ..solve.session import session
+from ..solve.session import Asked, session
 from ..solve.task import LOOK_EVERY
 from ..words.report_text import deeper, higher
 from .mouse import BACK, CONFIRM, GIVEN, Press
@@ -144,10 +144,15 @@ class FollowedDrag(PolledOperator):
     # -- the motion that follows ---------------------------------------------------------------
 
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
-        """Reads the recording in parts, then has the worker follow what is dragged."""
-        asked = yield from ask_for(context)
+        """Has the worker follow what is dragged: of the recording as it was read last, while it is
+        read again in parts. Raises ChangedMeanwhile where it is another."""
+        reading, asked = ask_for(context), self._read_before()
+        if asked is None:
+            asked = yield from reading
+        session().dragged = asked
         stream, skin = shared().follow(asked.recording), asked.problem.skin
         while True:
+            next(reading, None)
             if self._moved:
                 self._moved = False
                 settings = settings_of(self._armature)
@@ -155,6 +160,12 @@ class FollowedDrag(PolledOperator):
             for message in stream.news():
                 self._hear(message)
             yield
+
+    def _read_before(self) -> Asked | None:
+        asked, settings = session().dragged, settings_of(self._armature)
+        if asked is None or asked.uid != self._armature.session_uid:
+            return None
+        return asked if analysis_key(settings, asked.recording) == settings.analysed else None
 
     def _hear(self, message: Progress | Answer) -> None:
         if isinstance(message, Progress):

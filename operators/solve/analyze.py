@@ -8,6 +8,7 @@ import bpy
 
 from ...bridge.accessors import present, shown_range
 from ...bridge.armature.actions import recorded_action
+from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
 from ...bridge.constraints.motion_problem import analysis_key, problem_of, span_of, write_analysis
@@ -98,7 +99,10 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def task(self, context: bpy.types.Context) -> Task:
-        return (yield from analysis(context))
+        found = yield from analysis(context)
+        if not bpy.app.background:
+            yield from _prepare_drag(context)
+        return found
 
 
 class UpdateOperator(Adapting, bpy.types.Operator):
@@ -175,6 +179,12 @@ def analysis(context: bpy.types.Context) -> Task:
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
     found = f"{found}{bind}{_snapped(settings, span)}{_unseen(answer)}"
     return f"{found}; but {said(odd)}" if odd is not None else found
+
+
+def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:
+    """Has the worker make meanwhile what the first drag would wait for."""
+    asked = session().dragged = yield from ask_for(context)
+    shared().prepare(asked.recording, asked.problem)
 
 
 def _unseen(answer: Analysed) -> str:

@@ -37,13 +37,14 @@ class Session:
     """The solve under way, who runs it, why the last one failed, what it was asked, and the best
     motion that it found; the armature (its number) whose body something unseen carries, and boxes
     that would; of which armature, recording and bodies the controls were tried last, and pose
-    them."""
+    them; what the last drag was about, or Analyze has prepared the next one for."""
 
     solving: Solving | None = None
     failure: Failure | None = None
     best: tuple[Asked, Adapted] | None = None
     support: tuple[int, tuple[SupportBox, ...]] | None = None
     tried: tuple[int, str, tuple[str, ...]] | None = None
+    dragged: Asked | None = None
     running: list[Running] = field(default_factory=list)
 
     def advance(self, to: SolveState) -> None:
@@ -55,7 +56,7 @@ class Session:
         """Ends what runs, without a word; for when the extension goes."""
         for operator in list(self.running):
             operator.leave()
-        self.best = self.failure = self.support = self.tried = None
+        self.best = self.failure = self.support = self.tried = self.dragged = None
 
 
 @cache

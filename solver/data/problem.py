@@ -93,6 +93,12 @@ class MotionProblem:
     skin: Skin | None = None
     unseen: Unseen = Unseen.SHOW
 
+    def known_to_fit(self) -> str:
+        """Everything but pins, scene, skin and requests, which the fit does not know, as text."""
+        bones = dict(sorted(self.bones.items()))
+        known = replace(self, pins=(), scene=(), skin=None, requests=Requests(), bones=bones)
+        return repr(known)
+
     def keeping_times(self) -> "MotionProblem":
         """The same, but for durations that are not asked for."""
         solution = replace(self.requests.solution, keep_times=True)

@@ -146,7 +146,7 @@ class Service:
     def _subject_of(self, request: Request) -> Subject:
         """The analysis, kept for the next request about the same frames and contacts."""
         assert request.recording is not None
-        asked = (digest(request.recording), _fit_relevant(request.problem))
+        asked = (digest(request.recording), request.problem.known_to_fit())
         key = (*asked, self._explaining(request.problem.scene))
         if self._subject is None or self._subject[0] != key:
             subject = measure(request.recording, request.problem)
@@ -229,13 +229,6 @@ def _analysed(request: int, subject: Subject) -> Analysed:
         subject.cycle,
         subject.analysis.unseen,
     )
-
-
-def _fit_relevant(problem: MotionProblem) -> str:
-    """Everything of a problem but pins, scene, skin and requests, which the fit does not know."""
-    bones = dict(sorted(problem.bones.items()))
-    known = replace(problem, pins=(), scene=(), skin=None, requests=Requests(), bones=bones)
-    return repr(known)
 
 
 def _named(names: Collection[str], scene: Sequence[SceneObject]) -> tuple[SceneObject, ...]:

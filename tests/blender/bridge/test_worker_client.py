@@ -23,7 +23,15 @@ from hangtime.solver.data.faults import (
 from hangtime.solver.data.problem import ContactEdit, MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.status import DragStatus, Status
-from hangtime.solver.worker.protocol import Adapted, Analysed, Failed, Fitted, Followed, Progress
+from hangtime.solver.worker.protocol import (
+    Adapted,
+    Analysed,
+    Cancelled,
+    Failed,
+    Fitted,
+    Followed,
+    Progress,
+)
 from hangtime.tests.helpers.clips import load_recording
 
 JUMP = "forward_jump_116cm.bvh"
@@ -233,7 +241,9 @@ def followed(stream: DragStream) -> Iterator[Followed]:
         time.sleep(0.005)
 
 
-def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
+def test_a_dragged_pin_is_followed_from_what_was_prepared(worker: Worker, jump: Recording) -> None:
+    prepared = worker.prepare(jump, MotionProblem(frames=SPAN))
+    assert not worker.busy
     stream = worker.follow(jump)
     assert worker.busy
     apexes = []
@@ -245,7 +255,18 @@ def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
     assert apexes[1] > apexes[0] + 0.01
     worker.drop()
     assert not worker.busy
-    assert isinstance(worker.ask(RequestKind.ADAPT, None, raised(0.05)).wait(), Adapted)
+    told: list[Progress] = []
+    adapted = worker.ask(RequestKind.ADAPT, None, raised(0.05)).wait(told.append)
+    assert isinstance(adapted, Adapted)
+    assert isinstance(prepared.wait(), Followed)
+    assert "fit" not in {progress.stage for progress in told}
+
+
+def test_a_request_about_another_fit_ends_what_is_prepared(worker: Worker, jump: Recording) -> None:
+    prepared = worker.prepare(jump, MotionProblem(frames=SPAN))
+    other = MotionProblem(frames=(SPAN[0], SPAN[1] - 20.0))
+    assert isinstance(worker.ask(RequestKind.ANALYSE, jump, other).wait(), Analysed)
+    assert isinstance(prepared.wait(), Cancelled)
 
 
 def test_what_cannot_be_followed_is_said_and_the_drag_goes_on(
