@@ -27,7 +27,7 @@ from hangtime.solver.worker.protocol import Adapted, Analysed, Failed, Fitted, F
 from hangtime.tests.helpers.clips import load_recording
 
 JUMP = "forward_jump_116cm.bvh"
-SPAN = (73.0, 325.0)
+SPAN = (110.0, 260.0)
 UP = MotionProblem(frames=SPAN, pins=(Pin("up", "ground 2", offset=(0.0, 0.0, 0.05)),))
 AHEAD = MotionProblem(frames=SPAN, pins=(Pin("ahead", "ground 2", offset=(0.05, 0.0, 0.0)),))
 LOADER = str(Path(__file__).parents[3] / "devtools" / "package.py")
@@ -233,9 +233,9 @@ def followed(stream: DragStream) -> Iterator[Followed]:
         time.sleep(0.005)
 
 
-def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
-    stream = worker.follow(jump)
-    assert worker.busy
+def test_a_dragged_pin_is_followed(fitted: Worker, jump: Recording) -> None:
+    stream = fitted.follow(jump)
+    assert fitted.busy
     apexes = []
     for up in (0.01, 0.05):
         stream.want(raised(up))
@@ -243,9 +243,9 @@ def test_a_dragged_pin_is_followed(worker: Worker, jump: Recording) -> None:
         seen = next(s for s in reached if abs(s.summary.moved_cm - 100.0 * up) < 0.1)
         apexes.append(seen.traces.heads[:, 0, 2].max())
     assert apexes[1] > apexes[0] + 0.01
-    worker.drop()
-    assert not worker.busy
-    assert isinstance(worker.ask(RequestKind.ADAPT, None, raised(0.05)).wait(), Adapted)
+    fitted.drop()
+    assert not fitted.busy
+    assert isinstance(fitted.ask(RequestKind.ADAPT, None, raised(0.05)).wait(), Adapted)
 
 
 def test_what_cannot_be_followed_is_said_and_the_drag_goes_on(
