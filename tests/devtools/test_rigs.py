@@ -97,7 +97,7 @@ def test_a_rig_that_is_mapped_wrongly_misses_the_limit_by_name() -> None:
 def test_a_skeleton_of_unknown_names_that_is_mapped_wrongly_misses_the_limit() -> None:
     strange = replace(GOOD, name="Greek words", unknown=True)
     counted = figures([GOOD, strange, replace(strange, name="Welsh", wrong=("head: none",))])[1]
-    assert (counted.value, counted.must, counted.missed, counted.where) == (1, 2, True, "Welsh")
+    assert (counted.value, counted.must, counted.ok, counted.where) == (1, 2, False, "Welsh")
 
 
 def test_a_difference_beyond_the_limit_is_told_with_its_place() -> None:
@@ -111,8 +111,8 @@ def test_a_file_that_loses_more_than_it_may_is_told_with_its_format() -> None:
     bad = replace(GOOD, name="VRM", files=(FileResult("FBX", 0.01, 0.3), FileResult("glTF", 2, 0)))
     found = {figure.name: figure for figure in figures([GOOD, bad])}
     place, turn = (figure for name, figure in found.items() if name.startswith("file"))
-    assert (place.missed, place.where) == (True, "VRM, glTF")
-    assert (turn.missed, turn.where) == (True, "VRM, FBX")
+    assert (place.ok, place.where) == (False, "VRM, glTF")
+    assert (turn.ok, turn.where) == (False, "VRM, FBX")
 
 
 def on_controls(key: str) -> ControlResult:
@@ -133,4 +133,4 @@ def test_a_control_rig_that_is_refused_is_a_miss_that_says_why() -> None:
 def test_a_bone_off_the_solution_is_told_with_its_rig_bone_and_frame() -> None:
     far = replace(on_controls("arp_fk"), off=Worst(50.0, "hand.r", 7.0))
     off = control_figures([on_controls("rigify_fk"), far])[2]
-    assert (off.value, off.missed, off.where) == (50.0, True, "arp_fk: hand.r, frame 7")
+    assert (off.value, off.ok, off.where) == (50.0, False, "arp_fk: hand.r, frame 7")
