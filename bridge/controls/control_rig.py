@@ -198,8 +198,23 @@ def carried_controls(
         goal[:3, :3] = turn @ posed.bodies[0, :3, :3]
         goal[:3, 3] = wanted.heads[t, 0]
         move = goal @ np.linalg.inv(posed.bodies[0])
-        return np.asarray(np.linalg.solve(posed.frames, move @ posed.controls))
+        moved = move @ posed.controls
+        bases = np.linalg.solve(posed.frames, moved)
+        bases[:, :, 3:] = np.linalg.solve(posed.places, moved[:, :, 3:])
+        return np.asarray(bases)
 
     parts = yield from in_slices(track.frames, look, showing)
     bases = np.stack([each for part in parts for each in part])
     return {name: bases[:, c] for c, name in enumerate(names)}
+
+
+def shifts_of_carriers(rig: ControlRig, frame: float, move: FloatArray) -> dict[str, FloatArray]:
+    """By how much the locations (3,) of the carriers change where they take the whole figure along
+    by a move (3,), world, m; as the frame is shown."""
+    posing = Posing(rig.armature, rig.carriers, rig.bodies[:1])
+    with posing.kept():
+        posing.go_to(frame)
+        units = move / metres_per_unit(current_scene())
+        along = np.linalg.solve(posing.object_to_world()[:3, :3], units)
+        axes = posing.look().places[:, :3, :3]
+    return {name: np.linalg.solve(axes[c], along) for c, name in enumerate(rig.carriers)}

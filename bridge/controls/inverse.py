@@ -114,10 +114,12 @@ class Inverse:
             body = self._led(control)
             if body is None:
                 continue
-            frame = self._look(animated, offsets, t).posed.frames[control]
+            posed = self._look(animated, offsets, t).posed
+            frame = posed.frames[control]
             turn = wanted.rotations[t, body] @ proper(take.bodies[body, :3, :3]).T
             arm = take.controls[control, :3, 3] - take.bodies[body, :3, 3]
-            place = np.linalg.solve(frame, np.append(wanted.heads[t, body] + turn @ arm, 1.0))
+            there = np.append(wanted.heads[t, body] + turn @ arm, 1.0)
+            place = np.linalg.solve(posed.places[control], there)
             offsets[control, 3:6] = place[:3] - animated[control, :3, 3]
             if any(dof.control == control and dof.freedom is Freedom.TURN for dof in dofs):
                 turned = proper(frame[:3, :3]).T @ turn @ proper(take.controls[control, :3, :3])

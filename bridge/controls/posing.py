@@ -22,11 +22,13 @@ _CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation
 class Posed:
     """Poses in the armature's space and units.
 
-    controls: (C, 4, 4). frames: (C, 4, 4), in which a control's channels count. bodies: (B, 4, 4).
+    controls: (C, 4, 4). frames: (C, 4, 4), in which a control's rotation counts, and places:
+    (C, 4, 4), in which its location does. bodies: (B, 4, 4).
     """
 
     controls: FloatArray
     frames: FloatArray
+    places: FloatArray
     bodies: FloatArray
 
 
@@ -78,8 +80,19 @@ class Posing:
         moved = constrained(armature)
         # What a constraint moves is not where its channels put it, but its parent is.
         self._parents: dict[int, tuple[int, FloatArray]] = {}
+        # Without Local Location it counts along the parent's axes, from the bone's head at rest.
+        self._nonlocal: dict[int, tuple[int | None, FloatArray]] = {}
         for index, name in enumerate(controls):
             above = rest[name].parent
+            if not rest[name].use_local_location:
+                head, column = np.array(rest[name].head_local, float), None
+                if above is not None:
+                    column = bones.find(above.name)
+                    inverse = np.linalg.inv(np.array(above.matrix_local, float))
+                    head = inverse[:3, :3] @ head + inverse[:3, 3]
+                from_head = np.eye(4)
+                from_head[:3, 3] = head
+                self._nonlocal[index] = column, from_head
             if name in moved and above is not None:
                 offset = np.linalg.solve(
                     np.array(above.matrix_local, float), np.array(rest[name].matrix_local, float)
@@ -135,7 +148,10 @@ class Posing:
         frames = matrices[:count] @ _inverse(self._bases)
         for index, (parent, offset) in self._parents.items():
             frames[index] = every[parent] @ offset
-        return Posed(matrices[:count], frames, matrices[count:])
+        places = frames.copy()
+        for index, (column, from_head) in self._nonlocal.items():
+            places[index] = from_head if column is None else every[column] @ from_head
+        return Posed(matrices[:count], frames, places, matrices[count:])
 
     def object_to_world(self) -> FloatArray:
         """(4, 4) of the armature now."""

@@ -68,11 +68,11 @@ class Dof:
 
 def axes_of(dofs: Sequence[Dof], posed: Posed, bases: FloatArray) -> FloatArray:
     """(D, 3, 3) axes of the responses, in the armature's space. bases: (C, 4, 4)."""
-    frames = proper(posed.frames[:, :3, :3])
+    places, frames = (proper(each[:, :3, :3]) for each in (posed.places, posed.frames))
     own = frames @ proper(bases[:, :3, :3])
     controls = [dof.control for dof in dofs]
     shifts = np.array([dof.shifts for dof in dofs])[:, None, None]
-    return np.where(shifts, frames[controls], own[controls])
+    return np.where(shifts, places[controls], own[controls])
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -20,9 +21,19 @@ from ..armature.played import scene_copy
 from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
 from ..armature.poses import Poses, metres_per_unit
 from ..armature.write import remove, remove_other_rotations, rotation_channel
+from ..controls.control_rig import (
+    ControlRig,
+    control_poses,
+    found_controls,
+    shifts_of_carriers,
+)
+from ..controls.driven import is_driven
+from ..controls.kept import KeptByControls, kept_by
+from ..controls.targets import targets_of
 from ..keys.bezier_keys import splice_bezier
 from ..properties.settings import settings_of
 from ..rows.choices import LoopRoot
+from ..takes.owned import owned_by
 from ..takes.takes import derive, free_name, root_of
 from ..takes.write_result import forget_copied
 from .cyclic_keys import cyclic_keys
@@ -54,12 +65,15 @@ class Loop:
         return np.asarray((head[-1] - head[0]) * [1.0, 1.0, 0.0])
 
     @property
-    def of_the_body(self) -> PoseTrack:
-        """The track without what the pelvis does not carry."""
-        if self.travels and self.root is None:
-            return self.track
+    def in_place(self) -> PoseTrack:
+        """The track without its travel at the mean speed."""
         steady = np.linspace(0.0, 1.0, len(self.track.frames))[:, None] * self.travel
         return replace(self.track, root_head=self.track.root_head - steady)
+
+    @property
+    def of_the_body(self) -> PoseTrack:
+        """The track without what the pelvis does not carry."""
+        return self.track if self.travels and self.root is None else self.in_place
 
 
 def root_bone(armature: bpy.types.Object, pelvis: str) -> bpy.types.Bone:
@@ -78,59 +92,113 @@ def write_loop(
     slot: str | None,
     *,
     name: str,
-) -> Incremental[bpy.types.Action]:
+) -> Incremental[tuple[bpy.types.Action, KeptByControls | None]]:
     """Write a loop as a copy of the recording's action, in slices; it is not assigned.
 
     What carries the body without being of it holds still as in the cycle's first frame. Other
     channels keep their shape within the cycle, and repeat; bones among them, such as fingers, give
-    up evenly what they end away from their start.
+    up evenly what they end away from their start. Returns how near controls bring the bodies to it,
+    where such pose them. Raises NoControls.
     """
     showing = partial(showing_action, armature, recorded)
-    frames = loop.track.frames
+    frames, bodies = loop.track.frames, loop.track.bones
     first = yield from sample_incrementally(armature, frames[:1], showing)
-    bases = yield from pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
+    rig = None
+    if is_driven(armature, bodies):
+        rig = yield from found_controls(armature, bodies, frames, showing)
     action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
     try:
         curves = fcurves.holder_in(action, slot)
         assert curves is not None
-        _settle_others(armature, curves, loop)
-        for bone in loop.track.bones:
-            _write_rotation(curves, pose_of(armature).bones[bone], frames, bases[bone])
-            yield
-        carrier = carrier_of(armature_data(armature).bones[loop.track.bones[0]]).name
-        goes_on = loop.travels and loop.root is None
-        places = bases[carrier][:, :3, 3]
-        _write(curves, pose_of(armature).bones[carrier], "location", frames, places, goes_on)
-        if loop.root is not None:
+        _settle_others(armature, curves, loop, bodies if rig is None else rig.controls)
+        if rig is None:
+            yield from _write_bodies(armature, curves, loop, first)
+        else:
+            yield from _write_controls(rig, action, curves, loop)
+        if loop.root is not None and (rig is None or loop.root.name not in rig.carriers):
             _write_root(armature, curves, loop.root, loop, first)
         for curve in fcurves.all_curves(action):
             _repeat(curve)
         action.use_frame_range = action.use_cyclic = True
         action.frame_start, action.frame_end = frames[[0, -1]].tolist()
+        kept = None
+        if rig is not None:
+            kept = yield from _kept(rig, action, loop)
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
             bpy.data.actions.remove(action)
     recorded.use_fake_user = True
-    return action
+    return action, kept
 
 
 def write_loop_incrementally(
     armature: bpy.types.Object, loop: Loop
-) -> Incremental[bpy.types.Action]:
+) -> Incremental[tuple[bpy.types.Action, KeptByControls | None]]:
     """Write a loop as a new action, which is assigned and knows its recording.
 
-    Before the last slice the armature is as it was.
+    Before the last slice the armature is as it was. Returns and raises as `write_loop`.
     """
     original, slot = present(recorded_action(armature)), fcurves.slot_identifier(armature)
     name = free_name(root_of(original).name, "loop")
-    action = yield from write_loop(armature, loop, original, slot, name=name)
+    action, kept = yield from write_loop(armature, loop, original, slot, name=name)
     derive(action, original, armature)
     show(armature, action, slot)
     settings_of(armature).adapted = action
-    return action
+    return action, kept
+
+
+def _write_bodies(
+    armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop, first: Poses
+) -> Incremental[None]:
+    """Key the bodies' own bones. first: the poses of the cycle's first frame."""
+    frames, bones = loop.track.frames, pose_of(armature).bones
+    bases = yield from pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
+    for bone in loop.track.bones:
+        _write_rotation(curves, bones[bone], frames, bases[bone])
+        yield
+    carrier = carrier_of(armature_data(armature).bones[loop.track.bones[0]]).name
+    places, goes_on = bases[carrier][:, :3, 3], loop.travels and loop.root is None
+    path = bones[carrier].path_from_id("location")
+    _write(curves, path, carrier, frames, places, goes_on=goes_on)
+
+
+def _write_controls(
+    rig: ControlRig, action: bpy.types.Action, curves: fcurves.CurveHolder, loop: Loop
+) -> Incremental[None]:
+    """Key the controls such that the bodies follow the cycle in place; the travel goes to those
+    that carry the figure.
+
+    The curves are settled: what the controls are solved from ends as it begins.
+    """
+    frames, armature = loop.track.frames, rig.armature
+    showing = partial(showing_action, armature, action)
+    action.update_tag()
+    poses = yield from sample_incrementally(armature, frames, showing)
+    bases = (yield from control_poses(rig, poses, loop.in_place, showing)).bases
+    carried = loop.travels and (loop.root is None or loop.root.name in rig.carriers)
+    with showing():
+        travel = shifts_of_carriers(rig, float(frames[0]), loop.travel)
+    for channel in owned_by(rig):
+        recorded = channel.recorded(armature, curves, frames[:1])
+        values = channel.values(armature, bases[channel.bone], recorded)
+        goes_on = carried and channel.carries and channel.attribute == "location"
+        if goes_on:
+            values = np.concatenate([values[:-1], values[:1]])
+            values += np.linspace(0.0, 1.0, len(frames))[:, None] * travel[channel.bone]
+        _write(curves, channel.path, channel.bone, frames, values, goes_on=goes_on)
+        yield
+
+
+def _kept(rig: ControlRig, action: bpy.types.Action, loop: Loop) -> Incremental[KeptByControls]:
+    """How near the bodies are to the cycle, as Blender shows the action."""
+    action.update_tag()
+    showing = partial(showing_action, rig.armature, action)
+    shown = yield from sample_incrementally(rig.armature, loop.track.frames, showing)
+    track = loop.track if loop.travels else loop.in_place
+    return kept_by(shown, targets_of(rig.armature, shown, track), len(rig.used))
 
 
 def _held(first: Poses, count: int) -> Poses:
@@ -142,11 +210,13 @@ def _held(first: Poses, count: int) -> Poses:
     )
 
 
-def _settle_others(armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop) -> None:
-    """Hold the object, and bones that carry some of the body without being of it, as at the cycle's
+def _settle_others(
+    armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop, written: Iterable[str]
+) -> None:
+    """Hold the object, and bones that carry some of the body and are not written, as at the cycle's
     first frame; cut all else, and close what other bones do."""
     first, last = (float(loop.track.frames[k]) for k in (0, -1))
-    carriers = set(with_ancestors(armature, loop.track.bones)) - set(loop.track.bones)
+    carriers = set(with_ancestors(armature, loop.track.bones)) - set(written)
     held = tuple(pose_of(armature).bones[name].path_from_id() for name in carriers)
     for curve in list(curves.fcurves):
         if not len(curve.keyframe_points):
@@ -183,23 +253,23 @@ def _write_rotation(
     remove_other_rotations(curves, bone, used)
     near = np.array(getattr(bone, used))
     values = channels(proper(basis[:, :3, :3]), bone.rotation_mode, near)
-    _write(curves, bone, used, frames, values, goes_on=False)
+    _write(curves, bone.path_from_id(used), bone.name, frames, values, goes_on=False)
 
 
 def _write(
     curves: fcurves.CurveHolder,
-    bone: bpy.types.PoseBone,
-    channel: str,
+    path: str,
+    bone: str,
     frames: FloatArray,
     values: FloatArray,
+    *,
     goes_on: bool,
 ) -> None:
-    """Make keys of values (T, n) the channel's only ones. goes_on: with each repetition."""
-    path = bone.path_from_id(channel)
+    """Make keys of values (T, n) the only ones of a bone's path. goes_on: with each repetition."""
     remove(curves, path)
     if not goes_on:
         values = np.concatenate([values[:-1], values[:1]])
-    splice_bezier(curves, path, cyclic_keys(frames, values), np.empty(0), bone.name)
+    splice_bezier(curves, path, cyclic_keys(frames, values), np.empty(0), bone)
     if goes_on:
         for curve in (c for c in curves.fcurves if c.data_path == path):
             _repeat(curve, goes_on=True)
@@ -223,7 +293,8 @@ def _write_root(
         rest = there[:3, 3] - np.array(root.matrix_local, float)[:3, 3]
     along = np.linalg.solve(to_bone, loop.travel / metres_per_unit(current_scene()))
     values = rest + np.linspace(0.0, 1.0, len(frames))[:, None] * along
-    _write(curves, pose_of(armature).bones[root.name], "location", frames, values, goes_on=True)
+    path = pose_of(armature).bones[root.name].path_from_id("location")
+    _write(curves, path, root.name, frames, values, goes_on=True)
 
 
 def _repeat(curve: bpy.types.FCurve, *, goes_on: bool = False) -> None:

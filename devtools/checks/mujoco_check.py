@@ -95,6 +95,9 @@ def check_motion(motion: Motion, rate: float = RATE) -> tuple[Residual, FloatArr
     touching = np.zeros(count, dtype=bool)
     for contact in t.contacts:
         touching |= (times >= contact.contact.start) & (times <= contact.contact.end)
+    if t.support is not None:
+        for unseen in t.support.intervals:
+            touching |= (times >= unseen.start) & (times <= unseen.end)
     residual = Residual(times, force / weight, moment / weight, ~touching)
     return residual, generalised[:, ROOT_SIZE:]
 

@@ -58,7 +58,7 @@ def solved(run: Run) -> tuple[AdaptationResult, Played]:
     result = solve(measure(recording, run.problem), StageClock())
     loop = Loop.of(armature, result.track, LoopRoot.HIPS)
     take, slot = present(current_action(armature)), fcurves.slot_identifier(armature)
-    action = complete(write_loop(armature, loop, take, slot, name=run.name))
+    action, _ = complete(write_loop(armature, loop, take, slot, name=run.name))
     fcurves.assign(armature, action, slot)
     first, last = result.track.frames[[0, -1]].tolist()
     return result, Played(armature, (first, last), recording.rate, result.track.bones)

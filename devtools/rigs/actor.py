@@ -102,7 +102,11 @@ def actor() -> Actor:
     """The jump of the figures, and half a second around it. Raises SetUpError."""
     whole = read(CLIP.path)
     first, last = CLIP.frames
-    recording = whole.window(first - BEYOND * RATE, last + BEYOND * RATE)
+    return acting(whole, whole.window(first - BEYOND * RATE, last + BEYOND * RATE))
+
+
+def acting(whole: Recording, recording: Recording) -> Actor:
+    """Some frames of a recording whose bones are named as the jump's."""
     bones = [whole.index(_bone(joint)) for joint in JOINTS]
     parents = tuple(map(_parent, JOINTS))
     rest = np.stack([whole.bones[b].head for b in bones])

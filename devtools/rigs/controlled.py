@@ -15,7 +15,6 @@ TURNED_DEGREES, TURNED_AIM_DEGREES = 0.2, 0.05
 DRIFT_MM, DRIFT_AIM_MM = 1.0, 0.1
 KEYS_OFF_MM, KEYS_DEGREES = 2.0, 0.2
 KEYS_RATE, KEYS_RATE_AIM = 12.0, 6.0
-KNOWN_KEYS_RATE = 24.0  # the take's own: a key on every frame is the most that there is
 KEYS_DRIFT_MM = 2.0
 COLUMNS = (
     "control rig",
@@ -174,7 +173,6 @@ def _sparse_figures(found: Sequence[tuple[str, SparseKeys]]) -> list[RigFigure]:
                 KEYS_RATE,
                 KEYS_RATE_AIM,
                 rig,
-                known=KNOWN_KEYS_RATE,
             )
         )
     told = (

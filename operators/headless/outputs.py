@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # as in clip.py
     import bpy
 
     from ...bridge.controls.control_rig import ControlRig
+    from ...bridge.controls.kept import KeptByControls
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
 
@@ -68,12 +69,13 @@ class Outputs:
         """All files of a result that is what was asked for; the picture where wanted."""
         from ...bridge.accessors import current_action, present
         from ...bridge.armature.played import adopt_strip
+        from ...bridge.takes.span import WrittenTake
 
         with self.stages.stage("Writing keyframes"):
             recorded = present(current_action(self.clip.armature))
             adopt_strip(self.clip.armature, recorded)
             performer, adapted, written = self._write_actions("adapted")
-            rig = written.rig if written is not None else None
+            rig = written.rig if isinstance(written, WrittenTake) else None
             keys = self._choose_keys(performer, adapted, recorded, rig)
             self._mark_contacts(performer, adapted)
             if self.loop is None:  # which is an action of its own
@@ -123,7 +125,7 @@ class Outputs:
         """With the stages that have ended."""
         return self.result.report(self.clip.origin, self.stages.done)
 
-    def _write_report(self, report: Report, written: WrittenTake | None) -> None:
+    def _write_report(self, report: Report, written: WrittenTake | KeptByControls | None) -> None:
         records: dict[str, object] = dict(as_json(report))
         text = as_text(report)
         if written is not None:
@@ -136,10 +138,10 @@ class Outputs:
 
     def _write_actions(
         self, called: str
-    ) -> tuple[bpy.types.Object, bpy.types.Action, WrittenTake | None]:
+    ) -> tuple[bpy.types.Object, bpy.types.Action, WrittenTake | KeptByControls | None]:
         """The adapted action on the armature, or on one of its own where limbs were changed; the
         recording's on a copy beside it. Returns who performs the action, the action, and what was
-        done to the take where it is the whole one."""
+        done to the take where it is the whole one, or how near controls come to a loop."""
         from mathutils import Vector
 
         from ...bridge.accessors import current_action, present
@@ -152,7 +154,8 @@ class Outputs:
 
         recorded = present(current_action(self.clip.armature))
         armature, track = self.clip.armature, self.result.track
-        name, written = f"{recorded.name} {called}", None
+        name = f"{recorded.name} {called}"
+        written: WrittenTake | KeptByControls | None = None
         if self.result.subject.problem.requests.body.limbs:
             armature, track, _ = build_reproportioned(self.result.recording, track)
             adapted = write_action(armature, track, name=name)
@@ -160,7 +163,7 @@ class Outputs:
         elif self.loop is not None:
             loop = Loop.of(armature, track, self.loop.root)
             slot = slot_identifier(armature)
-            adapted = complete(write_loop(armature, loop, recorded, slot, name=name))
+            adapted, written = complete(write_loop(armature, loop, recorded, slot, name=name))
             side_by_side(armature, recorded, adapted, offset=self._beside())
         else:
             adapted, written = write_result(armature, self._motion(), name=name)

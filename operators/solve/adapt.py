@@ -52,7 +52,7 @@ from ...bridge.takes.write_result import combine, write_adapted_incrementally
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
 from ...solver.body.proportions import changed_recording
-from ...solver.data.faults import ChangedMeanwhile, Fault, NotInLoop
+from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import BEYOND, Recording, same_motion
 from ...solver.data.solver_options import Method, SolverOptions
 from ...solver.data.status import Status
@@ -219,7 +219,7 @@ def require_writable(
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
     Controls are tried once for a recording, as that takes long and a drag's ghost waits for it.
-    Raises NoControls, NotInLoop, and as `map_anatomy`.
+    Raises NoControls, and as `map_anatomy`.
     """
     if not constrained(armature):  # keys of their own pose all bones
         return
@@ -232,8 +232,6 @@ def require_writable(
     if not driven:
         driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
         session().tried = trying if driven else None
-    if driven and loop_options(settings) is not None:
-        raise NotInLoop("a rig that is posed through controls")
 
 
 def _require_loopable(armature: bpy.types.Object) -> None:
@@ -284,9 +282,9 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     looped, options = loop_options(settings_of(armature)), result_options(settings_of(armature))
     if looped is not None:
         loop = Loop.of(armature, answer.track, looped.root)
-        action = yield from write_loop_incrementally(armature, loop)
+        action, controls = yield from write_loop_incrementally(armature, loop)
         keep(action, answer.traces, stood)
-        _note(armature, armature, action, answer)
+        _note(armature, armature, action, answer, take_lines(controls))
         mark_contacts(armature, action, answer, options)
         note_made(armature, action, None, 0)
         return f"Wrote the loop {action.name}"

@@ -13,13 +13,18 @@ _LEVEL = 0.0005  # m
 _STRAIGHT = 0.05  # degrees
 
 
-def take_lines(written: WrittenTake | None) -> list[str]:
+def take_lines(written: WrittenTake | KeptByControls | None) -> list[str]:
     """Lines for sidebar and report; none where the adapted frames are alone."""
-    return [] if written is None else list(_lines(written))
+    if written is None:
+        return []
+    return list(_controls(written) if isinstance(written, KeptByControls) else _lines(written))
 
 
-def take_record(written: WrittenTake) -> dict[str, object]:
-    """What report.json holds of it. Frames are the result's, lengths m, angles degrees."""
+def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
+    """What report.json holds of it; of a loop, which is no part of its take, how near controls come
+    to it. Frames are the result's, lengths m, angles degrees."""
+    if isinstance(written, KeptByControls):
+        return {"controls": asdict(written)}
     span, move = written.span, written.moved
     record: dict[str, object] = {
         "adapted_frames": [span.first, span.last],

@@ -11,7 +11,7 @@ from hangtime.devtools.recordings import find
 from hangtime.solver.data.recording import Recording
 
 JUMP = "forward_jump_116cm.bvh"
-JUMP_FRAMES = 73, 325  # from standing to standing
+JUMP_FRAMES = 110, 260  # from crouch to crouch; short, so that its fit is quick
 
 
 def mocap_path(name: str) -> Path:

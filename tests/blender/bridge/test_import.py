@@ -1,6 +1,7 @@
 """Import into Blender: what Blender evaluates is what the file says."""
 
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,13 @@ from hangtime.bridge.files.import_clip import ImportedClip, import_clip
 from hangtime.bridge.formats.acclaim import read_acclaim
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.formats.guess import ACCLAIM_UNIT
-from hangtime.bridge.formats.motion_clip import SUBSTITUTE_BONE, forward_kinematics, to_recording
-from hangtime.devtools.recordings import HOPS
+from hangtime.bridge.formats.motion_clip import (
+    SUBSTITUTE_BONE,
+    MotionClip,
+    forward_kinematics,
+    to_recording,
+)
+from hangtime.devtools.recordings import HOPS, read
 from hangtime.solver.analysis.performance import find_contacts, perform
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.character import build_character
@@ -25,13 +31,15 @@ from hangtime.solver.data.faults import (
     UnreadableClip,
 )
 from hangtime.solver.data.recording import Recording
-from hangtime.tests.helpers.clips import load_clip, load_recording, mocap_path
+from hangtime.tests.helpers.clips import mocap_path
 
 bpy = pytest.importorskip("bpy")
 
 JUMP_BVH = "forward_jump_116cm.bvh"
 RUN_FBX = "09_11_cmu.fbx"
 CHILD_BVH = "fair1_jumping.bvh"
+HOP_FRAMES = 400
+Paths = Callable[[str], Path]  # of recordings, by name
 
 ONE_BONE_BVH = """\
 HIERARCHY
@@ -55,9 +63,23 @@ Frame Time: 0.04
 """
 
 
+@pytest.fixture(scope="module")
+def path_of(tmp_path_factory: pytest.TempPathFactory) -> Paths:
+    """A recording's file by its name; of the ten hops, which are long, a copy of the first."""
+    whole, hop = mocap_path(HOPS), tmp_path_factory.mktemp("hop") / HOPS
+    hop.with_name("01.asf").write_text(whole.with_name("01.asf").read_text())
+    hop.write_text("\n".join(whole.read_text().splitlines()[: 3 + 30 * HOP_FRAMES]))
+    return lambda name: hop if name == HOPS else mocap_path(name)
+
+
 @pytest.fixture(autouse=True)
 def _empty_scene() -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def clip_of(path: Path) -> MotionClip:
+    """A BVH or AMC file as it is."""
+    return read_bvh(path) if path.suffix == ".bvh" else read_acclaim(path.with_name("01.asf"), path)
 
 
 def evaluated(armature: "bpy.types.Object", frame: float) -> dict[str, FloatArray]:
@@ -92,29 +114,32 @@ def assert_same_motion(imported: ImportedClip, recording: Recording, scale: floa
 
 
 @pytest.mark.parametrize("relative", [JUMP_BVH, CHILD_BVH, "rokoko_jesse_dance.bvh", HOPS])
-def test_blender_evaluates_what_the_file_says(relative: str) -> None:
-    recording = load_recording(relative)
-    assert_same_motion(import_clip(mocap_path(relative)), recording)
+def test_blender_evaluates_what_the_file_says(relative: str, path_of: Paths) -> None:
+    path = path_of(relative)
+    recording = read(path)
+    assert_same_motion(import_clip(path), recording)
     render = bpy.context.scene.render
-    rate = 1.0 / load_clip(relative).frame_time
+    rate = 1.0 / clip_of(path).frame_time
     assert render.fps / render.fps_base == pytest.approx(rate, rel=1e-6)
 
 
 @pytest.mark.parametrize("relative", [CHILD_BVH, HOPS])
-def test_unit_and_up_can_be_told(relative: str) -> None:
-    imported = import_clip(mocap_path(relative), unit=0.03, up="Y")
+def test_unit_and_up_can_be_told(relative: str, path_of: Paths) -> None:
+    path = path_of(relative)
+    imported = import_clip(path, unit=0.03, up="Y")
     assert (imported.unit_m, imported.unit_guessed) == (0.03, False)
     assert (imported.up, imported.up_guessed) == ("Y", False)
-    assert_same_motion(imported, to_recording(load_clip(relative), 0.03, "Y"))
+    assert_same_motion(imported, to_recording(clip_of(path), 0.03, "Y"))
 
 
 @pytest.mark.parametrize("relative", [JUMP_BVH, HOPS])
-def test_scene_in_centimetres(relative: str) -> None:
+def test_scene_in_centimetres(relative: str, path_of: Paths) -> None:
+    path = path_of(relative)
     bpy.context.scene.unit_settings.scale_length = 0.01
-    assert_same_motion(import_clip(mocap_path(relative)), load_recording(relative), 0.01)
+    assert_same_motion(import_clip(path), read(path), 0.01)
 
 
-def test_what_was_guessed_is_told() -> None:
+def test_what_was_guessed_is_told(path_of: Paths) -> None:
     child = import_clip(mocap_path(CHILD_BVH))
     assert (child.unit_m, child.unit_guessed, child.up, child.up_guessed) == (
         0.0254,
@@ -122,12 +147,12 @@ def test_what_was_guessed_is_told() -> None:
         "Z",
         True,
     )
-    hops = import_clip(mocap_path(HOPS))
+    hops = import_clip(path_of(HOPS))
     assert (hops.unit_m, hops.unit_guessed) == (pytest.approx(ACCLAIM_UNIT), False)
 
 
-def test_acclaim_bones_are_the_files() -> None:
-    armature = import_clip(mocap_path(HOPS)).armature
+def test_acclaim_bones_are_the_files(path_of: Paths) -> None:
+    armature = import_clip(path_of(HOPS)).armature
     shin = armature.data.bones["ltibia"]
     assert shin.parent.name == "lfemur"
     assert shin.length == pytest.approx(7.49137 * ACCLAIM_UNIT, abs=1e-5)
@@ -143,13 +168,13 @@ def test_half_frames_lie_between_whole_ones(tmp_path: Path) -> None:
     np.testing.assert_allclose(y, [0, 0, -1], atol=1e-5)
 
 
-def test_import_from_edit_mode() -> None:
+def test_import_from_edit_mode(path_of: Paths) -> None:
     other = import_clip(mocap_path(JUMP_BVH)).armature
     bpy.context.view_layer.objects.active = other
     bpy.ops.object.mode_set(mode="EDIT")
-    imported = import_clip(mocap_path(HOPS))
+    imported = import_clip(path_of(HOPS))
     assert imported.armature is not other
-    assert_same_motion(imported, load_recording(HOPS))
+    assert_same_motion(imported, read(path_of(HOPS)))
 
 
 # ---------------------------------------------------------------- FBX

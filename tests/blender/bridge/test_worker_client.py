@@ -35,7 +35,7 @@ from hangtime.solver.worker.protocol import (
 from hangtime.tests.helpers.clips import load_recording
 
 JUMP = "forward_jump_116cm.bvh"
-SPAN = (73.0, 325.0)
+SPAN = (110.0, 260.0)
 UP = MotionProblem(frames=SPAN, pins=(Pin("up", "ground 2", offset=(0.0, 0.0, 0.05)),))
 AHEAD = MotionProblem(frames=SPAN, pins=(Pin("ahead", "ground 2", offset=(0.05, 0.0, 0.0)),))
 LOADER = str(Path(__file__).parents[3] / "devtools" / "package.py")

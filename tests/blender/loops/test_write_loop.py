@@ -41,7 +41,8 @@ def cycle(armature: bpy.types.Object) -> PoseTrack:
 def looped(armature: bpy.types.Object, root: LoopRoot) -> PoseTrack:
     track = cycle(armature)
     take, slot = current_action(armature), fcurves.slot_identifier(armature)
-    action = complete(write_loop(armature, Loop.of(armature, track, root), take, slot, name="Loop"))
+    loop = Loop.of(armature, track, root)
+    action, _ = complete(write_loop(armature, loop, take, slot, name="Loop"))
     fcurves.assign(armature, action, slot)
     assert action.use_cyclic
     assert tuple(action.frame_range) == (FRAMES[0], FRAMES[-1])

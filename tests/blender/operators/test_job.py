@@ -29,13 +29,13 @@ from hangtime.tests.helpers.clips import begun_at_rest, mocap_path
 from hangtime.tests.helpers.kept_fits import KeptFits
 
 CLIP = "forward_jump_116cm.bvh"
-WINDOW = (100.0, 290.0)
+WINDOW = (110.0, 260.0)
 FILES = {
     *("adapted.blend", "adapted.fbx", "sheet.png"),
     *("report.json", "report.txt", "trajectory.npz"),
 }
 EDIT = """
-frames = [100, 290]
+frames = [110, 260]
 [[pin]]
 name = "Landing"
 phase = "ground 2"
@@ -174,7 +174,7 @@ def test_the_command_line_wins_over_the_recipe(clip: Path, tmp_path: Path) -> No
     report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["figure"]["mass_kg"] == pytest.approx(35.0)
     assert report["figure"]["height_m"] == pytest.approx(1.2)
-    assert report["recording"]["first_frame"] == 100.0
+    assert report["recording"]["first_frame"] == WINDOW[0]
     assert report["recording"]["last_frame"] == 280.0
     _assert_written_as_the_worker_answers(clip, tmp_path / "out" / "adapted.blend")
 
@@ -241,10 +241,10 @@ def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Pa
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     ensure_groups()
     take = current_action(import_clip(clip).armature)
-    take.hangtime.spans = "[[60.0, 88.0]]"  # an earlier adaptation, which no blend reaches into
+    take.hangtime.spans = "[[60.0, 98.0]]"  # an earlier adaptation, which no blend reaches into
     path = tmp_path / "adapted before.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    assert run(tmp_path, path, "frames = [100, 290]\n", "--no-picture") == 0
+    assert run(tmp_path, path, "frames = [110, 260]\n", "--no-picture") == 0
     assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"sheet.png"}
     said = capsys.readouterr().out
     assert "picture" not in said
@@ -289,7 +289,7 @@ def test_the_starter_recipe_is_valid_and_names_the_landing(
     shutil.copy(clip, tmp_path / "jump.bvh")
     target = tmp_path / "recipes" / "jump.toml"
     target.parent.mkdir()
-    command = ["analyze", str(tmp_path / "jump.bvh"), "--first", "100", "--last", "290"]
+    command = ["analyze", str(tmp_path / "jump.bvh"), "--first", "110", "--last", "260"]
     command += ["--bone", "left foot=LeftFoot", "--write-recipe", str(target)]
     assert main(command) == 0
     recipe = parse_recipe(target.read_text(encoding="utf-8"))

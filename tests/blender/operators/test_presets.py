@@ -22,11 +22,12 @@ from hangtime.bridge.constraints.rows import add_constraint, hold_throughout
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.rows import asked, names, select
+from hangtime.tests.helpers.clips import JUMP_FRAMES
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 JUMP = "forward_jump_116cm.bvh"
-FIRST, LAST = 73, 325
+FIRST, LAST = JUMP_FRAMES
 
 
 def seen(armature: bpy.types.Object, bone: str, first: float, last: float) -> np.ndarray:

@@ -13,19 +13,13 @@ from hangtime.bridge.armature.actions import read_recorded, recorded_action
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.takes.takes import TAKE_CHANGED, look_again
 from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.helpers.clips import JUMP_FRAMES
 from mathutils import Matrix
 
-FIRST, LAST = 110, 260
+FIRST, LAST = JUMP_FRAMES
 BLEND = 30  # frames, a quarter of a second
 
 pytestmark = pytest.mark.usefixtures("_enabled")
-
-
-@pytest.fixture
-def analysed(jump: bpy.types.Object) -> bpy.types.Object:
-    jump.hangtime.first_frame, jump.hangtime.last_frame = FIRST, LAST
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    return jump
 
 
 def keys_of(armature: bpy.types.Object) -> dict[tuple[str, int], np.ndarray]:

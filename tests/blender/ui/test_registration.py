@@ -103,8 +103,9 @@ def test_the_solver_stays_out_of_blenders_own_process() -> None:
     assert done.stdout.split()[-1] == "False", done.stderr
 
 
-def test_unregistering_ends_the_worker(analysed: bpy.types.Object) -> None:
-    assert len(analysed.hangtime.contacts) > 0
+def test_unregistering_ends_the_worker(jump: bpy.types.Object) -> None:
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert len(jump.hangtime.contacts) > 0
     pid = worker_client.shared().pid
     assert pid is not None
     hangtime.unregister()

@@ -32,7 +32,7 @@ from hangtime.solver.data.problem import (
     Pin,
     Unseen,
 )
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 FULL = """\
@@ -170,6 +170,7 @@ PROBLEMS = st.builds(
 )
 
 
+@settings(max_examples=40)
 @given(PROBLEMS)
 def test_what_is_written_is_read_as_the_same(problem: MotionProblem) -> None:
     assert parse_recipe(write_recipe(problem)).problem == problem

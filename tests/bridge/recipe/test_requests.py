@@ -15,7 +15,7 @@ from hangtime.solver.data.requests import (
 )
 from hangtime.tests.helpers.full_recipe import FULL, REQUESTS
 from hangtime.tests.helpers.problem_strategies import KINDS, PROBLEMS
-from hypothesis import given
+from hypothesis import given, settings
 
 
 def test_every_key_is_read() -> None:
@@ -50,6 +50,7 @@ def test_every_kind_of_request_is_tried() -> None:
     assert {*KINDS, "body", "solution"} == {field.name for field in fields(Requests)}
 
 
+@settings(max_examples=40)
 @given(PROBLEMS)
 def test_what_is_written_is_read_as_the_same(problem: MotionProblem) -> None:
     assert parse_recipe(write_recipe(problem)).problem == problem

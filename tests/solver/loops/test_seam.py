@@ -24,7 +24,9 @@ def looped(cut: str) -> Fit:
     return fit(analysis.performance, analysis.schedule, periodic=True)
 
 
-@pytest.fixture(scope="module", params=CUTS)
+@pytest.fixture(
+    scope="module", params=[pytest.param("in flight", marks=pytest.mark.slow), "in a stance"]
+)
 def cycle(request: pytest.FixtureRequest) -> Fit:
     return looped(request.param)
 

@@ -1,6 +1,7 @@
 """Support that the floor does not explain: boxes that would, and ground of the scene that does."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, frames_of, hop
 DROP = 0.3  # m
 
 
+@cache
 def drop() -> Recording:
     """The hop as a jump down: raised until it leaves, and in the flight no more bit by bit."""
     recording = load_recording(HOP_CLIP).window(*frames_of(HOP_CLIP, HOP))
@@ -32,8 +34,9 @@ def drop() -> Recording:
     return replace(recording, heads=heads)
 
 
-def offered(problem: MotionProblem | None = None) -> tuple[SupportBox, ...]:
-    (found,) = measure(drop(), problem or MotionProblem()).analysis.unseen
+@cache
+def offered(height: float | None = None) -> tuple[SupportBox, ...]:
+    (found,) = measure(drop(), MotionProblem(height=height)).analysis.unseen
     assert isinstance(found, UnseenSupport)
     return found.boxes
 
@@ -122,7 +125,7 @@ def test_a_scene_changes_nothing_where_the_floor_explains_all() -> None:
 
 def test_at_another_stature_the_box_is_still_in_the_recordings_lengths() -> None:
     tall = 1.2 * hop().performance.character.height
-    plain, scaled = offered(), offered(MotionProblem(height=tall))
+    plain, scaled = offered(), offered(tall)
     np.testing.assert_allclose(scaled[0].size, plain[0].size, atol=0.02)
     np.testing.assert_allclose(scaled[0].place, plain[0].place, atol=0.02)
 

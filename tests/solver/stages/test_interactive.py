@@ -43,8 +43,8 @@ def settled(follower: Follower, problem: MotionProblem, most: int = 30) -> int:
 def test_the_ghost_is_near_the_solve() -> None:
     fit = fitted_hop()
     follower = Follower(fit, moved(0.0))
-    for step in range(1, 11):
-        follower.follow(moved(0.02 * step, 0.01 * step))
+    for step in range(1, 6):
+        follower.follow(moved(0.04 * step, 0.02 * step))
     settled(follower, moved(0.2, 0.1))
     solved = adapt(fit, moved(0.2, 0.1))
     times = np.linspace(0.0, fit.motion.duration, 100)
@@ -67,9 +67,9 @@ def test_floor_and_limbs_are_solid_while_the_pin_is_dragged() -> None:
         Follower(fitted_hop(), careless(moved(0.0), solid=solid)) for solid in (True, False)
     )
     depths = []
-    for step in range(1, 31):
-        kept.follow(careless(moved(0.02 * step), solid=True))
-        through.follow(careless(moved(0.02 * step), solid=False))
+    for step in range(1, 13):
+        kept.follow(careless(moved(0.05 * step), solid=True))
+        through.follow(careless(moved(0.05 * step), solid=False))
         depths.append((deepest(kept), deepest(through)))
     most = np.max(depths, axis=0)
     assert most[0] < 0.005 < 0.01 < most[1]

@@ -12,7 +12,9 @@ from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.requests import Requests
 from hangtime.solver.data.scene import SceneObject, SceneRole, SteadyMotion
+from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.stages.fit import Fit
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.worker.pipeline import StageClock, fit_subject, measure
@@ -108,9 +110,9 @@ def test_the_fit_rides_along(lift: bool) -> None:
 
 def test_an_edit_on_the_train_goes_on_riding() -> None:
     fit = fitted()
-    problem = MotionProblem(
-        scene=(train(VELOCITY),), pins=(Pin("Landing", "ground 2", offset=(0.15, 0.0, 0.0)),)
-    )
+    pin = Pin("Landing", "ground 2", offset=(0.15, 0.0, 0.0))
+    riding = Requests(solution=SolverOptions(solid=False, human=HumanRanges.OFF))
+    problem = MotionProblem(scene=(train(VELOCITY),), pins=(pin,), requests=riding)
     made = adapt(fit, problem)
     assert made.solved
     setup = made.setup

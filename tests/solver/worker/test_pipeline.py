@@ -200,7 +200,8 @@ def test_what_no_numbers_can_hold_is_a_fault() -> None:
 
 def test_what_is_beyond_reason_ends_with_what_could_not_be_met() -> None:
     """Matrices that were not positive definite ended in a traceback."""
-    requests = Requests(body=BodyChange(mass=1e-7, gravity=1e13))
+    alone = SolverOptions(keep_times=True, solid=False, human=HumanRanges.OFF)
+    requests = Requests(body=BodyChange(mass=1e-7, gravity=1e13), solution=alone)
     asked = subject().asked(MotionProblem(frames=FRAMES, requests=requests))
     fault = adapt_fit(asked, fitted_hop(), StageClock()).fault
     assert fault is not None

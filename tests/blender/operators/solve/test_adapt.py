@@ -92,6 +92,7 @@ def test_what_was_changed_is_kept_by_another_analysis(analysed: bpy.types.Object
 
 
 def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
+    analysed.hangtime.keep_out, analysed.hangtime.human_ranges = False, False  # quicker
     ask_by_text(
         analysed,
         '[[torque]]\nname = "Weak ankle"\nbones = ["RightFoot"]\nbound = 60\n'
@@ -156,6 +157,7 @@ def test_ranges_are_hard_or_wider_where_asked(analysed: bpy.types.Object) -> Non
 
 
 def test_longer_limbs_perform_on_an_armature_of_their_own(analysed: bpy.types.Object) -> None:
+    analysed.hangtime.keep_out, analysed.hangtime.human_ranges = False, False  # quicker
     bones = '["LeftUpLeg", "RightUpLeg", "LeftLeg", "RightLeg"]'
     ask_by_text(analysed, f'[[limb]]\nname = "Long legs"\nbones = {bones}\nlength = 1.15\n')
     recorded = analysed.animation_data.action
