@@ -11,12 +11,12 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
 
 from .environment.virtual_environment import ROOT
 
-PACKAGE = ROOT / "__init__.py"
 BEGIN = ROOT / "batch"
 MANIFEST = "blender_manifest.toml"  # tells the version at run time too
 OF_BLENDER = {"bpy", "bpy_extras", "bmesh", "gpu", "mathutils"}
@@ -72,65 +72,87 @@ def build_wheel(out: Path) -> Path:
 
 
 def wheel_files() -> list[Path]:
-    """Every file that goes in: modules that `batch` comes to, their packages, and their data.
+    """Every file that goes in: what `batch` imports as it loads, what functions import where that
+    needs no Blender, the packages of these, and their data.
 
-    Raises BuildError where one of the modules imports Blender as it loads.
+    Raises BuildError where a module that a batch loads needs Blender.
     """
-    modules = reached(set(BEGIN.rglob("*.py")))
+    modules = loaded_by(BEGIN.rglob("*.py"))
     for module in sorted(modules):
-        if blender := top_level_imports(module) & OF_BLENDER:
+        if blender := outside(module) & OF_BLENDER:
             where = module.relative_to(ROOT)
-            raise BuildError(f"{where} is imported by a batch and needs {min(blender)}.")
+            raise BuildError(f"{where} is loaded by a batch and needs {min(blender)}.")
+    waiting = modules
+    while waiting:
+        later = (loaded_by([each]) for module in waiting for each in imported(module, later=True))
+        waiting = {each for group in later if not needs_blender(group) for each in group} - modules
+        modules |= waiting
     data = {
         file
         for folder in {module.parent for module in modules} - {ROOT}
-        for file in folder.rglob("*")
-        if file.is_file() and file.suffix not in (".py", ".pyc")
+        for file in folder.glob("*/*.toml")
+        if (folder / "__init__.py").is_file()
     }
     return sorted(modules | data | {ROOT / MANIFEST})
 
 
-def reached(begin: set[Path]) -> set[Path]:
-    """The modules and all within the package that they import, in functions too. What the package
+def needs_blender(modules: set[Path]) -> bool:
+    return any(outside(module) & OF_BLENDER for module in modules)
+
+
+def loaded_by(begin: Iterable[Path]) -> set[Path]:
+    """The modules, and all within the package that these import as they load. What the package
     itself imports is for Blender, which registers it."""
     found: set[Path] = set()
-    waiting = begin
+    waiting = set(begin)
     while waiting:
         found |= waiting
-        waiting = {target for module in waiting - {PACKAGE} for target in imported(module)} - found
+        waiting = {each for module in waiting for each in imported(module)} - found
     return found
 
 
-def imported(module: Path) -> Iterator[Path]:
-    """Files of the package that one imports, with the packages that they are in."""
-    for node in statements(ast.parse(module.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.level:
+@cache
+def imported(module: Path, *, later: bool = False) -> frozenset[Path]:
+    """Files of the package that one imports as it loads, or `later`, in functions; and the packages
+    that it is in."""
+    found = {folder / "__init__.py" for folder in module.parents if folder.is_relative_to(ROOT)}
+    for node in imports(module, later):
+        if isinstance(node, ast.ImportFrom) and node.module == "pkgutil":
+            found |= set(module.parent.glob("*.py"))  # it takes whatever lies beside it
+        elif isinstance(node, ast.ImportFrom) and node.level:
             folder = module.parents[node.level - 1].joinpath(*(node.module or "").split("."))
             for name in ("", *(each.name for each in node.names)):
-                for file in ((folder / name).with_suffix(".py"), folder / name / "__init__.py"):
-                    if file.is_file():
-                        yield file
-    for folder in module.parents:
-        yield folder / "__init__.py"
-        if folder == ROOT:
-            return
+                found |= {(folder / name).with_suffix(".py"), folder / name / "__init__.py"}
+    return frozenset(file for file in found if file.is_file())
 
 
-def top_level_imports(module: Path) -> set[str]:
+def outside(module: Path) -> set[str]:
     """First parts of the names that a module imports from elsewhere as it loads."""
-    found = set()
-    for node in ast.parse(module.read_text(encoding="utf-8")).body:
+    names = set()
+    for node in imports(module, later=False):
         if isinstance(node, ast.Import):
-            found |= {each.name.partition(".")[0] for each in node.names}
-        elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
-            found.add(node.module.partition(".")[0])
-    return found
+            names |= {each.name for each in node.names}
+        elif not node.level and node.module:
+            names.add(node.module)
+    return {name.partition(".")[0] for name in names}
 
 
-def statements(tree: ast.AST) -> Iterator[ast.AST]:
-    """Every node but for those that only the type checker sees."""
+@cache
+def imports(module: Path, later: bool) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """Import statements outside of functions, or within them; none that only types need."""
+    found = statements(ast.parse(module.read_text(encoding="utf-8")), within=False)
+    return tuple(
+        node
+        for node, within in found
+        if isinstance(node, ast.Import | ast.ImportFrom) and within is later
+    )
+
+
+def statements(tree: ast.AST, *, within: bool) -> Iterator[tuple[ast.AST, bool]]:
+    """Every node, and whether it is within a function."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
             continue
-        yield node
-        yield from statements(node)
+        inside = within or isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        yield node, inside
+        yield from statements(node, within=inside)
