@@ -90,10 +90,15 @@ def wheel_files() -> list[Path]:
     data = {
         file
         for folder in {module.parent for module in modules} - {ROOT}
-        for file in folder.glob("*/*.toml")
-        if (folder / "__init__.py").is_file()
+        for file in (*folder.glob("*"), *folder.glob("*/*"))
+        if file.is_file() and file.suffix not in (".py", ".pyc") and package_of(file) == folder
     }
     return sorted(modules | data | {ROOT / MANIFEST})
+
+
+def package_of(file: Path) -> Path:
+    """The folder of the package that a file belongs to."""
+    return next(folder for folder in file.parents if (folder / "__init__.py").is_file())
 
 
 def needs_blender(modules: set[Path]) -> bool:
