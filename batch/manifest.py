@@ -15,12 +15,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .faults import FolderGone, WrongManifest
+from .faults import FolderGone, OtherVersion, WrongManifest
 from .result import State
 
 MANIFEST = "manifest.jsonl"
 FORMAT = 1
-KEY_SHOWN = 8  # hexadecimal digits of a cell's key in its name
+KEY_SHOWN = 16  # hexadecimal digits of a cell's key in its name; two of 250,000 never share them
 Value = float | int | str | bool
 AGAIN = "give the batch's command again, which writes it anew and keeps what is solved"
 
@@ -187,7 +187,7 @@ def _settings(folder: Path, line: str) -> BatchSettings:
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise WrongManifest(f"{path}, line 1: that is no batch's first line; {AGAIN}.") from error
     if settings.version != version():
-        raise WrongManifest(
+        raise OtherVersion(
             f"{path} is of Hangtime {settings.version}, and this is {version()}: results of the "
             "two would be mixed. Go on with that version, or take another folder."
         )
