@@ -7,7 +7,7 @@ no fit is solved twice.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from statistics import median
 
@@ -35,6 +35,7 @@ class Attempts:
     running: list[Attempt] = field(default_factory=list)
     ended: set[str] = field(default_factory=set)
     tries: Counter[str] = field(default_factory=Counter)
+    failed_on: dict[str, set[str]] = field(default_factory=dict)  # workers, by cells
     fitted: set[str] = field(default_factory=set)  # hashes of clips
     took: list[float] = field(default_factory=list)  # s, of the cells that ended
 
@@ -53,20 +54,25 @@ class Attempts:
         """Cells that run on a worker."""
         return sum(each.worker == worker for each in self.running)
 
-    def next_for(self, worker: str, now: float) -> Attempt | None:
+    def next_for(self, worker: str, now: float, others: Collection[str] = ()) -> Attempt | None:
         """What a worker with nothing to do begins: a cell that waits and may run, else one that
-        takes too long on another; None where there is none."""
-        plan = self._ready() or self._slow(worker, now)
+        takes too long on another; None where there is none.
+
+        others: workers, who take first what failed on this one.
+        """
+        plan = self._ready(worker, set(others) - {worker}) or self._slow(worker, now)
         if plan is None:
             return None
         attempt = Attempt(plan, worker, now)
         self.running.append(attempt)
         return attempt
 
-    def _ready(self) -> CellPlan | None:
+    def _ready(self, worker: str, others: set[str]) -> CellPlan | None:
         leading = {each.plan.clip_sha256 for each in self.running} - self.fitted
         for place, plan in enumerate(self.waiting):
-            if plan.clip_sha256 not in leading:
+            failed_on = self.failed_on.get(plan.cell, set())
+            elsewhere = worker in failed_on and others - failed_on
+            if plan.clip_sha256 not in leading and not elsewhere:
                 del self.waiting[place]
                 return plan
         return None
@@ -100,6 +106,8 @@ class Attempts:
         self.running.remove(attempt)
         cell = attempt.plan.cell
         self.tries[cell] += blame
+        if blame:
+            self.failed_on.setdefault(cell, set()).add(attempt.worker)
         if self.tries[cell] >= MOST_TRIES:
             return False
         elsewhere = any(each.plan.cell == cell for each in self.running)

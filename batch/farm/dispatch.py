@@ -45,12 +45,17 @@ class FarmGone(BatchFault):
 
 
 def run_on_dask(
-    folder: Path, address: str, tell: Tell, ended: Callable[[CellResult], None] | None = None
+    folder: Path,
+    address: str,
+    tell: Tell,
+    ended: Callable[[CellResult], None] = lambda _: None,
+    *,
+    share: bool = True,
 ) -> None:
     """Run all cells of a planned batch that have no result on a scheduler's workers.
 
     address: of the scheduler, or a scheduler file. tell: takes sentences on workers. ended: takes
-    every result. Raises BatchFault: FarmGone, FolderGone, WrongManifest; what has ended is kept.
+    every result. share: let workers that see the folder use it. Raises BatchFault: FarmGone, FolderGone, WrongManifest; what has ended is kept.
     """
     manifest = read_manifest(folder)
     plans = [plan for plan in manifest.cells if unfinished(folder, plan)]
@@ -59,7 +64,7 @@ def run_on_dask(
     with connected(address) as client:
         try:
             with token_in(folder) as token:
-                Dispatch(client, folder, manifest, token, tell, ended or (lambda _: None)).run(plans)
+                Dispatch(client, folder, manifest, token, share, tell, ended).run(plans)
         except (TimeoutError, OSError) as error:
             raise FarmGone(
                 f"The scheduler at {address} is gone ({error or type(error).__name__}). What has "
@@ -78,9 +83,9 @@ def connected(address: str) -> Iterator[Client]:
     file = Path(address)
     try:
         if "://" not in address and file.is_file():
-            client = Client(scheduler_file=str(file), set_as_default=False)
+            client = Client(scheduler_file=str(file))
         else:
-            client = Client(address, set_as_default=False)
+            client = Client(address)
     except (OSError, TimeoutError, ValueError) as error:
         raise FarmGone(
             f"No scheduler answers at {address} ({error or type(error).__name__}); check the "
@@ -113,6 +118,7 @@ class Dispatch:
     folder: Path
     manifest: Manifest
     token: str
+    share: bool
     tell: Tell
     ended: Callable[[CellResult], None]
     crew: Crew = field(default_factory=lambda: Crew(own_build(), {}, set()))
@@ -129,7 +135,7 @@ class Dispatch:
             now = time.monotonic()
             for worker in self.crew.reach:
                 while self.attempts.load(worker) < threads[worker]:
-                    attempt = self.attempts.next_for(worker, now)
+                    attempt = self.attempts.next_for(worker, now, self.crew.reach)
                     if attempt is None:
                         break
                     self._begin(attempt)
@@ -146,7 +152,7 @@ class Dispatch:
         strangers = self.crew.strangers(threads)
         if strangers:
             answers = self.client.run(
-                *(look_around, str(self.folder.resolve()), self.token),
+                *(look_around, self._shared_folder(), self.token),
                 workers=strangers,
                 on_error="return",
             )
@@ -156,6 +162,10 @@ class Dispatch:
             self.tell("No worker can be used yet; the batch waits for one.")
         self.idle_told = not self.crew.reach
         return threads
+
+    def _shared_folder(self) -> str:
+        """The batch's folder, if workers may use it."""
+        return str(self.folder.resolve()) if self.share else ""
 
     def _lose(self, address: str) -> None:
         for future, attempt in list(self.futures.items()):

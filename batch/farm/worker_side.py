@@ -79,17 +79,18 @@ def own_build() -> Build:
 
 
 def look_around(folder: str, token: str) -> WorkerState:
-    """Who this worker is. token: name of a file that lies in the batch's folder."""
+    """Who this worker is. folder: the batch's, empty where it is not to be used. token: name of a
+    file that lies there."""
     one_thread = all(os.environ.get(name) == "1" for name in list(ONE_THREAD)[:2])
-    return WorkerState(own_build(), _reach(Path(folder), token), one_thread, platform.node())
+    return WorkerState(own_build(), _reach(folder, token), one_thread, platform.node())
 
 
-def _reach(folder: Path, token: str) -> Reach:
-    if not (folder / token).is_file():
+def _reach(folder: str, token: str) -> Reach:
+    if not folder or not (Path(folder) / token).is_file():
         return Reach.NONE
     try:
-        (folder / CELLS).mkdir(exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder / CELLS):
+        (Path(folder) / CELLS).mkdir(exist_ok=True)
+        with tempfile.TemporaryFile(dir=Path(folder) / CELLS):
             return Reach.SHARED
     except OSError:
         return Reach.READ_ONLY
@@ -117,6 +118,7 @@ def solve_away(
     batch: tells batches apart. plan: its clip and recipe are among the files. fits: of its clip.
     """
     own = Path(get_worker().local_directory) / f"hangtime-{batch}"
+    (own / FITS).mkdir(parents=True, exist_ok=True)
     new = {name: content for name, content in fits.items() if not (own / FITS / name).exists()}
     write_files(own / FITS, new)
     before = {path.name for path in (own / FITS).glob("[!.]*")}
