@@ -15,13 +15,13 @@ from pathlib import Path
 
 from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
-from .cell import run_cell
-from .faults import BatchFault
-from .locks import batch_lock
-from .manifest import BatchSettings, Manifest, Output, write_manifest
-from .outputs import needs_blender
+from .cells.cell import run_cell
+from .cells.outputs import needs_blender
 from .planning.plan import Asked, Planned, plan, refreshed
-from .result import State, read_result
+from .records.faults import BatchFault
+from .records.locks import batch_lock
+from .records.manifest import BatchSettings, Manifest, Output, write_manifest
+from .records.result import State, read_result
 from .running.memory import MemoryWatch
 from .running.progress import Progress, told
 from .running.runner import LocalRun

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ...bridge.formats.acclaim import find_asf
 from ...solver.data.faults import UnreadableClip
-from ..faults import WrongPlan
+from ..records.faults import WrongPlan
 
 IN_FOLDERS = (".bvh", ".amc", ".fbx")  # a .blend is taken where it is named itself
 SUFFIXES = (*IN_FOLDERS, ".blend")

@@ -20,8 +20,8 @@ from glob import glob
 from pathlib import Path
 from typing import Any
 
-from ..faults import WrongPlan
-from ..manifest import Value
+from ..records.faults import WrongPlan
+from ..records.manifest import Value
 from .clips import absolute, find_clips
 from .recipes import VariedRecipe
 

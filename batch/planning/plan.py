@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
-from ..faults import FolderTaken, OtherVersion, WrongManifest, WrongPlan
-from ..manifest import (
+from ..records.faults import FolderTaken, OtherVersion, WrongManifest, WrongPlan
+from ..records.manifest import (
     KEY_SHOWN,
     BatchSettings,
     CellPlan,
@@ -18,7 +18,7 @@ from ..manifest import (
     read_manifest,
     write_manifest,
 )
-from ..result import CELLS, read_result
+from ..records.result import CELLS, read_result
 from .clips import clip_sha256
 from .pairs import Pair, crossed, read_table
 from .recipes import VariedRecipe
@@ -59,7 +59,7 @@ def plan(asked: Asked, folder: Path) -> Planned:
         pairs = read_table(asked.table, check=check)
     else:
         pairs = crossed(asked.clips, asked.recipes, check=check)
-    found = list(_cells(pairs, asked.settings))
+    found = list(_cells(pairs))
     unique = {cell.key(asked.settings): cell for cell in found}
     _refuse_another(folder, {cell.clip for cell in found})
     cells, strays = _named(unique, folder)
@@ -94,7 +94,7 @@ class _Variants:
         return found
 
 
-def _cells(pairs: Sequence[Pair], settings: BatchSettings) -> Iterator[CellPlan]:
+def _cells(pairs: Sequence[Pair]) -> Iterator[CellPlan]:
     hashed = cache(_clip_hash)
     read = cache(lambda path, values: VariedRecipe.read(path, dict(values)))
     varied = [read(pair.recipe, tuple(pair.values.items())) for pair in pairs]

@@ -26,7 +26,7 @@ from typing import Any
 from ...bridge.recipe_syntax.items import AGAINST, TRAVEL_KEYS
 from ...bridge.recipe_syntax.source_lines import KeyPath
 from ...bridge.recipe_syntax.table import NumberRange, Source, Table, shown
-from ..manifest import Value
+from ..records.manifest import Value
 
 HEADER = "batch"
 # Keys of a recipe that hold one number, so that a list of numbers can only be a range.

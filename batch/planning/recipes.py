@@ -15,8 +15,8 @@ from ...bridge.recipe.problem import Recipe, read_recipe_text, recipe_of, recipe
 from ...bridge.recipe_syntax.source_lines import KeyPath
 from ...bridge.recipe_syntax.table import Source
 from ...solver.data.problem import MotionProblem
-from ..faults import WrongPlan
-from ..manifest import Value
+from ..records.faults import WrongPlan
+from ..records.manifest import Value
 from .ranges import HEADER, Combination, ValueRange, combination, count_of, find_ranges, variants
 
 OF_PLANNING = (HEADER, "clip")  # keys that say nothing of the motion

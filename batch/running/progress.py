@@ -8,8 +8,8 @@ from pathlib import Path
 from time import monotonic
 from typing import TextIO
 
-from ..manifest import CellPlan
-from ..result import CellResult, State
+from ..records.manifest import CellPlan
+from ..records.result import CellResult, State
 
 SILENCE_S = 10.0  # between lines where there is no terminal to write in place
 

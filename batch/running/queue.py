@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections import Counter, OrderedDict, deque
 from collections.abc import Iterable
 
-from ..manifest import CellPlan
+from ..records.manifest import CellPlan
 
 Group = tuple[str, str]  # clip and recipe: their cells share a fit
 
 
 class CellQueue:
-    """Cells that wait. A worker goes on with the clip whose fit it remembers; a new one begins with
-    a clip that nobody is fitting, so that none waits for another's fit while there is other work."""
+    """Cells that wait.
+
+    A worker goes on with the clip whose fit it remembers; a new one begins with a clip that nobody
+    is fitting, so that none waits for another's fit while there is other work.
+    """
 
     def __init__(self, cells: Iterable[CellPlan]) -> None:
         self._waiting: OrderedDict[Group, deque[str]] = OrderedDict()

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
-from ..aside import remove_abandoned
-from ..cell import write_failure
-from ..faults import BatchFault, FolderGone
-from ..fits import FITS
-from ..manifest import CellPlan, Manifest
-from ..result import CELLS, State, read_result
+from ..cells.cell import write_failure
+from ..cells.fits import FITS
+from ..records.aside import remove_abandoned
+from ..records.faults import BatchFault, FolderGone
+from ..records.manifest import CellPlan, Manifest
+from ..records.result import CELLS, State, read_result
 from .memory import MemoryWatch
 from .progress import Progress
 from .queue import CellQueue

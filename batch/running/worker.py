@@ -22,8 +22,8 @@ Run = Callable[[Path], Callable[[str], Any]]  # of a batch's folder: what solves
 
 def solver(folder: Path) -> Callable[[str], Any]:
     """What solves a cell of a batch: fits are remembered from one to the next."""
-    from ..cell import run_cell
-    from ..fits import SharedFits
+    from ..cells.cell import run_cell
+    from ..cells.fits import SharedFits
 
     fits = SharedFits(folder)
     return lambda cell: run_cell(folder, cell, fits)
@@ -36,7 +36,7 @@ def serve(run: Run = solver) -> None:
     if hello is None:
         return
     sys.path[:] = hello["path"]
-    from ..faults import BatchFault
+    from ..records.faults import BatchFault
     from .memory import used
 
     solve = run(Path(hello["folder"]))

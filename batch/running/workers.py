@@ -15,7 +15,7 @@ from threading import Thread
 from typing import Any
 
 from ...solver.one_thread import ONE_THREAD
-from ..faults import BatchFault
+from ..records.faults import BatchFault
 
 PROGRAM = Path(__file__).with_name("worker.py")
 _KEPT_LINES = 20

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..solver.data.reports.report import FitQuality, Report
+from ...solver.data.reports.report import FitQuality, Report
 
 
 def figures(report: Report) -> dict[str, float]:

@@ -6,14 +6,14 @@ from collections.abc import Collection
 from importlib.util import find_spec
 from pathlib import Path
 
-from ..bridge.formats.bvh_writer import write_bvh
-from ..operators.headless.outbox import Outbox, not_writable
-from ..operators.headless.result_files import write_report, write_trajectory
-from ..solver.data.reports.recording import Origin
-from ..solver.data.reports.report import Report
-from ..solver.results.posed_recording import posed_recording
-from ..solver.worker.pipeline import AdaptationResult
-from .manifest import Output
+from ...bridge.formats.bvh_writer import write_bvh
+from ...operators.headless.outbox import Outbox, not_writable
+from ...operators.headless.result_files import write_report, write_trajectory
+from ...solver.data.reports.recording import Origin
+from ...solver.data.reports.report import Report
+from ...solver.results.posed_recording import posed_recording
+from ...solver.worker.pipeline import AdaptationResult
+from ..records.manifest import Output
 from .reading import WITHOUT_BLENDER
 
 MOTION = "motion.bvh"

@@ -6,33 +6,33 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ..bridge.recipe.export import ExportOptions
-from ..bridge.recipe.keys import KeyOptions, require_every_frame
-from ..bridge.recipe.objects import placed_objects
-from ..bridge.recipe.problem import Recipe
-from ..bridge.recipe.result import ResultOptions, require_return_after
-from ..bridge.rows.choices import FileFormat
-from ..operators.headless.clip import Clip, LoadedClip, load
-from ..operators.headless.commands import explained
-from ..operators.headless.outbox import Outbox
-from ..operators.headless.outputs import Outputs, require_exported
-from ..operators.headless.stages import Stages
-from ..operators.words.doctor_text import diagnosis_text, finding_sentence
-from ..operators.words.doubt_text import doubts_of
-from ..operators.words.headline import headline, nearness
-from ..solver.data.faults import NoSolution
-from ..solver.data.problem import MotionProblem
-from ..solver.data.reports.recording import Origin
-from ..solver.doctor.diagnose import diagnose
-from ..solver.results.report import fit_quality
-from ..solver.worker.pipeline import Subject, measure, no_fit, solve
-from .faults import WrongPlan
+from ...bridge.recipe.export import ExportOptions
+from ...bridge.recipe.keys import KeyOptions, require_every_frame
+from ...bridge.recipe.objects import placed_objects
+from ...bridge.recipe.problem import Recipe
+from ...bridge.recipe.result import ResultOptions, require_return_after
+from ...bridge.rows.choices import FileFormat
+from ...operators.headless.clip import Clip, LoadedClip, load
+from ...operators.headless.commands import explained
+from ...operators.headless.outbox import Outbox
+from ...operators.headless.outputs import Outputs, require_exported
+from ...operators.headless.stages import Stages
+from ...operators.words.doctor_text import diagnosis_text, finding_sentence
+from ...operators.words.doubt_text import doubts_of
+from ...operators.words.headline import headline, nearness
+from ...solver.data.faults import NoSolution
+from ...solver.data.problem import MotionProblem
+from ...solver.data.reports.recording import Origin
+from ...solver.doctor.diagnose import diagnose
+from ...solver.results.report import fit_quality
+from ...solver.worker.pipeline import Subject, measure, no_fit, solve
+from ..planning.clips import clip_files, clip_sha256
+from ..planning.recipes import VariedRecipe
+from ..records.faults import WrongPlan
+from ..records.manifest import BatchSettings, CellPlan, Output
 from .figures import figures, fit_figures
 from .fits import SharedFits
-from .manifest import BatchSettings, CellPlan, Output
 from .outputs import needs_blender, write_motion, write_plain
-from .planning.clips import clip_files, clip_sha256
-from .planning.recipes import VariedRecipe
 from .reading import read_clip
 
 DIAGNOSIS = "doctor.txt"

@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, field, replace
 from enum import Enum
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from .faults import FolderGone, OtherVersion, WrongManifest
 from .result import State
@@ -44,7 +44,7 @@ class Output(Enum):
 @cache
 def version() -> str:
     """Hangtime's own."""
-    file = Path(__file__).parents[1] / "blender_manifest.toml"
+    file = Path(__file__).parents[2] / "blender_manifest.toml"
     return str(tomllib.loads(file.read_text(encoding="utf-8"))["version"])
 
 
@@ -59,7 +59,7 @@ class BatchSettings:
     outputs: tuple[Output, ...] = (Output.NPZ,)
     check: bool = False
     unit: float | None = None
-    up: str | None = None
+    up: Literal["Y", "Z"] | None = None
     rate: float | None = None
     version: str = field(default_factory=version)
 

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 from typing import TextIO
 
-from ..operators.headless.commands import explained
-from ..operators.headless.outbox import Outbox
-from ..operators.headless.stages import Stages
-from ..solver.data.faults import Fault, NoSolution, OutputNotWritable
-from ..solver.worker.pipeline import ADAPTING, FITTING
-from .aside import written_aside
-from .faults import BatchFault, FolderGone
+from ...operators.headless.commands import explained
+from ...operators.headless.outbox import Outbox
+from ...operators.headless.stages import Stages
+from ...solver.data.faults import Fault, NoSolution, OutputNotWritable
+from ...solver.worker.pipeline import ADAPTING, FITTING
+from ..records.aside import written_aside
+from ..records.faults import BatchFault, FolderGone
+from ..records.manifest import BatchSettings, CellPlan, gone, read_plan
+from ..records.result import RESULT, CellResult, State, cell_folder, drop_failure, read_result
 from .fits import SharedFits
-from .manifest import BatchSettings, CellPlan, gone, read_plan
-from .result import RESULT, CellResult, State, cell_folder, drop_failure, read_result
 from .work import Done, InputChanged, adapt_cell, check_cell
 
 LOG = "log.txt"
@@ -31,7 +31,7 @@ class _Ended:
 
     state: State
     sentence: str = ""
-    done: Done = Done()
+    done: Done = field(default_factory=Done)
 
 
 def run_cell(

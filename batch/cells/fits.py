@@ -13,19 +13,19 @@ from pathlib import Path
 
 import numpy as np
 
-from ..solver.data.recording import digest
-from ..solver.data.requests import Requests
-from ..solver.stages.fit import Fit
-from ..solver.worker.pipeline import (
+from ...solver.data.recording import digest
+from ...solver.data.requests import Requests
+from ...solver.stages.fit import Fit
+from ...solver.worker.pipeline import (
     FITTING,
     StageClock,
     Subject,
     fit_subject,
     require_possible,
 )
-from .aside import written_aside
-from .locks import held
-from .manifest import version
+from ..records.aside import written_aside
+from ..records.locks import held
+from ..records.manifest import version
 
 FITS = "fits"  # within a batch's folder
 FILE = "fit.pickle"
@@ -119,9 +119,9 @@ def _parts(value: object) -> Iterator[bytes]:
         yield repr(value.value).encode()
     elif is_dataclass(value):
         yield type(value).__name__.encode()
-        for each in fields(value):
-            yield each.name.encode()
-            yield from _parts(getattr(value, each.name))
+        for one in fields(value):
+            yield one.name.encode()
+            yield from _parts(getattr(value, one.name))
     elif isinstance(value, tuple | list | dict):
         yield f"{type(value).__name__}{len(value)}".encode()
         for each in value.items() if isinstance(value, dict) else value:

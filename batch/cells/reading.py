@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 from math import ceil, floor
 from pathlib import Path
 
-from ..bridge.formats.acclaim import USUAL_RATE, find_asf, read_acclaim
-from ..bridge.formats.bvh import read_bvh
-from ..bridge.formats.guess import guess_unit, guess_up
-from ..bridge.formats.motion_clip import MotionClip, UpAxis, to_recording
-from ..solver.data.faults import ClipNotOpened
-from ..solver.data.problem import MotionProblem
-from ..solver.data.recording import BEYOND, Recording
-from ..solver.data.reports.recording import Origin
-from ..solver.doctor.repair import mended, placed, trimmed, turned
-from ..solver.doctor.repairs import Repairs
-from ..solver.skeleton.bind_pose import bind_frames
+from ...bridge.formats.acclaim import USUAL_RATE, find_asf, read_acclaim
+from ...bridge.formats.bvh import read_bvh
+from ...bridge.formats.guess import guess_unit, guess_up
+from ...bridge.formats.motion_clip import MotionClip, UpAxis, to_recording
+from ...solver.data.faults import ClipNotOpened
+from ...solver.data.problem import MotionProblem
+from ...solver.data.recording import BEYOND, Recording
+from ...solver.data.reports.recording import Origin
+from ...solver.doctor.repair import mended, placed, trimmed, turned
+from ...solver.doctor.repairs import Repairs
+from ...solver.skeleton.bind_pose import bind_frames
 
 WITHOUT_BLENDER = (".bvh", ".amc")
 _EPSILON = 1e-4  # frames, by which a bound may miss a whole one
