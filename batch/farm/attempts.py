@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from statistics import median
 
-from ..manifest import CellPlan
+from ..records.manifest import CellPlan
 
 MOST_TRIES = 4  # of a cell that fails, or whose worker ends meanwhile
 SLOW = 3.0  # times the median; an idle worker then takes the cell as well

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from itertools import groupby
 from pathlib import Path
 
-from ..faults import WrongManifest, WrongPlan
-from ..manifest import MANIFEST, read_manifest
+from ..records.faults import WrongManifest, WrongPlan
+from ..records.manifest import MANIFEST, read_manifest
 
 PART = re.compile(r"\s*(\d+)\s*(?:-\s*(\d+)\s*(?::\s*(\d+)\s*)?)?")
 

@@ -18,11 +18,11 @@ from pathlib import Path
 
 from distributed import Client, Future, wait
 
-from ..cell import write_failure
-from ..faults import BatchFault, FolderGone
-from ..fits import FITS
-from ..manifest import CellPlan, Manifest, gone, read_manifest
-from ..result import CellResult, State, read_result
+from ..cells.cell import write_failure
+from ..records.faults import BatchFault, FolderGone
+from ..cells.fits import FITS
+from ..records.manifest import CellPlan, Manifest, gone, read_manifest
+from ..records.result import CellResult, State, read_result
 from .attempts import MOST_TRIES, Attempt, Attempts
 from .crew import Crew
 from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of

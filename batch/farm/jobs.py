@@ -4,9 +4,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ..faults import WrongPlan
-from ..manifest import Manifest, read_manifest
-from ..result import State, read_result
+from ..records.faults import WrongPlan
+from ..records.manifest import Manifest, read_manifest
+from ..records.result import State, read_result
 from .cell_range import range_text
 
 PLATFORMS = {"win32": "windows"}  # as Flamenco calls them, where that is not as Python does

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
-from ..aside import written_aside
-from ..faults import FolderGone
-from ..fits import FITS
-from ..manifest import CellPlan, gone
-from ..result import State, cell_folder, drop_failure, read_result
-from ..work import cell_files
+from ..records.aside import written_aside
+from ..records.faults import FolderGone
+from ..cells.fits import FITS
+from ..records.manifest import CellPlan, gone
+from ..records.result import State, cell_folder, drop_failure, read_result
+from ..cells.work import cell_files
 from .worker_side import Files, write_files
 
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import TextIO
 
-from ..cell import run_cell
-from ..result import State
+from ..cells.cell import run_cell
+from ..records.result import State
 from .cell_range import cells_in
 
 

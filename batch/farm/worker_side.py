@@ -16,10 +16,10 @@ from pathlib import Path, PurePosixPath
 from distributed import get_worker
 
 from ...solver.one_thread import ONE_THREAD
-from ..cell import run_cell
-from ..fits import FITS, SharedFits
-from ..manifest import BatchSettings, CellPlan, Manifest, version, write_manifest
-from ..result import CELLS, CellResult, cell_folder
+from ..cells.cell import run_cell
+from ..cells.fits import FITS, SharedFits
+from ..records.manifest import BatchSettings, CellPlan, Manifest, version, write_manifest
+from ..records.result import CELLS, CellResult, cell_folder
 
 PACKAGE = Path(__file__).parents[2]
 COMPUTED_BY = ("solver", "bridge", "operators", "batch")  # folders whose code makes results

@@ -1,7 +1,7 @@
 """Which cell goes to which worker, without a scheduler."""
 
 from hangtime.batch.farm.attempts import MOST_TRIES, SLOW_LEAST, Attempt, Attempts
-from hangtime.batch.manifest import CellPlan
+from hangtime.batch.records.manifest import CellPlan
 
 
 def plans(count: int, clips: int = 1) -> list[CellPlan]:

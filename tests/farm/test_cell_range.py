@@ -2,7 +2,7 @@
 
 import pytest
 from hangtime.batch.farm.cell_range import numbers_of, range_text
-from hangtime.batch.faults import WrongPlan
+from hangtime.batch.records.faults import WrongPlan
 
 
 @pytest.mark.parametrize(
