@@ -19,8 +19,8 @@ from hangtime.batch.collect.letters import (  # noqa: E402 - the package is made
     WIDE,
 )
 
-EM = 13.2  # pixels; the letters of this font are 0.602 em wide
-BASE = 4.2  # pixels from a cell's lower edge to the line that letters stand on
+EM = 17.6  # Blender's size of letters, which are 0.602 em and here 7.9 pixels wide
+BASE = 4.0  # pixels from a cell's lower edge to the line that letters stand on
 SAMPLES = 64
 
 

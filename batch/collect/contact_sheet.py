@@ -9,7 +9,7 @@ import numpy as np
 from ..manifest import gone
 from ..result import State, cell_folder
 from .files import written_aside
-from .gathering import PICTURE, GatheredBatch, short_names
+from .gathering import PICTURE, GatheredBatch, short_keys, short_names
 from .letters import HIGH, write
 from .png import Pixels, UnreadablePicture, read_png, shrunk, write_png
 
@@ -67,9 +67,12 @@ def _fill(tile: Pixels, batch: GatheredBatch, i: int, clip: str) -> None:
         y, x = (SHOT[1] - small.shape[0]) // 2, (SHOT[0] - small.shape[1]) // 2
         shot[y : y + small.shape[0], x : x + small.shape[1]] = small
     state, values = batch.states[i], batch.plans[i].values
-    varied = (f"{name} {x}" for name, x in values.items() if len(set(batch.values[name])) > 1)
+    short = short_keys(batch.values)
+    varied = (
+        f"{short[name]} {x}" for name, x in values.items() if len(set(batch.values[name])) > 1
+    )
     write(tile, 0, SHOT[1] + 4, f"{i + 1}. {clip}", INK, SHOT[0])
-    if state is State.DONE:
+    if state in (State.DONE, State.PLANNED):
         write(tile, 0, SHOT[1] + 4 + HIGH, ", ".join(varied), QUIET, SHOT[0])
     else:
         write(tile, 0, SHOT[1] + 4 + HIGH, f"{state.value}: {_why(batch, i)}", ALARM, SHOT[0])

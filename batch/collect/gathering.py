@@ -76,6 +76,21 @@ def columns(rows: Iterable[Mapping[str, object]]) -> Columns:
     return found
 
 
+def short_keys(keys: Iterable[str]) -> dict[str, str]:
+    """Each dotted key by as many of its last words as tell it from the others: "pin.Landing.up" is
+    "up" where nothing else is."""
+    distinct = [key.split(".") for key in dict.fromkeys(keys)]
+    found = {}
+    for words in distinct:
+        enough = (
+            n
+            for n in range(1, len(words) + 1)
+            if sum(other[-n:] == words[-n:] for other in distinct) == 1
+        )
+        found[".".join(words)] = ".".join(words[-next(enough, len(words)) :])
+    return found
+
+
 def short_names(paths: Iterable[str]) -> dict[str, str]:
     """Each path from the folder on that all share, so that no two have one name."""
     distinct = dict.fromkeys(paths)

@@ -6,7 +6,7 @@ import html
 import json
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from typing import Any
 from ..manifest import Output
 from ..result import State
 from .files import written_aside
-from .gathering import PICTURE, Columns, GatheredBatch, short_names
+from .gathering import PICTURE, Columns, GatheredBatch, short_keys, short_names
 
 PARTS = Path(__file__).with_name("page")
 SCRIPTS = ("data.js", "filters.js", "lists.js", "plot.js", "cell.js", "main.js")
@@ -69,7 +69,7 @@ def page_data(batch: GatheredBatch) -> dict[str, Any]:
         "file_sets": file_sets,
         "files": files,
         "seconds": [_shown(x) for x in batch.seconds.get("total", [None] * len(results))],
-        "values": _table(batch.values),
+        "values": _table(batch.values, short_keys(batch.values)),
         "figures": _table(batch.figures),
     }
 
@@ -95,9 +95,10 @@ def _numbered(entries: Iterable[Any]) -> tuple[list[Any], list[int]]:
     return list(known), numbers
 
 
-def _table(columns: Columns) -> list[dict[str, Any]]:
+def _table(columns: Columns, short: Mapping[str, str] = {}) -> list[dict[str, Any]]:
     return [
-        {"name": name, "column": [_shown(x) for x in column]} for name, column in columns.items()
+        {"name": name, "short": short.get(name, name), "column": [_shown(x) for x in column]}
+        for name, column in columns.items()
     ]
 
 

@@ -23,8 +23,8 @@ function written(x) {
 
 /** A column: `at(i)` is what cell i has there, null where nothing. */
 class Column {
-  constructor(key, name, group, at, number) {
-    Object.assign(this, { key, name, group, at, number });
+  constructor(key, name, group, at, number, short = name) {
+    Object.assign(this, { key, name, group, at, number, short });
   }
 
   /** What cells have here, each once, in order. */
@@ -42,13 +42,12 @@ function compared(a, b) {
   return typeof a === "number" && typeof b === "number" ? a - b : collator.compare(String(a), String(b));
 }
 
-const order = Uint32Array.from(batch.cells, (_, i) => i);
-Object.defineProperty(order, "map", { value: (f) => Array.from(order, (i) => f(i)) });
+const order = batch.cells.map((_, i) => i);
 
 function tableColumns(group, table) {
-  return table.map(({ name, column }) => {
+  return table.map(({ name, short, column }) => {
     const number = column.every((x) => x === null || typeof x === "number");
-    return new Column(`${group}:${name}`, name, group, (i) => column[i], number);
+    return new Column(`${group}:${name}`, name, group, (i) => column[i], number, short);
   });
 }
 
@@ -78,10 +77,16 @@ const picture = (i) => (fileSet(i).includes(batch.picture) ? address(i, batch.pi
 const film = (i) => fileSet(i).find((file) => /\.(mp4|webm)$/.test(file)) ?? null;
 const anyPicture = batch.file_sets.some((files) => files.includes(batch.picture));
 
+/** A duration in words. */
+function lasting(seconds) {
+  if (seconds < 90) return `${Math.round(seconds)} s`;
+  return seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`;
+}
+
 /** The values that vary, such as "forward 0.2, up 0.1". */
 function variation(i) {
   return values.filter((column) => varies(column) && column.at(i) !== null)
-    .map((column) => `${column.name} ${column.text(i)}`).join(", ");
+    .map((column) => `${column.short} ${column.text(i)}`).join(", ");
 }
 
 /** An element with properties, and what it holds; text is never read as markup. */

@@ -2,6 +2,7 @@
 
 const MOST_VALUES = 6; // columns of each kind that the table has at first
 const MOST_NAMES = 8; // cells that are named beside a reason
+const FEW = 3; // cells whose values are told there too
 
 class Page {
   constructor() {
@@ -75,7 +76,7 @@ class Page {
   }
 
   update() {
-    const shown = Array.from(this.filters.matching());
+    const shown = this.filters.matching();
     const { at } = byKey.get(this.sort.key);
     const way = this.sort.down ? -1 : 1;
     if (this.sort.key !== "number" || this.sort.down) {
@@ -95,7 +96,7 @@ class Page {
     $("pictures-box").hidden = !this.pictures || !shown.length;
     this.drawTable();
     this.grid.set(shown);
-    this.plot.set(Uint32Array.from(shown));
+    this.plot.set(shown);
     this.save();
   }
 
@@ -138,7 +139,7 @@ function head() {
   const seconds = batch.seconds.reduce((sum, x) => sum + (x ?? 0), 0);
   $("summary").textContent = [
     counted(batch.cells.length, "cell", "cells"), counted(batch.clips.length, "clip", "clips"),
-    counted(batch.recipes.length, "recipe", "recipes"), `${written(seconds / 3600)} hours of work`,
+    counted(batch.recipes.length, "recipe", "recipes"), `${lasting(seconds)} of work`,
     `collected ${batch.collected}`, `Hangtime ${batch.version}`,
   ].join(" · ");
   $("notes").textContent = batch.notes.join(" ");
@@ -160,7 +161,9 @@ function problems(page) {
   $("problems").hidden = total === 0;
   $("problems-heading").textContent = `${counted(total, "cell", "cells")} without a result`;
   $("reasons").append(...found.map(({ state, why, cells }) => {
-    const names = cells.slice(0, MOST_NAMES).map((i) => [`${i + 1}. ${columns[1].text(i)}`, variation(i)].filter(Boolean).join(": "));
+    const named = (i) => `${i + 1}. ${columns[1].text(i)}`;
+    const names = cells.slice(0, MOST_NAMES).map(
+      (i) => (cells.length <= FEW && variation(i) ? `${named(i)}: ${variation(i)}` : named(i)));
     if (cells.length > MOST_NAMES) names.push(`and ${(cells.length - MOST_NAMES).toLocaleString("en")} more`);
     const show = make("button", { type: "button" }, cells.length === 1 ? "Open" : `Show ${cells.length.toLocaleString("en")}`);
     show.setAttribute("aria-label", cells.length === 1 ? `Open cell ${cells[0] + 1}` : `Show the ${cells.length} cells: ${why}`);

@@ -120,7 +120,7 @@ class Plot {
     ];
     this.axes(pen, ink, wide, high, x, y);
     const classes = this.classes(colour);
-    this.points = Array.from(drawable, (i) => (
+    this.points = drawable.map((i) => (
       { i, x: this.scales[0].place(x.at(i)), y: this.scales[1].place(y.at(i)), ...classes.get(colour.at(i)) }));
     pen.globalAlpha = this.points.length > 2000 ? 0.55 : 0.85;
     const size = this.points.length > 2000 ? 3 : 4.5;
