@@ -1,1 +1,1 @@
-"""Batches on other machines: tasks of a farm's engine, and Dask. Not in the extension's zip."""
+"""Batches by the engines of farms, such as Flamenco and those of OpenJD: jobs, and their tasks."""

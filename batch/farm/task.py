@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ..cells.cell import run_cell
+from ..cells.fits import SharedFits
 from ..records.result import State
 from .cell_range import cells_in
 
@@ -15,9 +16,9 @@ def run_task(folder: Path, cells: str, out: TextIO) -> int:
     even one that says that there is no solution; 1 that some failed and are worth another try.
     Raises BatchFault.
     """
-    failed = 0
+    failed, fits = 0, SharedFits(folder)
     for cell in cells_in(folder, cells):
-        result = run_cell(folder, cell)
+        result = run_cell(folder, cell, fits)
         failed += result.state is State.FAILED
         words = f"{cell}  {result.state.value}  {result.seconds.get('total', 0.0):.1f} s"
         print(words, result.sentence, sep="  ", file=out, flush=True)

@@ -1,6 +1,6 @@
 """Which cell goes to which worker, without a scheduler."""
 
-from hangtime.batch.farm.attempts import MOST_TRIES, SLOW_LEAST, Attempt, Attempts
+from hangtime.batch.cluster.attempts import MOST_TRIES, SLOW_LEAST, Attempt, Attempts
 from hangtime.batch.records.manifest import CellPlan
 
 
@@ -24,7 +24,7 @@ def test_the_others_of_a_clip_wait_for_the_first_ones_fit() -> None:
 
 
 def test_a_clip_with_a_fit_waits_for_nothing() -> None:
-    attempts = Attempts.of(plans(3), fitted=["0"])
+    attempts = Attempts.of(plans(3), fitted=[("0", "r.toml")])
     assert [begun(attempts, worker).plan.cell for worker in "abc"] == ["00001", "00002", "00003"]
 
 
@@ -47,7 +47,7 @@ def test_a_worker_that_does_not_share_the_folder_is_not_the_cells_fault() -> Non
 
 
 def test_an_idle_worker_takes_a_straggler_as_well_and_the_first_result_counts() -> None:
-    attempts = Attempts.of(plans(3), fitted=["0"])
+    attempts = Attempts.of(plans(3), fitted=[("0", "r.toml")])
     quick, slow, other = (begun(attempts, worker) for worker in "abc")
     attempts.end(quick, 1.0)
     attempts.end(other, 1.0)
@@ -61,7 +61,7 @@ def test_an_idle_worker_takes_a_straggler_as_well_and_the_first_result_counts() 
 
 
 def test_a_straggler_whose_worker_ends_is_not_begun_again_while_its_twin_runs() -> None:
-    attempts = Attempts.of(plans(2), fitted=["0"])
+    attempts = Attempts.of(plans(2), fitted=[("0", "r.toml")])
     quick, slow = begun(attempts, "a"), begun(attempts, "b")
     attempts.end(quick, 1.0)
     twin = begun(attempts, "a", SLOW_LEAST + 1.0)

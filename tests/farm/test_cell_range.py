@@ -20,7 +20,9 @@ def test_a_range_names_cells(text: str, numbers: list[int]) -> None:
     assert numbers_of(text, 12) == numbers
 
 
-@pytest.mark.parametrize("text", ["", "a", "0", "13", "3-2", "1-99999999999", "1-4:0", "-3", "1,,2"])
+@pytest.mark.parametrize(
+    "text", ["", "a", "0", "13", "3-2", "1-99999999999", "1-4:0", "-3", "1,,2"]
+)
 def test_what_is_none_is_refused_in_words(text: str) -> None:
     with pytest.raises(WrongPlan, match=r"^“.*” is no range"):
         numbers_of(text, 12)

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
-from hangtime.batch.farm.crew import Crew, judge
-from hangtime.batch.farm.worker_side import Build, Reach, WorkerState
+from hangtime.batch.cluster.crew import Crew, judge
+from hangtime.batch.cluster.worker_side import Build, Reach, WorkerState
 
 OWN = Build("1.0.0", {"solver/a.py": "1", "batch/b.py": "2"}, {"numpy": "1.26.4"})
 GOOD = WorkerState(OWN, Reach.SHARED, True, "node7")
@@ -19,17 +19,24 @@ def test_the_same_build_may_whatever_else_is_installed_here() -> None:
 @pytest.mark.parametrize(
     ("answer", "words"),
     [
-        (replace(GOOD, build=replace(OWN, version="0.9.0")), "has Hangtime 0.9.0 and this is 1.0.0"),
-        (replace(GOOD, build=replace(OWN, code={"solver/a.py": "3"})), "another build (solver/a.py"),
-        (replace(GOOD, build=replace(OWN, libraries={"numpy": "2.4"})), "numpy 2.4 and this is 1.26"),
+        (
+            replace(GOOD, build=replace(OWN, version="0.9.0")),
+            "has Hangtime 0.9.0 and this is 1.0.0",
+        ),
+        (
+            replace(GOOD, build=replace(OWN, code={"solver/a.py": "3"})),
+            "another build (solver/a.py",
+        ),
+        (
+            replace(GOOD, build=replace(OWN, libraries={"numpy": "2.4"})),
+            "numpy 2.4 and this is 1.26",
+        ),
         (replace(GOOD, one_thread=False), "several threads"),
         (ModuleNotFoundError("No module named 'hangtime'"), "install the wheel there"),
         (TimeoutError("no word"), "does not answer (no word)"),
     ],
 )
-def test_another_one_is_left_out_in_a_sentence(
-    answer: WorkerState | Exception, words: str
-) -> None:
+def test_another_one_is_left_out_in_a_sentence(answer: WorkerState | Exception, words: str) -> None:
     verdict = judge("tcp://w", answer, OWN)
     assert not verdict.usable
     assert verdict.words.startswith("Worker tcp://w")

@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
+from ..cells.fits import FITS
+from ..cells.work import cell_files
 from ..records.aside import written_aside
 from ..records.faults import FolderGone
-from ..cells.fits import FITS
 from ..records.manifest import CellPlan, gone
 from ..records.result import State, cell_folder, drop_failure, read_result
-from ..cells.work import cell_files
 from .worker_side import Files, write_files
-
 
 CLIP = "clip.sha256"  # within a fit's folder: whose it is
 

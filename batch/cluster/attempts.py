@@ -1,7 +1,7 @@
 """Which cells wait, run and have ended on a farm; no word of Dask here, so that it is easily tested.
 
-A clip's first cell goes alone and brings the clip's fit back; the clip's others wait for it, so that
-no fit is solved twice.
+The first cell of a clip with a recipe goes alone and brings their fit back; the others with these
+wait for it, so that no fit is solved twice.
 """
 
 from __future__ import annotations
@@ -16,6 +16,13 @@ from ..records.manifest import CellPlan
 MOST_TRIES = 4  # of a cell that fails, or whose worker ends meanwhile
 SLOW = 3.0  # times the median; an idle worker then takes the cell as well
 SLOW_LEAST = 30.0  # s
+
+
+Pair = tuple[str, str]  # a clip's hash and a recipe: their cells share a fit
+
+
+def pair_of(plan: CellPlan) -> Pair:
+    return plan.clip_sha256, plan.recipe
 
 
 @dataclass(frozen=True)
@@ -36,12 +43,12 @@ class Attempts:
     ended: set[str] = field(default_factory=set)
     tries: Counter[str] = field(default_factory=Counter)
     failed_on: dict[str, set[str]] = field(default_factory=dict)  # workers, by cells
-    fitted: set[str] = field(default_factory=set)  # hashes of clips
+    fitted: set[Pair] = field(default_factory=set)
     took: list[float] = field(default_factory=list)  # s, of the cells that ended
 
     @staticmethod
-    def of(plans: Iterable[CellPlan], fitted: Iterable[str] = ()) -> Attempts:
-        """fitted: hashes of clips that have a fit already."""
+    def of(plans: Iterable[CellPlan], fitted: Iterable[Pair] = ()) -> Attempts:
+        """fitted: pairs that have a fit already."""
         return Attempts(deque(plans), fitted=set(fitted))
 
     @property
@@ -68,11 +75,11 @@ class Attempts:
         return attempt
 
     def _ready(self, worker: str, others: set[str]) -> CellPlan | None:
-        leading = {each.plan.clip_sha256 for each in self.running} - self.fitted
+        leading = {pair_of(each.plan) for each in self.running} - self.fitted
         for place, plan in enumerate(self.waiting):
             failed_on = self.failed_on.get(plan.cell, set())
             elsewhere = worker in failed_on and others - failed_on
-            if plan.clip_sha256 not in leading and not elsewhere:
+            if pair_of(plan) not in leading and not elsewhere:
                 del self.waiting[place]
                 return plan
         return None
@@ -91,7 +98,7 @@ class Attempts:
     def end(self, attempt: Attempt, now: float) -> bool:
         """An attempt has brought a result. False where another one of the same cell did before."""
         self.running.remove(attempt)
-        self.fitted.add(attempt.plan.clip_sha256)
+        self.fitted.add(pair_of(attempt.plan))
         if attempt.plan.cell in self.ended:
             return False
         self.ended.add(attempt.plan.cell)

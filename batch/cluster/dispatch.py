@@ -19,11 +19,12 @@ from pathlib import Path
 from distributed import Client, Future, wait
 
 from ..cells.cell import write_failure
-from ..records.faults import BatchFault, FolderGone
 from ..cells.fits import FITS
+from ..cells.outputs import needs_blender
+from ..records.faults import BatchFault, FolderGone, WrongPlan
 from ..records.manifest import CellPlan, Manifest, gone, read_manifest
 from ..records.result import CellResult, State, read_result
-from .attempts import MOST_TRIES, Attempt, Attempts
+from .attempts import MOST_TRIES, Attempt, Attempts, pair_of
 from .crew import Crew
 from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of
 from .worker_side import (
@@ -55,9 +56,15 @@ def run_on_dask(
     """Run all cells of a planned batch that have no result on a scheduler's workers.
 
     address: of the scheduler, or a scheduler file. tell: takes sentences on workers. ended: takes
-    every result. share: let workers that see the folder use it. Raises BatchFault: FarmGone, FolderGone, WrongManifest; what has ended is kept.
+    every result. share: let workers that see the folder use it. Raises BatchFault: FarmGone, FolderGone, WrongManifest, WrongPlan; what has ended is kept.
     """
     manifest = read_manifest(folder)
+    outputs = manifest.settings.outputs
+    if any(needs_blender(plan.clip, outputs) for plan in manifest.cells):
+        raise WrongPlan(
+            "Workers of Dask have no Blender, which FBX files and outputs such as pictures need; take "
+            "BVH or AMC clips and the outputs npz and bvh, or run the batch here or by Flamenco."
+        )
     plans = [plan for plan in manifest.cells if unfinished(folder, plan)]
     if not plans:
         return
@@ -129,7 +136,9 @@ class Dispatch:
     def run(self, plans: list[CellPlan]) -> None:
         """Until each has a result. Raises BatchFault, and OSError where the scheduler is gone."""
         self.fits = fits_by_clip(self.folder)
-        self.attempts = Attempts.of(plans, self.fits)
+        ended = {plan.cell for plan in self.manifest.cells} - {plan.cell for plan in plans}
+        fitted = [pair_of(plan) for plan in self.manifest.cells if plan.cell in ended]
+        self.attempts = Attempts.of(plans, fitted)
         while not self.attempts.over:
             threads = self._meet_workers()
             now = time.monotonic()
