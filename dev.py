@@ -41,8 +41,8 @@ from devtools.environment.problem import SetUpError
 from devtools.environment.virtual_environment import FARM, PEERS, Requirements
 from solver.one_thread import ONE_THREAD
 
-# command: module of the package, arguments before the user's, whether it needs dev.txt, or what else
-# it needs in place of Blender
+# command: module of the package, arguments before the user's, whether it needs dev.txt, or what it
+# needs in place of Blender
 COMMANDS: dict[str, tuple[str, list[str], bool | Requirements]] = {
     "demo": ("devtools.demo", [], False),
     "adapt": ("operators.headless.cli", ["adapt"], False),

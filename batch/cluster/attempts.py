@@ -1,4 +1,4 @@
-"""Which cells wait, run and have ended on a farm; no word of Dask here, so that it is easily tested.
+"""Which cells wait, run and have ended; no word of Dask here, so that it is easily tested.
 
 The first cell of a clip with a recipe goes alone and brings their fit back; the others with these
 wait for it, so that no fit is solved twice.

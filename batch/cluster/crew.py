@@ -18,7 +18,7 @@ class Judgement:
 
 def judge(address: str, answer: WorkerState | Exception, own: Build) -> Judgement:
     """What a worker's answer means. own: the build that planned the batch."""
-    if isinstance(answer, ImportError):
+    if "ModuleNotFoundError" in repr(answer):  # Dask may wrap it
         why = f"it cannot load Hangtime ({answer}); install the wheel there and start it again"
         return Judgement(False, f"Worker {address} is left out: {why}.")
     if isinstance(answer, Exception):

@@ -1,9 +1,9 @@
 """A batch on the workers of a Dask scheduler.
 
-Each cell is a task for a worker that is named. So the run itself decides what goes where: to workers
-that share the batch's folder by that folder, to others as bytes through the scheduler; what was lost
-with a worker goes to another, and what is slow to an idle one as well. Whatever ends is in the
-batch's folder at once, so that a run which is killed has lost nothing.
+Each cell is a task for a worker that is named. So the run itself decides what goes where: to
+workers that share the batch's folder by that folder, to others as bytes through the scheduler; what
+was lost with a worker goes to another, and what is slow to an idle one as well. Whatever ends is in
+the batch's folder at once, so that a run which is killed has lost nothing.
 """
 
 from __future__ import annotations
@@ -35,10 +35,12 @@ from .worker_side import (
     own_build,
     solve_away,
     solve_in,
+    tidy,
 )
 
 Tell = Callable[[str], None]
 PATIENCE = 0.5  # s between looks at the workers
+ANSWERING = 10.0  # s that a scheduler may take
 
 
 class FarmGone(BatchFault):
@@ -56,13 +58,14 @@ def run_on_dask(
     """Run all cells of a planned batch that have no result on a scheduler's workers.
 
     address: of the scheduler, or a scheduler file. tell: takes sentences on workers. ended: takes
-    every result. share: let workers that see the folder use it. Raises BatchFault: FarmGone, FolderGone, WrongManifest, WrongPlan; what has ended is kept.
+    every result. share: let workers that see the folder use it.
+    Raises BatchFault: FarmGone, FolderGone, WrongManifest, WrongPlan; what has ended is kept.
     """
     manifest = read_manifest(folder)
     outputs = manifest.settings.outputs
     if any(needs_blender(plan.clip, outputs) for plan in manifest.cells):
         raise WrongPlan(
-            "Workers of Dask have no Blender, which FBX files and outputs such as pictures need; take "
+            "Dask's workers have no Blender, which FBX files and outputs such as pictures need; take "
             "BVH or AMC clips and the outputs npz and bvh, or run the batch here or by Flamenco."
         )
     plans = [plan for plan in manifest.cells if unfinished(folder, plan)]
@@ -90,9 +93,9 @@ def connected(address: str) -> Iterator[Client]:
     file = Path(address)
     try:
         if "://" not in address and file.is_file():
-            client = Client(scheduler_file=str(file))
+            client = Client(scheduler_file=str(file), timeout=ANSWERING)
         else:
-            client = Client(address)
+            client = Client(address, timeout=ANSWERING)
     except (OSError, TimeoutError, ValueError) as error:
         raise FarmGone(
             f"No scheduler answers at {address} ({error or type(error).__name__}); check the "
@@ -149,6 +152,9 @@ class Dispatch:
                         break
                     self._begin(attempt)
             self._take()
+        tidy(str(self.folder))
+        sharing = [worker for worker, reach in self.crew.reach.items() if reach is Reach.SHARED]
+        self.client.run(tidy, self._shared_folder(), workers=sharing, on_error="ignore")
 
     # ------------------------------------------------------------ workers
 
@@ -200,13 +206,16 @@ class Dispatch:
     def _fits(self, plan: CellPlan) -> Iterator[tuple[str, Path]]:
         """Files of the fits of a cell's clip that are in the batch's folder."""
         for fit in sorted(self.fits.get(plan.clip_sha256, ())):
-            for path in (self.folder / FITS / fit).iterdir():
+            for path in (self.folder / FITS / fit).glob("*"):
                 yield f"{fit}/{path.name}", path
 
     def _sent(self, path: Path) -> Future:
         """A file's bytes as a task, which the scheduler does again where a worker took them along:
-        `bytes`, that workers without Hangtime may do it too."""
-        content = path.read_bytes()
+        `bytes`, that workers without Hangtime may do it too. Raises FolderGone."""
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise gone(path, error) from error
         digest = hashlib.sha256(content).hexdigest()
         if digest not in self.bytes_sent:
             self.bytes_sent[digest] = self.client.submit(bytes, content, key=f"bytes-{digest}")

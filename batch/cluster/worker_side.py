@@ -18,6 +18,7 @@ from distributed import get_worker
 from ...solver.one_thread import ONE_THREAD
 from ..cells.cell import run_cell
 from ..cells.fits import FITS, SharedFits
+from ..records.aside import remove_abandoned
 from ..records.manifest import BatchSettings, CellPlan, Manifest, version, write_manifest
 from ..records.result import CELLS, CellResult, cell_folder
 
@@ -138,6 +139,13 @@ def solve_away(
 def fits_of(folder: str) -> SharedFits:
     """The fits in a folder, kept in memory from one cell to the next."""
     return SharedFits(Path(folder))
+
+
+def tidy(folder: str) -> None:
+    """Remove from a batch's folder what processes of this machine left half-written that are no
+    more."""
+    for name in (CELLS, FITS):
+        remove_abandoned(Path(folder) / name)
 
 
 def write_files(folder: Path, files: Files) -> None:

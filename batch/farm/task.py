@@ -12,8 +12,8 @@ from .cell_range import cells_in
 def run_task(folder: Path, cells: str, out: TextIO) -> int:
     """Run a range of a batch's cells, and tell each end in a line; the exit code.
 
-    Engines stop a job at a task that does not end with 0. So 0 means that every cell has its result,
-    even one that says that there is no solution; 1 that some failed and are worth another try.
+    Engines stop a job at a task that does not end with 0. So 0 means that every cell has its
+    result, even that there is no solution; 1 that some failed and are worth another try.
     Raises BatchFault.
     """
     failed, fits = 0, SharedFits(folder)

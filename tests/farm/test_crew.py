@@ -1,6 +1,7 @@
 """Workers that may solve cells, and sentences on those that may not."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hangtime.batch.cluster.crew import Crew, judge
@@ -8,6 +9,10 @@ from hangtime.batch.cluster.worker_side import Build, Reach, WorkerState
 
 OWN = Build("1.0.0", {"solver/a.py": "1", "batch/b.py": "2"}, {"numpy": "1.26.4"})
 GOOD = WorkerState(OWN, Reach.SHARED, True, "node7")
+
+
+def with_build(**changes: Any) -> WorkerState:
+    return replace(GOOD, build=replace(OWN, **changes))
 
 
 def test_the_same_build_may_whatever_else_is_installed_here() -> None:
