@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .png import Pixels, read_png
 
-ATLAS = Path(__file__).with_name("letters.png")  # drawn by devtools/letters_picture.py
+ATLAS = Path(__file__).with_name("letters.png")  # drawn by devtools/batch_page/letters_picture.py
 WIDE, HIGH, COLUMNS = 8, 16, 64  # pixels of a letter, letters in a line of the picture
 # Latin, Greek and Cyrillic; a box stands for all others.
 RANGES = ((0x20, 0x7F), (0xA1, 0x180), (0x386, 0x3CF), (0x401, 0x460), (0x2013, 0x2015), (0x2018, 0x201F), (0x2116, 0x2117))
