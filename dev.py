@@ -4,6 +4,7 @@
   demo [--out DIR]                        fetch a real recording, move one hop's landing, adapt it
   adapt CLIP --recipe RECIPE --out DIR    the same for any clip (BVH, FBX, ASF/AMC)
   analyze CLIP [--write-recipe FILE]      what touches when, and a recipe to start from
+  batch CLIPS... --recipes R... --out DIR many clips with many recipes; goes on where it ended
   doctor CLIP [--write-recipe FILE]       what is wrong with a clip, and remedies
   doctor --table [FOLDER] --out DIR       clean clips, damaged, diagnosed and repaired: a table
   test [pytest arguments]                 run the tests
@@ -43,6 +44,7 @@ COMMANDS = {
     "demo": ("devtools.demo", [], False),
     "adapt": ("operators.headless.cli", ["adapt"], False),
     "analyze": ("operators.headless.cli", ["analyze"], False),
+    "batch": ("batch.cli", [], False),
     "doctor": ("devtools.doctor.main", [], False),
     "test": ("devtools.checks.testing", [], True),
     "figures": ("devtools.figures.main", [], True),

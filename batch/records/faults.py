@@ -10,7 +10,11 @@ class WrongPlan(BatchFault):
 
 
 class WrongManifest(BatchFault):
-    """A manifest that is not there, was edited, or is of another version."""
+    """A manifest that is not there, or was edited."""
+
+
+class OtherVersion(WrongManifest):
+    """A manifest of another version of Hangtime."""
 
 
 class FolderTaken(BatchFault):

@@ -13,14 +13,14 @@ from dataclasses import asdict, dataclass, field, replace
 from enum import Enum
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from .faults import FolderGone, WrongManifest
+from .faults import FolderGone, OtherVersion, WrongManifest
 from .result import State
 
 MANIFEST = "manifest.jsonl"
 FORMAT = 1
-KEY_SHOWN = 8  # hexadecimal digits of a cell's key in its name
+KEY_SHOWN = 16  # hexadecimal digits of a cell's key in its name; two of 250,000 never share them
 Value = float | int | str | bool
 AGAIN = "give the batch's command again, which writes it anew and keeps what is solved"
 
@@ -44,7 +44,7 @@ class Output(Enum):
 @cache
 def version() -> str:
     """Hangtime's own."""
-    file = Path(__file__).parents[1] / "blender_manifest.toml"
+    file = Path(__file__).parents[2] / "blender_manifest.toml"
     return str(tomllib.loads(file.read_text(encoding="utf-8"))["version"])
 
 
@@ -59,7 +59,7 @@ class BatchSettings:
     outputs: tuple[Output, ...] = (Output.NPZ,)
     check: bool = False
     unit: float | None = None
-    up: str | None = None
+    up: Literal["Y", "Z"] | None = None
     rate: float | None = None
     version: str = field(default_factory=version)
 
@@ -187,7 +187,7 @@ def _settings(folder: Path, line: str) -> BatchSettings:
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise WrongManifest(f"{path}, line 1: that is no batch's first line; {AGAIN}.") from error
     if settings.version != version():
-        raise WrongManifest(
+        raise OtherVersion(
             f"{path} is of Hangtime {settings.version}, and this is {version()}: results of the "
             "two would be mixed. Go on with that version, or take another folder."
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from enum import Enum
@@ -84,3 +85,10 @@ def read_result(folder: Path, cell: str) -> CellResult | None:
         return CellResult.parsed(text)
     except (FileNotFoundError, NotADirectoryError, ValueError):
         return None
+
+
+def drop_failure(folder: Path, cell: str) -> None:
+    """A failure, or a folder without a result, makes room for what comes now. Raises OSError."""
+    found = read_result(folder, cell)
+    if found is None or found.state is State.FAILED:
+        shutil.rmtree(cell_folder(folder, cell), ignore_errors=True)
