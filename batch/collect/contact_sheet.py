@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..manifest import gone
-from ..result import State, cell_folder
+from ..records.manifest import gone
+from ..records.result import State, cell_folder
 from .files import written_aside
 from .gathering import PICTURE, GatheredBatch, short_keys, short_names
 from .letters import HIGH, write

@@ -20,7 +20,8 @@ SAMPLES = 64
 def main(_: list[str]) -> int:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = current_scene()
-    fonts = Path(bpy.utils.system_resource("DATAFILES")) / "fonts"
+    # the stubs lack it
+    fonts = Path(bpy.utils.system_resource("DATAFILES")) / "fonts"  # type: ignore[attr-defined]
     font = bpy.data.fonts.load(str(next(fonts.glob("DejaVuSansMono*"))))
     white = plain()
     lines = -(-len(LETTERS) // COLUMNS)

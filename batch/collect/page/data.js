@@ -47,7 +47,8 @@ const order = batch.cells.map((_, i) => i);
 function tableColumns(group, table) {
   return table.map(({ name, short, column }) => {
     const number = column.every((x) => x === null || typeof x === "number");
-    return new Column(`${group}:${name}`, name, group, (i) => column[i], number, short);
+    const words = group === "figure" ? name.replaceAll("_", " ") : name;
+    return new Column(`${group}:${name}`, words, group, (i) => column[i], number, short);
   });
 }
 

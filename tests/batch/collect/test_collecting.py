@@ -15,8 +15,8 @@ from hangtime.batch.collect.gathering import columns, gather, short_keys, short_
 from hangtime.batch.collect.letters import BOX, HIGH, LETTERS, WIDE, write
 from hangtime.batch.collect.page_file import as_embedded, page_data
 from hangtime.batch.collect.png import read_png
-from hangtime.batch.faults import FolderGone, WrongManifest
-from hangtime.batch.result import CELLS, RESULT, State, read_result
+from hangtime.batch.records.faults import FolderGone, WrongManifest
+from hangtime.batch.records.result import CELLS, RESULT, State, read_result
 from hangtime.devtools.batch_page.made_up import HARD_NAMES, make_batch
 from hangtime.devtools.batch_page.measure import measure_collecting
 

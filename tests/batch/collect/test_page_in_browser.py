@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from hangtime.batch.collect.collecting import collect
-from hangtime.batch.manifest import Manifest, read_manifest
-from hangtime.batch.result import State, read_result
+from hangtime.batch.records.manifest import Manifest, read_manifest
+from hangtime.batch.records.result import State, read_result
 from hangtime.devtools.batch_page.browser import Browser, browser, ensure_browser
 from hangtime.devtools.batch_page.made_up import HARD_NAMES, make_batch
 from hangtime.devtools.batch_page.measure import measure_page
@@ -178,10 +178,10 @@ def test_no_cell_left_is_said(page: Browser) -> None:
 
 
 def test_a_columns_head_sorts_and_sorts_back(page: Browser) -> None:
-    head = "[...document.querySelectorAll('#heads button')].find(b => b.textContent.includes('flight'))"
+    head = "[...document.querySelectorAll('#heads button')].find(b => b.textContent.includes('flight 1 s'))"
     for direction in (1, -1):
         page.run(f"{head}.click()")
-        column = [float(text) for text in page.run(COLUMN, "flight") if text != "–"]
+        column = [float(text) for text in page.run(COLUMN, "flight 1 s") if text != "–"]
         assert column == sorted(column, reverse=direction < 0)
         assert len(column) > 10
     assert page.run(f"return {head}.parentElement.ariaSort") == "descending"
@@ -206,7 +206,7 @@ def test_a_cell_shows_its_picture_figures_and_files(page: Browser) -> None:
     image = "document.querySelector('#cell-body img')"
     page.wait(f"return {image}.complete && {image}.naturalWidth === 480")
     text = page.run("return document.getElementById('cell-body').textContent")
-    assert "largest contact force (bw)" in text
+    assert "peak force bw" in text
     assert "body weights" in text
     links = page.run("return [...document.querySelectorAll('#cell-body li a')].map((a) => a.href)")
     assert len(links) == 5
@@ -249,7 +249,9 @@ def test_a_logarithmic_axis_says_what_it_leaves_out(page: Browser, manifest: Man
 def test_the_plot_goes_from_point_to_point_by_keys(page: Browser) -> None:
     page.run("document.getElementById('canvas').focus()")
     page.press("Right", "Right")
-    assert "pin.Landing.forward: 0\n" in page.run("return document.getElementById('tip').textContent")
+    assert "pin.Landing.forward: 0\n" in page.run(
+        "return document.getElementById('tip').textContent"
+    )
     page.press("Enter")
     assert page.run("return document.getElementById('cell').open")
     page.press("Escape")
@@ -258,12 +260,12 @@ def test_the_plot_goes_from_point_to_point_by_keys(page: Browser) -> None:
 def test_the_address_keeps_what_was_chosen(page: Browser, large: Path) -> None:
     page.type("#text", "hop")
     page.click("#states button[data-state='done']")
-    page.run(CHOOSE, "y", "figure:flight (s)")
+    page.run(CHOOSE, "y", "figure:flight_1_s")
     page.run("document.querySelector('#heads th:nth-child(2) button').click()")
     kept, shown = page.run("return location.hash"), numbers(page)
     for again in opened(page, large, kept):
         assert numbers(again) == shown
-        assert again.run("return document.getElementById('y').value") == "figure:flight (s)"
+        assert again.run("return document.getElementById('y').value") == "figure:flight_1_s"
         assert again.run("return document.getElementById('text').value") == "hop"
 
 
@@ -283,8 +285,12 @@ def test_text_stands_out_from_its_ground(_installed: None, large: Path, dark: bo
     """At least 4.5 to 1, as WCAG 2.2 asks (1.4.3), for all colours that text is given."""
     with browser(dark=dark) as window:
         for shown in opened(window, large):
-            style = "return getComputedStyle(document.documentElement).getPropertyValue(arguments[0])"
-            grounds = [shown.run(style, f"--{name}") for name in ("card", "paper", "hover", "active")]
+            style = (
+                "return getComputedStyle(document.documentElement).getPropertyValue(arguments[0])"
+            )
+            grounds = [
+                shown.run(style, f"--{name}") for name in ("card", "paper", "hover", "active")
+            ]
             inks = ("ink", "quiet", "accent", "done", "none", "input", "failed", "planned")
             for ink in inks:
                 colour = shown.run(style, f"--{ink}")
