@@ -1,6 +1,6 @@
 """Chromium without a window, driven by chromedriver's interface (W3C WebDriver).
 
-Standard library only: of that interface we use nine requests, and selenium would be twelve packages.
+Standard library only: we use nine requests of that interface, and selenium is twelve packages.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Draws batch/collect/letters.png anew: python devtools/package.py devtools.batch_page.letters_picture
+"""Draws batch/collect/letters.png anew.
 
-By a Python with Blender's module. White letters on black, in cells of equal size, in the order of
-LETTERS: DejaVu Sans Mono, which Blender brings along.
+By Blender's module: `python devtools/package.py devtools.batch_page.letters_picture`. White letters
+on black, in cells of equal size, in the order of LETTERS: DejaVu Sans Mono, which Blender brings.
 """
 
 from pathlib import Path

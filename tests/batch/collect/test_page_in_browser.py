@@ -23,7 +23,8 @@ SHOWN = "return document.getElementById('count').textContent"
 COLUMN = """
 const heads = [...document.querySelectorAll("#heads th")].map((head) => head.textContent);
 const place = heads.findIndex((head) => head.includes(arguments[0]));
-return [...document.querySelectorAll("#rows tr[data-place]")].map((row) => row.cells[place].textContent);
+const rows = [...document.querySelectorAll("#rows tr[data-place]")];
+return rows.map((row) => row.cells[place].textContent);
 """
 CHOOSE = """
 const select = document.getElementById(arguments[0]);
@@ -178,7 +179,8 @@ def test_no_cell_left_is_said(page: Browser) -> None:
 
 
 def test_a_columns_head_sorts_and_sorts_back(page: Browser) -> None:
-    head = "[...document.querySelectorAll('#heads button')].find(b => b.textContent.includes('flight 1 s'))"
+    heads = "[...document.querySelectorAll('#heads button')]"
+    head = f"{heads}.find((button) => button.textContent.includes('flight 1 s'))"
     for direction in (1, -1):
         page.run(f"{head}.click()")
         column = [float(text) for text in page.run(COLUMN, "flight 1 s") if text != "–"]
@@ -239,7 +241,7 @@ def test_the_plot_draws_points_and_a_rectangle_keeps_them(page: Browser) -> None
     assert page.run("return document.querySelectorAll('#ranges fieldset').length") == 2
 
 
-def test_a_logarithmic_axis_says_what_it_leaves_out(page: Browser, manifest: Manifest) -> None:
+def test_a_logarithmic_axis_says_what_it_leaves_out(page: Browser) -> None:
     page.run("document.getElementById('logx').click()")
     told = page.run("return document.getElementById('left-out').textContent")
     assert "not above zero" in told
@@ -271,8 +273,9 @@ def test_the_address_keeps_what_was_chosen(page: Browser, large: Path) -> None:
 
 def test_controls_have_names_and_the_page_loads_nothing_from_elsewhere(page: Browser) -> None:
     nameless = page.run(
-        "return [...document.querySelectorAll('button, input, select, #canvas, table')].filter((e) =>"
-        " e.checkVisibility() && !(e.ariaLabel || e.labels?.length || e.textContent.trim() ||"
+        "const controls = document.querySelectorAll('button, input, select, #canvas, table');"
+        "return [...controls].filter((e) => e.checkVisibility() && !(e.ariaLabel"
+        " || e.labels?.length || e.textContent.trim() ||"
         " e.hasAttribute('aria-labelledby'))).map((e) => e.outerHTML)"
     )
     assert nameless == []
@@ -280,8 +283,9 @@ def test_controls_have_names_and_the_page_loads_nothing_from_elsewhere(page: Bro
     assert [name for name in loaded if not name.startswith("file:")] == []
 
 
+@pytest.mark.usefixtures("_installed")
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-def test_text_stands_out_from_its_ground(_installed: None, large: Path, dark: bool) -> None:
+def test_text_stands_out_from_its_ground(large: Path, dark: bool) -> None:
     """At least 4.5 to 1, as WCAG 2.2 asks (1.4.3), for all colours that text is given."""
     with browser(dark=dark) as window:
         for shown in opened(window, large):
@@ -311,7 +315,8 @@ def contrast(one: str, other: str) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
-def test_first_paint_and_filters_keep_their_promise(_installed: None, large: Path) -> None:
+@pytest.mark.usefixtures("_installed")
+def test_first_paint_and_filters_keep_their_promise(large: Path) -> None:
     told = measure_page(large / "index.html")
     print(json.dumps(told.__dict__))
     assert told.first_paint <= 3.0
