@@ -8,8 +8,8 @@ from functools import cached_property
 from os.path import commonpath
 from pathlib import Path
 
-from ..manifest import BatchSettings, CellPlan, read_manifest
-from ..result import CellResult, State, read_result
+from ..records.manifest import BatchSettings, CellPlan, read_manifest
+from ..records.result import CellResult, State, read_result
 
 PICTURE = "sheet.png"  # in a cell's folder; the contact sheet in the batch's has the same name
 Columns = dict[str, list[object]]

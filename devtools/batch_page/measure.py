@@ -27,7 +27,8 @@ const [text] = arguments, input = document.getElementById("text");
 const begun = performance.now();
 input.value = text;
 input.dispatchEvent(new Event("input", { bubbles: true }));
-return new Promise((done) => requestAnimationFrame(() => setTimeout(() => done(performance.now() - begun))));
+return new Promise((done) => requestAnimationFrame(
+    () => setTimeout(() => done(performance.now() - begun))));
 """
 SEARCHED = ("j", "ju", "jump 00", "jump 00 further", "прыжок", "")
 
