@@ -17,6 +17,7 @@ from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
 from .cells.cell import run_cell
 from .cells.outputs import needs_blender
+from .collect.collecting import collect
 from .farm.commands import FARM_ACTS, add_farm_commands
 from .planning.plan import Asked, Planned, plan, refreshed
 from .records.faults import BatchFault
@@ -79,6 +80,9 @@ def parser() -> argparse.ArgumentParser:
     cell.set_defaults(act=ACTS["cell"])
     cell.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     cell.add_argument("cell", metavar="CELL", help="its name in the manifest")
+    collecting = commands.add_parser("collect", help="table, contact sheet and page of what is there")
+    collecting.set_defaults(act=ACTS["collect"])
+    collecting.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     add_farm_commands(commands)
     return top
 
@@ -164,6 +168,7 @@ def run_batch(options: argparse.Namespace) -> int:
             manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
             with suppress(BatchFault):  # that of the run is the one to be told
                 write_manifest(folder, manifest)
+    collect(folder)
     return _told_end(folder, manifest)
 
 
@@ -260,9 +265,16 @@ def cell_of_batch(options: argparse.Namespace) -> int:
     return result.exit_code
 
 
+def collect_batch(options: argparse.Namespace) -> int:
+    """Collects what is there. Raises BatchFault."""
+    collect(options.folder)
+    return 0
+
+
 ACTS: dict[str, Callable[[argparse.Namespace], int]] = {
     RUN: run_batch,
     "plan": plan_batch,
     "cell": cell_of_batch,
+    "collect": collect_batch,
     **FARM_ACTS,
 }
