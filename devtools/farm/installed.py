@@ -9,6 +9,7 @@ from ..wheel import build_wheel
 PROGRAM = """\
 #!{python}
 import sys
+sys.path.insert(0, {package!r})
 from hangtime.batch.cli import main
 sys.exit(main())
 """
@@ -21,7 +22,7 @@ def unpacked_wheel(folder: Path) -> Path:
         wheel.extractall(target)
     program = program_in(target)
     program.parent.mkdir()
-    program.write_text(PROGRAM.format(python=sys.executable), encoding="utf-8")
+    program.write_text(PROGRAM.format(python=sys.executable, package=str(target)), encoding="utf-8")
     program.chmod(0o755)
     return target
 

@@ -26,11 +26,16 @@ forward = {{ from = 0.0, to = 0.1, steps = {steps} }}
 
 def plan_hops(folder: Path, cells: int, *, check: bool = False) -> Manifest:
     """Plan one clip with so many landings, between where it landed and 0.1 m further."""
-    recipe = folder.parent / f"{folder.name} recipes" / "hop further.toml"
+    recipe = recipe_of(folder)
     recipe.parent.mkdir(parents=True, exist_ok=True)
     recipe.write_text(RECIPE.format(steps=cells), encoding="utf-8")
     settings = BatchSettings(check=check)
     return plan(Asked(settings, [str(CLIP)], [str(recipe)]), folder).manifest
+
+
+def recipe_of(folder: Path) -> Path:
+    """The recipe of a batch that lies in this folder."""
+    return folder.parent / f"{folder.name} recipes" / "hop further.toml"
 
 
 def contents(folder: Path, manifest: Manifest) -> dict[str, str]:
