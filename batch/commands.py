@@ -17,6 +17,7 @@ from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
 from .cells.cell import run_cell
 from .cells.outputs import needs_blender
+from .collect.collecting import collect
 from .farm.commands import FARM_ACTS, add_farm_commands
 from .planning.plan import Asked, Planned, plan, refreshed
 from .records.faults import BatchFault
@@ -80,6 +81,9 @@ def parser() -> argparse.ArgumentParser:
     cell.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     cell.add_argument("cell", metavar="CELL", help="its name in the manifest")
     add_farm_commands(commands)
+    collecting = commands.add_parser("collect", help="make table, contact sheet and page anew")
+    collecting.set_defaults(act=ACTS["collect"])
+    collecting.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     return top
 
 
@@ -164,6 +168,7 @@ def run_batch(options: argparse.Namespace) -> int:
             manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
             with suppress(BatchFault):  # that of the run is the one to be told
                 write_manifest(folder, manifest)
+        collect(folder)
     return _told_end(folder, manifest)
 
 
@@ -203,7 +208,7 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     counts = Counter(cell.state for cell in manifest.cells)
     others = [cell for cell in manifest.cells if cell.state is not State.DONE]
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
-    print(f"{len(manifest.cells)} cells: {summary}. Each has its folder in {folder / 'cells'}.")
+    print(f"{len(manifest.cells)} cells: {summary}. Look at them in {folder / 'index.html'}.")
     for cell in others[:MOST_TOLD]:
         result = read_result(folder, cell.cell)
         if result is not None:
@@ -251,6 +256,12 @@ def _planned(options: argparse.Namespace) -> Planned:
     return planned
 
 
+def collect_batch(options: argparse.Namespace) -> int:
+    """Table, contact sheet and page of what there is so far. Raises BatchFault."""
+    collect(options.folder)
+    return 0
+
+
 def cell_of_batch(options: argparse.Namespace) -> int:
     """Solves one cell. Raises BatchFault."""
     result = run_cell(options.folder, options.cell)
@@ -264,5 +275,6 @@ ACTS: dict[str, Callable[[argparse.Namespace], int]] = {
     RUN: run_batch,
     "plan": plan_batch,
     "cell": cell_of_batch,
+    "collect": collect_batch,
     **FARM_ACTS,
 }

@@ -92,6 +92,7 @@ def adapt_cell(
         outputs = Outputs(loaded.scene, wanted, keys, result, outbox, stages, recipe.loop, export)
         report = outputs.write(
             picture=Output.PICTURE in settings.outputs,
+            film=Output.FILM in settings.outputs,
             blend=Output.BLEND in settings.outputs,
             trajectory=Output.NPZ in settings.outputs,
             forms=forms,

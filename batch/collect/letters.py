@@ -14,11 +14,23 @@ from .png import Pixels, read_png
 ATLAS = Path(__file__).with_name("letters.png")  # drawn by devtools/letters_picture.py
 WIDE, HIGH, COLUMNS = 8, 16, 64  # pixels of a letter, letters in a line of the picture
 # Latin, Greek and Cyrillic; a box stands for all others.
-RANGES = ((0x20, 0x7F), (0xA1, 0x180), (0x386, 0x3CF), (0x401, 0x460), (0x2013, 0x2015), (0x2018, 0x201F), (0x2116, 0x2117))
+RANGES = (
+    (0x20, 0x7F),
+    (0xA1, 0x180),
+    (0x386, 0x3CF),
+    (0x401, 0x460),
+    (0x2013, 0x2015),
+    (0x2018, 0x201F),
+    (0x2116, 0x2117),
+)
 BOX = "□"
-LETTERS = "".join(
-    chr(code) for start, end in RANGES for code in range(start, end) if chr(code).isprintable()
-) + "…" + BOX
+LETTERS = (
+    "".join(
+        chr(code) for start, end in RANGES for code in range(start, end) if chr(code).isprintable()
+    )
+    + "…"
+    + BOX
+)
 
 
 @cache
@@ -30,7 +42,9 @@ def _letters() -> dict[str, NDArray[np.float32]]:
     return dict(zip(LETTERS, cut, strict=True))
 
 
-def write(pixels: Pixels, x: int, y: int, text: str, colour: tuple[int, int, int], room: int) -> None:
+def write(
+    pixels: Pixels, x: int, y: int, text: str, colour: tuple[int, int, int], room: int
+) -> None:
     """Write a line of text into a picture, its upper left corner at x, y, at most `room` pixels
     wide; what is longer ends in "…"."""
     letters = _letters()

@@ -67,6 +67,7 @@ class Outputs:
         self,
         *,
         picture: bool = True,
+        film: bool = False,
         blend: bool = True,
         trajectory: bool = True,
         forms: Sequence[FileFormat | None] = (None,),
@@ -94,6 +95,8 @@ class Outputs:
             self._export(performer, adapted, form)
         if picture:
             self._draw()
+        if film:
+            self._film()
         with self.stages.stage("Measuring"):
             if trajectory:
                 write_trajectory(self.result, self.outbox)
@@ -124,6 +127,15 @@ class Outputs:
 
             marks = marks_of(adaptation, self.result.subject.problem)
             draw(adaptation, self.clip.problem, self.outbox.path("sheet.png"), marks)
+
+    def _film(self) -> None:
+        adaptation = self.result.adaptation
+        with self.stages.stage("Drawing the film"), quiet():
+            from .annotate import marks_of
+            from .picture import film
+
+            marks = marks_of(adaptation, self.result.subject.problem)
+            film(adaptation, self.clip.problem, self.outbox.path("film.mp4"), marks)
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""
