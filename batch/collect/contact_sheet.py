@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 
-from ..manifest import gone
-from ..result import State, cell_folder
+from ..records.manifest import gone
+from ..records.result import State, cell_folder
 from .files import written_aside
 from .gathering import PICTURE, GatheredBatch, short_keys, short_names
 from .letters import HIGH, write
@@ -69,7 +70,9 @@ def _fill(tile: Pixels, batch: GatheredBatch, i: int, clip: str) -> None:
     state, values = batch.states[i], batch.plans[i].values
     short = short_keys(batch.values)
     varied = (
-        f"{short[name]} {x}" for name, x in values.items() if len(set(batch.values[name])) > 1
+        f"{short[name]} {json.dumps(x, ensure_ascii=False)}"
+        for name, x in values.items()
+        if len(set(batch.values[name])) > 1
     )
     write(tile, 0, SHOT[1] + 4, f"{i + 1}. {clip}", INK, SHOT[0])
     if state in (State.DONE, State.PLANNED):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ..manifest import gone
+from ..records.manifest import gone
 
 
 @contextmanager

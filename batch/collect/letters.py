@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .png import Pixels, read_png
 
-ATLAS = Path(__file__).with_name("letters.png")  # drawn by devtools/letters_picture.py
+ATLAS = Path(__file__).with_name("letters.png")  # drawn by devtools/batch_page/letters_picture.py
 WIDE, HIGH, COLUMNS = 8, 16, 64  # pixels of a letter, letters in a line of the picture
 # Latin, Greek and Cyrillic; a box stands for all others.
 RANGES = (

@@ -11,8 +11,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from ..manifest import Output
-from ..result import State
+from ..records.manifest import Output
+from ..records.result import State
 from .files import written_aside
 from .gathering import PICTURE, Columns, GatheredBatch, short_keys, short_names
 

@@ -78,7 +78,7 @@ def unfiltered(filters: Pixels, differences: Pixels) -> Pixels:
         inside = slice(max(0, d - 1 - width), min(height, d - 1))
         row = skewed[d, 1:]
         row[inside] = (row[inside] + guess[inside]) & 255
-    return skewed[rows[:, None] + line + 2, rows[:, None] + 1].astype(np.uint8)
+    return np.asarray(skewed[rows[:, None] + line + 2, rows[:, None] + 1], np.uint8)
 
 
 def write_png(path: Path, pixels: Pixels) -> None:
@@ -112,4 +112,4 @@ def shrunk(pixels: Pixels, width: int, height: int) -> Pixels:
         shape = [1, 1, 1]
         shape[axis] = -1
         sums /= np.diff(edges).reshape(shape)
-    return np.rint(sums).astype(np.uint8)
+    return np.asarray(np.rint(sums), np.uint8)

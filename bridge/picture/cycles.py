@@ -50,9 +50,9 @@ def _choose_encoder(scene: bpy.types.Scene) -> None:
     """H.264 in MPEG-4, which every browser plays."""
     settings = scene.render
     if bpy.app.version >= (5, 0):
-        settings.image_settings.media_type = "VIDEO"
+        settings.image_settings.media_type = "VIDEO"  # type: ignore[attr-defined]
     settings.image_settings.file_format = "FFMPEG"
-    encoder = settings.ffmpeg
+    encoder = present(settings.ffmpeg)
     encoder.format, encoder.codec = "MPEG4", "H264"
     encoder.constant_rate_factor, encoder.ffmpeg_preset = "MEDIUM", "GOOD"
     encoder.audio_codec = "NONE"

@@ -52,7 +52,9 @@ def _figures(row: SheetRow, frames: FloatArray) -> list[Figure]:
     centre = np.stack([limb.centre for limb in row.limbs], axis=1)
     rotation = np.stack([limb.rotation for limb in row.limbs], axis=1)
     step = np.median(np.diff(row.times)) if len(row.times) > 1 else 1.0
-    shown = np.searchsorted(row.times, row.times[0] + frames - step / 2).clip(max=len(row.times) - 1)
+    shown = np.searchsorted(row.times, row.times[0] + frames - step / 2).clip(
+        max=len(row.times) - 1
+    )
     return [
         Figure(float(row.times[i]), centre[i], rotation[i], row.com[i], {}) for i in shown.tolist()
     ]

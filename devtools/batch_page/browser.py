@@ -1,6 +1,6 @@
 """Chromium without a window, driven by chromedriver's interface (W3C WebDriver).
 
-Standard library only: of that interface we use nine requests, and selenium would be twelve packages.
+Standard library only: we use nine requests of that interface, and selenium is twelve packages.
 """
 
 from __future__ import annotations
@@ -23,7 +23,13 @@ from ..environment.libraries import install
 PACKAGES = ("chromium", "chromium-driver")  # Debian's names
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # WebDriver's name for a reference to one
 KEYS = {"Enter": "\ue007", "Escape": "\ue00c", "Tab": "\ue004", "Home": "\ue011", "End": "\ue010"}
-KEYS |= {"Left": "\ue012", "Up": "\ue013", "Right": "\ue014", "Down": "\ue015", "PageDown": "\ue00f"}
+KEYS |= {
+    "Left": "\ue012",
+    "Up": "\ue013",
+    "Right": "\ue014",
+    "Down": "\ue015",
+    "PageDown": "\ue00f",
+}
 SIZE = (1400, 1000)
 STARTING, ANSWERING = 30.0, 60.0  # s
 
@@ -35,7 +41,9 @@ class BrowserFault(Exception):
 def ensure_browser(log: Path) -> None:
     """Have Chromium and its driver. Raises SetUpError with what this machine lacks."""
     if shutil.which("chromedriver") is None:
-        install("The batch's page is tried in a real browser, which this machine lacks", PACKAGES, log)
+        install(
+            "The batch's page is tried in a real browser, which this machine lacks", PACKAGES, log
+        )
 
 
 @contextmanager
@@ -92,9 +100,7 @@ class Browser:
     def request(self, method: str, path: str, content: object = None) -> Any:
         """One request of WebDriver; its answer's value."""
         data = None if content is None else json.dumps(content).encode()
-        asked = urllib.request.Request(
-            self.address + self.session + path, data=data, method=method
-        )
+        asked = urllib.request.Request(self.address + self.session + path, data=data, method=method)
         asked.add_header("Content-Type", "application/json")
         try:
             with urllib.request.urlopen(asked, timeout=ANSWERING) as answer:

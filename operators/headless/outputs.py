@@ -93,10 +93,7 @@ class Outputs:
                 _save_blend(self.outbox.path("adapted.blend"))
         for form in forms:
             self._export(performer, adapted, form)
-        if picture:
-            self._draw()
-        if film:
-            self._film()
+        self._draw(picture=picture, film=film)
         with self.stages.stage("Measuring"):
             if trajectory:
                 write_trajectory(self.result, self.outbox)
@@ -119,23 +116,19 @@ class Outputs:
             path = self.outbox.path(f"{EXPORTED}{ENDINGS[form]}")
             export_takes(performer, [adapted], path, export, pelvis)
 
-    def _draw(self) -> None:
-        adaptation = self.result.adaptation
-        with self.stages.stage("Drawing the picture"), quiet():
-            from .annotate import marks_of
-            from .picture import draw
+    def _draw(self, *, picture: bool, film: bool) -> None:
+        from .annotate import marks_of
+        from .picture import draw, draw_moving
 
-            marks = marks_of(adaptation, self.result.subject.problem)
-            draw(adaptation, self.clip.problem, self.outbox.path("sheet.png"), marks)
-
-    def _film(self) -> None:
-        adaptation = self.result.adaptation
-        with self.stages.stage("Drawing the film"), quiet():
-            from .annotate import marks_of
-            from .picture import film
-
-            marks = marks_of(adaptation, self.result.subject.problem)
-            film(adaptation, self.clip.problem, self.outbox.path("film.mp4"), marks)
+        adaptation, problem = self.result.adaptation, self.clip.problem
+        if picture:
+            with self.stages.stage("Drawing the picture"), quiet():
+                marks = marks_of(adaptation, self.result.subject.problem)
+                draw(adaptation, problem, self.outbox.path("sheet.png"), marks)
+        if film:
+            with self.stages.stage("Drawing the film"), quiet():
+                marks = marks_of(adaptation, self.result.subject.problem)
+                draw_moving(adaptation, problem, self.outbox.path("film.mp4"), marks)
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""

@@ -36,7 +36,7 @@ def draw(
     draw_sheet(rows, path, View(heading=heading(adaptation)))
 
 
-def film(
+def draw_moving(
     adaptation: Adaptation, problem: MotionProblem, path: Path, marks: Sequence[Mark] = ()
 ) -> None:
     """What `draw` draws as a film: an MPEG-4 file. Raises OutputNotWritable."""

@@ -47,25 +47,29 @@ const order = batch.cells.map((_, i) => i);
 function tableColumns(group, table) {
   return table.map(({ name, short, column }) => {
     const number = column.every((x) => x === null || typeof x === "number");
-    return new Column(`${group}:${name}`, name, group, (i) => column[i], number, short);
+    const words = group === "figure" ? name.replaceAll("_", " ") : name;
+    return new Column(`${group}:${name}`, words, group, (i) => column[i], number, short);
   });
 }
 
 const outcome = (i) => batch.sentences[batch.sentence[i]] || batch.headlines[i]?.[0] || null;
+const reasonKind = (i) => batch.sentences[batch.sentence[i]].replace(/\d+([.,]\d+)?/g, "…") || null;
 const columns = [
   new Column("number", "Cell", "", (i) => i + 1, true),
   new Column("clip", "Clip", "", (i) => batch.clips[batch.clip[i]], false),
-  new Column("recipe", "Recipe", "", (i) => batch.recipes[batch.recipe[i]], false),
+  new Column("recipe", "Recipe", "", (i) => batch.recipes[batch.recipe[i]] || null, false),
   new Column("state", "State", "", (i) => batch.states[batch.state[i]], false),
   ...tableColumns("value", batch.values),
   ...tableColumns("figure", batch.figures),
   new Column("seconds", "Time (s)", "", (i) => batch.seconds[i], true),
   new Column("outcome", "Result or reason", "", outcome, false),
+  new Column("reason", "Reason", "", reasonKind, false),
 ];
+const tabled = columns.filter((column) => column.key !== "reason"); // which is but to filter by
 const byKey = new Map(columns.map((column) => [column.key, column]));
 const values = columns.filter((column) => column.group === "value");
 const figures = columns.filter((column) => column.group === "figure");
-const varies = (column) => column.distinct.length > 1;
+const varies = (column) => order.some((i) => column.at(i) !== column.at(0));
 const stateOf = byKey.get("state").at;
 
 /** The address of a file of a cell, relative to this page; names may hold any letter. */

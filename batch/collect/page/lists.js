@@ -131,6 +131,7 @@ class Table extends ScrolledCells {
     $("heads").replaceChildren(...heads);
     $("heads").setAttribute("aria-rowindex", "1");
     $("table").setAttribute("aria-colcount", String(heads.length));
+    $("table").style.width = `${heads.reduce((sum, head) => sum + parseInt(head.style.width, 10), 0)}px`;
     if (focused >= 0) heads[Math.min(focused, heads.length - 1)].querySelector("button").focus();
   }
 

@@ -14,7 +14,7 @@ class Page {
     const open = (i) => this.dialog.open(i, this.shown);
     this.table = new Table(open, (key) => this.sortBy(key));
     this.grid = new Pictures(open);
-    this.plot = new Plot(open, (ranges) => this.keep(ranges), (text) => { $("count").textContent = text; });
+    this.plot = new Plot(open, (ranges) => this.keep(ranges));
     this.bar = new FilterBar(this.filters, () => this.update());
     this.chooseFirstColumns();
     this.listColumns();
@@ -43,7 +43,7 @@ class Page {
   }
 
   listColumns() {
-    $("column-list").append(...columns.map((column) => {
+    $("column-list").append(...tabled.map((column) => {
       const input = make("input", { type: "checkbox", checked: !this.hidden.has(column.key) });
       input.addEventListener("change", () => {
         if (input.checked) this.hidden.delete(column.key);
@@ -101,7 +101,7 @@ class Page {
   }
 
   drawTable() {
-    this.table.choose(columns.filter((column) => !this.hidden.has(column.key)), this.sort, anyPicture);
+    this.table.choose(tabled.filter((column) => !this.hidden.has(column.key)), this.sort, anyPicture);
     this.table.set(this.shown);
   }
 
@@ -110,7 +110,7 @@ class Page {
     this.filters.save(kept);
     if (this.sort.key !== "number" || this.sort.down) kept.set("sort", (this.sort.down ? "-" : "") + this.sort.key);
     if (this.pictures) kept.set("view", "pictures");
-    for (const id of ["x", "y", "colour"]) if ($(id).selectedIndex > 0) kept.set(id, $(id).value);
+    for (const id of ["x", "y", "colour"]) if ($(id).value !== $(id).dataset.first) kept.set(id, $(id).value);
     for (const id of ["logx", "logy"]) if ($(id).checked) kept.set(id, "1");
     this.saved = kept.toString();
     history.replaceState(null, "", `#${this.saved}`);
@@ -125,8 +125,8 @@ class Page {
     const key = sort.replace(/^-/, "");
     this.sort = byKey.has(key) ? { key, down: sort.startsWith("-") } : { key: "number", down: false };
     for (const id of ["x", "y", "colour"]) {
-      $(id).value = kept.get(id) ?? $(id).options[0]?.value ?? "";
-      if ($(id).selectedIndex < 0) $(id).selectedIndex = 0;
+      $(id).value = kept.get(id) ?? $(id).dataset.first;
+      if ($(id).selectedIndex < 0) $(id).value = $(id).dataset.first; // of another batch
     }
     for (const id of ["logx", "logy"]) $(id).checked = kept.has(id);
     this.bar.show();
@@ -145,14 +145,16 @@ function head() {
   $("notes").textContent = batch.notes.join(" ");
 }
 
-/** The cells that ended otherwise than done, by their reasons; the reason that most have first. */
+/** The cells that ended otherwise than done, by their reasons, of which those that differ in numbers
+    alone are one; the reason that most have first. */
 function problems(page) {
+  const kindOf = byKey.get("reason").at;
   const reasons = new Map();
   for (const i of order) {
     const state = stateOf(i);
     if (!PROBLEMS.includes(state)) continue;
     const why = batch.sentences[batch.sentence[i]] || "It tells no reason; see its log.txt.";
-    const key = `${PROBLEMS.indexOf(state)}${why}`;
+    const key = `${state} ${kindOf(i)}`;
     if (!reasons.has(key)) reasons.set(key, { state, why, cells: [] });
     reasons.get(key).cells.push(i);
   }
@@ -162,6 +164,8 @@ function problems(page) {
   $("problems-heading").textContent = `${counted(total, "cell", "cells")} without a result`;
   $("reasons").append(...found.map(({ state, why, cells }) => {
     const named = (i) => `${i + 1}. ${columns[1].text(i)}`;
+    const texts = new Set(cells.map((i) => batch.sentence[i])).size;
+    const told = texts > 1 ? `${why} (And the like, with other numbers.)` : why;
     const names = cells.slice(0, MOST_NAMES).map(
       (i) => (cells.length <= FEW && variation(i) ? `${named(i)}: ${variation(i)}` : named(i)));
     if (cells.length > MOST_NAMES) names.push(`and ${(cells.length - MOST_NAMES).toLocaleString("en")} more`);
@@ -174,13 +178,13 @@ function problems(page) {
       }
       page.filters.clear();
       page.filters.states.add(state);
-      page.filters.equal.set("outcome", why);
+      page.filters.equal.set("reason", kindOf(cells[0]));
       page.bar.show();
       page.update();
       $("cells-heading").focus();
       $("cells").scrollIntoView();
     });
-    return make("li", {}, stateMark(state), make("span", { className: "why" }, why), show, make("span", { className: "names" }, names.join(" · ")));
+    return make("li", {}, stateMark(state), make("span", { className: "why" }, told), show, make("span", { className: "names" }, names.join(" · ")));
   }));
 }
 

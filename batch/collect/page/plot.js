@@ -1,19 +1,22 @@
 /* What varies against what came out, cell by cell. */
 
+const PREFERRED = { y: "figure:peak_force_bw" }; // at first, where there is such a figure
 const PALETTE = ["#3b82d8", "#df7f00", "#1f9e77", "#d6407c", "#8a63d2", "#a88300", "#0aa0b4", "#7f9128", "#b9643f"];
 const OTHERS = "#8a8f98";
 const EDGE = { left: 68, right: 14, top: 12, bottom: 46 };
 const NEAR = 14; // pixels from a point that the mouse still finds it
 
 class Plot {
-  constructor(open, chosen, say) {
-    Object.assign(this, { open, say, canvas: $("canvas"), shown: [], points: [], at: -1, drag: null });
+  constructor(open, chosen) {
+    Object.assign(this, { open, canvas: $("canvas"), shown: [], points: [], at: -1, drag: null });
     const numbers = (members) => members.filter((column) => column.number && varies(column));
     const across = [...numbers(values), ...numbers(figures), byKey.get("seconds"), byKey.get("number")];
     const up = [...numbers(figures), byKey.get("seconds"), ...numbers(values)];
     const coloured = [byKey.get("clip"), byKey.get("recipe"), byKey.get("state"), ...values.filter((c) => varies(c) && c.distinct.length <= 30)];
     for (const [id, members] of [["x", across], ["y", up], ["colour", coloured]]) {
       $(id).append(...members.map((column) => new Option(column.name, column.key)));
+      const preferred = members.find((column) => column.key === PREFERRED[id]) ?? members[0];
+      $(id).dataset.first = preferred.key;
       $(id).addEventListener("change", () => this.changed(chosen));
     }
     for (const id of ["logx", "logy"]) $(id).addEventListener("change", () => this.changed(chosen));
@@ -55,12 +58,12 @@ class Plot {
       } else chosen(this.ranges(from, to));
       this.draw();
     });
-    canvas.addEventListener("pointercancel", () => this.let_go());
+    canvas.addEventListener("pointercancel", () => this.letGo());
     canvas.addEventListener("pointerleave", () => { if (!this.drag) this.point(-1); });
     canvas.addEventListener("keydown", (event) => this.key(event));
   }
 
-  let_go() {
+  letGo() {
     this.drag = null;
     this.draw();
   }
@@ -71,9 +74,8 @@ class Plot {
       const along = this.points.map((_, k) => k).sort((a, b) => this.points[a].x - this.points[b].x || this.points[b].y - this.points[a].y);
       const now = along.indexOf(this.at);
       this.point(along[(now + step + along.length) % along.length]);
-      this.say(this.told(this.points[this.at].i));
     } else if (event.key === "Enter" && this.at >= 0) this.open(this.points[this.at].i);
-    else if (event.key === "Escape" && this.drag) this.let_go();
+    else if (event.key === "Escape" && this.drag) this.letGo();
     else return;
     event.preventDefault();
   }
@@ -81,6 +83,7 @@ class Plot {
   set(shown) {
     this.shown = shown;
     this.at = -1;
+    $("tip").textContent = "";
     this.draw();
   }
 
@@ -90,12 +93,13 @@ class Plot {
       `${x.name}: ${x.text(i)}`, `${y.name}: ${y.text(i)}`].filter(Boolean).join("\n");
   }
 
-  /** Colour and shape of what cells have in a column: of those that most have, the others are grey. */
+  /** Colour and shape of what shown cells have: of those that most have, the others are grey. */
   classes(column) {
     const counts = new Map();
-    for (const i of order) counts.set(column.at(i), (counts.get(column.at(i)) ?? 0) + 1);
+    for (const i of this.shown) counts.set(column.at(i), (counts.get(column.at(i)) ?? 0) + 1);
     const known = [...counts.keys()].sort((a, b) => counts.get(b) - counts.get(a)).slice(0, PALETTE.length);
     if (counts.size <= PALETTE.length) known.sort(compared);
+    this.others = counts.size - known.length;
     return new Map(known.map((name, k) => [name, { colour: PALETTE[k], shape: k % SHAPES.length }]));
   }
 
@@ -124,7 +128,8 @@ class Plot {
       { i, x: this.scales[0].place(x.at(i)), y: this.scales[1].place(y.at(i)), ...classes.get(colour.at(i)) }));
     pen.globalAlpha = this.points.length > 2000 ? 0.55 : 0.85;
     const size = this.points.length > 2000 ? 3 : 4.5;
-    for (const point of this.points) symbol(pen, point, size);
+    for (const point of this.points) if (!point.colour) symbol(pen, point, size); // the others below
+    for (const point of this.points) if (point.colour) symbol(pen, point, size);
     pen.globalAlpha = 1;
     const now = this.points[this.at];
     if (now) {
@@ -190,8 +195,7 @@ class Plot {
       symbol(pen, { x: 7, y: 7, ...look }, 5);
       return make("li", {}, sign, column.key === "state" ? STATES.get(name).word : written(name));
     });
-    const others = column.distinct.length - [...classes.keys()].filter((name) => name !== null).length;
-    if (others > 0) items.push(make("li", { className: "quiet" }, `grey: ${counted(others, "other", "others")}`));
+    if (this.others) items.push(make("li", { className: "quiet" }, `grey: ${counted(this.others, "other", "others")}`));
     $("legend").replaceChildren(...items);
   }
 
@@ -212,7 +216,7 @@ class Plot {
     this.at = k;
     this.draw();
     const tip = $("tip");
-    tip.hidden = k < 0;
+    tip.textContent = "";
     if (k < 0) return;
     const { i, x, y } = this.points[k];
     tip.textContent = this.told(i);

@@ -19,7 +19,9 @@ def slider(further: float) -> SheetRow:
     """A trunk that slides along x, from 0 m to `further`."""
     com = np.stack([further * (TIMES - 2.0) / 0.5, 0 * TIMES, 0.9 + 0 * TIMES], axis=1)
     turn = np.repeat(np.eye(3)[None], len(TIMES), axis=0)
-    return SheetRow("Slid", TIMES, (Limb("trunk", np.full(3, 0.5), com, turn),), com, np.zeros((0, 3)))
+    return SheetRow(
+        "Slid", TIMES, (Limb("trunk", np.full(3, 0.5), com, turn),), com, np.zeros((0, 3))
+    )
 
 
 def frames(path: Path) -> list[np.ndarray]:

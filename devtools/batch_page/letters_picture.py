@@ -1,46 +1,33 @@
-"""Draws batch/collect/letters.png anew: python3 devtools/letters_picture.py, with Blender's module.
+"""Draws batch/collect/letters.png anew.
 
-White letters on black, in cells of equal size, in the order of contact_sheet.LETTERS: DejaVu Sans Mono,
-which Blender brings along.
+By Blender's module: `python devtools/package.py devtools.batch_page.letters_picture`. White letters
+on black, in cells of equal size, in the order of LETTERS: DejaVu Sans Mono, which Blender brings.
 """
 
 from pathlib import Path
-from runpy import run_path
 
 import bpy
 
-run_path(str(Path(__file__).with_name("package.py")))["load"]()
-
-from hangtime.batch.collect.letters import (  # noqa: E402 - the package is made importable above
-    ATLAS,
-    COLUMNS,
-    HIGH,
-    LETTERS,
-    WIDE,
-)
+from ...batch.collect.letters import ATLAS, COLUMNS, HIGH, LETTERS, WIDE
+from ...bridge.accessors import current_scene, present
+from ...bridge.picture.materials import plain
 
 EM = 17.6  # Blender's size of letters, which are 0.602 em and here 7.9 pixels wide
 BASE = 4.0  # pixels from a cell's lower edge to the line that letters stand on
 SAMPLES = 64
 
 
-def main() -> None:
+def main(_: list[str]) -> int:
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
-    assert scene is not None
-    fonts = Path(bpy.utils.system_resource("DATAFILES")) / "fonts"
+    scene = current_scene()
+    # the stubs lack it
+    fonts = Path(bpy.utils.system_resource("DATAFILES")) / "fonts"  # type: ignore[attr-defined]
     font = bpy.data.fonts.load(str(next(fonts.glob("DejaVuSansMono*"))))
-    white = bpy.data.materials.new("white")
-    white.use_nodes = True
-    tree = white.node_tree
-    assert tree is not None
-    tree.nodes.clear()
-    surface = tree.nodes.new("ShaderNodeEmission")
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(surface.outputs[0], output.inputs["Surface"])
+    white = plain()
     lines = -(-len(LETTERS) // COLUMNS)
     for k, letter in enumerate(LETTERS):
         curve = bpy.data.curves.new(letter, "FONT")
+        assert isinstance(curve, bpy.types.TextCurve)
         curve.body, curve.font, curve.size = letter, font, EM
         curve.materials.append(white)
         made = bpy.data.objects.new(letter, curve)
@@ -54,18 +41,16 @@ def main() -> None:
     scene.camera.location = (WIDE * COLUMNS / 2, HIGH * lines / 2, 10.0)
     scene.collection.objects.link(scene.camera)
     settings = scene.render
-    settings.engine = "CYCLES"
+    settings.engine = "CYCLES"  # type: ignore[assignment]  # the stubs know no add-on's engine
     settings.resolution_x, settings.resolution_y = WIDE * COLUMNS, HIGH * lines
     settings.filepath = str(ATLAS)
     settings.dither_intensity = 0.0
     settings.image_settings.file_format = "PNG"
     settings.image_settings.color_mode = "BW"
     settings.image_settings.compression = 100
-    scene.view_settings.view_transform = "Raw"
-    scene.cycles.samples, scene.cycles.use_denoising = SAMPLES, False
-    scene.cycles.filter_width = 0.9
+    # the stubs know no configuration of colours
+    present(scene.view_settings).view_transform = "Raw"  # type: ignore[assignment]
+    cycles = present(scene.cycles)
+    cycles.samples, cycles.use_denoising, cycles.filter_width = SAMPLES, False, 0.9
     bpy.ops.render.render(write_still=True)
-
-
-if __name__ == "__main__":
-    main()
+    return 0
