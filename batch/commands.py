@@ -80,10 +80,10 @@ def parser() -> argparse.ArgumentParser:
     cell.set_defaults(act=ACTS["cell"])
     cell.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     cell.add_argument("cell", metavar="CELL", help="its name in the manifest")
-    collecting = commands.add_parser("collect", help="table, contact sheet and page of what is there")
+    add_farm_commands(commands)
+    collecting = commands.add_parser("collect", help="make table, contact sheet and page anew")
     collecting.set_defaults(act=ACTS["collect"])
     collecting.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
-    add_farm_commands(commands)
     return top
 
 
@@ -168,7 +168,7 @@ def run_batch(options: argparse.Namespace) -> int:
             manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
             with suppress(BatchFault):  # that of the run is the one to be told
                 write_manifest(folder, manifest)
-    collect(folder)
+        collect(folder)
     return _told_end(folder, manifest)
 
 
@@ -208,7 +208,7 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     counts = Counter(cell.state for cell in manifest.cells)
     others = [cell for cell in manifest.cells if cell.state is not State.DONE]
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
-    print(f"{len(manifest.cells)} cells: {summary}. Each has its folder in {folder / 'cells'}.")
+    print(f"{len(manifest.cells)} cells: {summary}. Look at them in {folder / 'index.html'}.")
     for cell in others[:MOST_TOLD]:
         result = read_result(folder, cell.cell)
         if result is not None:
@@ -256,6 +256,12 @@ def _planned(options: argparse.Namespace) -> Planned:
     return planned
 
 
+def collect_batch(options: argparse.Namespace) -> int:
+    """Table, contact sheet and page of what there is so far. Raises BatchFault."""
+    collect(options.folder)
+    return 0
+
+
 def cell_of_batch(options: argparse.Namespace) -> int:
     """Solves one cell. Raises BatchFault."""
     result = run_cell(options.folder, options.cell)
@@ -263,12 +269,6 @@ def cell_of_batch(options: argparse.Namespace) -> int:
         if line:
             print(line, file=sys.stderr if line is result.sentence else sys.stdout)
     return result.exit_code
-
-
-def collect_batch(options: argparse.Namespace) -> int:
-    """Collects what is there. Raises BatchFault."""
-    collect(options.folder)
-    return 0
 
 
 ACTS: dict[str, Callable[[argparse.Namespace], int]] = {

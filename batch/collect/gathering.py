@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from os.path import commonpath
 from pathlib import Path
+from sys import intern
 
 from ..records.manifest import BatchSettings, CellPlan, read_manifest
 from ..records.result import CellResult, State, read_result
@@ -57,8 +58,11 @@ def gather(folder: Path) -> GatheredBatch:
 
 
 def _slim(result: CellResult | None) -> CellResult | None:
-    """Without the values, which the plan tells too."""
-    return None if result is None else replace(result, values={})
+    """Without the values, which the plan tells too, and figures' names kept once for all cells."""
+    if result is None:
+        return None
+    figures = {intern(name): value for name, value in result.figures.items()}
+    return replace(result, values={}, figures=figures)
 
 
 def columns(rows: Iterable[Mapping[str, object]]) -> Columns:

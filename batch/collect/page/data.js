@@ -57,7 +57,7 @@ const reasonKind = (i) => batch.sentences[batch.sentence[i]].replace(/\d+([.,]\d
 const columns = [
   new Column("number", "Cell", "", (i) => i + 1, true),
   new Column("clip", "Clip", "", (i) => batch.clips[batch.clip[i]], false),
-  new Column("recipe", "Recipe", "", (i) => batch.recipes[batch.recipe[i]], false),
+  new Column("recipe", "Recipe", "", (i) => batch.recipes[batch.recipe[i]] || null, false),
   new Column("state", "State", "", (i) => batch.states[batch.state[i]], false),
   ...tableColumns("value", batch.values),
   ...tableColumns("figure", batch.figures),
@@ -69,7 +69,7 @@ const tabled = columns.filter((column) => column.key !== "reason"); // which is 
 const byKey = new Map(columns.map((column) => [column.key, column]));
 const values = columns.filter((column) => column.group === "value");
 const figures = columns.filter((column) => column.group === "figure");
-const varies = (column) => column.distinct.length > 1;
+const varies = (column) => order.some((i) => column.at(i) !== column.at(0));
 const stateOf = byKey.get("state").at;
 
 /** The address of a file of a cell, relative to this page; names may hold any letter. */

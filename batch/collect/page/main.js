@@ -110,7 +110,7 @@ class Page {
     this.filters.save(kept);
     if (this.sort.key !== "number" || this.sort.down) kept.set("sort", (this.sort.down ? "-" : "") + this.sort.key);
     if (this.pictures) kept.set("view", "pictures");
-    for (const id of ["x", "y", "colour"]) if ($(id).selectedIndex > 0) kept.set(id, $(id).value);
+    for (const id of ["x", "y", "colour"]) if ($(id).value !== $(id).dataset.first) kept.set(id, $(id).value);
     for (const id of ["logx", "logy"]) if ($(id).checked) kept.set(id, "1");
     this.saved = kept.toString();
     history.replaceState(null, "", `#${this.saved}`);
@@ -125,8 +125,8 @@ class Page {
     const key = sort.replace(/^-/, "");
     this.sort = byKey.has(key) ? { key, down: sort.startsWith("-") } : { key: "number", down: false };
     for (const id of ["x", "y", "colour"]) {
-      $(id).value = kept.get(id) ?? $(id).options[0]?.value ?? "";
-      if ($(id).selectedIndex < 0) $(id).selectedIndex = 0;
+      $(id).value = kept.get(id) ?? $(id).dataset.first;
+      if ($(id).selectedIndex < 0) $(id).value = $(id).dataset.first; // of another batch
     }
     for (const id of ["logx", "logy"]) $(id).checked = kept.has(id);
     this.bar.show();

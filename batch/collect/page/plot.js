@@ -1,5 +1,6 @@
 /* What varies against what came out, cell by cell. */
 
+const PREFERRED = { y: "figure:peak_force_bw" }; // at first, where there is such a figure
 const PALETTE = ["#3b82d8", "#df7f00", "#1f9e77", "#d6407c", "#8a63d2", "#a88300", "#0aa0b4", "#7f9128", "#b9643f"];
 const OTHERS = "#8a8f98";
 const EDGE = { left: 68, right: 14, top: 12, bottom: 46 };
@@ -14,6 +15,8 @@ class Plot {
     const coloured = [byKey.get("clip"), byKey.get("recipe"), byKey.get("state"), ...values.filter((c) => varies(c) && c.distinct.length <= 30)];
     for (const [id, members] of [["x", across], ["y", up], ["colour", coloured]]) {
       $(id).append(...members.map((column) => new Option(column.name, column.key)));
+      const preferred = members.find((column) => column.key === PREFERRED[id]) ?? members[0];
+      $(id).dataset.first = preferred.key;
       $(id).addEventListener("change", () => this.changed(chosen));
     }
     for (const id of ["logx", "logy"]) $(id).addEventListener("change", () => this.changed(chosen));
