@@ -37,7 +37,9 @@ Found = Iterator[tuple[str, float]]
 def main(argv: list[str]) -> int:
     if "--tests" in argv:
         rest = [word for word in argv if word != "--tests"]
-        return int(pytest.main(["-q", *(rest or [str(ROOT / "tests" / "farm")])]))
+        if not any(Path(word.partition("::")[0]).exists() for word in rest):
+            rest.append(str(ROOT / "tests" / "farm"))
+        return int(pytest.main(["-q", *rest]))
     parser = argparse.ArgumentParser(prog="dev.py farm", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="fewer cells, runs and kills")
