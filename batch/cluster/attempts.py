@@ -6,7 +6,7 @@ wait for it, so that no fit is solved twice.
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import Counter, OrderedDict, deque
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from statistics import median
@@ -36,10 +36,12 @@ class Attempt:
 
 @dataclass
 class Attempts:
-    """The cells of one run. waiting: in the manifest's order."""
+    """The cells of one run. waiting: in the manifest's order. on: cells that run, by workers and
+    by pairs."""
 
-    waiting: deque[CellPlan]
+    waiting: OrderedDict[Pair, deque[CellPlan]] = field(default_factory=OrderedDict)
     running: list[Attempt] = field(default_factory=list)
+    on: Counter[str | Pair] = field(default_factory=Counter)
     ended: set[str] = field(default_factory=set)
     tries: Counter[str] = field(default_factory=Counter)
     failed_on: dict[str, set[str]] = field(default_factory=dict)  # workers, by cells
@@ -49,7 +51,10 @@ class Attempts:
     @staticmethod
     def of(plans: Iterable[CellPlan], fitted: Iterable[Pair] = ()) -> Attempts:
         """fitted: pairs that have a fit already."""
-        return Attempts(deque(plans), fitted=set(fitted))
+        attempts = Attempts(fitted=set(fitted))
+        for plan in plans:
+            attempts.waiting.setdefault(pair_of(plan), deque()).append(plan)
+        return attempts
 
     @property
     def over(self) -> bool:
@@ -59,7 +64,7 @@ class Attempts:
 
     def load(self, worker: str) -> int:
         """Cells that run on a worker."""
-        return sum(each.worker == worker for each in self.running)
+        return self.on[worker]
 
     def next_for(self, worker: str, now: float, others: Collection[str] = ()) -> Attempt | None:
         """What a worker with nothing to do begins: a cell that waits and may run, else one that
@@ -72,17 +77,26 @@ class Attempts:
             return None
         attempt = Attempt(plan, worker, now)
         self.running.append(attempt)
+        self.on.update((worker, pair_of(plan)))
         return attempt
 
     def _ready(self, worker: str, others: set[str]) -> CellPlan | None:
-        leading = {pair_of(each.plan) for each in self.running} - self.fitted
-        for place, plan in enumerate(self.waiting):
-            failed_on = self.failed_on.get(plan.cell, set())
-            elsewhere = worker in failed_on and others - failed_on
-            if pair_of(plan) not in leading and not elsewhere:
-                del self.waiting[place]
+        for pair, plans in self.waiting.items():
+            if self.on[pair] and pair not in self.fitted:
+                continue
+            for place, plan in enumerate(plans):
+                failed_on = self.failed_on.get(plan.cell, set())
+                if worker in failed_on and others - failed_on:
+                    continue
+                del plans[place]
+                if not plans:
+                    del self.waiting[pair]
                 return plan
         return None
+
+    def _stop(self, attempt: Attempt) -> None:
+        self.running.remove(attempt)
+        self.on.subtract((attempt.worker, pair_of(attempt.plan)))
 
     def _slow(self, worker: str, now: float) -> CellPlan | None:
         if self.waiting or not self.took:
@@ -97,7 +111,7 @@ class Attempts:
 
     def end(self, attempt: Attempt, now: float) -> bool:
         """An attempt has brought a result. False where another one of the same cell did before."""
-        self.running.remove(attempt)
+        self._stop(attempt)
         self.fitted.add(pair_of(attempt.plan))
         if attempt.plan.cell in self.ended:
             return False
@@ -110,7 +124,7 @@ class Attempts:
 
         blame: whether it may be the cell's fault. False where it was tried too often.
         """
-        self.running.remove(attempt)
+        self._stop(attempt)
         cell = attempt.plan.cell
         self.tries[cell] += blame
         if blame:
@@ -119,7 +133,9 @@ class Attempts:
             return False
         elsewhere = any(each.plan.cell == cell for each in self.running)
         if cell not in self.ended and not elsewhere:
-            self.waiting.appendleft(attempt.plan)
+            pair = pair_of(attempt.plan)
+            self.waiting.setdefault(pair, deque()).appendleft(attempt.plan)
+            self.waiting.move_to_end(pair, last=False)
         return True
 
     def give_up(self, plan: CellPlan) -> bool:
