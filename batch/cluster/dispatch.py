@@ -41,6 +41,7 @@ from .worker_side import (
 Tell = Callable[[str], None]
 PATIENCE = 0.5  # s between looks at the workers
 ANSWERING = 10.0  # s that a scheduler may take
+FETCHING = 15.0  # s that a cell's files may take on their way; a lost worker's never come
 
 
 class FarmGone(BatchFault):
@@ -233,9 +234,11 @@ class Dispatch:
             if future.status == "cancelled":
                 self._retry(future, "the scheduler dropped it", blame=False)
                 continue
-            fault = future.exception()
+            fault = future.exception() if future.status == "error" else None
             if fault is None:
-                self._take_in(self.futures.pop(future), future.result())
+                with suppress(TimeoutError):  # its worker ended before it was fetched: see _lose
+                    delivery = future.result(timeout=FETCHING)
+                    self._take_in(self.futures.pop(future), delivery)
             elif isinstance(fault, NotShared | FolderGone):
                 where = f"Worker {attempt.worker} does not share the batch's folder"
                 self.tell(f"{where} ({fault}); its results come through the scheduler.")
