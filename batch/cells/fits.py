@@ -6,7 +6,7 @@ import hashlib
 import pickle
 import shutil
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -26,14 +26,17 @@ from ...solver.worker.pipeline import (
 from ..records.aside import written_aside
 from ..records.locks import held
 from ..records.manifest import version
+from .reading import ReadClip
 
 FITS = "fits"  # within a batch's folder
 FILE = "fit.pickle"
+Analysed = tuple[Subject, ReadClip]
 IN_MEMORY = 2  # a fit's metrics are ten times as large as the fit
 
 
 class SharedFits:
-    """In place of `fit_possible`: a fit is solved once, by whoever needs it first; others wait.
+    """What the cells of a clip share. In place of `fit_possible`: a fit is solved once, by whoever
+    needs it first; others wait. The last analysis is remembered by who holds this.
 
     Fits are pickles: read a batch's folder only where those who write to it are trusted.
     """
@@ -41,6 +44,14 @@ class SharedFits:
     def __init__(self, folder: Path) -> None:
         self._folder = folder / FITS
         self._recent: OrderedDict[str, Fit] = OrderedDict()
+        self._analysed: tuple[object, Analysed] | None = None
+
+    def analysed(self, key: object, analyse: Callable[[], Analysed]) -> Analysed:
+        """The last analysis where it was of the same, else a new one. Raises as `analyse`."""
+        if self._analysed is None or self._analysed[0] != key:
+            self._analysed = None
+            self._analysed = key, analyse()
+        return self._analysed[1]
 
     def __call__(self, subject: Subject, clock: StageClock) -> Fit:
         """Raises as `fit_possible` does, and OSError."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 from ...bridge.recipe.export import ExportOptions
@@ -23,6 +24,7 @@ from ...operators.words.headline import headline, nearness
 from ...solver.data.faults import NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
+from ...solver.data.requests import Requests
 from ...solver.doctor.diagnose import diagnose
 from ...solver.results.report import fit_quality
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
@@ -33,7 +35,7 @@ from ..records.manifest import BatchSettings, CellPlan, Output
 from .figures import figures, fit_figures
 from .fits import SharedFits
 from .outputs import needs_blender, write_motion, write_plain
-from .reading import read_clip
+from .reading import ReadClip, read_clip
 
 DIAGNOSIS = "doctor.txt"
 FORMS = {Output.FBX: FileFormat.FBX, Output.GLTF: FileFormat.GLTF}
@@ -71,7 +73,7 @@ def adapt_cell(
     export = recipe.export or ExportOptions()
     if recipe.loop is not None:
         require_every_frame(keys)
-    loaded = _load(settings, plan, recipe, stages)
+    loaded = _load(settings, plan, recipe, fits, stages)
     require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
     forms = [form for output, form in FORMS.items() if output in settings.outputs]
     if loaded.scene is not None:
@@ -108,7 +110,7 @@ def check_cell(
 ) -> Done:
     """Diagnoses and fits. Raises as `adapt_cell` does."""
     recipe = _recipe(plan)
-    loaded = _load(settings, plan, recipe, stages)
+    loaded = _load(settings, plan, recipe, fits, stages)
     recording = loaded.subject.analysis.performance.recording
     with stages.stage("Diagnosing"):
         diagnosis = diagnose(recording, loaded.problem.bones, recipe.problem.mass)
@@ -140,28 +142,38 @@ def _recipe(plan: CellPlan) -> Recipe:
     return recipe
 
 
-def _load(settings: BatchSettings, plan: CellPlan, recipe: Recipe, stages: Stages) -> _Loaded:
+def _load(
+    settings: BatchSettings, plan: CellPlan, recipe: Recipe, fits: SharedFits, stages: Stages
+) -> _Loaded:
     """Reads and analyses the clip, in Blender where that is needed."""
-    path, problem = Path(plan.clip), recipe.problem
+    problem = recipe.problem
     if needs_blender(plan.clip, settings.outputs):
-        clip = Clip(path, settings.unit, settings.up, settings.rate)
+        clip = Clip(Path(plan.clip), settings.unit, settings.up, settings.rate)
         scene = load(clip, problem, stages, recipe.repairs)
         loaded = _Loaded(scene.subject, scene.origin, scene.problem, scene)
     else:
+        # Neither pins nor requests tell what was recorded (as in worker/service.py).
+        asked = replace(problem, pins=(), requests=Requests())
+        key = (plan.clip, plan.clip_sha256, settings, recipe.repairs, asked)
         with stages.stage("Finding contacts"):
-            read = read_clip(
-                path,
-                problem,
-                recipe.repairs,
-                unit=settings.unit,
-                up=settings.up,
-                rate=settings.rate,
-            )
-            subject = measure(read.recording, read.problem)
-        loaded = _Loaded(subject, read.origin, read.problem)
+            subject, read = fits.analysed(key, partial(_analysed, settings, plan, recipe))
+        problem = replace(problem, frames=read.problem.frames)
+        loaded = _Loaded(subject.asked(problem), read.origin, problem)
     if clip_sha256(plan.clip) != plan.clip_sha256:  # after it was read: then this was what counts
         raise InputChanged(_changed(plan.clip))
     return loaded
+
+
+def _analysed(settings: BatchSettings, plan: CellPlan, recipe: Recipe) -> tuple[Subject, ReadClip]:
+    read = read_clip(
+        Path(plan.clip),
+        recipe.problem,
+        recipe.repairs,
+        unit=settings.unit,
+        up=settings.up,
+        rate=settings.rate,
+    )
+    return measure(read.recording, read.problem), read
 
 
 def _changed(path: str) -> str:

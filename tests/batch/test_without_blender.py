@@ -12,9 +12,15 @@ import importlib, json, pkgutil, runpy, sys
 sys.modules["bpy"] = None  # whoever imports it fails
 runpy.run_path(sys.argv[1])["load"]()
 import hangtime.batch as batch
-names = [m.name for m in pkgutil.walk_packages(batch.__path__, "hangtime.batch.")]
-for name in names:
-    importlib.import_module(name)
+names = []
+def walk(package):
+    for module in pkgutil.iter_modules(package.__path__, package.__name__ + "."):
+        if module.name != "hangtime.batch.cluster":  # it needs Dask
+            names.append(module.name)
+            loaded = importlib.import_module(module.name)
+            if module.ispkg:
+                walk(loaded)
+walk(batch)
 loaded = {name.partition(".")[0] for name in sys.modules}
 print(json.dumps([names, [n for n in ("mathutils", "bpy_extras", "bmesh") if n in loaded]]))
 """
