@@ -66,7 +66,7 @@ def run_on_dask(
     outputs = manifest.settings.outputs
     if any(needs_blender(plan.clip, outputs) for plan in manifest.cells):
         raise WrongPlan(
-            "Dask's workers have no Blender, which FBX files and outputs such as pictures need; take "
+            "Dask's workers have no Blender, which FBX files and outputs like pictures need; take "
             "BVH or AMC clips and the outputs npz and bvh, or run the batch here or by Flamenco."
         )
     plans = [plan for plan in manifest.cells if unfinished(folder, plan)]
@@ -192,15 +192,15 @@ class Dispatch:
     # ------------------------------------------------------------ cells
 
     def _begin(self, attempt: Attempt) -> None:
-        parcel = parcel_of(attempt.plan)
+        parcel, cell = parcel_of(attempt.plan), attempt.plan.cell
         if self.crew.reach[attempt.worker] is Reach.SHARED:
             paths = [str(path) for path in parcel.files.values()]
-            task = (solve_in, str(self.folder.resolve()), attempt.plan.cell, paths)
+            task: tuple[object, ...] = (solve_in, str(self.folder.resolve()), cell, paths)
         else:
             files = {name: self._sent(path) for name, path in parcel.files.items()}
             fits = {name: self._sent(path) for name, path in self._fits(attempt.plan)}
             task = (solve_away, self.token, self.manifest.settings, parcel.plan, files, fits)
-        key = f"cell-{attempt.plan.cell}-{uuid.uuid4().hex}"
+        key = f"cell-{cell}-{uuid.uuid4().hex}"
         future = self.client.submit(*task, key=key, workers=[attempt.worker], pure=False)
         self.futures[future] = attempt
 

@@ -75,7 +75,7 @@ def own_build() -> Build:
         path.relative_to(PACKAGE).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in found
     }
-    libraries = {"numpy": numpy.__version__, "CasADi": casadi.__version__}
+    libraries = {"numpy": numpy.__version__, "CasADi": casadi.CasadiMeta.version()}
     return Build(version(), code, libraries)
 
 

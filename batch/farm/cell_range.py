@@ -21,9 +21,7 @@ def numbers_of(text: str, most: int) -> list[int]:
         first, last, step = match.groups()
         begin, end = int(first), int(last or first)
         if not 1 <= begin <= end <= most or step == "0":
-            raise WrongPlan(
-                f"“{part.strip()}” is no range of cells 1 to {most}; mend “{text}”."
-            )
+            raise WrongPlan(f"“{part.strip()}” is no range of cells 1 to {most}; mend “{text}”.")
         numbers |= set(range(begin, end + 1, int(step or 1)))
     return sorted(numbers)
 

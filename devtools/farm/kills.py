@@ -17,7 +17,7 @@ from .plans import contents, differing, half_written, plan_hops
 
 
 @dataclass(frozen=True)
-class Outcome:
+class KilledBatch:
     """What became of a batch's cells. differing: from another run's. doubled: that ended twice."""
 
     cells: int
@@ -40,7 +40,7 @@ def with_workers_killed(
     *,
     share: bool = True,
     cells: int = 12,
-) -> Outcome:
+) -> KilledBatch:
     """A batch on four workers, of which two are killed after some cell of the first half, each
     somewhat later; the scheduler stays. expected: contents of the same batch, run in peace."""
     manifest = plan_hops(folder / "batch", cells)
@@ -67,10 +67,10 @@ def kill(process: subprocess.Popen[bytes]) -> None:
 
 def outcome(
     folder: Path, manifest: Manifest, expected: dict[str, str], ended: Counter[str]
-) -> Outcome:
+) -> KilledBatch:
     found = contents(folder, manifest)
     names = [plan.cell for plan in manifest.cells]
-    return Outcome(
+    return KilledBatch(
         len(names),
         [name for name in names if name not in found],
         [name for name, count in ended.items() if count > 1],

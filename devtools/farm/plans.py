@@ -42,7 +42,7 @@ def contents(folder: Path, manifest: Manifest) -> dict[str, str]:
     """What each cell's result says, as a hash: state, figures and the motion to the last bit, but
     no times. Cells without a result are left out."""
     found = {}
-    for cell in (plan.cell for plan in manifest.cells):
+    for cell in (each.cell for each in manifest.cells):
         result = read_result(folder, cell)
         if result is not None:
             told = [result.state.value, result.sentence, result.headline, dict(result.figures)]

@@ -24,5 +24,10 @@ def run_session(folder: Path, package: Path, cells_per_task: int) -> str:
     command += ["--run-dependencies", "--job-param", json.dumps(parameters)]
     variables = os.environ | {"PYTHONPATH": str(package)} | ONE_THREAD
     return subprocess.run(
-        command, env=variables, check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        command,
+        env=variables,
+        check=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
     ).stdout

@@ -9,7 +9,7 @@ from hangtime.batch.cluster.dispatch import FarmGone, run_on_dask
 from hangtime.batch.cluster.worker_side import Reach, look_around
 from hangtime.batch.records.faults import FolderGone, WrongPlan
 from hangtime.batch.records.manifest import BatchSettings, Manifest, Output, write_manifest
-from hangtime.batch.records.result import CELLS, RESULT, CellResult, State, cell_folder, read_result
+from hangtime.batch.records.result import CELLS, RESULT, CellResult, State
 from hangtime.devtools.farm.cluster import running_cluster
 from hangtime.devtools.farm.kills import with_workers_killed
 from hangtime.devtools.farm.plans import contents, plan_hops
@@ -63,11 +63,11 @@ def test_a_scheduler_that_goes_is_told_and_the_same_command_goes_on(
 ) -> None:
     folder = tmp_path / "batch"
     manifest = plan_hops(folder, 4, check=True)
-    with running_cluster(tmp_path / "first", package, 1) as cluster:
-        with pytest.raises(FarmGone, match=r"is gone.*What has ended is kept"):
-            run_on_dask(
-                folder, str(cluster.file), lambda _: None, lambda _: cluster.scheduler.kill()
-            )
+    with (
+        running_cluster(tmp_path / "first", package, 1) as cluster,
+        pytest.raises(FarmGone, match=r"is gone.*What has ended is kept"),
+    ):
+        run_on_dask(folder, str(cluster.file), lambda _: None, lambda _: cluster.scheduler.kill())
     kept = {path: path.stat().st_mtime_ns for path in folder.glob(f"{CELLS}/*/{RESULT}")}
     assert 0 < len(kept) < 4
     ended: list[CellResult] = []
@@ -88,13 +88,15 @@ def test_no_scheduler_is_told_in_a_sentence(tmp_path: Path) -> None:
 def test_a_folder_that_goes_ends_the_run_in_a_sentence(tmp_path: Path, package: Path) -> None:
     folder = tmp_path / "batch"
     plan_hops(folder, 3, check=True)
-    with running_cluster(tmp_path / "cluster", package, 1) as cluster:
-        with pytest.raises(FolderGone, match=r"batch"):
-            run_on_dask(
-                *(folder, str(cluster.file), lambda _: None),
-                lambda _: replace_by_file(folder),
-                share=False,
-            )
+    with (
+        running_cluster(tmp_path / "cluster", package, 1) as cluster,
+        pytest.raises(FolderGone, match=r"batch"),
+    ):
+        run_on_dask(
+            *(folder, str(cluster.file), lambda _: None),
+            lambda _: replace_by_file(folder),
+            share=False,
+        )
 
 
 def replace_by_file(folder: Path) -> None:

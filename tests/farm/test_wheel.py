@@ -33,7 +33,11 @@ def test_a_cell_is_solved_by_the_installed_wheel(tmp_path: Path, solved: dict[st
     program = environment / "bin" / "hangtime-batch"
     variables = {name: value for name, value in os.environ.items() if name not in HERE}
     done = subprocess.run(
-        [program, "cell", folder, first], cwd=tmp_path, env=variables, capture_output=True, text=True
+        [program, "cell", folder, first],
+        cwd=tmp_path,
+        env=variables,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr
     assert read_result(folder, first) is not None
