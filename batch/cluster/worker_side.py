@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import platform
+import shutil
 import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
@@ -23,6 +24,7 @@ from ..records.manifest import BatchSettings, CellPlan, Manifest, version, write
 from ..records.result import CELLS, CellResult, cell_folder
 
 PACKAGE = Path(__file__).parents[2]
+KEPT_FITS = 8  # on a worker's disk
 COMPUTED_BY = ("solver", "bridge", "operators", "batch")  # folders whose code makes results
 Files = Mapping[str, bytes]  # by their paths within a folder, with "/"
 
@@ -120,6 +122,9 @@ def solve_away(
     """
     own = Path(get_worker().local_directory) / f"hangtime-{batch}"
     (own / FITS).mkdir(parents=True, exist_ok=True)
+    kept = sorted((own / FITS).glob("[!.]*"), key=os.path.getmtime)
+    for old in kept[:-KEPT_FITS]:  # of clips long done: the disk is not ours alone
+        shutil.rmtree(old, ignore_errors=True)
     new = {name: content for name, content in fits.items() if not (own / FITS / name).exists()}
     write_files(own / FITS, new)
     before = {path.name for path in (own / FITS).glob("[!.]*")}
