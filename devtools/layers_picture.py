@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PICTURE = ROOT / "docs" / "images" / "layers.svg"
 WIDTH, LEFT, MARGIN = 900, 250, 12
 BOX, ROW, GAP = 24, 30, 22  # heights of a package's box, of a row, and between layers
-COLOURS = ("#eeeeee", "#eeeeee", "#fde8d7", "#fdf3cf", "#dff0d8", "#d9e8f6")
+COLOURS = ("#eeeeee", "#eeeeee", "#fde8d7", "#f3e3f3", "#fdf3cf", "#dff0d8", "#d9e8f6")
 STYLE = (
     "text{font:13px sans-serif;fill:#222} .layer{font-weight:bold;font-size:16px}"
     " .what{font-size:11px;fill:#555} .box{fill:#fff;stroke:#999}"

@@ -103,6 +103,10 @@ def _follow_empties(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> 
 
 
 def _run_command(arguments: list[str]) -> int:
-    from ..operators.headless import cli  # most sessions never run it
+    if arguments[:1] == ["batch"]:
+        from ..batch import cli as batch  # most sessions never run either
+
+        return batch.main(arguments[1:])
+    from ..operators.headless import cli
 
     return cli.main(arguments)

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import sqrt
 from pathlib import Path
 
 import bpy  # first, for it makes the next one importable
@@ -12,11 +13,13 @@ import bpy  # first, for it makes the next one importable
 import addon_utils
 
 from ..accessors import present
+from .film_scene import FilmPainter
 from .layout import Layout
 from .scene import Painter
 from .sheet import View
 
 SAMPLES, BARE_SAMPLES = 6, 32  # for each pixel, with and without a denoiser
+FILM_SAMPLES = 4
 SEEN_THROUGH = 64  # surfaces behind each other: two for each box of a see-through body
 
 
@@ -25,6 +28,37 @@ def render(layout: Layout, view: View, path: Path, width: int) -> None:
     with _cycles(), _clean_scene() as scene:
         Painter(scene, view.elevation).draw(layout, width)
         _render(scene, path)
+
+
+def render_film(layout: Layout, view: View, path: Path, width: int, rate: int) -> None:
+    """Render `layout`, a figure of each tier a frame, to the MPEG-4 file `path`; rate: frames/s."""
+    with _cycles(), _clean_scene() as scene:
+        FilmPainter(scene, view.elevation).draw(layout, width)
+        scene.frame_start, scene.frame_end = 1, max(len(tier.figures) for tier in layout.tiers)
+        scene.render.fps = rate
+        scene.render.use_persistent_data = True  # only the figures change from frame to frame
+        _choose_render(scene, path)
+        _choose_encoder(scene)
+        cycles = present(scene.cycles)
+        cycles.use_denoising, cycles.samples = False, FILM_SAMPLES  # nothing is lit, see `shaded`
+        cycles.max_bounces = 0
+        with _quiet():
+            bpy.ops.render.render(animation=True, scene=scene.name)
+
+
+def _choose_encoder(scene: bpy.types.Scene) -> None:
+    """H.264 in MPEG-4, which every browser plays."""
+    settings = scene.render
+    if bpy.app.version >= (5, 0):
+        settings.image_settings.media_type = "VIDEO"  # type: ignore[attr-defined]
+    settings.image_settings.file_format = "FFMPEG"
+    encoder = present(settings.ffmpeg)
+    encoder.format, encoder.codec = "MPEG4", "H264"
+    encoder.constant_rate_factor, encoder.ffmpeg_preset = "MEDIUM", "GOOD"
+    encoder.audio_codec = "NONE"
+    smaller = min(1.0, sqrt(settings.resolution_x / settings.resolution_y))  # of one that is high
+    settings.resolution_x = 2 * round(settings.resolution_x * smaller / 2)  # even, as it wants them
+    settings.resolution_y = 2 * round(settings.resolution_y * smaller / 2)
 
 
 @contextmanager
@@ -54,6 +88,12 @@ def _cycles() -> Iterator[None]:
 
 
 def _render(scene: bpy.types.Scene, path: Path) -> None:
+    _choose_render(scene, path)
+    with _quiet():
+        bpy.ops.render.render(write_still=True, scene=scene.name)
+
+
+def _choose_render(scene: bpy.types.Scene, path: Path) -> None:
     settings = scene.render
     settings.engine = "CYCLES"  # type: ignore[assignment]  # the stubs know no add-on's engine
     settings.filepath = str(path)
@@ -75,8 +115,6 @@ def _render(scene: bpy.types.Scene, path: Path) -> None:
     cycles.denoising_quality = "FAST"
     cycles.samples = SAMPLES if cycles.use_denoising else BARE_SAMPLES
     cycles.use_adaptive_sampling = False
-    with _quiet():
-        bpy.ops.render.render(write_still=True, scene=scene.name)
 
 
 @contextmanager

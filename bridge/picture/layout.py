@@ -108,9 +108,7 @@ class Canvas:
 def lay_out(rows: Sequence[SheetRow], view: View | None = None) -> Layout:
     """Place every row in the canvas frame. Rows need at least one instant and one limb each."""
     view = view or View()
-    axes = canvas_axes(rows, view.heading)
-    aside = (rows[0].com @ axes.T)[:, 1].mean()
-    canvas = Canvas(axes, np.array([0.0, -aside, 0.0]))
+    canvas = canvas_of(rows, view)
     turned = [canvas.row(row) for row in rows]
     lead = turned[0]
     slide = np.zeros(len(lead.times))
@@ -121,6 +119,13 @@ def lay_out(rows: Sequence[SheetRow], view: View | None = None) -> Layout:
     tiers = tuple(_tier(r, np.interp(r.times, lead.times, slide), wished, floor) for r in turned)
     reach = np.concatenate([tier.corners() for tier in tiers])
     return Layout(tiers, floor, reach.min(axis=0), reach.max(axis=0))
+
+
+def canvas_of(rows: Sequence[SheetRow], view: View) -> Canvas:
+    """The frame of the picture: its viewer looks at the first row's centre of mass."""
+    axes = canvas_axes(rows, view.heading)
+    aside = (rows[0].com @ axes.T)[:, 1].mean()
+    return Canvas(axes, np.array([0.0, -aside, 0.0]))
 
 
 def canvas_axes(rows: Sequence[SheetRow], heading: tuple[float, float] | None = None) -> FloatArray:

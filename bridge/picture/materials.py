@@ -7,6 +7,8 @@ import numpy as np
 
 from ..accessors import present
 
+LAMP = (-0.32, -0.45, 0.83)  # direction to it, where nothing is lit truly
+SHADE = (-0.7, 0.9, 0.45, 1.05)  # from its cosine's least and largest to strengths
 Colour = tuple[float, float, float]  # linear
 
 
@@ -27,6 +29,26 @@ def matt() -> bpy.types.Material:
     material, nodes, links = _material("matt")
     surface = nodes.new("ShaderNodeBsdfDiffuse")
     links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Color"])
+    links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return material
+
+
+def shaded() -> bpy.types.Material:
+    """In the object's colour, the darker the more it turns from the lamp: without light, so without
+    noise and shadows, in a fraction of the time."""
+    material, nodes, links = _material("shaded")
+    present(material.cycles).emission_sampling = "NONE"
+    towards = nodes.new("ShaderNodeVectorMath")
+    towards.operation = "DOT_PRODUCT"
+    towards.inputs[1].default_value = LAMP
+    links.new(nodes.new("ShaderNodeNewGeometry").outputs["Normal"], towards.inputs[0])
+    strength = nodes.new("ShaderNodeMapRange")
+    for name, value in zip(("From Min", "From Max", "To Min", "To Max"), SHADE, strict=True):
+        strength.inputs[name].default_value = value
+    links.new(towards.outputs["Value"], strength.inputs["Value"])
+    surface = nodes.new("ShaderNodeEmission")
+    links.new(nodes.new("ShaderNodeObjectInfo").outputs["Color"], surface.inputs["Color"])
+    links.new(strength.outputs["Result"], surface.inputs["Strength"])
     links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
     return material
 

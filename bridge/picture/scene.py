@@ -60,7 +60,11 @@ class Painter:
         self.away = np.array([0.0, slope[1], -slope[0]])  # from the viewer into the picture
         self.before = -BEFORE * self.away
         self.origin = np.zeros(3)  # the place of the current tier's canvas origin, m
-        self.matt, self.plain = materials.matt(), materials.plain()
+        self.matt, self.plain = self.surface(), materials.plain()
+
+    def surface(self) -> bpy.types.Material:
+        """Of solids and floor."""
+        return materials.matt()
 
     def draw(self, layout: Layout, width: int) -> None:
         left, right = layout.low[0] - MARGIN, layout.high[0] + MARGIN
@@ -119,9 +123,7 @@ class Painter:
             self.shape(limb(size, end, head="head" in name.lower()), self.matt)
             for size, end, name in zip(tier.sizes, tier.proximal, tier.names, strict=True)
         ]
-        colour = BODIES[k % len(BODIES)]
-        for age, figure in zip(np.linspace(1, 0, len(tier.figures)), tier.figures, strict=True):
-            self.figure(figure, solids, tier.far, mix(colour, PAPER, 0.5 * age))
+        self.figures(tier, solids, BODIES[k % len(BODIES)])
         self.labels(tier, floor, label)
         self.path(tier, PATHS[k % len(PATHS)])
         for mark in tier.marks:
@@ -134,6 +136,11 @@ class Painter:
         if not finish.shadow:
             _casts_nothing(made)
 
+    def figures(self, tier: Tier, solids: list[bpy.types.Mesh], colour: Colour) -> None:
+        """Side by side, the earlier the paler."""
+        for age, figure in zip(np.linspace(1, 0, len(tier.figures)), tier.figures, strict=True):
+            self.figure(figure, solids, tier.far, mix(colour, PAPER, 0.5 * age))
+
     def figure(
         self, figure: Figure, solids: list[bpy.types.Mesh], far: BoolArray, colour: Colour
     ) -> None:
@@ -143,7 +150,7 @@ class Painter:
             paint = mix(own, (0.0, 0.0, 0.0), SHADED) if far[i] else own
             made = self.object(solid, paint, figure.centre[i])
             made.rotation_mode = "QUATERNION"
-            made.rotation_quaternion = _quaternion(figure.rotation[i])
+            made.rotation_quaternion = as_quaternion(figure.rotation[i])
 
     def labels(self, tier: Tier, floor: Floor, height: float) -> None:
         """The time below each figure, where it does not run into the one before."""
@@ -157,9 +164,7 @@ class Painter:
 
     def path(self, tier: Tier, colour: Colour) -> None:
         """A tube along the centre of mass with a bead at each figure."""
-        bead = self.shape(ball(BEAD), self.plain)
-        for figure in tier.figures:
-            _casts_nothing(self.object(bead, colour, figure.com + self.before))
+        self.beads(tier, colour)
         curve = bpy.data.curves.new("path", "CURVE")
         curve.dimensions = "3D"
         curve.bevel_depth = PATH
@@ -170,6 +175,11 @@ class Painter:
         spline.points.foreach_set("co", four.astype(np.float32).ravel())
         curve.materials.append(self.plain)
         _casts_nothing(self.object(curve, colour, self.before))
+
+    def beads(self, tier: Tier, colour: Colour) -> None:
+        bead = self.shape(ball(BEAD), self.plain)
+        for figure in tier.figures:
+            _casts_nothing(self.object(bead, colour, figure.com + self.before))
 
     def text(self, body: str, place: FloatArray, height: float, *, centred: bool = False) -> None:
         curve = bpy.data.curves.new("text", "FONT")
@@ -220,7 +230,7 @@ class Painter:
         self.scene.render.resolution_y = max(round(width * high / wide), 4)
 
 
-def _quaternion(rotation: FloatArray) -> Quaternion:
+def as_quaternion(rotation: FloatArray) -> Quaternion:
     return Matrix(rotation.tolist()).to_quaternion()
 
 

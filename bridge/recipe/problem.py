@@ -156,8 +156,13 @@ def parse_recipe(text: str, path: str = "recipe") -> Recipe:
 
     path is for faults alone. Raises BadRecipe with the line of what is wrong.
     """
-    values, lines = _parse(text, path)
-    table = Table(Source(path, lines), (), values, TOP_KEYS)
+    values, lines = recipe_values(text, path)
+    return recipe_of(values, Source(path, lines))
+
+
+def recipe_of(values: dict[str, Any], source: Source) -> Recipe:
+    """The recipe that a text's values say. source: tells their lines. Raises BadRecipe."""
+    table = Table(source, (), values, TOP_KEYS)
     scene, under = read_objects(table)
     problem = MotionProblem(
         frames=_frames(table),
@@ -187,7 +192,7 @@ def locate(text: str, fault: Fault) -> int | None:
 
     Raises BadRecipe.
     """
-    values, lines = _parse(text, "recipe")
+    values, lines = recipe_values(text, "recipe")
     return next((lines[place] for place in _places(values, fault) if place in lines), None)
 
 
@@ -239,8 +244,11 @@ def _inside(values: dict[str, Any], place: tuple[str, int], fault: Fault) -> lis
 # ---------------------------------------------------------------- reading
 
 
-def _parse(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
-    """A recipe's values, and the line of each key and element."""
+def recipe_values(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
+    """A recipe's values as they are written, and the line of each key and element.
+
+    path is for faults alone. Raises BadRecipe.
+    """
     if text.lstrip().startswith("{"):
         return _parse_json(text, path)
     try:

@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...solver.data.contacts import PhaseKind, gaps
-from ..accessors import current_action, shown_range, source_of
 from .choices import HOLD
 from .protocols import Settings
 
@@ -75,6 +74,12 @@ def clip_ends(settings: Settings) -> tuple[float, float] | None:
 
 def recorded_span(settings: Settings) -> tuple[float, float] | None:
     """First and last frame of the recording's action, where there is one."""
+    from ..accessors import (
+        current_action,
+        shown_range,
+        source_of,
+    )  # late: kinds load without Blender
+
     action = current_action(settings.id_data)
     if action is None:
         return None

@@ -10,7 +10,7 @@ from pathlib import Path
 import grimp
 
 PACKAGE = "hangtime"
-LAYERS = ("solver", "bridge", "operators", "ui", "devtools", "benchmarks")
+LAYERS = ("solver", "bridge", "operators", "batch", "ui", "devtools", "benchmarks")
 MAX_FILES = 14  # Python files in a folder
 MAX_DEPTH = 8  # modules on the longest import chain within a folder
 

@@ -10,7 +10,7 @@ from importlinter.cli import lint_imports
 from ..environment.virtual_environment import CACHE, ROOT
 from . import house
 
-TYPED = ("solver", "bridge", "operators", "ui", "devtools")
+TYPED = ("solver", "bridge", "operators", "batch", "ui", "devtools")
 
 
 def main(argv: list[str]) -> int:

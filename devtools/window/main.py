@@ -12,12 +12,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-from ..build import BuildError, build
+from ..build import build
 from ..checks.summary import read
 from ..environment.problem import SetUpError
 from ..environment.virtual_environment import ROOT
 from ..figures.limits import table, write
 from ..recordings import HELD
+from ..wheel import BuildError
 from .results import LIMITS, RunRecord, figure_verdicts, figures_of, junit, scenario_verdicts
 from .sandbox import SUITE, Mount, Sandbox, prepare
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,18 +13,17 @@ from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
-from ...bridge.rows.choices import KeyChoice, WrittenAs
+from ...bridge.rows.choices import FileFormat, KeyChoice, WrittenAs
 from ...solver.data.faults import OutputNotWritable
 from ...solver.data.reports.keys import KeysReport
-from ...solver.data.reports.report import Report, as_json
+from ...solver.data.reports.report import Report
 from ...solver.data.scaling import scaled_problem
-from ...solver.results.npz_export import save
 from ...solver.scene.object_motion import ObjectMotion
 from ...solver.worker.pipeline import AdaptationResult
-from ..words.report_text import as_text
 from .clip import LoadedClip
-from .outbox import Outbox, not_writable
+from .outbox import Outbox
 from .quiet import quiet
+from .result_files import write_report, write_trajectory
 from .stages import Stages
 
 if TYPE_CHECKING:  # as in clip.py
@@ -65,8 +64,19 @@ class Outputs:
     loop: LoopOptions | None = None
     export: ExportOptions = field(default_factory=ExportOptions)
 
-    def write(self, *, picture: bool = True) -> Report:
-        """All files of a result that is what was asked for; the picture where wanted."""
+    def write(
+        self,
+        *,
+        picture: bool = True,
+        film: bool = False,
+        blend: bool = True,
+        trajectory: bool = True,
+        forms: Sequence[FileFormat | None] = (None,),
+    ) -> Report:
+        """The files of a result that is what was asked for, and its report.
+
+        forms: of the files for others; None is what the options say.
+        """
         from ...bridge.accessors import current_action, present
         from ...bridge.armature.played import adopt_strip
         from ...bridge.takes.span import WrittenTake
@@ -81,36 +91,46 @@ class Outputs:
             if self.loop is None:  # which is an action of its own
                 self._lay_strips(performer, recorded, adapted)
             self._build_scene()
-            _save_blend(self.outbox.path("adapted.blend"))
-        self._export(performer, adapted)
-        if picture:
-            self._draw()
+            if blend:
+                _save_blend(self.outbox.path("adapted.blend"))
+        for form in forms:
+            self._export(performer, adapted, form)
+        self._draw(picture=picture, film=film)
         with self.stages.stage("Measuring"):
-            try:
-                save(self.result.adaptation.motion, self.outbox.path("trajectory.npz"))
-            except OSError as error:
-                raise not_writable(self.outbox.folder / "trajectory.npz", error) from error
+            if trajectory:
+                write_trajectory(self.result, self.outbox)
             report = replace(self._report(), keys=keys)
         self._write_report(report, written)
         return report
 
-    def _export(self, performer: bpy.types.Object, adapted: bpy.types.Action) -> None:
+    def _export(
+        self,
+        performer: bpy.types.Object,
+        adapted: bpy.types.Action,
+        asked: FileFormat | None,
+    ) -> None:
         from ...bridge.exports.engines import ENDINGS, format_of
         from ...bridge.exports.export import export_takes
 
-        form, pelvis = format_of(self.export), self.result.track.bones[0]
+        export = self.export if asked is None else replace(self.export, format=asked)
+        form, pelvis = format_of(export), self.result.track.bones[0]
         with self.stages.stage(f"Exporting {form.name}"), quiet():
             path = self.outbox.path(f"{EXPORTED}{ENDINGS[form]}")
-            export_takes(performer, [adapted], path, self.export, pelvis)
+            export_takes(performer, [adapted], path, export, pelvis)
 
-    def _draw(self) -> None:
-        adaptation = self.result.adaptation
-        with self.stages.stage("Drawing the picture"), quiet():
-            from .annotate import marks_of
-            from .picture import draw
+    def _draw(self, *, picture: bool, film: bool) -> None:
+        from .annotate import marks_of
+        from .picture import draw, draw_moving
 
-            marks = marks_of(adaptation, self.result.subject.problem)
-            draw(adaptation, self.clip.problem, self.outbox.path("sheet.png"), marks)
+        adaptation, problem = self.result.adaptation, self.clip.problem
+        if picture:
+            with self.stages.stage("Drawing the picture"), quiet():
+                marks = marks_of(adaptation, self.result.subject.problem)
+                draw(adaptation, problem, self.outbox.path("sheet.png"), marks)
+        if film:
+            with self.stages.stage("Drawing the film"), quiet():
+                marks = marks_of(adaptation, self.result.subject.problem)
+                draw_moving(adaptation, problem, self.outbox.path("film.mp4"), marks)
 
     def write_failure(self) -> None:
         """The report, and the best motion that was found."""
@@ -126,15 +146,12 @@ class Outputs:
         return self.result.report(self.clip.origin, self.stages.done)
 
     def _write_report(self, report: Report, written: WrittenTake | KeptByControls | None) -> None:
-        records: dict[str, object] = dict(as_json(report))
-        text = as_text(report)
-        if written is not None:
-            from ..words.take_text import take_lines, take_record
+        if written is None:
+            write_report(report, self.outbox)
+            return
+        from ..words.take_text import take_lines, take_record
 
-            records["take"] = take_record(written)
-            text += "".join(f"\n{line}" for line in take_lines(written)) + "\n"
-        self.outbox.write_text("report.json", json.dumps(records, indent=1, allow_nan=False) + "\n")
-        self.outbox.write_text("report.txt", text)
+        write_report(report, self.outbox, {"take": take_record(written)}, take_lines(written))
 
     def _write_actions(
         self, called: str

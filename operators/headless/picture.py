@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...bridge.picture.annotations import Bar, Mark, Sphere, TimeSpan
+from ...bridge.picture.film import draw_film
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
 from ...solver.arrays import FloatArray
@@ -31,10 +32,25 @@ def draw(
     The marks' arrays are constant, or sampled at `instants(adaptation.motion)`.
     Raises OutputNotWritable.
     """
+    rows = both_rows(adaptation, problem, marks)
+    draw_sheet(rows, path, View(heading=heading(adaptation)))
+
+
+def draw_moving(
+    adaptation: Adaptation, problem: MotionProblem, path: Path, marks: Sequence[Mark] = ()
+) -> None:
+    """What `draw` draws as a film: an MPEG-4 file. Raises OutputNotWritable."""
+    rows = both_rows(adaptation, problem, marks)
+    draw_film(rows, path, View(heading=heading(adaptation)))
+
+
+def both_rows(
+    adaptation: Adaptation, problem: MotionProblem, marks: Sequence[Mark]
+) -> tuple[SheetRow, SheetRow]:
+    """The recording, and the adapted motion with what was asked for as its title."""
     asked = [*map(caption, problem.pins), *problem.requests.names]
     edit = "; ".join(asked) or "made to obey physics"
-    rows = [recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)]
-    draw_sheet(rows, path, View(heading=heading(adaptation)))
+    return recorded_row(adaptation), adapted_row(adaptation, f"Adapted: {edit}", marks)
 
 
 def heading(adaptation: Adaptation) -> tuple[float, float] | None:

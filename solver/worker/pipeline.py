@@ -291,8 +291,8 @@ def on_fit(subject: Subject, fitted: Fit) -> Subject:
     return replace(subject, problem=problem)
 
 
-def fit_possible(subject: Subject, clock: StageClock) -> Fit:
-    """The fit, once nothing that is asked is seen to be impossible. Raises as `check_requested`."""
+def require_possible(subject: Subject) -> None:
+    """Raises as `check_requested` where what is asked is seen to be impossible."""
     schedule = subject.analysis.schedule
     check_requested(
         subject.analysis.performance,
@@ -301,6 +301,11 @@ def fit_possible(subject: Subject, clock: StageClock) -> Fit:
         periodic=subject.cycle is not None,
         rides=recorded_rides(schedule, subject.problem.scene, subject.recording),
     )
+
+
+def fit_possible(subject: Subject, clock: StageClock) -> Fit:
+    """The fit, once nothing that is asked is seen to be impossible. Raises as `check_requested`."""
+    require_possible(subject)
     return fit_subject(subject, clock)
 
 

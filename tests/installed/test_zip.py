@@ -30,6 +30,7 @@ SHIPPED = {
     "LICENSE",
     "README.md",
     "__init__.py",
+    "batch",
     "blender_manifest.toml",
     "bridge",
     "operators",

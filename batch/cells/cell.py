@@ -1,0 +1,150 @@
+"""One cell of a batch: a clip with a recipe, solved into a folder of its own."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import perf_counter
+from typing import TextIO
+
+from ...operators.headless.commands import explained
+from ...operators.headless.outbox import Outbox
+from ...operators.headless.stages import Stages
+from ...solver.data.faults import Fault, NoSolution, OutputNotWritable
+from ...solver.worker.pipeline import ADAPTING, FITTING
+from ..records.aside import written_aside
+from ..records.faults import BatchFault, FolderGone
+from ..records.manifest import BatchSettings, CellPlan, gone, read_plan
+from ..records.result import RESULT, CellResult, State, cell_folder, drop_failure, read_result
+from .fits import SharedFits
+from .work import Done, InputChanged, adapt_cell, check_cell
+
+LOG = "log.txt"
+Work = Callable[[BatchSettings, CellPlan, SharedFits, Outbox, Stages], Done]
+
+
+@dataclass(frozen=True)
+class _Ended:
+    """How the work on a cell ended."""
+
+    state: State
+    sentence: str = ""
+    done: Done = field(default_factory=Done)
+
+
+def run_cell(
+    folder: Path, cell: str, fits: SharedFits | None = None, work: Work | None = None
+) -> CellResult:
+    """Solves a cell of a batch, or returns its result where that is there already; one that failed
+    by no fault of what was asked is solved again.
+
+    fits: kept from cell to cell by who solves several. work: in place of the solve, in tests.
+    Raises WrongManifest where the manifest has no such cell, FolderGone.
+    """
+    found = read_result(folder, cell)
+    if found is not None and found.state is not State.FAILED:
+        return found
+    settings, plan = read_plan(folder, cell)
+    act = work or (check_cell if settings.check else adapt_cell)
+    try:
+        with written_aside(cell_folder(folder, cell)) as aside:
+            result = _written(settings, plan, fits or SharedFits(folder), aside, act)
+            drop_failure(folder, cell)
+    except OSError as error:
+        raise gone(folder, error) from error
+    return result
+
+
+def write_failure(folder: Path, cell: str, sentence: str) -> CellResult:
+    """The result of a cell whose process could not tell any. Raises as `run_cell` does."""
+    settings, plan = read_plan(folder, cell)
+    result = _result(settings, plan, _Ended(State.FAILED, sentence), {}, ())
+    try:
+        with written_aside(cell_folder(folder, cell)) as aside:
+            (aside / RESULT).write_text(result.as_json(), encoding="utf-8")
+            drop_failure(folder, cell)
+    except OSError as error:
+        raise gone(folder, error) from error
+    return result
+
+
+def _written(
+    settings: BatchSettings, plan: CellPlan, fits: SharedFits, aside: Path, act: Work
+) -> CellResult:
+    """Does the work and writes all of the cell's files. Raises OSError, FolderGone."""
+    began = perf_counter()
+    with (aside / LOG).open("w", encoding="utf-8") as log:
+        stages = Stages(log)
+        with Outbox(aside) as outbox:
+            ended = _ended(settings, plan, fits, outbox, stages, act)
+            outbox.deliver()
+        _tell(ended, log)
+    told = {"fit": FITTING, "solve": ADAPTING}
+    seconds = {
+        word: sum(s.seconds for s in stages.done if s.name == stage) for word, stage in told.items()
+    }
+    seconds["total"] = perf_counter() - began
+    files = tuple(sorted(path.name for path in aside.iterdir()))
+    result = _result(settings, plan, ended, seconds, files)
+    (aside / RESULT).write_text(result.as_json(), encoding="utf-8")
+    return result
+
+
+def _ended(
+    settings: BatchSettings,
+    plan: CellPlan,
+    fits: SharedFits,
+    outbox: Outbox,
+    stages: Stages,
+    act: Work,
+) -> _Ended:
+    recipe = Path(plan.recipe) if plan.recipe else None
+    try:
+        done = act(settings, plan, fits, outbox, stages)
+    except OutputNotWritable as fault:
+        said = f"{explained(fault, None)} Then give the same command again."
+        raise FolderGone(said) from fault  # it is the folder's, not the cell's
+    except NoSolution as fault:
+        return _Ended(State.NO_SOLUTION, explained(fault, recipe))
+    except (Fault, InputChanged) as fault:
+        said = str(fault) if isinstance(fault, InputChanged) else explained(fault, recipe)
+        return _Ended(State.WRONG_INPUT, said)
+    except (OSError, MemoryError, BatchFault):
+        raise
+    except Exception as error:  # noqa: BLE001  # one cell's crash is not the batch's
+        stages.out.write(traceback.format_exc())
+        kind = type(error).__name__
+        return _Ended(State.FAILED, f"A fault of Hangtime's ({kind}); send its {LOG} to us.")
+    if done.fault is not None:
+        return _Ended(State.NO_SOLUTION, explained(done.fault, recipe), done)
+    return _Ended(State.DONE, "", done)
+
+
+def _tell(ended: _Ended, log: TextIO) -> None:
+    for line in (ended.sentence, *ended.done.headline):
+        if line:
+            log.write(f"{line}\n")
+
+
+def _result(
+    settings: BatchSettings,
+    plan: CellPlan,
+    ended: _Ended,
+    seconds: dict[str, float],
+    files: tuple[str, ...],
+) -> CellResult:
+    return CellResult(
+        cell=plan.cell,
+        state=ended.state,
+        clip=Path(plan.clip).name,
+        recipe=Path(plan.recipe).name,
+        version=settings.version,
+        sentence=ended.sentence,
+        headline=ended.done.headline,
+        seconds=seconds,
+        figures=ended.done.figures,
+        values=plan.values,
+        files=files,
+    )

@@ -1,0 +1,109 @@
+"""Reading of clips without Blender: BVH and Acclaim files, in the same steps as `headless.clip`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import ceil, floor
+from pathlib import Path
+
+from ...bridge.formats.acclaim import USUAL_RATE, find_asf, read_acclaim
+from ...bridge.formats.bvh import read_bvh
+from ...bridge.formats.guess import guess_unit, guess_up
+from ...bridge.formats.motion_clip import MotionClip, UpAxis, to_recording
+from ...solver.data.faults import ClipNotOpened
+from ...solver.data.problem import MotionProblem
+from ...solver.data.recording import BEYOND, Recording
+from ...solver.data.reports.recording import Origin
+from ...solver.doctor.repair import mended, placed, trimmed, turned
+from ...solver.doctor.repairs import Repairs
+from ...solver.skeleton.bind_pose import bind_frames
+
+WITHOUT_BLENDER = (".bvh", ".amc")
+_EPSILON = 1e-4  # frames, by which a bound may miss a whole one
+
+
+@dataclass(frozen=True)
+class ReadClip:
+    """A clip's recording, repaired, and how its file was read.
+
+    problem: as it was asked for, after a bind pose. unit: m per unit of the file. up: its axis that
+    points up.
+    """
+
+    recording: Recording
+    origin: Origin
+    problem: MotionProblem
+    unit: float
+    up: UpAxis
+
+
+def read_file(path: Path, rate: float | None) -> MotionClip:
+    """A BVH or AMC file as it is. rate: Hz, of an AMC file. Raises ClipNotOpened, UnreadableClip,
+    NonFiniteKey."""
+    if not path.is_file():
+        raise ClipNotOpened(str(path), "there is no such file")
+    if path.suffix.lower() == ".bvh":
+        return read_bvh(path)
+    return read_acclaim(find_asf(path), path, USUAL_RATE if rate is None else rate)
+
+
+def read_clip(
+    path: Path,
+    problem: MotionProblem,
+    repairs: Repairs | None = None,
+    *,
+    unit: float | None = None,
+    up: UpAxis | None = None,
+    rate: float | None = None,
+) -> ReadClip:
+    """The problem's frames of a clip, and what lies about them; without frames all after a bind
+    pose. What the file does not tell and is not given is guessed. Raises as `read_file`, and
+    MissingPart."""
+    clip = read_file(path, rate)
+    axis = up or guess_up(clip)
+    metres = unit or clip.unit or guess_unit(clip, axis)
+    guessed = unit is None and clip.unit is None
+    origin = Origin(path.name, metres, guessed, axis, up is None)
+    recording = _by_depth(to_recording(replace(clip, name=path.stem), metres, axis))
+    mend = repairs or Repairs()
+    still = replace(mend, drift=Repairs().drift)
+    if still != Repairs():
+        recording = placed(turned(recording, still), still)
+    recording = _about(recording, problem, 1.0 / (clip.frame_time * mend.time_scale))
+    count = bind_frames(recording) if problem.frames is None else 0
+    if count:
+        origin = replace(origin, bind_frames=count)
+        after = float(recording.frames[count]), float(recording.frames[-1])
+        problem = replace(problem, frames=after)
+    elif problem.frames is None and mend.trim:
+        recording = trimmed(recording, mend)
+    recording = placed(mended(recording, mend, problem.bones), Repairs(drift=mend.drift))
+    return ReadClip(recording, origin, problem, metres, axis)
+
+
+def _by_depth(recording: Recording) -> Recording:
+    """With its bones level by level, as they are read from an armature: sums over bodies then have
+    the same order, and a solve from either reading the same end."""
+    depths: list[int] = []
+    for bone in recording.bones:
+        depths.append(0 if bone.parent < 0 else depths[bone.parent] + 1)
+    order = sorted(range(len(depths)), key=depths.__getitem__)
+    at = {old: new for new, old in enumerate(order)}
+    bones = tuple(
+        replace(recording.bones[old], parent=at.get(recording.bones[old].parent, -1))
+        for old in order
+    )
+    heads, rotations = recording.heads[:, order], recording.rotations[:, order]
+    return replace(recording, bones=bones, heads=heads, rotations=rotations)
+
+
+def _about(recording: Recording, problem: MotionProblem, rate: float) -> Recording:
+    """The problem's frames and BEYOND seconds on both sides, as far as the clip goes; at least one
+    frame, so that what is asked for beyond it is told as too short. rate: Hz."""
+    if problem.frames is None:
+        return recording
+    start, end = float(recording.frames[0]), float(recording.frames[-1])
+    first = ceil(max(problem.frames[0], start) - _EPSILON)
+    last = max(first, floor(min(problem.frames[1], end) + _EPSILON))
+    reach = floor(BEYOND * rate)
+    return recording.window(min(first - reach, end), max(last + reach, start))

@@ -1,0 +1,188 @@
+"""The work of a cell: as the command `adapt` does it, without Blender where none is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+
+from ...bridge.recipe.export import ExportOptions
+from ...bridge.recipe.keys import KeyOptions, require_every_frame
+from ...bridge.recipe.objects import placed_objects
+from ...bridge.recipe.problem import Recipe
+from ...bridge.recipe.result import ResultOptions, require_return_after
+from ...bridge.rows.choices import FileFormat
+from ...operators.headless.clip import Clip, LoadedClip, load
+from ...operators.headless.commands import explained
+from ...operators.headless.outbox import Outbox
+from ...operators.headless.outputs import Outputs, require_exported
+from ...operators.headless.stages import Stages
+from ...operators.words.doctor_text import diagnosis_text, finding_sentence
+from ...operators.words.doubt_text import doubts_of
+from ...operators.words.headline import headline, nearness
+from ...solver.data.faults import NoSolution
+from ...solver.data.problem import MotionProblem
+from ...solver.data.reports.recording import Origin
+from ...solver.data.requests import Requests
+from ...solver.doctor.diagnose import diagnose
+from ...solver.results.report import fit_quality
+from ...solver.worker.pipeline import Subject, measure, no_fit, solve
+from ..planning.clips import clip_files, clip_sha256
+from ..planning.recipes import VariedRecipe
+from ..records.faults import WrongPlan
+from ..records.manifest import BatchSettings, CellPlan, Output
+from .figures import figures, fit_figures
+from .fits import SharedFits
+from .outputs import needs_blender, write_motion, write_plain
+from .reading import ReadClip, read_clip
+
+DIAGNOSIS = "doctor.txt"
+FORMS = {Output.FBX: FileFormat.FBX, Output.GLTF: FileFormat.GLTF}
+
+
+class InputChanged(Exception):
+    """A clip or a recipe is no longer what was planned; the text is for people."""
+
+
+@dataclass(frozen=True)
+class Done:
+    """What the work on a cell found. fault: why it is not what was asked for."""
+
+    headline: tuple[str, ...] = ()
+    figures: Mapping[str, float] = field(default_factory=dict)
+    fault: NoSolution | None = None
+
+
+@dataclass(frozen=True)
+class _Loaded:
+    """A clip that was read and analysed. scene: where Blender holds it."""
+
+    subject: Subject
+    origin: Origin
+    problem: MotionProblem
+    scene: LoadedClip | None = None
+
+
+def adapt_cell(
+    settings: BatchSettings, plan: CellPlan, fits: SharedFits, outbox: Outbox, stages: Stages
+) -> Done:
+    """Adapts, and writes the outputs. Raises Fault, InputChanged, OSError."""
+    recipe = _recipe(plan)
+    wanted, keys = recipe.result or ResultOptions(), recipe.keys or KeyOptions()
+    export = recipe.export or ExportOptions()
+    if recipe.loop is not None:
+        require_every_frame(keys)
+    loaded = _load(settings, plan, recipe, fits, stages)
+    require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
+    forms = [form for output, form in FORMS.items() if output in settings.outputs]
+    if loaded.scene is not None:
+        for form in forms:
+            require_exported(loaded.scene, outbox.folder, replace(export, format=form))
+    for line in _doubts(recipe.problem, loaded.subject):
+        stages.out.write(f"Warning: {line}\n")
+    placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
+    result = solve(loaded.subject.with_objects(placed), stages, fits)
+    if result.fault is not None:
+        report = result.report(loaded.origin, stages.done)
+        write_plain(result, report, (), outbox)
+    elif loaded.scene is None:
+        with stages.stage("Measuring"):
+            report = result.report(loaded.origin, stages.done)
+        write_plain(result, report, settings.outputs, outbox)
+    else:
+        outputs = Outputs(loaded.scene, wanted, keys, result, outbox, stages, recipe.loop, export)
+        report = outputs.write(
+            picture=Output.PICTURE in settings.outputs,
+            film=Output.FILM in settings.outputs,
+            blend=Output.BLEND in settings.outputs,
+            trajectory=Output.NPZ in settings.outputs,
+            forms=forms,
+        )
+    if Output.BVH in settings.outputs and result.fault is None:
+        write_motion(result, loaded.origin, outbox)
+    advice = [explained(each, None) for each in loaded.subject.analysis.unseen]
+    return Done((*headline(report), *advice), figures(report), result.fault)
+
+
+def check_cell(
+    settings: BatchSettings, plan: CellPlan, fits: SharedFits, outbox: Outbox, stages: Stages
+) -> Done:
+    """Diagnoses and fits. Raises as `adapt_cell` does."""
+    recipe = _recipe(plan)
+    loaded = _load(settings, plan, recipe, fits, stages)
+    recording = loaded.subject.analysis.performance.recording
+    with stages.stage("Diagnosing"):
+        diagnosis = diagnose(recording, loaded.problem.bones, recipe.problem.mass)
+    outbox.write_text(DIAGNOSIS, diagnosis_text(diagnosis))
+    found = [each for each in diagnosis.findings if not each.kind.note]
+    fitted = fits.fit(loaded.subject, stages)
+    told = tuple(finding_sentence(each) for each in found)
+    counted = {"findings": float(len(found))}
+    if not fitted.solved:
+        return Done(told, counted, no_fit(fitted))
+    quality = fit_quality(fitted)
+    return Done((nearness(quality), *told), counted | fit_figures(quality))
+
+
+def cell_files(plan: CellPlan) -> tuple[Path, ...]:
+    """Every file that a cell reads beside the manifest. Raises BadRecipe, WrongPlan."""
+    return (*clip_files(plan.clip), *VariedRecipe.read(plan.recipe, plan.values).files)
+
+
+def _recipe(plan: CellPlan) -> Recipe:
+    try:
+        varied = VariedRecipe.read(plan.recipe, plan.values)
+        resolved = varied.resolved(plan.values)
+    except WrongPlan as fault:  # a value's place is gone
+        raise InputChanged(_changed(plan.recipe)) from fault
+    recipe = varied.recipe(resolved)
+    if varied.sha256(resolved) != plan.recipe_sha256:
+        raise InputChanged(_changed(plan.recipe))
+    return recipe
+
+
+def _load(
+    settings: BatchSettings, plan: CellPlan, recipe: Recipe, fits: SharedFits, stages: Stages
+) -> _Loaded:
+    """Reads and analyses the clip, in Blender where that is needed."""
+    problem = recipe.problem
+    if needs_blender(plan.clip, settings.outputs):
+        clip = Clip(Path(plan.clip), settings.unit, settings.up, settings.rate)
+        scene = load(clip, problem, stages, recipe.repairs)
+        loaded = _Loaded(scene.subject, scene.origin, scene.problem, scene)
+    else:
+        # Neither pins nor requests tell what was recorded (as in worker/service.py).
+        asked = replace(problem, pins=(), requests=Requests())
+        key = (plan.clip, plan.clip_sha256, settings, recipe.repairs, asked)
+        with stages.stage("Finding contacts"):
+            subject, read = fits.analysed(key, partial(_analysed, settings, plan, recipe))
+        problem = replace(problem, frames=read.problem.frames)
+        loaded = _Loaded(subject.asked(problem), read.origin, problem)
+    if clip_sha256(plan.clip) != plan.clip_sha256:  # after it was read: then this was what counts
+        raise InputChanged(_changed(plan.clip))
+    return loaded
+
+
+def _analysed(settings: BatchSettings, plan: CellPlan, recipe: Recipe) -> tuple[Subject, ReadClip]:
+    read = read_clip(
+        Path(plan.clip),
+        recipe.problem,
+        recipe.repairs,
+        unit=settings.unit,
+        up=settings.up,
+        rate=settings.rate,
+    )
+    return measure(read.recording, read.problem), read
+
+
+def _changed(path: str) -> str:
+    return (
+        f"{path} has changed since the batch was planned; give the batch's command again, which "
+        "plans it as it is now."
+    )
+
+
+def _doubts(asked: MotionProblem, subject: Subject) -> Iterator[str]:
+    frames = subject.recording.frames
+    yield from doubts_of(asked, subject.height, frames[:0] if asked.loop else frames)

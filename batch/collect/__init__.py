@@ -1,0 +1,1 @@
+"""What is made of a batch's results: table.csv, the contact sheet, and a page to look at them."""

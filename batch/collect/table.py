@@ -1,0 +1,26 @@
+"""table.csv: a line a cell, for spreadsheets and scripts."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from .files import written_aside
+from .gathering import GatheredBatch
+
+LEADING = ("cell", "clip", "recipe", "state", "exit_code", "sentence")
+
+
+def write_table(batch: GatheredBatch, path: Path) -> None:
+    """Numbers in full; empty where a cell has none. UTF-8 with a mark that spreadsheets need to
+    read names in other letters. Raises FolderGone."""
+    seconds = {f"{name}_s": column for name, column in batch.seconds.items()}
+    more = [*batch.values.items(), *seconds.items(), *batch.figures.items()]
+    with written_aside(path) as aside, aside.open("w", encoding="utf-8-sig", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow([*LEADING, *(name for name, _ in more)])
+        cells = zip(batch.plans, batch.states, batch.results, strict=True)
+        for i, (plan, state, result) in enumerate(cells):
+            code, why = ("", "") if result is None else (result.exit_code, result.sentence)
+            leading = (plan.cell, plan.clip, plan.recipe, state.value, code, why)
+            writer.writerow([*leading, *(column[i] for _, column in more)])

@@ -1,0 +1,280 @@
+"""The commands of a batch, and their options."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from io import TextIOWrapper
+from pathlib import Path
+
+from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
+from ..solver.data.faults import Fault
+from .cells.cell import run_cell
+from .cells.outputs import needs_blender
+from .collect.collecting import collect
+from .farm.commands import FARM_ACTS, add_farm_commands
+from .planning.plan import Asked, Planned, plan, refreshed
+from .records.faults import BatchFault
+from .records.locks import batch_lock
+from .records.manifest import BatchSettings, Manifest, Output, write_manifest
+from .records.result import State, read_result
+from .running.memory import MemoryWatch
+from .running.progress import Progress, told
+from .running.runner import LocalRun
+from .running.workers import worker_command
+
+RUN = "run"
+MOST_TOLD = 20  # cells that are not done, by name, at the end
+# What a batch ends with: the first of these that a cell of it has.
+WORST = (State.FAILED, State.WRONG_INPUT, State.NO_SOLUTION)
+
+
+def run(argv: Sequence[str]) -> int:
+    """Parses and runs; the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")
+    commands = parser()
+    try:
+        options = commands.parse_args(_with_command(argv))
+    except SystemExit as end:  # argparse has said why
+        return WRONG_INPUT if end.code else 0
+    act: Callable[[argparse.Namespace], int] = options.act
+    try:
+        return act(options)
+    except Fault as fault:
+        print(explained(fault, None), file=sys.stderr)
+    except BatchFault as fault:
+        print(fault, file=sys.stderr)
+    except KeyboardInterrupt:
+        print("\nInterrupted; the same command again goes on from here.", file=sys.stderr)
+        return CANCELLED
+    return WRONG_INPUT
+
+
+def _with_command(argv: Sequence[str]) -> list[str]:
+    """Clips right away mean a run."""
+    first = next(iter(argv), "--help")
+    plain = first in ACTS or first in ("-h", "--help")
+    return list(argv or ["--help"]) if plain else [RUN, *argv]
+
+
+def parser() -> argparse.ArgumentParser:
+    """The commands and their options."""
+    top = argparse.ArgumentParser(
+        prog="batch", description="Many clips with many recipes. Clips right away mean 'run'."
+    )
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+    for name, words in (
+        (RUN, "plan, and solve what is not solved yet"),
+        ("plan", "only write the manifest"),
+    ):
+        _add_planning(commands.add_parser(name, help=words), name)
+    cell = commands.add_parser("cell", help="solve one cell of a batch")
+    cell.set_defaults(act=ACTS["cell"])
+    cell.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
+    cell.add_argument("cell", metavar="CELL", help="its name in the manifest")
+    add_farm_commands(commands)
+    collecting = commands.add_parser("collect", help="make table, contact sheet and page anew")
+    collecting.set_defaults(act=ACTS["collect"])
+    collecting.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
+    return top
+
+
+def _add_planning(each: argparse.ArgumentParser, name: str) -> None:
+    each.set_defaults(act=ACTS[name])
+    each.add_argument(
+        "clips", nargs="*", metavar="CLIP", help="files, folders, patterns; or those of the recipes"
+    )
+    each.add_argument(
+        "--recipes", nargs="+", default=[], metavar="RECIPE", help="files, folders, patterns"
+    )
+    each.add_argument(
+        "--table", type=Path, metavar="FILE", help="CSV or TOML that names the pairs instead"
+    )
+    each.add_argument("--out", type=Path, required=True, metavar="DIR", help="the batch's folder")
+    each.add_argument("--check", action="store_true", help="only diagnose and fit")
+    each.add_argument(
+        "--outputs",
+        type=_outputs,
+        default=(Output.NPZ,),
+        metavar="LIST",
+        help=f"beside the report, of {', '.join(o.value for o in Output)} (default: npz)",
+    )
+    each.add_argument("--unit", type=_positive, metavar="M", help="metres per unit of the clips")
+    each.add_argument("--up", choices=("Y", "Z"), type=str.upper, help="axis that points up")
+    each.add_argument("--rate", type=_positive, metavar="HZ", help="AMC files' frames a second")
+    each.add_argument(
+        "--jobs", type=_count, default=cores(), metavar="N", help="at once (default: the cores)"
+    )
+    each.add_argument(
+        "--dask", metavar="ADDRESS", help="a Dask scheduler, or its file, whose workers solve"
+    )
+    each.add_argument(
+        "--no-sharing",
+        action="store_true",
+        help="send all through the scheduler, though Dask's workers see the folder",
+    )
+
+
+def _outputs(text: str) -> tuple[Output, ...]:
+    known = {output.value: output for output in Output}
+    words = [word.strip().lower() for word in text.split(",") if word.strip()]
+    for word in words:
+        if word not in known:
+            raise argparse.ArgumentTypeError(f"unknown output {word!r}; known: {', '.join(known)}")
+    return tuple(output for word, output in known.items() if word in words)
+
+
+def _positive(text: str) -> float:
+    number = float(text)
+    if not 0.0 < number < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not above zero")
+    return number
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"{text} is no number of workers; write 1 or more")
+    return int(text)
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+# ---------------------------------------------------------------- the commands
+
+
+def run_batch(options: argparse.Namespace) -> int:
+    """Plans, and solves what is not solved yet. Raises Fault, BatchFault."""
+    folder: Path = options.out
+    with batch_lock(folder), _ended_by_signals():
+        planned = _planned(options)
+        manifest = planned.manifest
+        progress = Progress(sys.stdout, len(manifest.cells), _done(manifest))
+        try:
+            _solve(options, manifest, progress)
+        finally:
+            manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
+            with suppress(BatchFault):  # that of the run is the one to be told
+                write_manifest(folder, manifest)
+        collect(folder)
+    return _told_end(folder, manifest)
+
+
+def _solve(options: argparse.Namespace, manifest: Manifest, progress: Progress) -> None:
+    """What is not solved yet, by Dask's workers or by processes of this machine."""
+    folder: Path = options.out
+    if options.dask is None:
+        blender = any(needs_blender(c.clip, manifest.settings.outputs) for c in manifest.cells)
+        command = worker_command(blender=blender)
+        LocalRun(folder, manifest, options.jobs, command, progress, MemoryWatch()).run()
+        return
+    try:
+        from .cluster.dispatch import run_on_dask
+    except ImportError as error:
+        raise BatchFault(
+            f"Dask is not beside this Hangtime ({error}); run the batch by the wheel's "
+            "`hangtime-batch`, installed with Dask: docs/manual/farm.md tells how."
+        ) from error
+    plans = {plan.cell: plan for plan in manifest.cells}
+    run_on_dask(
+        folder,
+        options.dask,
+        progress.note,
+        lambda result: progress.ended(plans[result.cell], result),
+        share=not options.no_sharing,
+    )
+
+
+def _done(manifest: Manifest) -> Counter[State]:
+    """Cells by the states that stay."""
+    still = (State.PLANNED, State.FAILED)
+    return Counter(cell.state for cell in manifest.cells if cell.state not in still)
+
+
+def _told_end(folder: Path, manifest: Manifest) -> int:
+    """Says how it ended, with what is not done by name; the exit code."""
+    counts = Counter(cell.state for cell in manifest.cells)
+    others = [cell for cell in manifest.cells if cell.state is not State.DONE]
+    summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
+    print(f"{len(manifest.cells)} cells: {summary}. Look at them in {folder / 'index.html'}.")
+    for cell in others[:MOST_TOLD]:
+        result = read_result(folder, cell.cell)
+        if result is not None:
+            print(f"  {told(cell, result)}")
+    if len(others) > MOST_TOLD:
+        print(f"  … and {len(others) - MOST_TOLD} more, which the manifest tells by their state.")
+    return next((state.exit_code for state in WORST if counts[state]), 0)
+
+
+@contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """Whoever ends the process politely has it end its workers and keep what is done."""
+
+    def interrupt(_number: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def plan_batch(options: argparse.Namespace) -> int:
+    """Only plans. Raises Fault, BatchFault."""
+    with batch_lock(options.out):
+        _planned(options)
+    return 0
+
+
+def _planned(options: argparse.Namespace) -> Planned:
+    settings = BatchSettings(options.outputs, options.check, options.unit, options.up, options.rate)
+    asked = Asked(settings, options.clips, options.recipes, options.table)
+    planned = plan(asked, options.out)
+    cells = planned.manifest.cells
+    done = sum(_done(planned.manifest).values())
+    print(f"{len(cells)} cells" + (f", {done} of them solved before" if done else "") + ".")
+    if planned.twice:
+        print(f"{planned.twice} pairs are the same as others and are done once.")
+    if planned.strays:
+        print(
+            f"{len(planned.strays)} folders in {options.out / 'cells'} are of an earlier plan and "
+            f"are left as they are, such as {planned.strays[0]}."
+        )
+    return planned
+
+
+def collect_batch(options: argparse.Namespace) -> int:
+    """Table, contact sheet and page of what there is so far. Raises BatchFault."""
+    collect(options.folder)
+    return 0
+
+
+def cell_of_batch(options: argparse.Namespace) -> int:
+    """Solves one cell. Raises BatchFault."""
+    result = run_cell(options.folder, options.cell)
+    for line in (result.sentence, *result.headline):
+        if line:
+            print(line, file=sys.stderr if line is result.sentence else sys.stdout)
+    return result.exit_code
+
+
+ACTS: dict[str, Callable[[argparse.Namespace], int]] = {
+    RUN: run_batch,
+    "plan": plan_batch,
+    "cell": cell_of_batch,
+    "collect": collect_batch,
+    **FARM_ACTS,
+}

@@ -1,0 +1,1 @@
+"""A batch's folder: its manifest, the results of its cells, and how they are written safely."""

@@ -1,0 +1,53 @@
+"""Folders that appear under their name whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from errno import EEXIST, ENOTEMPTY
+from pathlib import Path
+
+
+@contextmanager
+def written_aside(target: Path) -> Iterator[Path]:
+    """A folder to write into, which gets the target's name at the end.
+
+    Where another process was quicker its folder stays, and this one is dropped. Raises OSError.
+    """
+    target.parent.mkdir(parents=True, exist_ok=True)
+    prefix = f".{target.name}.{socket.gethostname()}.{os.getpid()}."
+    aside = Path(tempfile.mkdtemp(prefix=prefix, dir=target.parent))
+    try:
+        os.chmod(aside, 0o755)  # a colleague may look
+        yield aside
+        try:
+            os.rename(aside, target)
+        except OSError as error:
+            if error.errno not in (EEXIST, ENOTEMPTY) and not target.is_dir():
+                raise
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Removes what processes of this machine left half-written that are no more."""
+    with suppress(FileNotFoundError):
+        for path in folder.iterdir():
+            host, _, pid = path.name.rpartition(".")[0].rpartition(".")
+            mine = path.name.startswith(".") and host.endswith(f".{socket.gethostname()}")
+            if mine and pid.isdecimal() and not _alive(int(pid)):
+                shutil.rmtree(path, ignore_errors=True)
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # it is somebody else's
+        return True
+    return True

@@ -1,0 +1,216 @@
+"""The manifest of a batch: manifest.jsonl, a line for the batch, then a line a cell."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tomllib
+from collections import Counter
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
+from enum import Enum
+from functools import cache
+from pathlib import Path
+from typing import Any, Literal
+
+from .faults import FolderGone, OtherVersion, WrongManifest
+from .result import State
+
+MANIFEST = "manifest.jsonl"
+FORMAT = 1
+KEY_SHOWN = 16  # hexadecimal digits of a cell's key in its name; two of 250,000 never share them
+Value = float | int | str | bool
+AGAIN = "give the batch's command again, which writes it anew and keeps what is solved"
+
+
+class Output(Enum):
+    """What a cell leaves beside log and report; the values are the command line's words."""
+
+    NPZ = "npz"
+    BVH = "bvh"
+    PICTURE = "picture"
+    FBX = "fbx"
+    GLTF = "gltf"
+    BLEND = "blend"
+    FILM = "film"
+
+    @property
+    def needs_blender(self) -> bool:
+        return self not in (Output.NPZ, Output.BVH)
+
+
+@cache
+def version() -> str:
+    """Hangtime's own."""
+    file = Path(__file__).parents[2] / "blender_manifest.toml"
+    return str(tomllib.loads(file.read_text(encoding="utf-8"))["version"])
+
+
+@dataclass(frozen=True)
+class BatchSettings:
+    """What all cells of a batch share. check: only diagnose and fit.
+
+    unit: m per unit of the clips, up: their axis that points up, rate: Hz, of AMC files; None where
+    the files tell, or it is guessed.
+    """
+
+    outputs: tuple[Output, ...] = (Output.NPZ,)
+    check: bool = False
+    unit: float | None = None
+    up: Literal["Y", "Z"] | None = None
+    rate: float | None = None
+    version: str = field(default_factory=version)
+
+    def as_record(self) -> dict[str, Any]:
+        outputs = [output.value for output in self.outputs]
+        return {"format": FORMAT, **asdict(self), "outputs": outputs}
+
+    @staticmethod
+    def of_record(record: dict[str, Any]) -> BatchSettings:
+        """Raises ValueError, KeyError or TypeError where it is none."""
+        if record.pop("format") != FORMAT:
+            raise ValueError("another format")
+        outputs = tuple(Output(word) for word in record.pop("outputs"))
+        return BatchSettings(outputs=outputs, **record)
+
+
+@dataclass(frozen=True)
+class CellPlan:
+    """One clip with one recipe, or what its ranges make of it.
+
+    cell: its name and its folder's. clip, recipe: paths; recipe is empty where a clip is only
+    checked. recipe_sha256: of what the recipe says with the values in it, and of the files that it
+    names. values: by places in the recipe, such as "pin.Landing.forward". state: when the manifest
+    was written.
+    """
+
+    cell: str
+    clip: str
+    clip_sha256: str
+    recipe: str
+    recipe_sha256: str
+    values: Mapping[str, Value] = field(default_factory=dict)
+    state: State = State.PLANNED
+
+    def key(self, settings: BatchSettings) -> str:
+        """SHA-256, hexadecimal, of all that the cell's result depends on: names and contents, but
+        not the folders that these lie in."""
+        shared = {k: v for k, v in settings.as_record().items() if k != "format"}
+        names = Path(self.clip).name, Path(self.recipe).name
+        content = [*names, self.clip_sha256, self.recipe_sha256, shared]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+    def named(self, number: int, settings: BatchSettings) -> CellPlan:
+        """The same under the name that the number and its key make."""
+        return replace(self, cell=f"{number:05}-{self.key(settings)[:KEY_SHOWN]}")
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """A batch and its cells, in their order."""
+
+    settings: BatchSettings
+    cells: tuple[CellPlan, ...]
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """The manifest of a batch's folder. Raises WrongManifest with the line, FolderGone."""
+    first, *lines = _text(folder).removesuffix("\n").split("\n")
+    cells = tuple(_cell(folder, number, line) for number, line in enumerate(lines, start=2))
+    manifest = Manifest(_settings(folder, first), cells)
+    _require_true(folder, manifest)
+    return manifest
+
+
+def read_plan(folder: Path, cell: str) -> tuple[BatchSettings, CellPlan]:
+    """One cell's line alone, as quick as that can be. Raises as `read_manifest`."""
+    text = _text(folder)
+    first = text.partition("\n")[0]
+    start = text.find(f'\n{{"cell": {json.dumps(cell)}')
+    if start < 0:
+        path = folder / MANIFEST
+        raise WrongManifest(f"{path} has no cell “{cell}”; check its name, or {AGAIN}.")
+    number = text.count("\n", 0, start) + 2
+    line = text[start + 1 :].partition("\n")[0]
+    manifest = Manifest(_settings(folder, first), (_cell(folder, number, line),))
+    _require_true(folder, manifest)
+    return manifest.settings, manifest.cells[0]
+
+
+def write_manifest(folder: Path, manifest: Manifest) -> None:
+    """Writes it aside, and gives it its name once it is whole. Raises FolderGone."""
+    records = [manifest.settings.as_record()]
+    records += [{**asdict(cell), "state": cell.state.value} for cell in manifest.cells]
+    text = "".join(f"{json.dumps(record, ensure_ascii=False)}\n" for record in records)
+    aside = folder / f".{MANIFEST}.{os.getpid()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        aside.write_text(text, encoding="utf-8")
+        os.replace(aside, folder / MANIFEST)
+    except OSError as error:
+        with suppress(OSError):
+            aside.unlink(missing_ok=True)
+        raise gone(folder, error) from error
+
+
+def gone(path: Path, error: OSError) -> FolderGone:
+    """The fault of a folder that cannot be used; what is in it stays."""
+    why = error.strerror or type(error).__name__
+    return FolderGone(
+        f"{path} cannot be used ({why}); make room or mend that, then give the same command again, "
+        "which goes on where this ended."
+    )
+
+
+def _text(folder: Path) -> str:
+    path = folder / MANIFEST
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        problem = f"There is no {path}; check the folder, or plan a batch into it."
+        raise WrongManifest(problem) from error
+    except UnicodeDecodeError as error:
+        raise WrongManifest(f"{path} is no text; {AGAIN}.") from error
+    except OSError as error:
+        raise gone(path, error) from error
+    if not text.strip():
+        raise WrongManifest(f"{path} is empty; {AGAIN}.")
+    return text
+
+
+def _settings(folder: Path, line: str) -> BatchSettings:
+    path = folder / MANIFEST
+    try:
+        settings = BatchSettings.of_record(json.loads(line))
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise WrongManifest(f"{path}, line 1: that is no batch's first line; {AGAIN}.") from error
+    if settings.version != version():
+        raise OtherVersion(
+            f"{path} is of Hangtime {settings.version}, and this is {version()}: results of the "
+            "two would be mixed. Go on with that version, or take another folder."
+        )
+    return settings
+
+
+def _cell(folder: Path, number: int, line: str) -> CellPlan:
+    try:
+        record = json.loads(line)
+        return CellPlan(**{**record, "state": State(record["state"])})
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        problem = f"{folder / MANIFEST}, line {number}: that is no cell; {AGAIN}."
+        raise WrongManifest(problem) from error
+
+
+def _require_true(folder: Path, manifest: Manifest) -> None:
+    """A line that was edited by hand is no longer what its name says."""
+    for cell in manifest.cells:
+        if not cell.cell.endswith(f"-{cell.key(manifest.settings)[:KEY_SHOWN]}"):
+            raise WrongManifest(
+                f"{folder / MANIFEST}: the line of cell “{cell.cell}” was changed after it was "
+                f"written; change clips and recipes instead, and {AGAIN}."
+            )
+    twice = [name for name, n in Counter(c.cell for c in manifest.cells).items() if n > 1]
+    if twice:
+        raise WrongManifest(f"{folder / MANIFEST} has cell “{twice[0]}” twice; {AGAIN}.")

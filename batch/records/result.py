@@ -1,0 +1,94 @@
+"""Results of cells: a folder each, which is there whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from enum import Enum
+from pathlib import Path
+
+CELLS = "cells"  # within a batch's folder
+RESULT = "result.json"  # within a cell's; its last file to be written
+
+
+class State(Enum):
+    """How a cell stands, as manifest and results tell it."""
+
+    PLANNED = "planned"
+    DONE = "done"
+    NO_SOLUTION = "no solution"
+    WRONG_INPUT = "wrong input"
+    FAILED = "failed"  # by no fault of what was asked: a crash, too little memory
+
+    @property
+    def exit_code(self) -> int:
+        """That of `adapt`. A cell that is planned has none."""
+        return {State.DONE: 0, State.FAILED: 1, State.WRONG_INPUT: 2, State.NO_SOLUTION: 3}[self]
+
+
+@dataclass(frozen=True)
+class CellResult:
+    """The end of a cell.
+
+    sentence: why it is not done, for people; empty where it is. headline: of the report. seconds:
+    of "fit", "solve" and "total". figures: numbers by names with their units. values: what the
+    recipe's ranges were for it. clip, recipe: names of the files. files: what lies in the folder
+    beside result.json.
+    """
+
+    cell: str
+    state: State
+    clip: str
+    recipe: str
+    version: str
+    sentence: str = ""
+    headline: tuple[str, ...] = ()
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    figures: Mapping[str, float] = field(default_factory=dict)
+    values: Mapping[str, object] = field(default_factory=dict)
+    files: tuple[str, ...] = ()
+
+    @property
+    def exit_code(self) -> int:
+        return self.state.exit_code
+
+    def as_json(self) -> str:
+        """The text of result.json."""
+        content = {**asdict(self), "state": self.state.value, "exit_code": self.exit_code}
+        return json.dumps(content, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+
+    @staticmethod
+    def parsed(text: str) -> CellResult:
+        """The other way. Raises ValueError where the text is none of ours."""
+        try:
+            content = json.loads(text)
+            del content["exit_code"]
+            content["state"] = State(content["state"])
+            for name in ("headline", "files"):
+                content[name] = tuple(content[name])
+            return CellResult(**content)
+        except (KeyError, TypeError, AttributeError) as error:
+            raise ValueError("not the result of a cell") from error
+
+
+def cell_folder(folder: Path, cell: str) -> Path:
+    """The folder of a cell in a batch's folder."""
+    return folder / CELLS / cell
+
+
+def read_result(folder: Path, cell: str) -> CellResult | None:
+    """The result of a cell in a batch's folder, None where there is none that is whole."""
+    try:
+        text = (cell_folder(folder, cell) / RESULT).read_text(encoding="utf-8")
+        return CellResult.parsed(text)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        return None
+
+
+def drop_failure(folder: Path, cell: str) -> None:
+    """A failure, or a folder without a result, makes room for what comes now. Raises OSError."""
+    found = read_result(folder, cell)
+    if found is None or found.state is State.FAILED:
+        shutil.rmtree(cell_folder(folder, cell), ignore_errors=True)

@@ -1,0 +1,1 @@
+"""Running a batch on this machine: worker processes, their memory, what is told meanwhile."""

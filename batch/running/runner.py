@@ -1,0 +1,143 @@
+"""The local runner: hands the cells of a batch to worker processes until each has its result."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from queue import Empty, SimpleQueue
+
+from ..cells.cell import write_failure
+from ..cells.fits import FITS
+from ..records.aside import remove_abandoned
+from ..records.faults import BatchFault, FolderGone
+from ..records.manifest import CellPlan, Manifest
+from ..records.result import CELLS, State, read_result
+from .memory import MemoryWatch
+from .progress import Progress
+from .queue import CellQueue
+from .workers import Message, WorkerProcess
+
+MOST_TRIES = 2  # of a cell whose worker ends
+MOST_STILLBORN = 2  # workers in a row that end before they began
+POLL_S = 0.5
+
+
+@dataclass
+class LocalRun:
+    """One run of a batch's cells that have no final result.
+
+    command: that starts a worker. jobs: how many work at once. The caller holds the folder's lock.
+    """
+
+    folder: Path
+    manifest: Manifest
+    jobs: int
+    command: Sequence[str]
+    progress: Progress
+    memory: MemoryWatch = field(default_factory=MemoryWatch)
+
+    def __post_init__(self) -> None:
+        self._plans = {cell.cell: cell for cell in self.manifest.cells}
+        waiting = [cell for cell in self.manifest.cells if not self._final(cell)]
+        self._queue = CellQueue(waiting)
+        self._left = len(waiting)
+        self._tries: Counter[str] = Counter()
+        self._stillborn = 0
+        self._workers: list[WorkerProcess] = []
+        self._last: dict[WorkerProcess, str] = {}
+        self._news: SimpleQueue[tuple[WorkerProcess, Message | None]] = SimpleQueue()
+
+    def run(self) -> None:
+        """Until every cell has a result. Raises BatchFault; whatever ends it, no worker stays."""
+        for name in (CELLS, FITS):
+            remove_abandoned(self.folder / name)
+        try:
+            while self._left:
+                self._hand_out()
+                self._hear()
+        finally:
+            for worker in self._workers:
+                worker.end()
+            for name in (CELLS, FITS):
+                with suppress(OSError):
+                    remove_abandoned(self.folder / name)
+
+    def _final(self, cell: CellPlan) -> bool:
+        result = read_result(self.folder, cell.cell)
+        return result is not None and result.state is not State.FAILED
+
+    def _hand_out(self) -> None:
+        """Gives cells to who has none, as far as memory goes; one works whatever there is."""
+        while self._queue:
+            idle = next((w for w in self._workers if w.ready and w.cell is None), None)
+            if idle is None:
+                starting = sum(1 for w in self._workers if not w.ready)
+                if len(self._workers) >= self.jobs or starting >= len(self._queue):
+                    return
+            others = any(w.cell is not None or not w.ready for w in self._workers)
+            if others and not self.memory.fits(0 if idle is None else idle.rss):
+                return  # it waits until another has ended
+            if idle is None:
+                self._workers.append(WorkerProcess(self.command, self.folder, self._news))
+                continue
+            cell = self._queue.take(self._last.get(idle))
+            self._tries[cell] += 1
+            self._last[idle] = cell
+            idle.solve(cell)
+
+    def _hear(self) -> None:
+        """One message of a worker, or none for a while."""
+        try:
+            worker, message = self._news.get(timeout=POLL_S)
+        except Empty:
+            self.progress.tick()
+            return
+        if message is None:
+            self._died(worker)
+            return
+        self._stillborn = 0
+        worker.rss = message.get("rss", worker.rss)
+        if "stop" in message:
+            raise FolderGone(message["stop"])
+        if "ready" in message:
+            worker.ready = True
+            return
+        self.memory.told(message["peak"])
+        self._ended(message["cell"], worker)
+
+    def _ended(self, cell: str, worker: WorkerProcess) -> None:
+        worker.cell = None
+        result = read_result(self.folder, cell)
+        if result is None:
+            raise FolderGone(
+                f"The result of cell {cell} is not in {self.folder / CELLS}, where it was put; see "
+                "what becomes of that folder, then give the same command again."
+            )
+        self._queue.ended(cell)
+        self._left -= 1
+        self.progress.ended(self._plans[cell], result)
+
+    def _died(self, worker: WorkerProcess) -> None:
+        """A worker ended: its cell is done again, or told as failed where it is to blame."""
+        self._workers.remove(worker)
+        how, cell = worker.how_it_ended(), worker.cell
+        if cell is None:
+            self._stillborn += not worker.ready
+            if self._stillborn >= MOST_STILLBORN:
+                raise BatchFault(f"No worker process can be started: one ended {how}.")
+            return
+        if read_result(self.folder, cell) is not None and self._final(self._plans[cell]):
+            self._ended(cell, worker)  # it had finished
+        elif self._tries[cell] < MOST_TRIES:
+            self.progress.note(f"A worker ended {how}; cell {cell} is done again.")
+            self._queue.back(cell)
+        else:
+            sentence = (
+                f"The worker that solved it ended {self._tries[cell]} times, the last time {how}; "
+                "where the system has ended it for want of memory, use fewer --jobs."
+            )
+            write_failure(self.folder, cell, sentence)
+            self._ended(cell, worker)

@@ -1,0 +1,26 @@
+"""What batches must reach, here and on farms."""
+
+from ..figures.limits import Limit
+
+OVERHEAD = "overhead a cell beside fit, solve and report"
+EQUAL = "cells that differ from one core's: "
+LIMITS = {
+    EQUAL + "2 workers": Limit("1", 0.0, 0.0),
+    EQUAL + "4 Dask workers, shared folder": Limit("1", 0.0, 0.0),
+    EQUAL + "4 Dask workers, through the scheduler": Limit("1", 0.0, 0.0),
+    EQUAL + "OpenJD's session": Limit("1", 0.0, 0.0),
+    "speed-up of 2 local workers over 1": Limit("1", 1.8, 1.95, at_least=True),
+    OVERHEAD: Limit("ms", 150.0, 50.0),
+    "measuring a cell's motion for its report": Limit("ms"),
+    "seconds a cell, one core": Limit("s"),
+    "seconds a fit": Limit("s"),
+    "megabytes a cell": Limit("MB"),
+    "megabytes a fit": Limit("MB"),
+    "Dask, 2 of 4 workers killed: cells lost, doubled or different": Limit("1", 0.0, 0.0),
+    "batch killed and resumed: cells lost, half-written or solved again": Limit("1", 0.0, 0.0),
+    "10,000 cells planned": Limit("s", 20.0, 5.0),
+    "10,000 cells collected": Limit("s", 20.0, 5.0),
+    "10,000 cells collected, memory": Limit("MB", 500.0, 200.0),
+    "page of 1,000 cells: first paint": Limit("s", 3.0, 1.0),
+    "page of 1,000 cells: filter": Limit("s", 0.5, 0.1),
+}

@@ -1,0 +1,87 @@
+"""Batches of hops by the wheel's own program, in processes of their own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+
+from ...batch.records.manifest import Manifest
+from ...batch.records.result import CELLS, RESULT
+from ...solver.one_thread import ONE_THREAD
+from .installed import program_in
+from .plans import CLIP, contents, differing, half_written, plan_hops, recipe_of
+
+SOON, LATE = 0.3, 7.0  # s after its start, between which a batch is killed
+
+
+@dataclass(frozen=True)
+class LocalRunTime:
+    """A run on this machine. seconds: from the command to its end, on the wall's clock."""
+
+    manifest: Manifest
+    seconds: float
+
+
+def run_local(folder: Path, package: Path, cells: int, jobs: int) -> LocalRunTime:
+    """Plan and solve so many hops. Raises CalledProcessError."""
+    manifest = plan_hops(folder, cells)
+    began = time.perf_counter()
+    end_at(folder, package, None, jobs)
+    return LocalRunTime(manifest, time.perf_counter() - began)
+
+
+def command(folder: Path, package: Path, jobs: int) -> list[str]:
+    """What a user would type, for a batch that `plan_hops` planned."""
+    words = [str(program_in(package)), "run", str(CLIP), "--recipes", str(recipe_of(folder))]
+    return [*words, "--out", str(folder), "--jobs", str(jobs)]
+
+
+def killed_and_resumed(
+    folder: Path, package: Path, expected: dict[str, str], chance: Random, kills: int
+) -> int:
+    """Kill batches at random moments, each resumed by the same command until it ends; how many
+    cells were lost, half-written, different or solved again. expected: contents of such a batch."""
+    bad, killed, batches = 0, 0, 0
+    while killed < kills:
+        batch = folder / f"killed {batches}"
+        batches += 1
+        manifest = plan_hops(batch, len(expected))
+        ended: dict[Path, int] = {}
+        while True:
+            moment = chance.uniform(SOON, LATE) if killed < kills else None
+            whole = end_at(batch, package, moment)
+            killed += not whole
+            now = results(batch)
+            bad += sum(now.get(path) != written for path, written in ended.items())
+            ended = now
+            if whole:
+                break
+        bad += len({*differing(contents(batch, manifest), expected), *half_written(batch)})
+    return bad
+
+
+def end_at(batch: Path, package: Path, moment: float | None, jobs: int = 2) -> bool:
+    """Run a batch for so many seconds, or until it ends; whether it ended by itself.
+
+    Raises CalledProcessError where it ended badly.
+    """
+    words = command(batch, package, jobs)
+    variables = {**os.environ, **ONE_THREAD}
+    with subprocess.Popen(words, stdout=subprocess.DEVNULL, env=variables) as process:
+        try:
+            code = process.wait(moment)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return False
+    if code:
+        raise subprocess.CalledProcessError(code, words)
+    return True
+
+
+def results(batch: Path) -> dict[Path, int]:
+    """When each result was written, ns."""
+    return {path: path.stat().st_mtime_ns for path in batch.glob(f"{CELLS}/*/{RESULT}")}

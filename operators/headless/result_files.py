@@ -1,0 +1,41 @@
+"""Files of a result that need no Blender: trajectory and report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from ...solver.data.reports.report import Report, as_json
+from ...solver.results.npz_export import save
+from ...solver.worker.pipeline import AdaptationResult
+from ..words.report_text import as_text
+from .outbox import Outbox, not_writable
+
+TRAJECTORY = "trajectory.npz"
+
+
+def write_trajectory(result: AdaptationResult, outbox: Outbox) -> None:
+    """The motion as bodies and forces. Raises OutputNotWritable."""
+    try:
+        save(result.adaptation.motion, outbox.path(TRAJECTORY))
+    except OSError as error:
+        raise not_writable(outbox.folder / TRAJECTORY, error) from error
+
+
+def write_report(
+    report: Report,
+    outbox: Outbox,
+    more: Mapping[str, object] = MappingProxyType({}),
+    lines: Sequence[str] = (),
+) -> None:
+    """The report for programs and for people. more, lines: what is told beside it, in each.
+
+    Raises OutputNotWritable.
+    """
+    records = {**as_json(report), **more}
+    outbox.write_text("report.json", json.dumps(records, indent=1, allow_nan=False) + "\n")
+    outbox.write_text(
+        "report.txt",
+        as_text(report) + "".join(f"\n{line}" for line in lines) + ("\n" if lines else ""),
+    )

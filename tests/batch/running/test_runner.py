@@ -1,0 +1,179 @@
+"""The local runner, with cells that are cheap: order, deaths, memory, kills and resuming."""
+
+import random
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from hangtime.batch.records.faults import BatchFault, FolderTaken
+from hangtime.batch.records.locks import batch_lock
+from hangtime.batch.records.manifest import read_manifest
+from hangtime.batch.records.result import CELLS, State, read_result
+from hangtime.batch.running.memory import MemoryWatch
+from hangtime.batch.running.progress import Progress
+from hangtime.batch.running.queue import CellQueue
+from hangtime.batch.running.runner import LocalRun
+from hangtime.tests.helpers import fake_batches
+from hangtime.tests.helpers.fake_batches import lines, planned, run
+
+
+def states(folder: Path) -> dict[str, State]:
+    """Of the clips, by their names."""
+    cells = read_manifest(folder).cells
+    results = {Path(c.clip).name: read_result(folder, c.cell) for c in cells}
+    return {name: State.PLANNED if r is None else r.state for name, r in results.items()}
+
+
+def test_every_cell_gets_a_result_and_the_same_command_solves_none_again(tmp_path: Path) -> None:
+    texts = {f"clip {i} ü.bvh": f"sleep 0.0{i}" for i in range(6)} | {"impossible.bvh": "fault"}
+    planned(tmp_path, texts)
+    folder = tmp_path / "out"
+    told = run(folder)
+    assert Counter(states(folder).values()) == {State.DONE: 6, State.NO_SOLUTION: 1}
+    assert "no solution: impossible.bvh + recipe.toml: No motion was found" in told
+    assert "7 of 7 cells" in told
+    assert len(set(lines(folder, "begin"))) == len(lines(folder, "begin")) == 7
+    run(folder)
+    assert len(lines(folder, "begin")) == 7
+    assert not [p.name for p in (folder / CELLS).iterdir() if p.name.startswith(".")]
+
+
+def test_a_cell_whose_worker_dies_is_done_again_and_one_that_kills_them_is_told(
+    tmp_path: Path,
+) -> None:
+    planned(tmp_path, {"a.bvh": "dies once", "b.bvh": "dies", "c.bvh": "crash", "d.bvh": "sleep 0"})
+    folder = tmp_path / "out"
+    told = run(folder)
+    expected = {
+        "a.bvh": State.DONE,
+        "b.bvh": State.FAILED,
+        "c.bvh": State.FAILED,
+        "d.bvh": State.DONE,
+    }
+    assert states(folder) == expected
+    assert "A worker ended with code 9" in told
+    by_clip = {Path(c.clip).name: c.cell for c in read_manifest(folder).cells}
+    assert Counter(lines(folder, "begin"))[by_clip["b.bvh"]] == 2
+    died = read_result(folder, by_clip["b.bvh"])
+    assert died is not None
+    assert "ended 2 times" in died.sentence
+    assert "ZeroDivisionError" in (folder / CELLS / by_clip["c.bvh"] / "log.txt").read_text()
+
+
+def test_what_failed_by_no_fault_of_the_input_is_tried_again_by_the_next_run(
+    tmp_path: Path,
+) -> None:
+    planned(tmp_path, {"a.bvh": "crash", "b.bvh": "sleep 0"})
+    folder = tmp_path / "out"
+    run(folder)
+    run(folder)
+    assert sorted(Counter(lines(folder, "begin")).values()) == [1, 2]
+    assert states(folder) == {"a.bvh": State.FAILED, "b.bvh": State.DONE}
+
+
+def test_a_cell_that_would_not_fit_into_memory_waits_for_the_other(tmp_path: Path) -> None:
+    planned(tmp_path, {f"{i}.bvh": "sleep 0.05" for i in range(4)})
+    folder = tmp_path / "out"
+    run(folder, jobs=4, memory=MemoryWatch(lambda: 0))
+    log = (folder / fake_batches.WORK_LOG).read_text().split("\n")
+    words = [line.split()[0] for line in log if line]
+    assert words == ["begin", "end"] * 4  # one at a time
+    assert len({line.split()[2] for line in log if line.startswith("begin")}) == 1
+
+
+def test_workers_that_cannot_start_are_told_in_a_sentence(tmp_path: Path) -> None:
+    planned(tmp_path, {"a.bvh": "sleep 0"})
+    folder = tmp_path / "out"
+    manifest = read_manifest(folder)
+    progress = Progress(sys.stdout, 1, Counter())
+    command = [sys.executable, "-c", "import sys; sys.exit('no numpy')"]
+    with pytest.raises(BatchFault, match=r"No worker process can be started: .*no numpy"):
+        LocalRun(folder, manifest, 1, command, progress).run()
+
+
+def test_a_second_batch_in_the_folder_is_refused_while_one_runs(tmp_path: Path) -> None:
+    with batch_lock(tmp_path), pytest.raises(FolderTaken, match="running"), batch_lock(tmp_path):
+        pass
+    with batch_lock(tmp_path):
+        pass
+
+
+def test_workers_begin_with_clips_that_nobody_fits_and_stay_with_theirs(tmp_path: Path) -> None:
+    recipe = '[[pin]]\nphase = "ground 2"\nforward = [0.1, 0.2, 0.3]\n'
+    cells = planned(tmp_path, {"a.bvh": "1", "b.bvh": "2"}, recipe).manifest.cells
+    queue = CellQueue(cells)
+    clip = {cell.cell: cell.clip[-5] for cell in cells}
+    first, second = queue.take(None), queue.take(None)
+    assert {clip[first], clip[second]} == {"a", "b"}
+    queue.ended(second)
+    assert clip[queue.take(second)] == clip[second]
+    queue.back(first)
+    assert queue.take(None) == first
+
+
+def kill_and_resume(command: list[str], kills: int, longest: float, seed: int) -> int:
+    """SIGKILLs the run of a batch at random moments, then lets it end; how often it was killed."""
+    drawn, killed = random.Random(seed), 0
+    for _ in range(kills):
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        time.sleep(drawn.uniform(0.0, longest))
+        killed += process.poll() is None
+        process.kill()
+        process.wait()
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=600)
+    return killed
+
+
+def assert_nothing_lost_or_solved_twice(folder: Path, killed: int, jobs: int) -> None:
+    cells = [cell.cell for cell in read_manifest(folder).cells]
+    assert {p.name for p in (folder / CELLS).iterdir() if not p.name.startswith(".")} == set(cells)
+    for cell in cells:
+        result = read_result(folder, cell)
+        assert result is not None
+        assert result.state is State.DONE
+        assert all((folder / CELLS / cell / name).stat().st_size for name in result.files)
+    begun = Counter(lines(folder, "begin"))
+    assert set(begun) == set(cells)
+    assert sum(begun.values()) - len(cells) <= killed * jobs  # only those that were running
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
+def test_a_batch_that_is_killed_goes_on_where_it_was(tmp_path: Path) -> None:
+    planned(tmp_path, {f"{i}.bvh": f"sleep 0.{i % 3}1" for i in range(8)})
+    folder = tmp_path / "out"
+    command = [*fake_batches.command(), str(folder), "2"]
+    killed = kill_and_resume(command, 3, 2.5, seed=1)
+    assert_nothing_lost_or_solved_twice(folder, killed, 2)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
+@pytest.mark.parametrize("seed", range(4))
+def test_a_batch_that_is_killed_twenty_times_loses_nothing(tmp_path: Path, seed: int) -> None:
+    planned(tmp_path, {f"{i}.bvh": f"sleep 0.{i % 7}" for i in range(60)})
+    folder = tmp_path / "out"
+    command = [*fake_batches.command(), str(folder), "2"]
+    killed = kill_and_resume(command, 20, 3.0, seed)
+    assert_nothing_lost_or_solved_twice(folder, killed, 2)
+
+
+def test_results_that_vanish_are_told(tmp_path: Path) -> None:
+    """Such as on a shared folder that is gone."""
+    planned(tmp_path, {"a.bvh": "sleep 0.5"})
+    folder = tmp_path / "out"
+
+    def remove() -> None:
+        while not lines(folder, "begin"):
+            time.sleep(0.02)
+        shutil.rmtree(folder)
+
+    thread = threading.Thread(target=remove)
+    thread.start()
+    with pytest.raises(BatchFault, match="same command"):
+        run(folder, jobs=1)
+    thread.join()
