@@ -26,7 +26,7 @@ SEEN_THROUGH = 64  # surfaces behind each other: two for each box of a see-throu
 def render(layout: Layout, view: View, path: Path, width: int) -> None:
     """Render `layout` to the PNG file `path`."""
     with _cycles(), _clean_scene() as scene:
-        Painter(scene, view.elevation).draw(layout, width)
+        Painter(scene, view.elevation).draw(layout, width, above=view.above)
         _render(scene, path)
 
 

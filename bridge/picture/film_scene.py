@@ -21,7 +21,7 @@ class FilmPainter(Painter):
             made = self.object(solid, paint, np.zeros(3))
             made.rotation_mode = "QUATERNION"
             for frame, figure in enumerate(tier.figures, start=1):
-                made.location = (self.origin + figure.centre[i]).tolist()
+                made.location = figure.centre[i].tolist()
                 made.rotation_quaternion = as_quaternion(figure.rotation[i])
                 made.keyframe_insert("location", frame=frame)
                 made.keyframe_insert("rotation_quaternion", frame=frame)

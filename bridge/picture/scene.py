@@ -1,6 +1,9 @@
 """A Blender scene of a sheet's layout: solids, letters, lines, lamp and camera."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import product
 from math import cos, pi, radians, sin
 
 import bpy
@@ -30,6 +33,7 @@ PATH, BEAD = 0.012, 0.024  # m, radii
 
 PAPER, FLOOR, GRID, INK = srgb("f7f8fa"), srgb("e9ebef"), srgb("c9ced6"), srgb("39424e")
 BODIES = (srgb("7e8c9d"), srgb("3f83c4"), srgb("3a9d86"), srgb("8a6fc0"))  # one for each row
+ABOVE = radians(70.0)  # elevation from which what goes sideways is seen
 SHADED = 0.3  # how much darker limbs are that are away from the viewer
 ADAPTED = 1  # the row whose colour an adapted motion has
 BEFORE = 2.0  # m towards the viewer, by which is moved what nothing shall hide
@@ -48,25 +52,51 @@ class Floor:
 class Painter:
     """Adds solids, letters and lines to a scene.
 
-    elevation: rad, of the viewer above the horizon.
+    elevation: rad, of the viewer above the horizon, as the current tier is seen; the camera's.
+    frame: the current tier's canvas frame.
     """
 
     scene: bpy.types.Scene
     elevation: float
+    frame: bpy.types.Object | None = None
 
     def __post_init__(self) -> None:
-        slope = sin(self.elevation), cos(self.elevation)
-        self.up = np.array([0.0, slope[0], slope[1]])  # in the picture
-        self.away = np.array([0.0, slope[1], -slope[0]])  # from the viewer into the picture
-        self.before = -BEFORE * self.away
-        self.origin = np.zeros(3)  # the place of the current tier's canvas origin, m
         self.matt, self.plain = self.surface(), materials.plain()
+
+    @property
+    def up(self) -> FloatArray:
+        """In the picture."""
+        return np.array([0.0, sin(self.elevation), cos(self.elevation)])
+
+    @property
+    def away(self) -> FloatArray:
+        """From the viewer into the picture."""
+        return np.array([0.0, cos(self.elevation), -sin(self.elevation)])
+
+    @property
+    def before(self) -> FloatArray:
+        return -BEFORE * self.away
+
+    @contextmanager
+    def seen_from(self, elevation: float, origin: FloatArray) -> Iterator[None]:
+        """Inside, what is added is tilted, so that the camera sees it from another elevation, and
+        stands at an origin (3,) m."""
+        frame = bpy.data.objects.new("tier", None)
+        frame.location = origin.tolist()
+        frame.rotation_euler = (elevation - self.elevation, 0.0, 0.0)
+        self.scene.collection.objects.link(frame)
+        usual, self.elevation, self.frame = self.elevation, elevation, frame
+        try:
+            yield
+        finally:
+            self.elevation, self.frame = usual, None
 
     def surface(self) -> bpy.types.Material:
         """Of solids and floor."""
         return materials.matt()
 
-    def draw(self, layout: Layout, width: int) -> None:
+    def draw(self, layout: Layout, width: int, *, above: bool = False) -> None:
+        """above: whether all tiers are shown once more, from above."""
         left, right = layout.low[0] - MARGIN, layout.high[0] + MARGIN
         wide = right - left + 2 * EDGE
         caption, label = CAPTION * wide, LABEL * wide
@@ -75,29 +105,30 @@ class Painter:
             np.array([left, min(-DEPTH, layout.low[1] - BESIDE), layout.floor]),
             np.array([right, max(DEPTH, layout.high[1] + BESIDE), layout.floor]),
         )
-        foot = -floor.low[1] * sin(self.elevation) + THICKNESS + 2.2 * label
         bottom = 0.0  # m in the picture, from the first tier's floor
-        for k, tier in enumerate(layout.tiers):
-            head = self.head(tier, layout.floor) + 0.6 * caption
-            top = bottom - (head + caption + GAP if k else 0.0)
-            self.origin = k * APART * self.away + top * self.up
-            self.stage(floor)
-            # a motion alone is an adapted one
-            self.tier(tier, k if len(layout.tiers) > 1 else ADAPTED, floor, label)
-            fitting = min(caption, LETTER * wide / max(len(tier.title), 1))
-            self.text(tier.title, ground + left * ACROSS + head * self.up, fitting)
-            bottom = top - foot
-            if k == 0:
+        views = (self.elevation, ABOVE) if above else (self.elevation,)
+        for i, (elevation, (k, tier)) in enumerate(product(views, enumerate(layout.tiers))):
+            head = self.head(tier, floor, elevation) + 0.6 * caption
+            top = bottom - (head + caption + GAP if i else 0.0)
+            title = tier.title if elevation == self.elevation else f"{tier.title} (from above)"
+            with self.seen_from(elevation, i * APART * self.away + top * self.up):
+                self.stage(floor)
+                # a motion alone is an adapted one
+                self.tier(tier, k if len(layout.tiers) > 1 else ADAPTED, floor, label)
+                fitting = min(caption, LETTER * wide / max(len(title), 1))
+                self.text(title, ground + left * ACROSS + head * self.up, fitting)
+            bottom = top + floor.low[1] * sin(elevation) - THICKNESS - 2.2 * label
+            if i == 0:
                 crown = head + caption
-        self.origin = np.zeros(3)
         self.light()
         middle = ground + (left + right) / 2 * ACROSS + (crown + bottom) / 2 * self.up
         self.camera(middle, wide, crown - bottom + 2 * EDGE, width)
 
-    def head(self, tier: Tier, floor: float) -> float:
-        """Height of the tier above the middle of its floor in the picture, m."""
+    def head(self, tier: Tier, floor: Floor, elevation: float) -> float:
+        """Height of tier and floor above the middle of the floor in the picture, m."""
         _, back, top = tier.corners()[1]
-        return float(np.array([0.0, min(back, 0.2), top - floor]) @ self.up)
+        body = min(back, 0.2) * sin(elevation) + (top - floor.low[2]) * cos(elevation)
+        return float(max(body, floor.high[1] * sin(elevation)))
 
     def stage(self, floor: Floor) -> None:
         down = np.array([0.0, 0.0, THICKNESS])
@@ -207,7 +238,7 @@ class Painter:
     def object(self, data: bpy.types.ID, colour: Colour, place: FloatArray) -> bpy.types.Object:
         made = bpy.data.objects.new(data.name, data)
         made.color = (*colour, 1.0)
-        made.location = (self.origin + place).tolist()
+        made.location, made.parent = place.tolist(), self.frame
         self.scene.collection.objects.link(made)
         return made
 

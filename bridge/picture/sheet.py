@@ -52,10 +52,12 @@ class View:
 
     figures: about how many in a row. elevation: rad, of the viewer above the horizon. heading:
     (x, y) world direction drawn to the right; where left out, that of the travel. in_place: figures
-    stand where they are, though they hide each other, and so does the scene around them.
+    stand where they are, though they hide each other, and so does the scene around them. above:
+    whether all rows are shown once more, from above.
     """
 
     figures: int = 10
     elevation: float = radians(15.0)
     heading: tuple[float, float] | None = None
     in_place: bool = False
+    above: bool = False

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...bridge.picture.annotations import Bar, Mark, Sphere, TimeSpan
 from ...bridge.picture.film import draw_film
+from ...bridge.picture.layout import canvas_axes
 from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
 from ...solver.arrays import FloatArray
@@ -22,18 +23,23 @@ from ...solver.transcription.motion import Motion
 FEET = (Part.FOOT, Part.TOE)
 BESIDE_HANDS = 0.3  # m, how far a bar reaches beyond the hands that hold it
 TRAVELS = 0.3  # m, less is no direction
+SIDEWAYS = 0.1  # m, from where on a change is hardly seen from the side
 
 
 def draw(
     adaptation: Adaptation, problem: MotionProblem, path: Path, marks: Sequence[Mark] = ()
 ) -> None:
-    """The recording above, the adapted motion with its marks below, as a PNG file.
+    """The recording above, the adapted motion with its marks below, as a PNG file; where contacts
+    went sideways both once more, from above.
 
     The marks' arrays are constant, or sampled at `instants(adaptation.motion)`.
     Raises OutputNotWritable.
     """
     rows = both_rows(adaptation, problem, marks)
-    draw_sheet(rows, path, View(heading=heading(adaptation)))
+    view = View(heading=heading(adaptation))
+    draw_sheet(
+        rows, path, replace(view, above=goes_sideways(adaptation, canvas_axes(rows, view.heading)))
+    )
 
 
 def draw_moving(
@@ -58,6 +64,12 @@ def heading(adaptation: Adaptation) -> tuple[float, float] | None:
     com = adaptation.fit.performance.com
     x, y = (com[-1] - com[0])[:2].tolist()
     return (x, y) if np.hypot(x, y) > TRAVELS else None
+
+
+def goes_sideways(adaptation: Adaptation, axes: FloatArray) -> bool:
+    """Whether contacts went to the side of the picture's axes (3, 3)."""
+    moved = adaptation.motion.places - adaptation.fit.places
+    return bool((np.abs(moved @ axes[1]) > SIDEWAYS).any())
 
 
 def instants(motion: Motion, rate: float = 120.0) -> FloatArray:

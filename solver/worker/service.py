@@ -12,7 +12,6 @@ from ..data.faults import Fault
 from ..data.problem import MotionProblem
 from ..data.recording import Recording, digest
 from ..data.reports.recording import Origin
-from ..data.requests import Requests
 from ..data.scene import SceneObject
 from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality

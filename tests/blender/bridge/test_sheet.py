@@ -83,6 +83,26 @@ def test_both_rows_show_red_pins(picture):
         assert is_red(half).sum() > 10
 
 
+def test_from_above_both_rows_are_shown_once_more_and_tell_what_goes_sideways(tmp_path):
+    aside = [replace(row, pins=row.pins + shift) for row, shift in sideways()]
+    draw_sheet(aside, tmp_path / "sheet.png", View(heading=(1.0, 0.0), above=True), width=360)
+    high = [middle(is_red(part)) for part in np.array_split(read(tmp_path / "sheet.png"), 4)]
+    assert abs(high[1] - high[0]) < 0.15
+    assert high[2] - high[3] > 0.15  # of its part's height: the landing lies further up
+
+
+def sideways():
+    # The pin of the landing 0.4 m to the left in the second row.
+    left = np.array([[0.0, 0.0, 0.0], [0.0, 0.4, 0.0]])
+    return (hopper("Recording"), 0.0 * left), (hopper("Adapted"), left)
+
+
+def middle(red: np.ndarray) -> float:
+    """How far down the landing's pins are, a share of the height."""
+    rows, columns = np.nonzero(red)
+    return float(rows[columns > red.shape[1] / 2].mean()) / len(red)
+
+
 def test_the_rows_are_told_apart_by_colour(picture):
     def blueness(half: np.ndarray) -> float:
         return float((half[..., 2] - half[..., 0]).max())
