@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
-from ..numerics.block_banded import BlockBanded, CholeskyFactor
+from ..numerics.block_banded import BlockBanded, CholeskyFactor, LocalColumns
 from ..numerics.parallel import in_threads
 from ..numerics.splines import ORDER
 from ..numerics.tied_factor import Factor, TiedFactor
@@ -74,13 +74,12 @@ class _SpanRows:
 
     def add_normal(self, system: BlockBanded, weight: float) -> None:
         """Adds weight * J'J, a few spans at a time so that they stay in the processor's cache."""
-        wide = self.J.shape[2]
-        scaled = np.sqrt(weight) * self.J
+        wide, root = self.J.shape[2], np.sqrt(weight)
         squares = np.empty((NORMAL_BATCH, wide, wide))
 
         def square(part: slice) -> None:
             for i in range(part.start, part.stop):  # numpy knows that a.T @ a is symmetric
-                rows = scaled[first + i, : self.counts[first + i]]
+                rows = root * self.J[first + i, : self.counts[first + i]]
                 np.matmul(rows.T, rows, out=squares[i])
 
         for first in range(0, len(self.J), NORMAL_BATCH):
@@ -89,23 +88,20 @@ class _SpanRows:
             shape = (count, ORDER, self.size, ORDER, self.size)
             system.add_windows(self.first[first : first + count], squares[:count].reshape(shape))
 
-    def columns(self, rows: IntArray, blocks: int) -> FloatArray:
-        """(K, n, m) columns of J' of the chosen rows (m,)."""
+    @property
+    def begins(self) -> IntArray:
+        """(R,) first block of each row."""
+        return np.asarray(self.first[self.where[0]])
+
+    def columns(self, rows: IntArray) -> LocalColumns:
+        """Columns of J' of the chosen rows (m,)."""
         span, place = (index[rows] for index in self.where)
         local = self.J[span, place].reshape(len(rows), ORDER, self.size)
-        columns = np.zeros((blocks, self.size, len(rows)))
+        first = self.first[span] - self.first[span].min()
+        columns = np.zeros((first.max() + ORDER, self.size, len(rows)))
         for k in range(ORDER):
-            columns[self.first[span] + k, :, np.arange(len(rows))] = local[:, k]
-        return columns
-
-
-def _factor(system: BlockBanded) -> CholeskyFactor:
-    """Cholesky factor; far from any motion rounding can spoil it, and a small ridge mends that."""
-    try:
-        return system.factor()
-    except np.linalg.LinAlgError:
-        system.add_diagonal(RIDGE * np.diagonal(system.lower[0], axis1=1, axis2=2))
-        return system.factor()
+            columns[first + k, :, np.arange(len(rows))] = local[:, k]
+        return LocalColumns(int(self.first[span].min()), columns)
 
 
 class LinearisedProblem:
@@ -131,14 +127,27 @@ class LinearisedProblem:
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
         first = transcription.basis.first_coefficient
         self._equalities = _SpanRows.of(rows.some(self._equal), scale, first, basis)
-        system = self._metric.copy()
-        self._equalities.add_normal(system, PENALTY)
-        self._factor: Factor = _factor(system)
+        self._factor: Factor = self._factored()
         if transcription.seam is not None:
             ties = transcription.seam.columns(self._blocks)
             ties = ties if basis is None else np.einsum("knr,nb->kbr", ties, basis)
             self._factor = TiedFactor.of(self._factor, ties)
         self._bound(transcription, rows, working)
+
+    def _factored(self) -> CholeskyFactor:
+        """Factor of W + rho J'J; far from any motion rounding can spoil it, and a small ridge mends
+        that."""
+        try:
+            return self._system().factor(overwrite=True)
+        except np.linalg.LinAlgError:
+            system = self._system()
+            system.add_diagonal(RIDGE * np.diagonal(system.lower[0], axis1=1, axis2=2))
+            return system.factor(overwrite=True)
+
+    def _system(self) -> BlockBanded:
+        system = self._metric.copy()
+        self._equalities.add_normal(system, PENALTY)
+        return system
 
     def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":
         """The same with other guard rows, which are the last: they need no new factor."""
@@ -155,11 +164,12 @@ class LinearisedProblem:
         self._free = np.flatnonzero(~rows.equal)
         first = transcription.basis.first_coefficient
         bounds = _SpanRows.of(rows.some(self._free), self._scale[self._free], first, self._basis)
-        self._bounds, blocks = bounds, self._blocks
+        self._bounds = bounds
         was = np.zeros(len(self._free), bool) if working is None else working[self._free]
         self._bounded = BoundedStep(
             self._factor,
-            lambda rows: bounds.columns(rows, blocks),  # not self: a cycle would live on for long
+            bounds.columns,
+            bounds.begins,
             (self._scaled(rows.lower, self._free), self._scaled(rows.upper, self._free)),
             self._scaled(self._tolerance, self._free),
             was,
