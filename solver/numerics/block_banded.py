@@ -32,11 +32,13 @@ class BlockBanded:
         """Block half-bandwidth: blocks left of the diagonal."""
         return len(self.lower) - 1
 
-    def copy(self, band: int | None = None) -> "BlockBanded":
-        """Deep copy, optionally with a wider band."""
+    def copy(self, band: int | None = None, into: "BlockBanded | None" = None) -> "BlockBanded":
+        """Deep copy, optionally with a wider band. into: one of the same shape to be overwritten,
+        for memory that is new costs as much as the copy."""
         _, blocks, size, _ = self.lower.shape
-        twin = BlockBanded(blocks, size, self.band if band is None else band)
+        twin = BlockBanded(blocks, size, self.band if band is None else band) if into is None else into
         twin.lower[: self.band + 1] = self.lower
+        twin._columns[blocks:] = 0.0
         return twin
 
     def add_windows(self, first: IntArray, windows: FloatArray, part: slice = slice(None)) -> None:
@@ -154,11 +156,11 @@ class CholeskyFactor:
 
     def forward(self, b: FloatArray) -> FloatArray:
         """Forward substitution L^-1 b, b (K, n) or (K, n, m)."""
-        x, n = self._padded(b), b.shape[1]
+        x, n, below = self._padded(b), b.shape[1], self._below
         for k, column in enumerate(self.columns):
             first, last = k * n, (k + 1) * n
             x[first:last] = column[:n] @ x[first:last]
-            x[last : last + self._below] -= column[n:] @ x[first:last]
+            x[last : last + below] -= column[n:] @ x[first:last]
         return np.asarray(x[: len(b) * n].reshape(b.shape))
 
     def forward_locally(self, b: LocalColumns) -> LocalColumns:
@@ -167,8 +169,8 @@ class CholeskyFactor:
         What is far off in time hardly couples. Each block follows from the `band` before it: where
         these are negligible, so is what follows.
         """
-        n, given = self.shape[1], len(b.values)
-        ahead = np.zeros((self._below, b.values.shape[2]))  # what is left to the next blocks
+        n, below, given = self.shape[1], self._below, len(b.values)
+        ahead = np.zeros((below, b.values.shape[2]))  # what is left to the next blocks
         found: list[FloatArray] = []
         squared, quiet = np.zeros(b.values.shape[2]), 0
         for k, column in enumerate(self.columns[b.first :]):
@@ -178,16 +180,16 @@ class CholeskyFactor:
             added = (found[-1] ** 2).sum(axis=0)
             squared += added
             quiet = quiet + 1 if (added <= NEGLIGIBLE**2 * squared).all() else 0
-            if k >= given and quiet * n >= self._below:
+            if k >= given and quiet * n >= below:
                 break
         return LocalColumns(b.first, np.stack(found))
 
     def backward(self, b: FloatArray) -> FloatArray:
         """Back substitution L^-T b, b (K, n) or (K, n, m)."""
-        x, n = self._padded(b), b.shape[1]
+        x, n, below = self._padded(b), b.shape[1], self._below
         for k in reversed(range(len(b))):
             first, last, column = k * n, (k + 1) * n, self.columns[k]
-            x[first:last] -= column[n:].T @ x[last : last + self._below]
+            x[first:last] -= column[n:].T @ x[last : last + below]
             x[first:last] = column[:n].T @ x[first:last]
         return np.asarray(x[: len(b) * n].reshape(b.shape))
 

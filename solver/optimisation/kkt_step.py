@@ -56,7 +56,9 @@ class _SpanRows:
         jacobian = rows.jacobian if basis is None else rows.jacobian @ basis
         n = jacobian.shape[2]
         J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
-        J[rows.span, place] = jacobian.reshape(len(order), ORDER * n) / scale[:, None]
+        J[rows.span, place] = jacobian.reshape(len(order), ORDER * n)
+        other = scale != 1.0  # few; all rows once more would be a copy of them all
+        J[rows.span[other], place[other]] /= scale[other, None]
         return _SpanRows(J, counts, first, n, (rows.span, place))
 
     def times(self, d: FloatArray) -> FloatArray:
@@ -104,11 +106,21 @@ class _SpanRows:
         return LocalColumns(int(self.first[span].min()), columns)
 
 
+@dataclass(frozen=True)
+class Remains:
+    """What a linearised problem leaves to the next one with the same rows. working: (R,) the working
+    set of its last step, the rows that were at their bounds. matrix: storage; the problem itself is
+    no more once the next one has been made in it."""
+
+    working: BoolArray
+    matrix: BlockBanded
+
+
 class LinearisedProblem:
     """Rows linearised at one point, with the factor of W + rho J'J, ready for steps.
 
-    metric: W. basis: (n_block, k) the changes of a block that are allowed, None all. working: (R,)
-    working set of the last step, the rows that were at their bounds.
+    metric: W. basis: (n_block, k) the changes of a block that are allowed, None all. last:
+    what the problem before leaves.
     """
 
     def __init__(
@@ -118,7 +130,7 @@ class LinearisedProblem:
         metric: BlockBanded,
         *,
         basis: FloatArray | None = None,
-        working: BoolArray | None = None,
+        last: Remains | None = None,
     ) -> None:
         self._basis = basis
         self._metric = metric if basis is None else metric.congruent(basis)
@@ -127,33 +139,37 @@ class LinearisedProblem:
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
         first = transcription.basis.first_coefficient
         self._equalities = _SpanRows.of(rows.some(self._equal), scale, first, basis)
+        self._matrix = self._system(None if last is None else last.matrix)
         self._factor: Factor = self._factored()
         if transcription.seam is not None:
             ties = transcription.seam.columns(self._blocks)
             ties = ties if basis is None else np.einsum("knr,nb->kbr", ties, basis)
             self._factor = TiedFactor.of(self._factor, ties)
-        self._bound(transcription, rows, working)
+        self._bound(transcription, rows, None if last is None else last.working)
 
-    def _factored(self) -> CholeskyFactor:
-        """Factor of W + rho J'J; far from any motion rounding can spoil it, and a small ridge mends
-        that."""
-        try:
-            return self._system().factor(overwrite=True)
-        except np.linalg.LinAlgError:
-            system = self._system()
-            system.add_diagonal(RIDGE * np.diagonal(system.lower[0], axis1=1, axis2=2))
-            return system.factor(overwrite=True)
-
-    def _system(self) -> BlockBanded:
-        system = self._metric.copy()
+    def _system(self, into: BlockBanded | None = None) -> BlockBanded:
+        """W + rho J'J."""
+        system = self._metric.copy(into=into)
         self._equalities.add_normal(system, PENALTY)
         return system
+
+    def _factored(self) -> CholeskyFactor:
+        """The matrix's factor, which takes its place; far from any motion rounding can spoil it, and
+        a small ridge mends that."""
+        try:
+            return self._matrix.factor(overwrite=True)
+        except np.linalg.LinAlgError:
+            self._matrix = self._system()
+            self._matrix.add_diagonal(
+                RIDGE * np.diagonal(self._matrix.lower[0], axis1=1, axis2=2)
+            )
+            return self._matrix.factor(overwrite=True)
 
     def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":
         """The same with other guard rows, which are the last: they need no new factor."""
         twin = copy(self)
         kept = ~self.rows.guards
-        working = np.concatenate([self.working[kept], np.zeros(len(guards.value), dtype=bool)])
+        working = np.concatenate([self._working[kept], np.zeros(len(guards.value), dtype=bool)])
         twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), working)
         return twin
 
@@ -176,7 +192,12 @@ class LinearisedProblem:
         )
 
     @property
-    def working(self) -> BoolArray:
+    def remains(self) -> Remains:
+        """For the next problem with the same rows."""
+        return Remains(self._working, self._matrix)
+
+    @property
+    def _working(self) -> BoolArray:
         """(R,) working set: the rows that the last step has at a bound."""
         working = np.zeros(len(self.rows.value), dtype=bool)
         working[self._free] = self._bounded.working
