@@ -164,8 +164,12 @@ class ContactSchedule:
         """Alternating ground and flight phases that cover [0, duration]."""
         flights, (flown, stood) = self.flights, self.counted
         ground = gaps(((f.start, f.end) for f in flights), self.duration)
-        named = [Phase(PhaseKind.FLIGHT, i, f.start, f.end) for i, f in enumerate(flights, flown + 1)]
-        named += [Phase(PhaseKind.GROUND, i, g.start, g.end) for i, g in enumerate(ground, stood + 1)]
+        named = [
+            Phase(PhaseKind.FLIGHT, i, f.start, f.end) for i, f in enumerate(flights, flown + 1)
+        ]
+        named += [
+            Phase(PhaseKind.GROUND, i, g.start, g.end) for i, g in enumerate(ground, stood + 1)
+        ]
         return tuple(sorted(named, key=lambda p: p.start))
 
     @property

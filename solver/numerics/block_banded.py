@@ -36,7 +36,9 @@ class BlockBanded:
         """Deep copy, optionally with a wider band. into: one of the same shape to be overwritten,
         for memory that is new costs as much as the copy."""
         _, blocks, size, _ = self.lower.shape
-        twin = BlockBanded(blocks, size, self.band if band is None else band) if into is None else into
+        twin = (
+            BlockBanded(blocks, size, self.band if band is None else band) if into is None else into
+        )
         twin.lower[: self.band + 1] = self.lower
         twin._columns[blocks:] = 0.0
         return twin
@@ -123,7 +125,8 @@ class LocalColumns:
         first = max(self.first, other.first)
         last = min(each.first + len(each.values) for each in (self, other))
         mine, others = (
-            each.values[first - each.first : max(first, last) - each.first] for each in (self, other)
+            each.values[first - each.first : max(first, last) - each.first]
+            for each in (self, other)
         )
         return np.asarray(np.tensordot(mine, others, axes=((0, 1), (0, 1))))
 

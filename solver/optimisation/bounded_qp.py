@@ -25,7 +25,7 @@ from .active_set import multipliers_by_active_set
 
 CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
 MAX_ROUNDS = 6  # of row generation
-GROUP = 48  # blocks of unknowns; rows that begin in as many are forward-substituted together
+GROUP = 96  # blocks of unknowns; rows that begin in as many are forward-substituted together
 STEP_TOLERANCE = 0.1  # of a row's own tolerance: the violation that a step may leave
 
 
@@ -87,9 +87,7 @@ class BoundedStep:
             half = self._factor.forward_locally(self._columns(near))
             none = np.zeros((0, len(near)))
             beside = np.concatenate([none, *(each.products(half) for each in self._halves)])
-            self._stiffness = np.block(
-                [[self._stiffness, beside], [beside.T, half.products(half)]]
-            )
+            self._stiffness = np.block([[self._stiffness, beside], [beside.T, half.products(half)]])
             self._halves.append(half)
             self._rows = np.concatenate([self._rows, near])
         self._soft = CONSTRAINT_SOFTNESS * np.diagonal(self._stiffness) + 1e-14

@@ -160,9 +160,7 @@ class LinearisedProblem:
             return self._matrix.factor(overwrite=True)
         except np.linalg.LinAlgError:
             self._matrix = self._system()
-            self._matrix.add_diagonal(
-                RIDGE * np.diagonal(self._matrix.lower[0], axis1=1, axis2=2)
-            )
+            self._matrix.add_diagonal(RIDGE * np.diagonal(self._matrix.lower[0], axis1=1, axis2=2))
             return self._matrix.factor(overwrite=True)
 
     def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":

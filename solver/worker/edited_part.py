@@ -42,7 +42,8 @@ def _span(schedule: ContactSchedule, problem: MotionProblem) -> tuple[float, flo
     stances = [phase for phase in schedule.phases if phase.kind is PhaseKind.GROUND]
     pinned = [stances.index(phase_of(pin, schedule)) for pin in problem.pins]
     start = _begin(stances[: min(pinned)], schedule)
-    end = _end(stances[max(pinned)], schedule)
+    last = max(*pinned, 1)  # a first stance that is moved changes the jump after it
+    end = None if last == len(stances) else _end(stances[last], schedule)
     return None if end is None else (start, end)
 
 
