@@ -6,10 +6,9 @@ The step without bounds is known from one banded factor of A = W + rho J'J. Boun
     min 1/2 |w|^2   subject to   lo <= z + C w <= hi,   C C' = G A^-1 G',   w = -C'u
 
 so only the rows that are, or become, violated enter (row generation), and the program is as small
-as their number. What L^-1 G' (A = L L') has of a row is found group by group of rows that are near in
-time, as far as it reaches: rows far apart do not couple, and work grows with the clip and no faster. Of
-the solvers that CasADi ships, DAQP (Arnström 2022) was the fastest on it
-(benchmarks/qp_solvers.py).
+as their number. With A = L L', columns of L^-1 G' are made by groups of rows that are near in time,
+as far as they reach: rows far apart do not couple, and work grows with the clip and no faster. Of
+the solvers that CasADi ships, DAQP (Arnström 2022) was the fastest (benchmarks/qp_solvers.py).
 """
 
 from collections.abc import Callable
@@ -32,8 +31,9 @@ STEP_TOLERANCE = 0.1  # of a row's own tolerance: the violation that a step may 
 class BoundedStep:
     """Bound corrections of steps on one factor of A, by row generation.
 
-    columns(rows) gives G' of rows (m,); begins: (R,) the block in which each row's begins. bounds: lower, upper (R,). tolerance: (R,).
-    working: (R,) initial working set. multipliers: (R,), of the last correction.
+    columns(rows) gives G' of rows (m,). begins: (R,) block in which each row's column begins.
+    bounds: lower, upper (R,). tolerance: (R,). working: (R,) initial working set. multipliers:
+    (R,), of the last correction.
     """
 
     def __init__(

@@ -108,9 +108,11 @@ class _SpanRows:
 
 @dataclass(frozen=True)
 class Remains:
-    """What a linearised problem leaves to the next one with the same rows. working: (R,) the working
-    set of its last step, the rows that were at their bounds. matrix: storage; the problem itself is
-    no more once the next one has been made in it."""
+    """What a linearised problem leaves to the next one with the same rows.
+
+    working: (R,) working set of its last step, the rows that were at their bounds. matrix: storage;
+    once the next one has been made in it, the problem itself is no more.
+    """
 
     working: BoolArray
     matrix: BlockBanded
@@ -154,8 +156,8 @@ class LinearisedProblem:
         return system
 
     def _factored(self) -> CholeskyFactor:
-        """The matrix's factor, which takes its place; far from any motion rounding can spoil it, and
-        a small ridge mends that."""
+        """The matrix's factor, which takes its place; far from any motion rounding can spoil it,
+        and a small ridge mends that."""
         try:
             return self._matrix.factor(overwrite=True)
         except np.linalg.LinAlgError:
