@@ -24,7 +24,7 @@ from .active_set import multipliers_by_active_set
 
 CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
 MAX_ROUNDS = 6  # of row generation
-GROUP = 96  # blocks of unknowns; rows that begin in as many are forward-substituted together
+GROUP = 48  # blocks of unknowns; rows that begin in as many are forward-substituted together
 STEP_TOLERANCE = 0.1  # of a row's own tolerance: the violation that a step may leave
 
 
