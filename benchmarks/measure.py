@@ -148,8 +148,8 @@ class Benchmark:
         }
         caption = (
             f"Windows of the ten hops, CMU 01_01, from {scaling.FIRST:g} s on, each fitted, then "
-            "its first landing moved 0.3 m forward, as a whole. The processor's time of the fit, "
-            "and the most memory that it holds at once."
+            "its first landing moved 0.3 m forward, as a whole. The processor's time, and the "
+            "most memory that the fit holds at once."
         )
         return Table("Cost against length", caption, with_ratios(rows, ratios))
 
