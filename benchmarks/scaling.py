@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from statistics import median
 
 import numpy as np
 
@@ -20,12 +21,14 @@ from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
 from ..solver.stages.fit import ADAPT_COST_WEIGHTS, Fit, fit, motion_metric
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
+from ..solver.worker.pipeline import StageClock, Subject, fit_possible, measure, solve
 from .recordings import hops, recording
 from .tables import Row
-from .timing import in_turns, timed
+from .timing import REPEATS, memory, processor
 
 FIRST = 0.99  # s, where the windows of the hops begin
 LENGTHS = (2.0, 5.0, 10.0, 20.0)  # s
+EDITED = 2.5  # s, the window of one jump
 # Toes stay: a rigid foot cannot roll over the heel and toe that the recording plants.
 WELDED: dict[str, tuple[Part, ...]] = {
     "every joint": (),
@@ -40,16 +43,44 @@ def lengths(seconds: tuple[float, ...] = LENGTHS, repeats: int = 3) -> Iterator[
     for length in seconds:
         problem = hops(FIRST, length)
         analysis = analyse(recording(HOPS), problem)
-        fitted, fit_s = timed(partial(fit, analysis.performance, analysis.schedule))
+        work = partial(fit, analysis.performance, analysis.schedule)
+        fitted, fit_s = processor(work)
         _ = fitted.metric  # part of the stored fit
-        adaptation, adapt_s = in_turns({"": partial(adapt, fitted, problem)}, repeats)[""]
+        runs = [processor(partial(adapt, fitted, problem)) for _ in range(repeats)]
+        adaptation, adapt_s = runs[-1][0], median(seconds for _, seconds in runs)
         yield {
             "window": f"{length:g} s",
             "unknowns": adaptation.motion.transcription.n_unknowns,
             "fit (s)": fit_s,
+            "its memory (MB)": memory(work),
             "adaptation (s)": adapt_s,
             "steps": sum(len(outcome.steps) for outcome in adaptation.outcomes),
             "solved": fitted.solved and adaptation.solved,
+        }
+
+
+def one_jump() -> Iterator[Row]:
+    """A landing moved in a window of its own, and in the whole take of the hops."""
+    own, take = hops(FIRST, EDITED), replace(hops(FIRST, EDITED), frames=None)
+    for name, problem in (("its own window", own), ("the whole take", take)):
+        subject, fits = measure(recording(HOPS), problem), list[tuple[Fit, float]]()
+
+        def fitted(part: Subject, clock: StageClock, fits: list[tuple[Fit, float]] = fits) -> Fit:
+            found, seconds = processor(partial(fit_possible, part, clock))
+            _ = found.metric  # part of the stored fit
+            fits.append((found, seconds))
+            return found
+
+        result = solve(subject, StageClock(), fitted)
+        [(found, fit_s)] = fits
+        work = partial(adapt, found, result.subject.problem)
+        yield {
+            "in": name,
+            "lasts (s)": subject.analysis.schedule.duration,
+            "solved of it": f"{result.subject.analysis.schedule.duration:.2f} s",
+            "fit (s)": fit_s,
+            "adaptation (s)": median(processor(work)[1] for _ in range(REPEATS)),
+            "solved": result.fault is None,
         }
 
 

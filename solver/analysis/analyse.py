@@ -11,6 +11,8 @@ track = adaptation.motion.track(analysis.performance.recording)
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ..body.character import Character, build_character
 from ..data.contacts import Contact, ContactSchedule, Interval, snap
 from ..data.faults import (
@@ -56,10 +58,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     and Treadmill where the problem refuses what they tell.
     """
     within, character = build_figure(recording, problem)
-    performance = perform(within, character)
-    take = take_of(recording, within)
-    if len(take.frames) > len(within.frames):
-        performance = replace(performance, longer=perform(take, character))
+    performance = _performed(recording, within, character)
     # Parted before corrections, for those are the last word.
     found = parted(find_contacts(performance, problem.scene))
     corrected = disjoint(_corrected(found, problem, performance))
@@ -72,6 +71,27 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     if told and problem.unseen is Unseen.REFUSE:
         raise told[0]
     return Analysis(performance, schedule, told)
+
+
+def _performed(recording: Recording, within: Recording, character: Character) -> Performance:
+    """The performance in a range of a recording, with what is known of the frames beyond."""
+    performance, take = perform(within, character), take_of(recording, within)
+    if len(take.frames) > len(within.frames):
+        performance = replace(performance, longer=perform(take, character))
+    return performance
+
+
+def part_of(analysis: Analysis, start: float, end: float) -> Analysis:
+    """An analysis from one instant of its recording to another, s, both within ground phases.
+
+    The figure and the contacts stay what they are in the whole; no frame need be at the instants.
+    """
+    whole, schedule = analysis.performance, analysis.schedule
+    times, frames = whole.times, whole.recording.frames
+    some = np.flatnonzero((times >= start) & (times <= end))
+    within = whole.recording.window(float(frames[some[0]]), float(frames[some[-1]]))
+    performance = _performed(whole.take.recording, within, whole.character)
+    return Analysis(performance, schedule.part(float(times[some[0]]), float(times[some[-1]])))
 
 
 def _told(

@@ -142,12 +142,15 @@ class ContactSchedule:
 
     unseen: intervals without a contact in which the body does not fall, so something that the
     recording does not show carries it (a box, a rail, a drifting floor): they are not flights.
+    counted: how many flights, and ground phases, come before it in the schedule that it is part of,
+    whose names its phases keep.
     """
 
     contacts: tuple[Contact, ...]
     duration: float
     floor_m: float
     unseen: tuple[Interval, ...] = ()
+    counted: tuple[int, int] = (0, 0)
 
     @property
     def flights(self) -> tuple[Interval, ...]:
@@ -159,10 +162,14 @@ class ContactSchedule:
     @property
     def phases(self) -> tuple[Phase, ...]:
         """Alternating ground and flight phases that cover [0, duration]."""
-        flights = self.flights
+        flights, (flown, stood) = self.flights, self.counted
         ground = gaps(((f.start, f.end) for f in flights), self.duration)
-        named = [Phase(PhaseKind.FLIGHT, i + 1, f.start, f.end) for i, f in enumerate(flights)]
-        named += [Phase(PhaseKind.GROUND, i + 1, g.start, g.end) for i, g in enumerate(ground)]
+        named = [
+            Phase(PhaseKind.FLIGHT, i, f.start, f.end) for i, f in enumerate(flights, flown + 1)
+        ]
+        named += [
+            Phase(PhaseKind.GROUND, i, g.start, g.end) for i, g in enumerate(ground, stood + 1)
+        ]
         return tuple(sorted(named, key=lambda p: p.start))
 
     @property
@@ -180,6 +187,33 @@ class ContactSchedule:
         ends = {0.0, self.duration}
         ends |= {t for flight in self.flights for t in (flight.start, flight.end)}
         return tuple(sorted(ends))
+
+    def part(self, start: float, end: float) -> "ContactSchedule":
+        """The schedule from `start` to `end`, s, both within ground phases; names stay."""
+
+        def inside(start_s: float, end_s: float) -> tuple[float, float]:
+            return max(start_s - start, 0.0), min(end_s - start, end - start)
+
+        contacts = []
+        for contact in self.contacts:
+            first, last = inside(contact.start, contact.end)
+            if last <= first:
+                continue
+            rise = (
+                0.0 if contact.start <= start else contact.rise[0],
+                0.0 if contact.end >= end else contact.rise[1],
+            )
+            contacts.append(replace(contact, start=first, end=last, rise=rise))
+        unseen = (Interval(*inside(u.start, u.end)) for u in self.unseen)
+        before = [phase for phase in self.phases if phase.end <= start]
+        flown = sum(phase.kind is PhaseKind.FLIGHT for phase in before)
+        return replace(
+            self,
+            contacts=tuple(sorted(contacts, key=lambda c: (c.start, c.point))),
+            duration=end - start,
+            unseen=tuple(u for u in unseen if u.end > u.start),
+            counted=(self.counted[0] + flown, self.counted[1] + len(before) - flown),
+        )
 
     def of_phase(self, phase: Phase) -> tuple[Contact, ...]:
         """The contacts that carry during part of `phase`."""

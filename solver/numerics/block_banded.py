@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 
 BANDWIDTH = 3
+NEGLIGIBLE = 1e-8  # of a column's length
 
 
 class BlockBanded:
@@ -21,18 +22,25 @@ class BlockBanded:
     """
 
     def __init__(self, blocks: int, size: int, band: int = BANDWIDTH) -> None:
-        self.lower = np.zeros((band + 1, blocks, size, size))
+        # The blocks of a column lie together, as they are factored, with columns of zeros at the
+        # end so that all are alike.
+        self._columns = np.zeros((blocks + band, band + 1, size, size))
+        self.lower = np.moveaxis(self._columns[:blocks], 1, 0)
 
     @property
     def band(self) -> int:
         """Block half-bandwidth: blocks left of the diagonal."""
         return len(self.lower) - 1
 
-    def copy(self, band: int | None = None) -> "BlockBanded":
-        """Deep copy, optionally with a wider band."""
+    def copy(self, band: int | None = None, into: "BlockBanded | None" = None) -> "BlockBanded":
+        """Deep copy, optionally with a wider band. into: one of the same shape to be overwritten,
+        for memory that is new costs as much as the copy."""
         _, blocks, size, _ = self.lower.shape
-        twin = BlockBanded(blocks, size, self.band if band is None else band)
+        twin = (
+            BlockBanded(blocks, size, self.band if band is None else band) if into is None else into
+        )
         twin.lower[: self.band + 1] = self.lower
+        twin._columns[blocks:] = 0.0
         return twin
 
     def add_windows(self, first: IntArray, windows: FloatArray, part: slice = slice(None)) -> None:
@@ -48,8 +56,8 @@ class BlockBanded:
 
     def congruent(self, change: FloatArray) -> "BlockBanded":
         """Congruence T' A T, block by block, with T (n, k), a basis of every block's unknowns."""
-        twin = BlockBanded(0, 0)
-        twin.lower = change.T @ self.lower @ change
+        twin = BlockBanded(self.lower.shape[1], change.shape[1], self.band)
+        twin.lower[:] = change.T @ self.lower @ change
         return twin
 
     def add_diagonal(self, values: FloatArray) -> None:
@@ -66,11 +74,14 @@ class BlockBanded:
             y[:-j] += np.einsum("kij,ki->kj", lower[j][:-j], x[j:])
         return np.asarray(y)
 
-    def factor(self) -> "CholeskyFactor":
+    def factor(self, *, overwrite: bool = False) -> "CholeskyFactor":
         """Cholesky factor, right-looking by blocks (Golub and Van Loan 2013, ch. 4.3).
 
+        overwrite: whether the factor may take the place of the matrix, which then is no more.
         Raises numpy.linalg.LinAlgError if the matrix is not positive definite.
         """
+        if not overwrite:
+            return self.copy().factor(overwrite=True)
         band, count, n, _ = (self.band, *self.lower.shape[1:])
         # To unit diagonal first: a force's and an angle's differ by 1e9, and inverting blocks that
         # are scaled as badly loses the small unknowns (Higham 2002, 10.1).
@@ -78,38 +89,69 @@ class BlockBanded:
         if not (diagonal > 0.0).all():
             raise np.linalg.LinAlgError("the matrix is not positive definite")
         size = np.concatenate([np.sqrt(diagonal), np.ones((band, n))])  # (K + band, n)
-        # Blocks below each other lie together: column k is (band + 1) n by n. Some columns of zeros
-        # at the end, so that all are alike.
-        columns = np.zeros((count + band, band + 1, n, n))
-        for j, below in enumerate(self.lower):
-            scaled = below[: count - j] / size[j:count, :, None]
-            columns[: count - j, j] = scaled / size[: count - j, None, :]
-        columns = columns.reshape(count + band, (band + 1) * n, n)
-        inverse = np.empty((count, n, n))
+        columns = self._columns.reshape(count + band, (band + 1) * n, n)
+        for k in range(min(band, count)):
+            _to_unit_diagonal(columns[k], size, k)
         for k in range(count):
-            inverse[k] = np.linalg.inv(np.linalg.cholesky(columns[k, :n]))
-            panel = columns[k, n:] @ inverse[k].T
-            columns[k, n:] = panel
+            # What is used together stays in the processor's cache.
+            if k + band < count:
+                _to_unit_diagonal(columns[k + band], size, k + band)
+            inverse = np.linalg.inv(np.linalg.cholesky(columns[k, :n]))
+            panel = columns[k, n:] @ inverse.T
             update = panel @ panel.T
             for j in range(band):
                 columns[k + 1 + j, : (band - j) * n] -= update[j * n :, j * n : (j + 1) * n]
-            columns[k, n:] *= size[k + 1 : k + 1 + band].reshape(-1, 1)
-            inverse[k] /= size[k]
-        return CholeskyFactor(inverse, columns[:count, n:])
+            columns[k, n:] = panel * size[k + 1 : k + 1 + band].reshape(-1, 1)
+            columns[k, :n] = inverse / size[k]
+        return CholeskyFactor(columns[:count])
+
+
+def _to_unit_diagonal(column: FloatArray, size: FloatArray, k: int) -> None:
+    """Scales block column k ((band + 1) n, n) in place. size: (K + band, n), of the unknowns."""
+    n = column.shape[1]
+    column /= size[k : k + len(column) // n].reshape(-1, 1)
+    column /= size[k]
+
+
+@dataclass(frozen=True)
+class LocalColumns:
+    """Columns (w, n, m) that are zero, or negligible, but in w blocks from block `first` on."""
+
+    first: int
+    values: FloatArray
+
+    def products(self, other: "LocalColumns") -> FloatArray:
+        """(m, m') scalar products with other columns."""
+        first = max(self.first, other.first)
+        last = min(each.first + len(each.values) for each in (self, other))
+        mine, others = (
+            each.values[first - each.first : max(first, last) - each.first]
+            for each in (self, other)
+        )
+        return np.asarray(np.tensordot(mine, others, axes=((0, 1), (0, 1))))
+
+    def add_times(self, weights: FloatArray, total: FloatArray) -> None:
+        """Adds the columns' sum by weights (m,) to total (K, n)."""
+        total[self.first : self.first + len(self.values)] += self.values @ weights
 
 
 @dataclass(frozen=True)
 class CholeskyFactor:
-    """Block Cholesky factor L: inverses of its diagonal blocks and the blocks below them."""
+    """Block Cholesky factor L. columns: (K, (1 + band) n, n), the inverse of each diagonal block
+    and the blocks below it, zeros beyond the last row."""
 
-    inverse: FloatArray  # (K, n, n)
-    below: FloatArray  # (K, band n, n), zeros beyond the last row
+    columns: FloatArray
 
     @property
     def shape(self) -> tuple[int, int]:
         """K blocks of n unknowns."""
-        count, size, _ = self.inverse.shape
+        count, _, size = self.columns.shape
         return count, size
+
+    @property
+    def _below(self) -> int:
+        """Rows below a diagonal block."""
+        return self.columns.shape[1] - self.columns.shape[2]
 
     def solve(self, b: FloatArray) -> FloatArray:
         """x of A x = b, both (K, n) or (K, n, m)."""
@@ -117,23 +159,44 @@ class CholeskyFactor:
 
     def forward(self, b: FloatArray) -> FloatArray:
         """Forward substitution L^-1 b, b (K, n) or (K, n, m)."""
-        x, n = self._padded(b), b.shape[1]
-        for k, (inverse, below) in enumerate(zip(self.inverse, self.below, strict=True)):
+        x, n, below = self._padded(b), b.shape[1], self._below
+        for k, column in enumerate(self.columns):
             first, last = k * n, (k + 1) * n
-            x[first:last] = inverse @ x[first:last]
-            x[last : last + len(below)] -= below @ x[first:last]
+            x[first:last] = column[:n] @ x[first:last]
+            x[last : last + below] -= column[n:] @ x[first:last]
         return np.asarray(x[: len(b) * n].reshape(b.shape))
+
+    def forward_locally(self, b: LocalColumns) -> LocalColumns:
+        """Forward substitution as far as any column has more than NEGLIGIBLE of its length.
+
+        What is far off in time hardly couples. Each block follows from the `band` before it: where
+        these are negligible, so is what follows.
+        """
+        n, below, given = self.shape[1], self._below, len(b.values)
+        ahead = np.zeros((below, b.values.shape[2]))  # what is left to the next blocks
+        found: list[FloatArray] = []
+        squared, quiet = np.zeros(b.values.shape[2]), 0
+        for k, column in enumerate(self.columns[b.first :]):
+            found.append(column[:n] @ (ahead[:n] + b.values[k] if k < given else ahead[:n]))
+            ahead[:-n], ahead[-n:] = ahead[n:], 0.0
+            ahead -= column[n:] @ found[-1]
+            added = (found[-1] ** 2).sum(axis=0)
+            squared += added
+            quiet = quiet + 1 if (added <= NEGLIGIBLE**2 * squared).all() else 0
+            if k >= given and quiet * n >= below:
+                break
+        return LocalColumns(b.first, np.stack(found))
 
     def backward(self, b: FloatArray) -> FloatArray:
         """Back substitution L^-T b, b (K, n) or (K, n, m)."""
-        x, n = self._padded(b), b.shape[1]
+        x, n, below = self._padded(b), b.shape[1], self._below
         for k in reversed(range(len(b))):
-            first, last, below = k * n, (k + 1) * n, self.below[k]
-            x[first:last] -= below.T @ x[last : last + len(below)]
-            x[first:last] = self.inverse[k].T @ x[first:last]
+            first, last, column = k * n, (k + 1) * n, self.columns[k]
+            x[first:last] -= column[n:].T @ x[last : last + below]
+            x[first:last] = column[:n].T @ x[first:last]
         return np.asarray(x[: len(b) * n].reshape(b.shape))
 
     def _padded(self, b: FloatArray) -> FloatArray:
         """(K n + band n, m) or without m: the right side, then zeros."""
         rows = b.reshape(-1, *b.shape[2:])
-        return np.concatenate([rows, np.zeros((self.below.shape[1], *b.shape[2:]))])
+        return np.concatenate([rows, np.zeros((self._below, *b.shape[2:]))])

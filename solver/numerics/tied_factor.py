@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ..arrays import FloatArray
-from .block_banded import CholeskyFactor
+from .block_banded import CholeskyFactor, LocalColumns
 
 
 class Factor(Protocol):
@@ -27,6 +27,9 @@ class Factor(Protocol):
 
     def forward(self, b: FloatArray) -> FloatArray:
         """First half of `solve`."""
+
+    def forward_locally(self, b: LocalColumns) -> LocalColumns:
+        """First half of `solve`, without what is negligible."""
 
     def backward(self, b: FloatArray) -> FloatArray:
         """Second half of `solve`."""
@@ -61,6 +64,12 @@ class TiedFactor:
         half = self.banded.forward(b)
         share = np.einsum("knr,kn...->r...", self.across, half, optimize=True)
         return np.asarray(half - np.einsum("knr,r...->kn...", self.across, share, optimize=True))
+
+    def forward_locally(self, b: LocalColumns) -> LocalColumns:
+        """Likewise; the ties reach everywhere."""
+        whole = np.zeros((*self.shape, b.values.shape[2]))
+        whole[b.first : b.first + len(b.values)] = b.values
+        return LocalColumns(0, self.forward(whole))
 
     def backward(self, b: FloatArray) -> FloatArray:
         """L^-T b."""

@@ -129,7 +129,7 @@ class TrackingCost:
         self._values = [basis.evaluate(times, k, spans) for k in (0, 2)]
         self._smooth = weights.acceleration_time**4
         self._load = weights.com_acceleration / STANDARD_GRAVITY**2
-        self._force_windows = self._force_metric()
+        self._force_metric = self._made_force_metric()
         n = transcription.character.n_angles
         self._turning = np.broadcast_to(0.0, (len(times), n, n))
         if price is not None:
@@ -187,7 +187,7 @@ class TrackingCost:
         if self._to_go is not None:
             total += self._to_go.value(x)
         forces = self._force_error(x)
-        return total + 0.5 * float((forces * self._force_windows.times(forces)).sum())
+        return total + 0.5 * float((forces * self._force_metric.times(forces)).sum())
 
     @property
     def _marker_weight(self) -> float:
@@ -196,8 +196,10 @@ class TrackingCost:
     def expand(self, x: FloatArray) -> tuple[FloatArray, BlockBanded]:
         """Gradient (K, n_block) and Gauss-Newton Hessian at x (K, n_block)."""
         t = self.transcription
-        gradient = self._force_windows.times(self._force_error(x))
-        matrix = self._force_windows.copy()
+        gradient, matrix = np.zeros_like(x), BlockBanded(*x.shape)
+        forces = t.layout.forces
+        gradient[:, forces] = self._force_metric.times(self._force_error(x))
+        matrix.lower[:, :, forces, forces] = self._force_metric.lower
         posed = t.pose_at_nodes(x)
         for spans in self._batches():
             self._expand_batch(self._at_nodes(x, posed, spans), spans, gradient, matrix)
@@ -268,23 +270,22 @@ class TrackingCost:
     # -- forces ----------------------------------------------------------------------------
 
     def _force_error(self, x: FloatArray) -> FloatArray:
-        error = np.zeros_like(x)
-        forces = self.transcription.layout.forces
-        error[:, forces] = x[:, forces] - self.target.forces
-        error[~self.transcription.active] = 0.0
-        return error
+        """(K, 3 P) body weights."""
+        t = self.transcription
+        forces = t.layout.forces
+        return np.where(t.active[:, forces], x[:, forces] - self.target.forces, 0.0)
 
-    def _force_metric(self) -> BlockBanded:
+    def _made_force_metric(self) -> BlockBanded:
         """Integral of squared force errors, their rates and their parts across the target's slope:
-        piecewise linear, exact."""
+        piecewise linear, exact. Of the forces alone."""
         t, p = self.transcription, self.weights
         basis, layout = t.basis, t.layout
         h = np.diff(basis.breaks)[:, None, None]
         mass = h * np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
         stiff = np.array([[1.0, -1.0], [-1.0, 1.0]]) / h
         alike = p.force * (mass + p.force_rate_time**2 * stiff)
-        matrix = BlockBanded(basis.n_coefficients, layout.n_block)
         exists = t.active[:, layout.forces]
+        matrix = BlockBanded(*exists.shape)
         unseen = np.diag((np.arange(exists.shape[1]) >= 3 * (layout.n_points - t.n_support)) * 1.0)
         across = self._across()
         first = basis.first_coefficient + FORCE_BLOCKS.start  # of each span's first force value
@@ -298,8 +299,7 @@ class TrackingCost:
                     pair = np.swapaxes(across[a], 1, 2) @ across[b]
                     each = each + p.friction * mass[:, row, column, None, None] * pair
                 each = each * exists[a][:, :, None] * exists[b][:, None, :]
-                block = matrix.lower[row - column][:, layout.forces, layout.forces]
-                np.add.at(block, b, each)
+                np.add.at(matrix.lower[row - column], b, each)
         return matrix
 
     def _across(self) -> FloatArray:

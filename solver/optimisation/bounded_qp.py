@@ -6,8 +6,9 @@ The step without bounds is known from one banded factor of A = W + rho J'J. Boun
     min 1/2 |w|^2   subject to   lo <= z + C w <= hi,   C C' = G A^-1 G',   w = -C'u
 
 so only the rows that are, or become, violated enter (row generation), and the program is as small
-as their number. Of the solvers that CasADi ships, DAQP (Arnström 2022) was the fastest on it
-(benchmarks/qp_solvers.py).
+as their number. With A = L L', columns of L^-1 G' are made by groups of rows that are near in time,
+as far as they reach: rows far apart do not couple, and work grows with the clip and no faster. Of
+the solvers that CasADi ships, DAQP (Arnström 2022) was the fastest (benchmarks/qp_solvers.py).
 """
 
 from collections.abc import Callable
@@ -16,36 +17,40 @@ import casadi as ca
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..numerics.block_banded import LocalColumns
 from ..numerics.tied_factor import Factor
 from ..transcription.rows import violation
 from .active_set import multipliers_by_active_set
 
 CONSTRAINT_SOFTNESS = 1e-7  # of a row's own stiffness, so that rows may depend on others
 MAX_ROUNDS = 6  # of row generation
+GROUP = 48  # blocks of unknowns; rows that begin in as many are forward-substituted together
 STEP_TOLERANCE = 0.1  # of a row's own tolerance: the violation that a step may leave
 
 
 class BoundedStep:
     """Bound corrections of steps on one factor of A, by row generation.
 
-    columns(rows) gives G' as (K, n, len(rows)). bounds: lower, upper (R,). tolerance: (R,).
-    working: (R,) initial working set. multipliers: (R,), of the last correction.
+    columns(rows) gives G' of rows (m,). begins: (R,) block in which each row's column begins.
+    bounds: lower, upper (R,). tolerance: (R,). working: (R,) initial working set. multipliers:
+    (R,), of the last correction.
     """
 
     def __init__(
         self,
         factor: Factor,
-        columns: Callable[[IntArray], FloatArray],
+        columns: Callable[[IntArray], LocalColumns],
+        begins: IntArray,
         bounds: tuple[FloatArray, FloatArray],
         tolerance: FloatArray,
         working: BoolArray,
     ) -> None:
-        self._factor, self._columns = factor, columns
+        self._factor, self._columns, self._begins = factor, columns, begins
         self.lower, self.upper = bounds
         self._tolerance = STEP_TOLERANCE * tolerance
         self.multipliers = np.zeros(len(tolerance))
         self._rows = np.zeros(0, dtype=int)
-        self._half = np.zeros((factor.shape[0] * factor.shape[1], 0))  # L^-1 G' (K n, m)
+        self._halves: list[LocalColumns] = []  # L^-1 G' of these rows, by groups
         self._stiffness = np.zeros((0, 0))  # G A^-1 G' (m, m)
         self._initial = working
 
@@ -71,17 +76,29 @@ class BoundedStep:
             elif len(self._rows) == 0 or reached is not z:
                 break
             u = self._solve(z)
-            change = -self._factor.backward((self._half @ u).reshape(self._factor.shape))
+            change = -self._factor.backward(self._pull(u))
             reached = z + times(change)
         return change
 
     def _add(self, rows: IntArray) -> None:
-        half = self._factor.forward(self._columns(rows)).reshape(-1, len(rows))
-        beside = self._half.T @ half
-        self._stiffness = np.block([[self._stiffness, beside], [beside.T, half.T @ half]])
-        self._half = np.concatenate([self._half, half], axis=1)
-        self._rows = np.concatenate([self._rows, rows])
+        groups = self._begins[rows] // GROUP
+        for group in np.unique(groups):
+            near = rows[groups == group]
+            half = self._factor.forward_locally(self._columns(near))
+            none = np.zeros((0, len(near)))
+            beside = np.concatenate([none, *(each.products(half) for each in self._halves)])
+            self._stiffness = np.block([[self._stiffness, beside], [beside.T, half.products(half)]])
+            self._halves.append(half)
+            self._rows = np.concatenate([self._rows, near])
         self._soft = CONSTRAINT_SOFTNESS * np.diagonal(self._stiffness) + 1e-14
+
+    def _pull(self, u: FloatArray) -> FloatArray:
+        """(K, n) L^-1 G' u of the program's multipliers u (m,)."""
+        total = np.zeros(self._factor.shape)
+        ends = np.cumsum([half.values.shape[2] for half in self._halves])
+        for half, mine in zip(self._halves, np.split(u, ends[:-1]), strict=True):
+            half.add_times(mine, total)
+        return total
 
     def _solve(self, z: FloatArray) -> FloatArray:
         rows = self._rows

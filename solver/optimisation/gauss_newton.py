@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.status import Status
-from .kkt_step import LinearisedProblem
+from .kkt_step import LinearisedProblem, Remains
 from .sqp import FeasibleSet, Objective, Outcome, Progress, Step
 
 MAX_STEPS = 12
@@ -29,19 +29,21 @@ def minimise(
     would buy a lot of it: second-order corrections (Nocedal & Wright, 18.3).
     """
     steps: list[Step] = []
-    value, working = objective.value(x), None
+    value = objective.value(x)
+    last: Remains | None = None
     violation, length = 0.0, 1.0
     for _ in range(max_steps):
         rows = feasible.rows(x)
         gradient, hessian = objective.expand(x)
-        linearised = feasible.linearise(rows, hessian, working)
+        linearised = feasible.linearise(rows, hessian, last)
         d, _ = linearised.step(rows.value, gradient)
-        working = linearised.working
+        last = linearised.remains
         violation = linearised.violation(rows.value)
         begin = (value, min(1.0, 2.0 * max(length, MIN_STEP_LENGTH)))
         found = _corrected_step(feasible, objective, linearised, x, d, begin)
         length = found[2] if found else 0.0
         steps.append(Step(stage, violation, length, linearised.worst_owner(rows.value)))
+        del hessian, linearised  # as large as all else together: not two at a time
         if found is None:
             break
         before, (x, value, _) = value, found

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
-from ..numerics.block_banded import BlockBanded, CholeskyFactor
+from ..numerics.block_banded import BlockBanded, CholeskyFactor, LocalColumns
 from ..numerics.parallel import in_threads
 from ..numerics.splines import ORDER
 from ..numerics.tied_factor import Factor, TiedFactor
@@ -56,7 +56,9 @@ class _SpanRows:
         jacobian = rows.jacobian if basis is None else rows.jacobian @ basis
         n = jacobian.shape[2]
         J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
-        J[rows.span, place] = jacobian.reshape(len(order), ORDER * n) / scale[:, None]
+        J[rows.span, place] = jacobian.reshape(len(order), ORDER * n)
+        other = scale != 1.0  # few; all rows once more would be a copy of them all
+        J[rows.span[other], place[other]] /= scale[other, None]
         return _SpanRows(J, counts, first, n, (rows.span, place))
 
     def times(self, d: FloatArray) -> FloatArray:
@@ -74,13 +76,12 @@ class _SpanRows:
 
     def add_normal(self, system: BlockBanded, weight: float) -> None:
         """Adds weight * J'J, a few spans at a time so that they stay in the processor's cache."""
-        wide = self.J.shape[2]
-        scaled = np.sqrt(weight) * self.J
+        wide, root = self.J.shape[2], np.sqrt(weight)
         squares = np.empty((NORMAL_BATCH, wide, wide))
 
         def square(part: slice) -> None:
             for i in range(part.start, part.stop):  # numpy knows that a.T @ a is symmetric
-                rows = scaled[first + i, : self.counts[first + i]]
+                rows = root * self.J[first + i, : self.counts[first + i]]
                 np.matmul(rows.T, rows, out=squares[i])
 
         for first in range(0, len(self.J), NORMAL_BATCH):
@@ -89,30 +90,39 @@ class _SpanRows:
             shape = (count, ORDER, self.size, ORDER, self.size)
             system.add_windows(self.first[first : first + count], squares[:count].reshape(shape))
 
-    def columns(self, rows: IntArray, blocks: int) -> FloatArray:
-        """(K, n, m) columns of J' of the chosen rows (m,)."""
+    @property
+    def begins(self) -> IntArray:
+        """(R,) first block of each row."""
+        return np.asarray(self.first[self.where[0]])
+
+    def columns(self, rows: IntArray) -> LocalColumns:
+        """Columns of J' of the chosen rows (m,)."""
         span, place = (index[rows] for index in self.where)
         local = self.J[span, place].reshape(len(rows), ORDER, self.size)
-        columns = np.zeros((blocks, self.size, len(rows)))
+        first = self.first[span] - self.first[span].min()
+        columns = np.zeros((first.max() + ORDER, self.size, len(rows)))
         for k in range(ORDER):
-            columns[self.first[span] + k, :, np.arange(len(rows))] = local[:, k]
-        return columns
+            columns[first + k, :, np.arange(len(rows))] = local[:, k]
+        return LocalColumns(int(self.first[span].min()), columns)
 
 
-def _factor(system: BlockBanded) -> CholeskyFactor:
-    """Cholesky factor; far from any motion rounding can spoil it, and a small ridge mends that."""
-    try:
-        return system.factor()
-    except np.linalg.LinAlgError:
-        system.add_diagonal(RIDGE * np.diagonal(system.lower[0], axis1=1, axis2=2))
-        return system.factor()
+@dataclass(frozen=True)
+class Remains:
+    """What a linearised problem leaves to the next one with the same rows.
+
+    working: (R,) working set of its last step, the rows that were at their bounds. matrix: storage;
+    once the next one has been made in it, the problem itself is no more.
+    """
+
+    working: BoolArray
+    matrix: BlockBanded
 
 
 class LinearisedProblem:
     """Rows linearised at one point, with the factor of W + rho J'J, ready for steps.
 
-    metric: W. basis: (n_block, k) the changes of a block that are allowed, None all. working: (R,)
-    working set of the last step, the rows that were at their bounds.
+    metric: W. basis: (n_block, k) the changes of a block that are allowed, None all. last:
+    what the problem before leaves.
     """
 
     def __init__(
@@ -122,7 +132,7 @@ class LinearisedProblem:
         metric: BlockBanded,
         *,
         basis: FloatArray | None = None,
-        working: BoolArray | None = None,
+        last: Remains | None = None,
     ) -> None:
         self._basis = basis
         self._metric = metric if basis is None else metric.congruent(basis)
@@ -131,20 +141,35 @@ class LinearisedProblem:
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
         first = transcription.basis.first_coefficient
         self._equalities = _SpanRows.of(rows.some(self._equal), scale, first, basis)
-        system = self._metric.copy()
-        self._equalities.add_normal(system, PENALTY)
-        self._factor: Factor = _factor(system)
+        self._matrix = self._system(None if last is None else last.matrix)
+        self._factor: Factor = self._factored()
         if transcription.seam is not None:
             ties = transcription.seam.columns(self._blocks)
             ties = ties if basis is None else np.einsum("knr,nb->kbr", ties, basis)
             self._factor = TiedFactor.of(self._factor, ties)
-        self._bound(transcription, rows, working)
+        self._bound(transcription, rows, None if last is None else last.working)
+
+    def _system(self, into: BlockBanded | None = None) -> BlockBanded:
+        """W + rho J'J."""
+        system = self._metric.copy(into=into)
+        self._equalities.add_normal(system, PENALTY)
+        return system
+
+    def _factored(self) -> CholeskyFactor:
+        """The matrix's factor, which takes its place; far from any motion rounding can spoil it,
+        and a small ridge mends that."""
+        try:
+            return self._matrix.factor(overwrite=True)
+        except np.linalg.LinAlgError:
+            self._matrix = self._system()
+            self._matrix.add_diagonal(RIDGE * np.diagonal(self._matrix.lower[0], axis1=1, axis2=2))
+            return self._matrix.factor(overwrite=True)
 
     def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":
         """The same with other guard rows, which are the last: they need no new factor."""
         twin = copy(self)
         kept = ~self.rows.guards
-        working = np.concatenate([self.working[kept], np.zeros(len(guards.value), dtype=bool)])
+        working = np.concatenate([self._working[kept], np.zeros(len(guards.value), dtype=bool)])
         twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), working)
         return twin
 
@@ -155,18 +180,24 @@ class LinearisedProblem:
         self._free = np.flatnonzero(~rows.equal)
         first = transcription.basis.first_coefficient
         bounds = _SpanRows.of(rows.some(self._free), self._scale[self._free], first, self._basis)
-        self._bounds, blocks = bounds, self._blocks
+        self._bounds = bounds
         was = np.zeros(len(self._free), bool) if working is None else working[self._free]
         self._bounded = BoundedStep(
             self._factor,
-            lambda rows: bounds.columns(rows, blocks),  # not self: a cycle would live on for long
+            bounds.columns,
+            bounds.begins,
             (self._scaled(rows.lower, self._free), self._scaled(rows.upper, self._free)),
             self._scaled(self._tolerance, self._free),
             was,
         )
 
     @property
-    def working(self) -> BoolArray:
+    def remains(self) -> Remains:
+        """For the next problem with the same rows."""
+        return Remains(self._working, self._matrix)
+
+    @property
+    def _working(self) -> BoolArray:
         """(R,) working set: the rows that the last step has at a bound."""
         working = np.zeros(len(self.rows.value), dtype=bool)
         working[self._free] = self._bounded.working

@@ -15,13 +15,13 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ..arrays import FloatArray
 from ..data.status import Status
 from ..numerics.block_banded import BlockBanded
 from ..transcription.motion import Motion
 from ..transcription.rows import Rows
 from ..transcription.transcription import Transcription
-from .kkt_step import LinearisedProblem
+from .kkt_step import LinearisedProblem, Remains
 
 MAX_CHORD_RATIO = 0.03  # of the violation that a step leaves, for the next to keep its Jacobian
 MAX_STEPS = 30  # of a restoration
@@ -118,11 +118,11 @@ class FeasibleSet:
         return worst_violation(self.rows(x))
 
     def linearise(
-        self, rows: Rows, metric: BlockBanded, working: BoolArray | None = None
+        self, rows: Rows, metric: BlockBanded, last: Remains | None = None
     ) -> LinearisedProblem:
-        """The linearised problem of these rows with metric W; working: see LinearisedProblem."""
+        """The linearised problem of these rows with metric W; last: see LinearisedProblem."""
         t = self.transcription
-        return LinearisedProblem(t, rows, metric, basis=self.basis, working=working)
+        return LinearisedProblem(t, rows, metric, basis=self.basis, last=last)
 
     def outcome(
         self, x: FloatArray, status: Status, steps: list[Step], violation: float
@@ -228,8 +228,9 @@ class _ChordIterate:
 
     def _linearise(self) -> LinearisedProblem:
         rows = self._feasible.rows(self.x) if self._rows is None else self._rows
-        working = None if self._linearised is None else self._linearised.working
-        self._linearised = self._feasible.linearise(rows, self._metric, working)
+        last = None if self._linearised is None else self._linearised.remains
+        self._linearised = None  # as large as all else together: not two at a time
+        self._linearised = self._feasible.linearise(rows, self._metric, last)
         return self._linearised
 
 
@@ -300,12 +301,11 @@ def project(
     status = Status.TOO_MANY_STEPS
     multipliers: FloatArray | None = None
     value = objective.value(x)
-    linearised: LinearisedProblem | None = None
+    last: Remains | None = None
     for _ in range(max_steps):
         rows = feasible.rows(x)
         gradient, hessian = objective.expand(x)
-        working = None if linearised is None else linearised.working
-        linearised = feasible.linearise(rows, hessian, working)
+        linearised = feasible.linearise(rows, hessian, last)
         d, multipliers = linearised.step(rows.value, gradient, multipliers)
         merit = _L1Merit.of(feasible, objective, linearised, multipliers)
         x, length = _backtrack(merit, merit.combined(value, rows.value), x, d)
@@ -316,6 +316,8 @@ def project(
         before, value = value, objective.value(x)
         little = abs(before - value) < MIN_PROJECTION_DECREASE * before
         near = linearised.violation(feasible.values(x)) < NEARLY_FEASIBLE
+        last = linearised.remains
+        del hessian, linearised, merit  # as large as all else together: not two at a time
         if length == 0.0 or (near and little):
             status = Status.SOLVED
             break

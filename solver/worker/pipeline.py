@@ -55,6 +55,7 @@ from ..stages.fit import Fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion
+from .edited_part import edited_part
 from .lasting_fit import lasting_fit
 from .other_phases import on_phases_of
 from .possible import check_requested
@@ -115,6 +116,10 @@ class Subject:
         """Names of the scene's objects that the recording is on."""
         every = self.analysis.schedule.contacts
         return frozenset(contact.on for contact in every if contact.on is not None)
+
+    def edited(self) -> Subject:
+        """The part of it that its problem is about. Raises UnknownPhase."""
+        return replace(self, analysis=edited_part(self.analysis, self.problem))
 
     def with_objects(self, things: tuple[SceneObject, ...]) -> Subject:
         """The same with more objects in the scene, at the stated stature."""
@@ -314,7 +319,7 @@ def solve(
     clock: StageClock,
     fitted_by: Callable[[Subject, StageClock], Fit] = fit_possible,
 ) -> AdaptationResult:
-    """The whole way from an analysis. fitted_by: may remember fits.
+    """The whole way from an analysis, of the part that is edited. fitted_by: may remember fits.
 
     Raises what `adapt` and `check_scene` do, all before the fit takes its seconds.
     """
@@ -326,6 +331,7 @@ def solve(
     ShapeChanges.of(requests.shapes, performance.character)
     for pin in subject.problem.pins:
         chosen_contacts(pin, phase_of(pin, schedule), schedule)
+    subject = subject.edited()
     return adapt_fit(subject, fitted_by(subject, clock), clock)
 
 

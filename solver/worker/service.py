@@ -51,6 +51,7 @@ MOST_FITS = 3
 
 Tell = Callable[[Progress], None]
 _Key = tuple[str, str, tuple[SceneObject, ...]]  # of an analysis
+_Frames = tuple[float, float]  # first and last of those that are fitted
 
 
 class Cancel(Exception):
@@ -74,7 +75,7 @@ class Service:
 
     def __init__(self, ending: Callable[[int], Ending | None] = lambda _: None) -> None:
         self._ending = ending
-        self._fits: OrderedDict[_Key, Fit] = OrderedDict()
+        self._fits: OrderedDict[tuple[_Key, _Frames], Fit] = OrderedDict()
         self._recording: Recording | None = None
         self._subject: tuple[_Key, Subject] | None = None
         self._last: tuple[Fit, MotionProblem, Adaptation] | None = None
@@ -102,6 +103,8 @@ class Service:
         watch = _Watch(request.id, tell, self._ending)
         if request.kind is RequestKind.ADAPT:
             return self._adapted(request.id, subject, watch)
+        if request.kind is RequestKind.FOLLOW:
+            subject = subject.edited()
         fitted = self._fit(subject, watch)
         if request.kind is RequestKind.FOLLOW and fitted.solved:
             return self._followed(request.id, subject, fitted)
@@ -169,7 +172,8 @@ class Service:
     ) -> Fit:
         """The remembered fit of this performance, or a new one, which is then remembered."""
         assert self._subject is not None
-        key = self._subject[0]
+        frames = subject.recording.frames
+        key = self._subject[0], (float(frames[0]), float(frames[-1]))
         found = self._fits.pop(key, None)
         if found is None:
             found = fitted_by(subject, clock)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray
-from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
+from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded, LocalColumns
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -89,3 +89,34 @@ def test_an_indefinite_matrix_is_refused() -> None:
     banded.add_diagonal(np.full((6, 3), -50.0))
     with pytest.raises(np.linalg.LinAlgError):
         banded.factor()
+
+
+def test_far_off_in_time_nothing_couples() -> None:
+    """Forward substitution that ends where nothing is left finds the products of the whole one."""
+    banded, _ = random_matrix(7, 200, 3)
+    factor = banded.factor()
+    random = np.random.default_rng(9)
+    parts = [LocalColumns(first, random.normal(size=(WINDOW, 3, 2))) for first in (0, 10, 150, 196)]
+    found = [factor.forward_locally(part) for part in parts]
+    assert max(len(each.values) for each in found) < 100
+    whole = np.zeros((200, 3, 8))
+    for i, part in enumerate(parts):
+        whole[part.first : part.first + WINDOW, :, 2 * i : 2 * i + 2] = part.values
+    half = factor.forward(whole).reshape(-1, 8)
+    products = np.block([[one.products(other) for other in found] for one in found])
+    assert products == pytest.approx(half.T @ half, abs=1e-7 * np.abs(half.T @ half).max())
+    weights = random.normal(size=2)
+    total = np.zeros((200, 3))
+    found[1].add_times(weights, total)
+    assert total.ravel() == pytest.approx(half[:, 2:4] @ weights, abs=1e-7)
+
+
+def test_a_factor_may_take_the_matrix_s_place_and_the_next_matrix_the_factor_s() -> None:
+    banded, dense = random_matrix(8, 9, 3)
+    used = banded.copy()
+    first = used.factor(overwrite=True)
+    b = np.ones((9, 3))
+    expected = np.linalg.solve(dense, b.ravel())
+    assert first.solve(b).ravel() == pytest.approx(expected)
+    again = banded.copy(into=used).factor(overwrite=True)
+    assert again.solve(b).ravel() == pytest.approx(expected)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from hangtime.solver.arrays import FloatArray, IntArray
-from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded
+from hangtime.solver.numerics.block_banded import BANDWIDTH, BlockBanded, LocalColumns
 from hangtime.solver.optimisation import bounded_qp
 from hangtime.solver.optimisation.active_set import multipliers_by_active_set
 from hangtime.solver.optimisation.bounded_qp import BoundedStep, solve_dual_qp
@@ -144,14 +144,15 @@ class Problem:
     def times(self) -> Callable[[FloatArray], FloatArray]:
         return lambda d: np.einsum("rkn,kn->r", self.G, d)
 
-    def columns(self, rows: IntArray) -> FloatArray:
-        return np.moveaxis(self.G[rows], 0, 2)
+    def columns(self, rows: IntArray) -> LocalColumns:
+        return LocalColumns(0, np.moveaxis(self.G[rows], 0, 2))
 
     def step(self, working: np.ndarray | None = None) -> BoundedStep:
         none = np.zeros(len(self.z), dtype=bool)
         return BoundedStep(
             self.factor,
             self.columns,
+            np.zeros(len(self.z), dtype=int),
             (self.lower, self.upper),
             np.full(len(self.z), 1e-6),
             none if working is None else working,
