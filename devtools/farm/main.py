@@ -70,7 +70,7 @@ def measured(scratch: Path, *, quick: bool) -> Found:
     for share, how in ((True, "shared folder"), (False, "through the scheduler")):
         plan_hops(scratch / how, cells)
         with running_cluster(scratch / f"cluster, {how}", package, 4) as cluster:
-            run_on_dask(scratch / how, str(cluster.file), lambda _: None, share=share)
+            run_on_dask(scratch / how, str(cluster.file), print, share=share)
         yield EQUAL + f"4 Dask workers, {how}", apart(scratch / how, expected)
     plan_hops(scratch / "openjd", cells)
     run_session(scratch / "openjd", package, cells_per_task=7)
