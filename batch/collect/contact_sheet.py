@@ -16,7 +16,7 @@ from .png import Pixels, UnreadablePicture, read_png, shrunk, write_png
 
 MOST = 60  # pictures; the page has them all
 ACROSS = 5
-SHOT = (360, 160)  # pixels
+SHOT = (340, 240)  # pixels
 GAP, WORDS = 12, 2 * HIGH + 8  # pixels between tiles, and for the words below a picture
 PAPER, EMPTY = (247, 248, 250), (228, 231, 236)
 INK, QUIET, ALARM = (29, 37, 48), (90, 102, 117), (179, 38, 30)
