@@ -21,7 +21,9 @@
   campaign [--cases N] [--seed S]         thousands of hostile cases: files, requests, sessions
   window [--out DIR]                      drive the zip in a real Blender's window, and measure
   benchmark [--quick] [--out DIR]         compare with other solvers on the same problem
-  build [--out DIR]                       make and validate the extension's zips
+  farm [--quick] [--out DIR]              batches here, on Dask and OpenJD: equal, fast, unharmed
+  farm --tests [pytest arguments]         the tests of Dask, Flamenco, OpenJD and the wheel
+  build [--out DIR]                       make and validate the extension's zips, and the wheel
   lint                                    ruff, mypy, import contracts, limits of the house
 
 Makes its own environment in .hangtime/ on first use; needs Python alone. Without --blender it takes
@@ -36,11 +38,12 @@ import sys
 
 from devtools.environment import pythons, virtual_environment
 from devtools.environment.problem import SetUpError
+from devtools.environment.virtual_environment import FARM, PEERS, Requirements
 from solver.one_thread import ONE_THREAD
 
-PEERS = "benchmark"  # has an environment of its own
-# command: module of the package, arguments before the user's, whether it needs dev.txt
-COMMANDS = {
+# command: module of the package, arguments before the user's, whether it needs dev.txt, or what else
+# it needs in place of Blender
+COMMANDS: dict[str, tuple[str, list[str], bool | Requirements]] = {
     "demo": ("devtools.demo", [], False),
     "adapt": ("operators.headless.cli", ["adapt"], False),
     "analyze": ("operators.headless.cli", ["analyze"], False),
@@ -59,7 +62,8 @@ COMMANDS = {
     "compare": ("devtools.gallery.compare", [], False),
     "window": ("devtools.window.main", [], False),
     "campaign": ("devtools.campaign.main", [], True),
-    PEERS: ("benchmarks.benchmark", [], False),
+    "benchmark": ("benchmarks.benchmark", [], PEERS),
+    "farm": ("devtools.farm.main", [], FARM),
     "build": ("devtools.build", [], False),
     "lint": ("devtools.checks.lint", [], True),
 }
@@ -84,12 +88,12 @@ def main(argv: list[str]) -> int:
         return 0
     try:
         command, wanted, rest = split_arguments(argv)
-        module, leading, tools = COMMANDS[command]
+        module, leading, needed = COMMANDS[command]
         blender, python = pythons.choose(wanted)
-        if command == PEERS:
-            env = virtual_environment.prepare_peers(blender, python)
+        if isinstance(needed, Requirements):
+            env = virtual_environment.prepare_without_blender(blender, python, needed)
         else:
-            env = virtual_environment.prepare(blender, python, tools)
+            env = virtual_environment.prepare(blender, python, needed)
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2

@@ -3,6 +3,7 @@
   batch CLIPS… --recipes RECIPES… --out DIR   plan, run and collect; the same command again goes on
   batch plan …                                the same words: only write DIR/manifest.jsonl
   batch cell DIR CELL                         solve one cell
+  batch collect DIR                           make table, contact sheet and page anew
 Exit codes: 0 all done; 2 wrong input, in sentences on the standard error; 3 some have no solution;
 1 some failed by no fault of what was asked; 130 interrupted.
 """

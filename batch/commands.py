@@ -17,6 +17,8 @@ from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
 from .cells.cell import run_cell
 from .cells.outputs import needs_blender
+from .collect.collecting import collect
+from .farm.commands import FARM_ACTS, add_farm_commands
 from .planning.plan import Asked, Planned, plan, refreshed
 from .records.faults import BatchFault
 from .records.locks import batch_lock
@@ -78,6 +80,10 @@ def parser() -> argparse.ArgumentParser:
     cell.set_defaults(act=ACTS["cell"])
     cell.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     cell.add_argument("cell", metavar="CELL", help="its name in the manifest")
+    add_farm_commands(commands)
+    collecting = commands.add_parser("collect", help="make table, contact sheet and page anew")
+    collecting.set_defaults(act=ACTS["collect"])
+    collecting.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     return top
 
 
@@ -106,6 +112,14 @@ def _add_planning(each: argparse.ArgumentParser, name: str) -> None:
     each.add_argument("--rate", type=_positive, metavar="HZ", help="AMC files' frames a second")
     each.add_argument(
         "--jobs", type=_count, default=cores(), metavar="N", help="at once (default: the cores)"
+    )
+    each.add_argument(
+        "--dask", metavar="ADDRESS", help="a Dask scheduler, or its file, whose workers solve"
+    )
+    each.add_argument(
+        "--no-sharing",
+        action="store_true",
+        help="send all through the scheduler, though Dask's workers see the folder",
     )
 
 
@@ -148,15 +162,39 @@ def run_batch(options: argparse.Namespace) -> int:
         planned = _planned(options)
         manifest = planned.manifest
         progress = Progress(sys.stdout, len(manifest.cells), _done(manifest))
-        blender = any(needs_blender(c.clip, manifest.settings.outputs) for c in manifest.cells)
-        command = worker_command(blender=blender)
         try:
-            LocalRun(folder, manifest, options.jobs, command, progress, MemoryWatch()).run()
+            _solve(options, manifest, progress)
         finally:
             manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
             with suppress(BatchFault):  # that of the run is the one to be told
                 write_manifest(folder, manifest)
+        collect(folder)
     return _told_end(folder, manifest)
+
+
+def _solve(options: argparse.Namespace, manifest: Manifest, progress: Progress) -> None:
+    """What is not solved yet, by Dask's workers or by processes of this machine."""
+    folder: Path = options.out
+    if options.dask is None:
+        blender = any(needs_blender(c.clip, manifest.settings.outputs) for c in manifest.cells)
+        command = worker_command(blender=blender)
+        LocalRun(folder, manifest, options.jobs, command, progress, MemoryWatch()).run()
+        return
+    try:
+        from .cluster.dispatch import run_on_dask
+    except ImportError as error:
+        raise BatchFault(
+            f"Dask is not beside this Hangtime ({error}); run the batch by the wheel's "
+            "`hangtime-batch`, installed with Dask: docs/manual/farm.md tells how."
+        ) from error
+    plans = {plan.cell: plan for plan in manifest.cells}
+    run_on_dask(
+        folder,
+        options.dask,
+        progress.note,
+        lambda result: progress.ended(plans[result.cell], result),
+        share=not options.no_sharing,
+    )
 
 
 def _done(manifest: Manifest) -> Counter[State]:
@@ -170,7 +208,7 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     counts = Counter(cell.state for cell in manifest.cells)
     others = [cell for cell in manifest.cells if cell.state is not State.DONE]
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
-    print(f"{len(manifest.cells)} cells: {summary}. Each has its folder in {folder / 'cells'}.")
+    print(f"{len(manifest.cells)} cells: {summary}. Look at them in {folder / 'index.html'}.")
     for cell in others[:MOST_TOLD]:
         result = read_result(folder, cell.cell)
         if result is not None:
@@ -218,6 +256,12 @@ def _planned(options: argparse.Namespace) -> Planned:
     return planned
 
 
+def collect_batch(options: argparse.Namespace) -> int:
+    """Table, contact sheet and page of what there is so far. Raises BatchFault."""
+    collect(options.folder)
+    return 0
+
+
 def cell_of_batch(options: argparse.Namespace) -> int:
     """Solves one cell. Raises BatchFault."""
     result = run_cell(options.folder, options.cell)
@@ -231,4 +275,6 @@ ACTS: dict[str, Callable[[argparse.Namespace], int]] = {
     RUN: run_batch,
     "plan": plan_batch,
     "cell": cell_of_batch,
+    "collect": collect_batch,
+    **FARM_ACTS,
 }

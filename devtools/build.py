@@ -1,4 +1,5 @@
-"""Makes the extension's zips, one per platform, with Blender's own builder, and validates them."""
+"""Makes the extension's zips, one per platform, with Blender's own builder, and validates them; and
+the wheel for machines without Blender."""
 
 import argparse
 import importlib.util
@@ -10,13 +11,10 @@ from hashlib import sha256
 from pathlib import Path
 
 from .environment.virtual_environment import REQUIREMENTS, ROOT
+from .wheel import BuildError, build_wheel
 
 PINS = REQUIREMENTS / "casadi.txt"
 MOST_BYTES = 200_000_000  # of a zip that extensions.blender.org takes
-
-
-class BuildError(Exception):
-    """Says in one sentence what could not be built."""
 
 
 def main(argv: list[str]) -> int:
@@ -24,8 +22,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--out", default="dist", type=Path, metavar="DIR", help="default: dist")
     out: Path = parser.parse_args(argv).out
     try:
-        for zipped in build(out):
-            print(f"{zipped}  {zipped.stat().st_size / 1e6:.0f} MB")
+        for made in (*build(out), build_wheel(out)):
+            print(f"{made}  {made.stat().st_size / 1e6:.3g} MB")
     except (BuildError, OSError) as problem:
         print(problem, file=sys.stderr)
         return 1

@@ -104,7 +104,8 @@ def _ended(
     try:
         done = act(settings, plan, fits, outbox, stages)
     except OutputNotWritable as fault:
-        raise FolderGone(explained(fault, None)) from fault  # of the folder, not of the cell
+        said = f"{explained(fault, None)} Then give the same command again."
+        raise FolderGone(said) from fault  # it is the folder's, not the cell's
     except NoSolution as fault:
         return _Ended(State.NO_SOLUTION, explained(fault, recipe))
     except (Fault, InputChanged) as fault:

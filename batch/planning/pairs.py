@@ -17,6 +17,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from glob import glob
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -119,7 +120,7 @@ def _toml_rows(text: str, path: Path) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def _csv_rows(text: str, path: Path) -> Iterator[tuple[str, dict[str, Any]]]:
-    reader = csv.DictReader(text.splitlines())
+    reader = csv.DictReader(StringIO(text, newline=""))
     head = [name.strip() for name in reader.fieldnames or ()]
     if "clip" not in head or len(set(head)) < len(head):
         raise WrongPlan(

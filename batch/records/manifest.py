@@ -117,7 +117,7 @@ class Manifest:
 
 def read_manifest(folder: Path) -> Manifest:
     """The manifest of a batch's folder. Raises WrongManifest with the line, FolderGone."""
-    first, *lines = _text(folder).splitlines()
+    first, *lines = _text(folder).removesuffix("\n").split("\n")
     cells = tuple(_cell(folder, number, line) for number, line in enumerate(lines, start=2))
     manifest = Manifest(_settings(folder, first), cells)
     _require_true(folder, manifest)

@@ -37,6 +37,9 @@ class Requirements:
 
 
 CASADI = Requirements("casadi.txt", "CasADi (90 MB)", ("--no-deps", "--require-hashes"))
+# Environments without Blender: its numpy is not the peers', and a farm's machines have none.
+PEERS = Requirements("benchmark.txt", "the benchmark's peers (400 MB to fetch, 1.3 GB on disk)")
+FARM = Requirements("farm.txt", "the farms' engines (50 MB to fetch, 200 MB on disk)")
 
 
 @dataclass(frozen=True)
@@ -77,12 +80,12 @@ def prepare(blender: Blender, python: str, tools: bool) -> VirtualEnvironment:
     return env
 
 
-def prepare_peers(blender: Blender, python: str) -> VirtualEnvironment:
-    """The benchmark's environment: the solvers that we are compared with, and no Blender, whose
-    numpy is not theirs. Raises SetUpError."""
-    env = VirtualEnvironment(CACHE / f"python{blender.python}-benchmark")
-    peers = Requirements("benchmark.txt", "the benchmark's peers (400 MB to fetch, 1.3 GB on disk)")
-    complete(env, [peers, CASADI], python)
+def prepare_without_blender(
+    blender: Blender, python: str, wanted: Requirements
+) -> VirtualEnvironment:
+    """An environment of its own for PEERS or FARM. Raises SetUpError."""
+    env = VirtualEnvironment(CACHE / f"python{blender.python}-{Path(wanted.file).stem}")
+    complete(env, [wanted, CASADI], python)
     return env
 
 

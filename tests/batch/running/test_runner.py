@@ -1,11 +1,10 @@
 """The local runner, with cells that are cheap: order, deaths, memory, kills and resuming."""
 
-import os
 import random
 import shutil
-import signal
 import subprocess
 import sys
+import threading
 import time
 from collections import Counter
 from pathlib import Path
@@ -16,7 +15,9 @@ from hangtime.batch.records.locks import batch_lock
 from hangtime.batch.records.manifest import read_manifest
 from hangtime.batch.records.result import CELLS, State, read_result
 from hangtime.batch.running.memory import MemoryWatch
+from hangtime.batch.running.progress import Progress
 from hangtime.batch.running.queue import CellQueue
+from hangtime.batch.running.runner import LocalRun
 from hangtime.tests.helpers import fake_batches
 from hangtime.tests.helpers.fake_batches import lines, planned, run
 
@@ -87,14 +88,11 @@ def test_a_cell_that_would_not_fit_into_memory_waits_for_the_other(tmp_path: Pat
 
 def test_workers_that_cannot_start_are_told_in_a_sentence(tmp_path: Path) -> None:
     planned(tmp_path, {"a.bvh": "sleep 0"})
-    from hangtime.batch.running.progress import Progress
-    from hangtime.batch.running.runner import LocalRun
-
     folder = tmp_path / "out"
     manifest = read_manifest(folder)
     progress = Progress(sys.stdout, 1, Counter())
     command = [sys.executable, "-c", "import sys; sys.exit('no numpy')"]
-    with pytest.raises(BatchFault, match="No worker process can be started: .*no numpy"):
+    with pytest.raises(BatchFault, match=r"No worker process can be started: .*no numpy"):
         LocalRun(folder, manifest, 1, command, progress).run()
 
 
@@ -118,14 +116,14 @@ def test_workers_begin_with_clips_that_nobody_fits_and_stay_with_theirs(tmp_path
     assert queue.take(None) == first
 
 
-def kill_and_resume(folder: Path, command: list[str], kills: int, longest: float, seed: int) -> int:
+def kill_and_resume(command: list[str], kills: int, longest: float, seed: int) -> int:
     """SIGKILLs the run of a batch at random moments, then lets it end; how often it was killed."""
     drawn, killed = random.Random(seed), 0
     for _ in range(kills):
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         time.sleep(drawn.uniform(0.0, longest))
         killed += process.poll() is None
-        os.kill(process.pid, signal.SIGKILL)
+        process.kill()
         process.wait()
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=600)
     return killed
@@ -149,7 +147,7 @@ def test_a_batch_that_is_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     planned(tmp_path, {f"{i}.bvh": f"sleep 0.{i % 3}1" for i in range(8)})
     folder = tmp_path / "out"
     command = [*fake_batches.command(), str(folder), "2"]
-    killed = kill_and_resume(folder, command, 3, 2.5, seed=1)
+    killed = kill_and_resume(command, 3, 2.5, seed=1)
     assert_nothing_lost_or_solved_twice(folder, killed, 2)
 
 
@@ -160,7 +158,7 @@ def test_a_batch_that_is_killed_twenty_times_loses_nothing(tmp_path: Path, seed:
     planned(tmp_path, {f"{i}.bvh": f"sleep 0.{i % 7}" for i in range(60)})
     folder = tmp_path / "out"
     command = [*fake_batches.command(), str(folder), "2"]
-    killed = kill_and_resume(folder, command, 20, 3.0, seed)
+    killed = kill_and_resume(command, 20, 3.0, seed)
     assert_nothing_lost_or_solved_twice(folder, killed, 2)
 
 
@@ -168,7 +166,6 @@ def test_results_that_vanish_are_told(tmp_path: Path) -> None:
     """Such as on a shared folder that is gone."""
     planned(tmp_path, {"a.bvh": "sleep 0.5"})
     folder = tmp_path / "out"
-    import threading
 
     def remove() -> None:
         while not lines(folder, "begin"):

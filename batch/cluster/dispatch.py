@@ -1,0 +1,258 @@
+"""A batch on the workers of a Dask scheduler.
+
+Each cell is a task for a worker that is named. So the run itself decides what goes where: to workers
+that share the batch's folder by that folder, to others as bytes through the scheduler; what was lost
+with a worker goes to another, and what is slow to an idle one as well. Whatever ends is in the
+batch's folder at once, so that a run which is killed has lost nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import time
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from distributed import Client, Future, wait
+
+from ..cells.cell import write_failure
+from ..cells.fits import FITS
+from ..cells.outputs import needs_blender
+from ..records.faults import BatchFault, FolderGone, WrongPlan
+from ..records.manifest import CellPlan, Manifest, gone, read_manifest
+from ..records.result import CellResult, State, read_result
+from .attempts import MOST_TRIES, Attempt, Attempts, pair_of
+from .crew import Crew
+from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of
+from .worker_side import (
+    Delivery,
+    NotShared,
+    Reach,
+    look_around,
+    own_build,
+    solve_away,
+    solve_in,
+)
+
+Tell = Callable[[str], None]
+PATIENCE = 0.5  # s between looks at the workers
+
+
+class FarmGone(BatchFault):
+    """A scheduler that cannot be reached, or no more."""
+
+
+def run_on_dask(
+    folder: Path,
+    address: str,
+    tell: Tell,
+    ended: Callable[[CellResult], None] = lambda _: None,
+    *,
+    share: bool = True,
+) -> None:
+    """Run all cells of a planned batch that have no result on a scheduler's workers.
+
+    address: of the scheduler, or a scheduler file. tell: takes sentences on workers. ended: takes
+    every result. share: let workers that see the folder use it. Raises BatchFault: FarmGone, FolderGone, WrongManifest, WrongPlan; what has ended is kept.
+    """
+    manifest = read_manifest(folder)
+    outputs = manifest.settings.outputs
+    if any(needs_blender(plan.clip, outputs) for plan in manifest.cells):
+        raise WrongPlan(
+            "Workers of Dask have no Blender, which FBX files and outputs such as pictures need; take "
+            "BVH or AMC clips and the outputs npz and bvh, or run the batch here or by Flamenco."
+        )
+    plans = [plan for plan in manifest.cells if unfinished(folder, plan)]
+    if not plans:
+        return
+    with connected(address) as client:
+        try:
+            with token_in(folder) as token:
+                Dispatch(client, folder, manifest, token, share, tell, ended).run(plans)
+        except (TimeoutError, OSError) as error:
+            raise FarmGone(
+                f"The scheduler at {address} is gone ({error or type(error).__name__}). What has "
+                "ended is kept: start it again, and give the same command."
+            ) from error
+
+
+def unfinished(folder: Path, plan: CellPlan) -> bool:
+    result = read_result(folder, plan.cell)
+    return result is None or result.state is State.FAILED
+
+
+@contextmanager
+def connected(address: str) -> Iterator[Client]:
+    """A client of the scheduler. Raises FarmGone."""
+    file = Path(address)
+    try:
+        if "://" not in address and file.is_file():
+            client = Client(scheduler_file=str(file))
+        else:
+            client = Client(address)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise FarmGone(
+            f"No scheduler answers at {address} ({error or type(error).__name__}); check the "
+            "address, such as tcp://host:8786, or the scheduler file, and that it runs."
+        ) from error
+    with client:
+        yield client
+
+
+@contextmanager
+def token_in(folder: Path) -> Iterator[str]:
+    """The name of a file in the batch's folder, by which workers know it. Raises FolderGone."""
+    path = folder / f".farm-{uuid.uuid4().hex}"
+    try:
+        path.touch()
+    except OSError as error:
+        raise gone(folder, error) from error
+    try:
+        yield path.name
+    finally:
+        with suppress(OSError):
+            path.unlink()
+
+
+@dataclass
+class Dispatch:
+    """One run. bytes_sent: what workers away from the folder share, by its SHA-256."""
+
+    client: Client
+    folder: Path
+    manifest: Manifest
+    token: str
+    share: bool
+    tell: Tell
+    ended: Callable[[CellResult], None]
+    crew: Crew = field(default_factory=lambda: Crew(own_build(), {}, set()))
+    futures: dict[Future, Attempt] = field(default_factory=dict)
+    bytes_sent: dict[str, Future] = field(default_factory=dict)
+    idle_told: bool = False
+
+    def run(self, plans: list[CellPlan]) -> None:
+        """Until each has a result. Raises BatchFault, and OSError where the scheduler is gone."""
+        self.fits = fits_by_clip(self.folder)
+        ended = {plan.cell for plan in self.manifest.cells} - {plan.cell for plan in plans}
+        fitted = [pair_of(plan) for plan in self.manifest.cells if plan.cell in ended]
+        self.attempts = Attempts.of(plans, fitted)
+        while not self.attempts.over:
+            threads = self._meet_workers()
+            now = time.monotonic()
+            for worker in self.crew.reach:
+                while self.attempts.load(worker) < threads[worker]:
+                    attempt = self.attempts.next_for(worker, now, self.crew.reach)
+                    if attempt is None:
+                        break
+                    self._begin(attempt)
+            self._take()
+
+    # ------------------------------------------------------------ workers
+
+    def _meet_workers(self) -> dict[str, int]:
+        """Forget workers that are gone, ask new ones who they are; threads of each."""
+        threads: dict[str, int] = self.client.nthreads()
+        for address in sorted(self.crew.gone(threads)):
+            self.tell(f"Worker {address} is gone; its cells go to others.")
+            self._lose(address)
+        strangers = self.crew.strangers(threads)
+        if strangers:
+            answers = self.client.run(
+                *(look_around, self._shared_folder(), self.token),
+                workers=strangers,
+                on_error="return",
+            )
+            for words in self.crew.admit(answers):
+                self.tell(words)
+        if not self.crew.reach and not self.idle_told:
+            self.tell("No worker can be used yet; the batch waits for one.")
+        self.idle_told = not self.crew.reach
+        return threads
+
+    def _shared_folder(self) -> str:
+        """The batch's folder, if workers may use it."""
+        return str(self.folder.resolve()) if self.share else ""
+
+    def _lose(self, address: str) -> None:
+        for future, attempt in list(self.futures.items()):
+            if attempt.worker == address:
+                future.cancel()
+                self._retry(future, "its worker ended meanwhile, as for want of memory")
+
+    # ------------------------------------------------------------ cells
+
+    def _begin(self, attempt: Attempt) -> None:
+        parcel = parcel_of(attempt.plan)
+        if self.crew.reach[attempt.worker] is Reach.SHARED:
+            paths = [str(path) for path in parcel.files.values()]
+            task = (solve_in, str(self.folder.resolve()), attempt.plan.cell, paths)
+        else:
+            files = {name: self._sent(path) for name, path in parcel.files.items()}
+            fits = {name: self._sent(path) for name, path in self._fits(attempt.plan)}
+            task = (solve_away, self.token, self.manifest.settings, parcel.plan, files, fits)
+        key = f"cell-{attempt.plan.cell}-{uuid.uuid4().hex}"
+        future = self.client.submit(*task, key=key, workers=[attempt.worker], pure=False)
+        self.futures[future] = attempt
+
+    def _fits(self, plan: CellPlan) -> Iterator[tuple[str, Path]]:
+        """Files of the fits of a cell's clip that are in the batch's folder."""
+        for fit in sorted(self.fits.get(plan.clip_sha256, ())):
+            for path in (self.folder / FITS / fit).iterdir():
+                yield f"{fit}/{path.name}", path
+
+    def _sent(self, path: Path) -> Future:
+        """A file's bytes as a task, which the scheduler does again where a worker took them along:
+        `bytes`, that workers without Hangtime may do it too."""
+        content = path.read_bytes()
+        digest = hashlib.sha256(content).hexdigest()
+        if digest not in self.bytes_sent:
+            self.bytes_sent[digest] = self.client.submit(bytes, content, key=f"bytes-{digest}")
+        return self.bytes_sent[digest]
+
+    def _take(self) -> None:
+        """Wait for what ends next, but not for long, and take in all that has."""
+        if not self.futures:
+            time.sleep(PATIENCE)
+            return
+        with suppress(TimeoutError):
+            wait(list(self.futures), timeout=PATIENCE, return_when="FIRST_COMPLETED")
+        for future in [each for each in self.futures if each.done()]:
+            attempt = self.futures[future]
+            if future.status == "cancelled":
+                self._retry(future, "the scheduler dropped it", blame=False)
+                continue
+            fault = future.exception()
+            if fault is None:
+                self._take_in(self.futures.pop(future), future.result())
+            elif isinstance(fault, NotShared | FolderGone):
+                where = f"Worker {attempt.worker} does not share the batch's folder"
+                self.tell(f"{where} ({fault}); its results come through the scheduler.")
+                self.crew.reach[attempt.worker] = Reach.NONE
+                self._retry(future, str(fault))
+            else:
+                self._retry(future, f"{type(fault).__name__}: {fault}")
+
+    def _take_in(self, attempt: Attempt, delivery: Delivery) -> None:
+        result = delivery.result
+        failed = result.state is State.FAILED
+        if failed and self.attempts.tries[result.cell] + 1 < MOST_TRIES:
+            self.attempts.again(attempt)
+            return
+        clip = attempt.plan.clip_sha256
+        deliver_fits(self.folder, delivery.fits, clip)
+        self.fits.setdefault(clip, set()).update(name.partition("/")[0] for name in delivery.fits)
+        if delivery.files:
+            deliver_cell(self.folder, result.cell, delivery.files)
+        if self.attempts.end(attempt, time.monotonic()):
+            self.ended(result)
+
+    def _retry(self, future: Future, why: str, *, blame: bool = True) -> None:
+        """Let a cell wait anew that came to nothing; it fails where that was so too often."""
+        attempt = self.futures.pop(future)
+        plan = attempt.plan
+        if not self.attempts.again(attempt, blame=blame) and self.attempts.give_up(plan):
+            sentence = f"No worker brought a result in {MOST_TRIES} tries; the last: {why}."
+            self.ended(write_failure(self.folder, plan.cell, sentence))

@@ -1,0 +1,80 @@
+"""What a cell reads, to be sent where its files are not; and what it made, brought back."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePosixPath
+
+from ..cells.fits import FITS
+from ..cells.work import cell_files
+from ..records.aside import written_aside
+from ..records.faults import FolderGone
+from ..records.manifest import CellPlan, gone
+from ..records.result import State, cell_folder, drop_failure, read_result
+from .worker_side import Files, write_files
+
+CLIP = "clip.sha256"  # within a fit's folder: whose it is
+
+
+@dataclass(frozen=True)
+class Parcel:
+    """A cell for elsewhere. plan: with clip and recipe as they are called in `files`."""
+
+    plan: CellPlan
+    files: Mapping[str, Path]
+
+
+def parcel_of(plan: CellPlan) -> Parcel:
+    """The files that a cell reads, laid out to each other as they are here. Raises FolderGone."""
+    try:
+        paths = [Path(os.path.abspath(path)) for path in cell_files(plan)]
+        root = Path(os.path.commonpath([path.parent for path in paths]))
+    except (OSError, ValueError) as error:  # gone, or on drives without a common root
+        raise FolderGone(f"The files of cell {plan.cell} cannot be sent: {error}.") from error
+    names = {path.relative_to(root).as_posix(): path for path in paths}
+    clip, recipe = (os.path.abspath(path) if path else "" for path in (plan.clip, plan.recipe))
+    called = {str(path): name for name, path in names.items()} | {"": ""}
+    return Parcel(replace(plan, clip=called[clip], recipe=called[recipe]), names)
+
+
+def deliver_cell(folder: Path, cell: str, files: Files) -> None:
+    """Lay a cell's folder into the batch's, whole. One that is there stays, but a failed one's.
+
+    Raises FolderGone.
+    """
+    before = read_result(folder, cell)
+    if before is None or before.state is State.FAILED:
+        drop_failure(folder, cell)
+        _deliver(cell_folder(folder, cell), files)
+
+
+def deliver_fits(folder: Path, files: Files, clip_sha256: str) -> None:
+    """Lay fits of a clip into the batch's folder, each whole; those that are there stay.
+
+    Raises FolderGone.
+    """
+    by_fit: dict[str, dict[str, bytes]] = {}
+    for name, content in files.items():
+        fit, *rest = PurePosixPath(name).parts
+        by_fit.setdefault(fit, {CLIP: clip_sha256.encode()})["/".join(rest)] = content
+    for fit, own in by_fit.items():
+        if not (folder / FITS / fit).exists():
+            _deliver(folder / FITS / fit, own)
+
+
+def fits_by_clip(folder: Path) -> dict[str, set[str]]:
+    """Names of fits in the batch's folder that were delivered, by their clips' hashes."""
+    found: dict[str, set[str]] = {}
+    for path in (folder / FITS).glob(f"*/{CLIP}"):
+        found.setdefault(path.read_text(), set()).add(path.parent.name)
+    return found
+
+
+def _deliver(target: Path, files: Files) -> None:
+    try:
+        with written_aside(target) as aside:
+            write_files(aside, files)
+    except OSError as error:
+        raise gone(target, error) from error

@@ -1,0 +1,1 @@
+"""Batches on this machine, on Dask and in OpenJD's sessions, measured."""

@@ -1,0 +1,166 @@
+"""Cells that are truly solved: one short hop, whose fit the tests of this file share."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hangtime.batch.cells.cell import run_cell
+from hangtime.batch.cells.fits import FITS
+from hangtime.batch.cells.work import cell_files
+from hangtime.batch.commands import run
+from hangtime.batch.planning.plan import Asked, plan
+from hangtime.batch.records.manifest import BatchSettings, CellPlan, Output, read_manifest
+from hangtime.batch.records.result import CELLS, State, cell_folder, read_result
+from hangtime.bridge.formats.bvh import read_bvh
+from hangtime.tests.helpers.clips import mocap_path
+
+RECIPE = """
+frames = [20, 190]
+[[pin]]
+name = "Landing"
+phase = "{}"
+forward = {}
+"""
+TRAJECTORY = "trajectory.npz"
+
+
+@pytest.fixture(scope="module")
+def batch(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A batch of a short hop with two landings, and one on a phase that is not there."""
+    folder = tmp_path_factory.mktemp("library ü")
+    (folder / "hop 1.bvh").write_bytes(mocap_path("hop_01_01.bvh").read_bytes())
+    (folder / "further.toml").write_text(RECIPE.format("ground 2", "[0.05, 0.1]"))
+    (folder / "wrong.toml").write_text(RECIPE.format("ground 7", "0.1"))
+    settings = BatchSettings((Output.NPZ, Output.BVH))
+    recipes = [str(folder / name) for name in ("further.toml", "wrong.toml")]
+    plan(Asked(settings, [str(folder / "hop 1.bvh")], recipes), folder / "out")
+    return folder / "out"
+
+
+def cells(batch: Path) -> tuple[CellPlan, ...]:
+    return read_manifest(batch).cells
+
+
+def test_a_cell_leaves_what_was_asked_for_in_a_folder_of_its_own(batch: Path) -> None:
+    cell = cells(batch)[0].cell
+    result = run_cell(batch, cell)
+    assert (result.state, result.exit_code, result.sentence) == (State.DONE, 0, "")
+    assert result.headline[0].startswith("Solved")
+    assert result.values == {"pin.Landing.forward": 0.05}
+    assert result.seconds["fit"] > 0.0
+    assert result.seconds["total"] > result.seconds["solve"] > 0.0
+    wanted = {"log.txt", "report.json", "report.txt", TRAJECTORY, "motion.bvh"}
+    assert set(result.files) == wanted
+    assert {p.name for p in cell_folder(batch, cell).iterdir()} == {*wanted, "result.json"}
+    assert read_result(batch, cell) == result
+
+
+def test_a_cell_that_is_solved_is_not_solved_again(batch: Path) -> None:
+    cell = cells(batch)[0].cell
+    first = run_cell(batch, cell)
+    written = (cell_folder(batch, cell) / TRAJECTORY).stat().st_mtime_ns
+    assert run_cell(batch, cell) == first
+    assert (cell_folder(batch, cell) / TRAJECTORY).stat().st_mtime_ns == written
+
+
+def test_cells_of_a_clip_share_its_fit_and_find_it_as_it_was_to_the_bit(
+    batch: Path, tmp_path: Path
+) -> None:
+    first, second = (cell.cell for cell in cells(batch)[:2])
+    run_cell(batch, first)
+    shared = run_cell(batch, second)
+    kept = [p for p in (batch / FITS).iterdir() if not p.name.startswith(".")]
+    assert len(kept) == 1
+    assert shared.seconds["fit"] < 0.1
+    other = tmp_path / "out"
+    clips, recipes = {c.clip for c in cells(batch)}, [cells(batch)[1].recipe]
+    plan(Asked(BatchSettings((Output.NPZ,)), list(clips), recipes), other)
+    alone = [c.cell for c in cells(other) if c.values == {"pin.Landing.forward": 0.1}]
+    run_cell(other, alone[0])
+    one = np.load(cell_folder(batch, second) / TRAJECTORY)
+    two = np.load(cell_folder(other, alone[0]) / TRAJECTORY)
+    assert all(np.array_equal(one[k], two[k], equal_nan=one[k].dtype.kind == "f") for k in one)
+
+
+def test_the_bvh_plays_the_adapted_motion_on_the_clips_own_skeleton(batch: Path) -> None:
+    cell = cells(batch)[1]
+    run_cell(batch, cell.cell)
+    made = read_bvh(cell_folder(batch, cell.cell) / "motion.bvh")
+    clip = read_bvh(Path(cell.clip))
+    assert {j.name for j in made.joints} == {j.name for j in clip.joints}
+    assert made.frame_time == pytest.approx(clip.frame_time, rel=1e-6)
+    unit = 0.0254 / 0.45
+    ends = made.positions[[0, -1], 0] * unit
+    recorded = clip.positions[[19, 189], 0] * unit
+    moved = np.linalg.norm(ends - recorded, axis=1)
+    assert moved[0] < 0.05
+    assert 0.06 < moved[1] < 0.14  # it landed 0.1 m further
+
+
+def test_wrong_input_is_told_with_the_recipes_line_and_its_folder_is_whole(batch: Path) -> None:
+    cell = cells(batch)[2]
+    result = run_cell(batch, cell.cell)
+    assert (result.state, result.exit_code) == (State.WRONG_INPUT, 2)
+    assert "wrong.toml, line 5" in result.sentence
+    assert "“ground 7”" in result.sentence
+    assert result.sentence in (cell_folder(batch, cell.cell) / "log.txt").read_text()
+
+
+def test_every_file_that_a_cell_reads_is_told(batch: Path) -> None:
+    cell = cells(batch)[0]
+    assert cell_files(cell) == (Path(cell.clip), Path(cell.recipe))
+
+
+@pytest.mark.parametrize("which", ["clip", "recipe"])
+def test_what_changed_since_it_was_planned_is_not_solved(tmp_path: Path, which: str) -> None:
+    clip, recipe = tmp_path / "hop.bvh", tmp_path / "recipe.toml"
+    clip.write_bytes(mocap_path("hop_01_01.bvh").read_bytes())
+    recipe.write_text(RECIPE.format("ground 2", "[0.1]"))
+    folder = tmp_path / "out"
+    plan(Asked(BatchSettings(), [str(clip)], [str(recipe)]), folder)
+    changed = clip if which == "clip" else recipe
+    changed.write_text(changed.read_text() + ("\n" if which == "clip" else "up = 0.1\n"))
+    result = run_cell(folder, cells(folder)[0].cell)
+    assert result.state is State.WRONG_INPUT
+    assert f"{changed} has changed since" in result.sentence
+
+
+def test_the_command_line_runs_a_batch_and_goes_on_with_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recipe, clip = tmp_path / "recipe.toml", str(mocap_path("hop_01_01.bvh"))
+    recipe.write_text(RECIPE.format("ground 2", "[0.1]"))
+    command = [clip, "--recipes", str(recipe), "--out", str(tmp_path / "out"), "--jobs", "1"]
+    assert run(command) == 0
+    assert "1 cells: 1 done" in capsys.readouterr().out
+    recipe.write_text(RECIPE.format("ground 7", "[0.1]"))
+    assert run(command) == 2
+    told = capsys.readouterr().out
+    assert "wrong input: hop_01_01.bvh + recipe.toml" in told
+    assert "of an earlier plan" in told
+    assert run([*command, "--check"]) == 0
+    results = [read_result(tmp_path / "out", c.cell) for c in cells(tmp_path / "out")]
+    assert [r.figures["findings"] for r in results if r is not None] == [0.0]
+    assert len(list((tmp_path / "out" / CELLS).iterdir())) == 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nothing.bvh", "--recipes", "r.toml", "--out", "o"], "No recipe"),
+        (["cell", "nowhere", "00001-ab"], "There is no"),
+        (["a.bvh", "--out", "o", "--outputs", "xyz"], "unknown output"),
+        (["a.bvh", "--out", "o", "--jobs", "0"], "1 or more"),
+        (["a.bvh"], "--out"),
+    ],
+)
+def test_wrong_commands_end_with_2_and_a_sentence(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(arguments) == 2
+    assert said in capsys.readouterr().err
