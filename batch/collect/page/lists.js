@@ -225,5 +225,5 @@ function widthOf(column) {
   if (column.key === "outcome") return 420;
   if (column.number) return 118;
   const longest = Math.max(...column.distinct.map((x) => String(x).length), 6);
-  return Math.min(Math.max(7.6 * longest + 24, 100), 260);
+  return Math.min(Math.max(8.6 * longest + 24, 100), 300);
 }
