@@ -83,6 +83,7 @@ def test_the_contact_sheet_shows_the_pictures_of_the_cells(folder: Path) -> None
     assert np.ptp(empty) < 12  # the last cell was not run
 
 
+@pytest.mark.slow  # draws all that a sheet may have
 def test_a_large_batchs_sheet_takes_every_so_manieth(tmp_path: Path) -> None:
     make_batch(tmp_path / "many", 3 * MOST, clips=10)
     collect(tmp_path / "many")
