@@ -19,7 +19,7 @@ from ..records.faults import BatchFault, FolderGone
 from ..records.manifest import BatchSettings, CellPlan, gone, read_plan
 from ..records.result import RESULT, CellResult, State, cell_folder, drop_failure, read_result
 from .fits import SharedFits
-from .work import Done, InputChanged, adapt_cell, check_cell
+from .work import MEASURING, Done, InputChanged, adapt_cell, check_cell
 
 LOG = "log.txt"
 Work = Callable[[BatchSettings, CellPlan, SharedFits, Outbox, Stages], Done]
@@ -81,7 +81,7 @@ def _written(
             ended = _ended(settings, plan, fits, outbox, stages, act)
             outbox.deliver()
         _tell(ended, log)
-    told = {"fit": FITTING, "solve": ADAPTING}
+    told = {"fit": FITTING, "solve": ADAPTING, "report": MEASURING}
     seconds = {
         word: sum(s.seconds for s in stages.done if s.name == stage) for word, stage in told.items()
     }

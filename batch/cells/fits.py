@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,8 @@ from ..records.locks import held
 from ..records.manifest import version
 from .reading import ReadClip
 
+SOLVER = ".solver."
+PACKAGE = __name__.removesuffix(".batch.cells.fits")
 FITS = "fits"  # within a batch's folder
 FILE = "fit.pickle"
 Analysed = tuple[Subject, ReadClip]
@@ -90,7 +93,8 @@ class SharedFits:
 
     def _read(self, key: str) -> Fit | None:
         try:
-            fitted = pickle.loads((self._folder / key / FILE).read_bytes())
+            with (self._folder / key / FILE).open("rb") as file:
+                fitted = _Unpickler(file).load()
         except FileNotFoundError:
             return None
         except (pickle.UnpicklingError, EOFError, AttributeError, ImportError):
@@ -98,6 +102,15 @@ class SharedFits:
             return None
         assert isinstance(fitted, Fit)
         return fitted
+
+
+class _Unpickler(pickle.Unpickler):
+    """Finds the solver's classes whatever the package is called: in Blender an extension has
+    another name than in a worker."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        _, solver, inner = module.partition(SOLVER)
+        return super().find_class(f"{PACKAGE}{solver}{inner}" if solver else module, name)
 
 
 def fit_key(subject: Subject) -> str:

@@ -38,6 +38,7 @@ from .outputs import needs_blender, write_motion, write_plain
 from .reading import ReadClip, read_clip
 
 DIAGNOSIS = "doctor.txt"
+MEASURING = "Measuring"  # as `adapt` calls it
 FORMS = {Output.FBX: FileFormat.FBX, Output.GLTF: FileFormat.GLTF}
 
 
@@ -87,7 +88,7 @@ def adapt_cell(
         report = result.report(loaded.origin, stages.done)
         write_plain(result, report, (), outbox)
     elif loaded.scene is None:
-        with stages.stage("Measuring"):
+        with stages.stage(MEASURING):
             report = result.report(loaded.origin, stages.done)
         write_plain(result, report, settings.outputs, outbox)
     else:

@@ -41,6 +41,7 @@ from .worker_side import (
 Tell = Callable[[str], None]
 PATIENCE = 0.5  # s between looks at the workers
 ANSWERING = 10.0  # s that a scheduler may take
+MOST_SENT = 64  # files that workers keep for later cells, the latest of them
 FETCHING = 15.0  # s that a cell's files may take on their way; a lost worker's never come
 
 
@@ -218,9 +219,12 @@ class Dispatch:
         except OSError as error:
             raise gone(path, error) from error
         digest = hashlib.sha256(content).hexdigest()
-        if digest not in self.bytes_sent:
-            self.bytes_sent[digest] = self.client.submit(bytes, content, key=f"bytes-{digest}")
-        return self.bytes_sent[digest]
+        sent = self.bytes_sent.pop(digest, None)
+        sent = sent or self.client.submit(bytes, content, key=f"bytes-{digest}")
+        self.bytes_sent[digest] = sent
+        if len(self.bytes_sent) > MOST_SENT:  # the oldest goes; who still needs it holds it
+            del self.bytes_sent[next(iter(self.bytes_sent))]
+        return sent
 
     def _take(self) -> None:
         """Wait for what ends next, but not for long, and take in all that has."""

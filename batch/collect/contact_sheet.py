@@ -9,14 +9,14 @@ import numpy as np
 
 from ..records.manifest import gone
 from ..records.result import State, cell_folder
-from .files import written_aside
+from .files import file_aside
 from .gathering import PICTURE, GatheredBatch, short_keys, short_names
 from .letters import HIGH, write
 from .png import Pixels, UnreadablePicture, read_png, shrunk, write_png
 
 MOST = 60  # pictures; the page has them all
 ACROSS = 5
-SHOT = (360, 160)  # pixels
+SHOT = (340, 240)  # pixels
 GAP, WORDS = 12, 2 * HIGH + 8  # pixels between tiles, and for the words below a picture
 PAPER, EMPTY = (247, 248, 250), (228, 231, 236)
 INK, QUIET, ALARM = (29, 37, 48), (90, 102, 117), (179, 38, 30)
@@ -52,7 +52,7 @@ def write_contact_sheet(batch: GatheredBatch, path: Path) -> None:
         y, x = head + line * high, GAP + column * wide
         tile = sheet[y : y + high - GAP, x : x + SHOT[0]]
         _fill(tile, batch, i, names[batch.plans[i].clip])
-    with written_aside(path) as aside:
+    with file_aside(path) as aside:
         write_png(aside, sheet)
 
 

@@ -11,7 +11,7 @@ from ..records.manifest import gone
 
 
 @contextmanager
-def written_aside(path: Path) -> Iterator[Path]:
+def file_aside(path: Path) -> Iterator[Path]:
     """Where to write what becomes `path` at the end. Raises FolderGone."""
     aside = path.with_name(f".{path.name}.{os.getpid()}")
     try:

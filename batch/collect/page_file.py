@@ -13,7 +13,7 @@ from typing import Any
 
 from ..records.manifest import Output
 from ..records.result import State
-from .files import written_aside
+from .files import file_aside
 from .gathering import PICTURE, Columns, GatheredBatch, short_keys, short_names
 
 PARTS = Path(__file__).with_name("page")
@@ -30,7 +30,7 @@ def write_page(batch: GatheredBatch, path: Path) -> None:
         "script": "".join((PARTS / name).read_text(encoding="utf-8") for name in SCRIPTS),
     }
     template = (PARTS / "page.html").read_text(encoding="utf-8")
-    with written_aside(path) as aside, aside.open("w", encoding="utf-8", newline="\n") as file:
+    with file_aside(path) as aside, aside.open("w", encoding="utf-8", newline="\n") as file:
         for k, piece in enumerate(re.split(r"\{\{(\w+)\}\}", template)):
             file.write(parts[piece] if k % 2 else piece)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from .files import written_aside
+from .files import file_aside
 from .gathering import GatheredBatch
 
 LEADING = ("cell", "clip", "recipe", "state", "exit_code", "sentence")
@@ -16,7 +16,7 @@ def write_table(batch: GatheredBatch, path: Path) -> None:
     read names in other letters. Raises FolderGone."""
     seconds = {f"{name}_s": column for name, column in batch.seconds.items()}
     more = [*batch.values.items(), *seconds.items(), *batch.figures.items()]
-    with written_aside(path) as aside, aside.open("w", encoding="utf-8-sig", newline="") as file:
+    with file_aside(path) as aside, aside.open("w", encoding="utf-8-sig", newline="") as file:
         writer = csv.writer(file)
         writer.writerow([*LEADING, *(name for name, _ in more)])
         cells = zip(batch.plans, batch.states, batch.results, strict=True)

@@ -33,9 +33,9 @@ class CellResult:
     """The end of a cell.
 
     sentence: why it is not done, for people; empty where it is. headline: of the report. seconds:
-    of "fit", "solve" and "total". figures: numbers by names with their units. values: what the
-    recipe's ranges were for it. clip, recipe: names of the files. files: what lies in the folder
-    beside result.json.
+    of "fit", "solve", "report" and "total". figures: numbers by names with their units. values:
+    what the recipe's ranges were for it. clip, recipe: names of the files. files: what lies in the
+    folder beside result.json.
     """
 
     cell: str

@@ -11,7 +11,7 @@ from ...solver.data.faults import OutputNotWritable
 from .layout import Figure, Layout, canvas_of, lay_out
 from .sheet import SheetRow, View
 
-RATE = 30  # frames per second
+RATE = 24  # frames per second
 
 
 def draw_film(
@@ -21,7 +21,7 @@ def draw_film(
     (less where it would be higher than wide).
 
     All rows begin at the same time; who ends first stays as it is. Objects stand as they are at the
-    end. Blocks until done (0.2 s a frame). Works without a display, and
+    end. Blocks until done (some 0.3 s a frame). Works without a display, and
     leaves the user's scenes as they were. Raises OutputNotWritable.
     """
     try:

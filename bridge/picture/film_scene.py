@@ -12,6 +12,8 @@ from .scene import SHADED, Floor, Painter, as_quaternion
 class FilmPainter(Painter):
     """Draws a tier as one figure that moves; path, floor and marks stand as in the picture."""
 
+    caption = 1 / 28  # films are small
+
     def surface(self) -> bpy.types.Material:
         return materials.shaded()
 

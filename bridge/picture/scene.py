@@ -27,7 +27,7 @@ DEPTH = 0.7  # m, half the depth of the floor, at least
 BESIDE = 0.2  # m of floor beyond what stands farthest from its middle
 THICKNESS, GRID_STEP = 0.05, 0.5
 MARGIN, GAP, EDGE = 0.3, 0.14, 0.12  # m beside the figures, between the rows, around it all
-CAPTION, LABEL = 1 / 46, 1 / 75  # heights of the letters, shares of the picture's width
+LABEL = 1 / 75  # height of a time's letters, share of the picture's width
 LETTER = 1.7  # cap heights to a letter's width, so that long captions are set smaller
 PATH, BEAD = 0.012, 0.024  # m, radii
 
@@ -59,6 +59,7 @@ class Painter:
     scene: bpy.types.Scene
     elevation: float
     frame: bpy.types.Object | None = None
+    caption = 1 / 46  # height of a title's letters, share of the picture's width
 
     def __post_init__(self) -> None:
         self.matt, self.plain = self.surface(), materials.plain()
@@ -99,7 +100,7 @@ class Painter:
         """above: whether all tiers are shown once more, from above."""
         left, right = layout.low[0] - MARGIN, layout.high[0] + MARGIN
         wide = right - left + 2 * EDGE
-        caption, label = CAPTION * wide, LABEL * wide
+        caption, label = self.caption * wide, LABEL * wide
         ground = np.array([0.0, 0.0, layout.floor])
         floor = Floor(
             np.array([left, min(-DEPTH, layout.low[1] - BESIDE), layout.floor]),

@@ -11,7 +11,7 @@ LIMITS = {
     EQUAL + "OpenJD's session": Limit("1", 0.0, 0.0),
     "speed-up of 2 local workers over 1": Limit("1", 1.8, 1.95, at_least=True),
     OVERHEAD: Limit("ms", 150.0, 50.0),
-    "measuring a cell's motion for its report": Limit("ms"),
+    "solve of a cell": Limit("s"),
     "seconds a cell, one core": Limit("s"),
     "seconds a fit": Limit("s"),
     "megabytes a cell": Limit("MB"),

@@ -22,3 +22,12 @@ def test_slurms_jobs_have_a_worker_of_one_thread_for_each_core() -> None:
     assert "source /jobs/venv/bin/activate" in script
     for word in ("--nthreads 1", "--nworkers 16", "--nanny"):
         assert word in script
+
+
+def test_the_container_has_the_versions_that_are_tested() -> None:
+    container = (ROOT / "farm" / "Containerfile").read_text(encoding="utf-8")
+    pins = (ROOT / "requirements" / "farm.txt").read_text(encoding="utf-8").splitlines()
+    tested = {line.partition(";")[0].strip() for line in pins}
+    named = re.findall(r"(?:numpy|distributed)==[\d.]+", container + PAGE)
+    assert len(named) == 4
+    assert set(named) <= tested

@@ -41,7 +41,9 @@ class CellDialog {
     if (reason) body.push(make("p", { className: "reason" }, reason));
     const media = make("div", { className: "media" });
     if (film(i)) {
-      media.append(make("video", { src: address(i, film(i)), controls: true, loop: true, muted: true, preload: "metadata" }));
+      const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+      const source = { src: address(i, film(i)), loop: true, muted: true, autoplay: !still };
+      media.append(make("video", { ...source, controls: true, preload: "metadata" }));
     }
     if (picture(i)) {
       const alt = `Recording and adapted motion of ${columns[1].text(i)}`;

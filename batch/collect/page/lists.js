@@ -124,7 +124,7 @@ class Table extends ScrolledCells {
     });
     if (pictured) {
       const head = make("th", { scope: "col", aria: { role: "columnheader" } }, make("button", { type: "button", disabled: true }, "Picture"));
-      head.style.width = "166px";
+      head.style.width = "136px";
       heads.unshift(head);
     }
     const focused = [...$("heads").children].findIndex((head) => head.contains(document.activeElement));
@@ -173,7 +173,7 @@ class Pictures extends ScrolledCells {
   }
 
   get lineHeight() {
-    return 200;
+    return 280;
   }
 
   get headHeight() {
@@ -225,5 +225,5 @@ function widthOf(column) {
   if (column.key === "outcome") return 420;
   if (column.number) return 118;
   const longest = Math.max(...column.distinct.map((x) => String(x).length), 6);
-  return Math.min(Math.max(7.6 * longest + 24, 100), 260);
+  return Math.min(Math.max(8.6 * longest + 24, 100), 300);
 }

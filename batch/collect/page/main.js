@@ -189,4 +189,5 @@ function problems(page) {
 }
 
 new Page();
+(window.requestIdleCallback ?? setTimeout)(() => haystacks()); // so that the first search is quick too
 document.documentElement.dataset.ready = String(Math.round(performance.now()));

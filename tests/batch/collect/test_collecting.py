@@ -21,7 +21,7 @@ from hangtime.devtools.batch_page.made_up import HARD_NAMES, make_batch
 from hangtime.devtools.batch_page.measure import measure_collecting
 
 CELLS_MADE = 40
-TILE = 160 + 2 * HIGH + 20  # pixels from one line of the contact sheet to the next
+TILE = 240 + 2 * HIGH + 20  # pixels from one line of the contact sheet to the next
 
 
 @pytest.fixture(scope="module")
@@ -75,14 +75,15 @@ def test_data_cannot_end_its_element_and_holds_no_number_that_json_lacks() -> No
 def test_the_contact_sheet_shows_the_pictures_of_the_cells(folder: Path) -> None:
     sheet = read_png(folder / "sheet.png")
     done = next(k for k, state in enumerate(gather(folder).states) if state is State.DONE)
-    y, x = 40 + TILE * (done // 5), 12 + 372 * (done % 5)
-    tile = sheet[y : y + 160, x : x + 360].astype(int)
+    y, x = 40 + TILE * (done // 5), 12 + 352 * (done % 5)
+    tile = sheet[y : y + 240, x : x + 340].astype(int)
     arc = (tile[..., 2] - tile[..., 0] > 60).any(axis=0)
     assert arc.mean() > 0.7  # the made-up picture's arc goes from edge to edge
-    empty = sheet[40 + TILE * 7 : 40 + TILE * 7 + 60, 12 + 372 * 4 : 360 + 372 * 4]
+    empty = sheet[40 + TILE * 7 : 40 + TILE * 7 + 60, 12 + 352 * 4 : 340 + 352 * 4]
     assert np.ptp(empty) < 12  # the last cell was not run
 
 
+@pytest.mark.slow  # draws all that a sheet may have
 def test_a_large_batchs_sheet_takes_every_so_manieth(tmp_path: Path) -> None:
     make_batch(tmp_path / "many", 3 * MOST, clips=10)
     collect(tmp_path / "many")
@@ -103,7 +104,7 @@ def test_a_damaged_picture_leaves_its_place_and_the_others(tmp_path: Path) -> No
     damaged.unlink()
     damaged.write_bytes(b"\x89PNG, and then nothing")
     collect(tmp_path)
-    assert read_png(tmp_path / "sheet.png").shape[1] == 12 + 5 * 372
+    assert read_png(tmp_path / "sheet.png").shape[1] == 12 + 5 * 352
     assert len(manifest.cells) == len(table(tmp_path))
 
 

@@ -5,12 +5,16 @@ Slow: installs Chromium where it is missing (Debian, root), and starts it severa
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hangtime.batch.collect.collecting import collect
 from hangtime.batch.records.manifest import Manifest, read_manifest
-from hangtime.batch.records.result import State, read_result
+from hangtime.batch.records.result import RESULT, State, cell_folder, read_result
+from hangtime.bridge.picture.film import draw_film
+from hangtime.bridge.picture.sheet import Limb, SheetRow
 from hangtime.devtools.batch_page.browser import Browser, browser, ensure_browser
 from hangtime.devtools.batch_page.made_up import HARD_NAMES, make_batch
 from hangtime.devtools.batch_page.measure import measure_page
@@ -214,6 +218,32 @@ def test_a_cell_shows_its_picture_figures_and_files(page: Browser) -> None:
     assert len(links) == 5
     assert all("/cells/" in link for link in links)
     page.press("Escape")
+
+
+def test_a_film_by_blenders_encoder_plays(window: Browser, tmp_path: Path) -> None:
+    cell = make_batch(tmp_path, 1, clips=1).cells[0].cell
+    home = cell_folder(tmp_path, cell)
+    times = np.linspace(0.0, 0.5, 61)
+    com = np.stack([times, 0 * times, 1 + 0 * times], axis=1)
+    turn = np.repeat(np.eye(3)[None], len(times), axis=0)
+    trunk = Limb("trunk", np.full(3, 0.5), com, turn)
+    draw_film(
+        [SheetRow("Slid", times, (trunk,), com, np.zeros((0, 3)))], home / "film.mp4", width=96
+    )
+    result = read_result(tmp_path, cell)
+    assert result is not None
+    with_film = replace(result, files=(*result.files, "film.mp4"))
+    (home / RESULT).write_text(with_film.as_json(), encoding="utf-8")
+    collect(tmp_path)
+    for shown in opened(window, tmp_path):
+        shown.click("#rows tr[data-place='0']")
+        shown.wait("const film = document.querySelector('video'); return film.currentTime > 0.1")
+        seen = shown.run(
+            "const film = document.querySelector('video');"
+            "return [film.videoWidth, film.duration, film.error]"
+        )
+        assert seen == [96, pytest.approx(13 / 24, abs=0.02), None]
+        shown.press("Escape")
 
 
 def test_pictures_load_only_in_sight(page: Browser) -> None:

@@ -72,7 +72,7 @@ def test_every_frame_has_the_instant_at_its_time():
     layout = lay_out_film([slider(2.0), slider(1.0)], View(in_place=True))
     for tier, further in zip(layout.tiers, (2.0, 1.0), strict=True):
         times = [figure.time for figure in tier.figures]
-        assert times == pytest.approx(2.0 + np.arange(16) / 30, abs=0.5 / 120)
+        assert times == pytest.approx(2.0 + np.arange(13) / film.RATE, abs=0.5 / 120)
         run = tier.figures[-1].com[0] - tier.figures[0].com[0]
         assert run == pytest.approx(further)
 
