@@ -47,11 +47,11 @@ for file in $(ls /tmp); do
 done
 exit $code
 """
-# The rig with a jump on its controls, which takes half a minute; see rigify_take.py.
+# The rig with a jump on its controls, which takes half a minute; see rigs/controls/performed_file.py.
 MAKE_RIG = """blender -b --factory-startup --python-exit-code 3 --python-expr \
     "import sys; from runpy import run_path
 run_path('/mnt/source/devtools/package.py')['load']()
-from hangtime.devtools.window.rigify_take import main
+from hangtime.devtools.rigs.controls.performed_file import main
 main(['/tmp/artist.rigify.blend'])" """
 VARIABLES = {
     "DISPLAY": ":84",

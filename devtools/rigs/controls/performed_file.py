@@ -7,9 +7,9 @@ from pathlib import Path
 
 import bpy
 
-from ...bridge.accessors import present
-from ..rigs.controls.cases import RATE, performer
-from ..rigs.generated import generated_human, perform
+from ....bridge.accessors import present
+from .cases import RATE, performer
+from ..generated import generated_human, perform
 
 NAME = "Rigify"
 
