@@ -47,7 +47,7 @@ for file in $(ls /tmp); do
 done
 exit $code
 """
-# The rig with a jump on its controls, which takes half a minute; see rigs/controls/performed_file.py.
+# The rig with a jump on its controls takes half a minute (devtools/rigs/controls).
 MAKE_RIG = """blender -b --factory-startup --python-exit-code 3 --python-expr \
     "import sys; from runpy import run_path
 run_path('/mnt/source/devtools/package.py')['load']()

@@ -134,7 +134,7 @@ def edits_key(driver: Driver) -> Actions:
     yield 0.5
     yield driver.input.key("alt+a")
     region = driver.screen.region(area="GRAPH_EDITOR")
-    x, y = region.view2d.view_to_region(*was, clip=False)
+    x, y = region.view2d.view_to_region(was.x, was.y, clip=False)
     yield driver.input.click(driver.screen.on_screen(region.x + x, region.y + y), "a key")
     yield 0.2
     yield driver.input.key("g", "y")

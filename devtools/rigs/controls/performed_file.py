@@ -8,8 +8,8 @@ from pathlib import Path
 import bpy
 
 from ....bridge.accessors import present
-from .cases import RATE, performer
 from ..generated import generated_human, perform
+from .cases import RATE, performer
 
 NAME = "Rigify"
 
