@@ -22,6 +22,7 @@ PACKAGE = "bl_ext.user_default.hangtime"
 FOLDER = "/user_default/hangtime/"  # in the path of each of its files
 CATEGORY = "Hangtime"
 CLIP = Path("/mnt/recordings/forward_jump_116cm.bvh")
+RIG = "Rigify"  # in place of the clip's armature, once its file is open
 SCALE = 0.05644  # metres per unit of the recording
 LANDING = "ground 2"
 VALUE = 0.7  # where a number's field is, in the sidebar's width
@@ -36,8 +37,9 @@ def extension_module(name: str) -> ModuleType:
 
 
 def armature() -> bpy.types.Object:
-    """The imported recording's armature."""
-    return bpy.data.objects[CLIP.stem]
+    """The imported recording's armature, or the rig that performs."""
+    found = bpy.data.objects.get(CLIP.stem)
+    return found if found is not None else bpy.data.objects[RIG]
 
 
 def shown_action() -> bpy.types.Action:

@@ -35,12 +35,14 @@ from hangtime.solver.doctor.repair import repaired
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.solver.doctor.single_frames import find_dropped, find_flips, find_held, find_spikes
 from hangtime.solver.doctor.upright import find_up
-from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, load_recording
+from hangtime.tests.helpers.clips import JUMP, load_recording
+
+STANDING = 73, 325  # frames, from standing to standing
 
 
 @cache
 def jump() -> Recording:
-    return load_recording(JUMP).window(*JUMP_FRAMES)
+    return load_recording(JUMP).window(*STANDING)
 
 
 @cache

@@ -1,0 +1,101 @@
+"""Jobs that cannot be done: one line that says why, and what is left."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.files.import_clip import import_clip
+from hangtime.operators.headless import commands
+from hangtime.operators.headless.cli import main
+from hangtime.tests.blender.helpers.jobs import EDIT, PLAIN, run
+
+
+def one_line(capsys) -> str:
+    """What was said on the standard error: one line, no traceback."""
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "Traceback" not in said
+    return said
+
+
+@pytest.mark.parametrize(
+    ("recipe", "line"),
+    [
+        (EDIT.replace("ground 2", "ground 7"), "line 5"),
+        (EDIT + 'points = ["Left nose"]\n', "line 8"),
+        (EDIT + "offset = [1, 2, 3]\n", "line 8"),
+        (EDIT.replace("forward", "foward"), "line 6"),
+        (EDIT + '[bones]\n"left foot" = "Fuss.L"\n', "line 9"),
+        (EDIT + '[[contact]]\nname = "Left nose 1"\nremove = true\n', "line 9"),
+        (EDIT + '[[pin]]\nphase = "ground 2"\npoints = ["Left toe"]\nup = -0.4\n', "line 8"),
+    ],
+)
+def test_what_is_wrong_in_a_recipe_is_said_with_its_line(
+    recipe: str, line: str, clip: Path, tmp_path: Path, capsys
+) -> None:
+    assert run(tmp_path, clip, recipe) == 2
+    assert f"edit.toml, {line}:" in one_line(capsys)
+    assert not (tmp_path / "out").exists()
+
+
+def test_frames_beyond_the_recording_are_too_short(clip: Path, tmp_path: Path, capsys) -> None:
+    assert run(tmp_path, clip, "frames = [400, 700]\n") == 2
+    assert "0.00 s" in one_line(capsys)
+
+
+def test_a_truncated_clip_is_said_with_its_line(clip: Path, tmp_path: Path, capsys) -> None:
+    short = tmp_path / "short.bvh"
+    short.write_bytes(clip.read_bytes()[:20_000])
+    assert run(tmp_path, short, EDIT) == 2
+    assert "short.bvh, line " in one_line(capsys)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_clip_that_is_no_clip(tmp_path: Path, capsys) -> None:
+    for name in ("none.fbx", "none.blend", "none.txt"):
+        assert run(tmp_path, tmp_path / name, EDIT) == 2
+        assert name in one_line(capsys)
+    (tmp_path / "bad.blend").write_bytes(b"not a blend")
+    assert run(tmp_path, tmp_path / "bad.blend", EDIT) == 2
+    assert "bad.blend" in one_line(capsys)
+
+
+@pytest.mark.slow
+def test_no_solution_leaves_a_report(clip: Path, tmp_path: Path, capsys) -> None:
+    assert run(tmp_path, clip, EDIT.replace("up = 0.2", "up = 8.0") + PLAIN) == 3
+    assert "“Landing: " in one_line(capsys)
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written - {"best_found.blend"} == {"report.json", "report.txt"}
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    assert report["status"] in ("stalled", "too many steps")
+
+
+def test_bones_that_a_usd_could_not_tell_apart_are_told_before_the_solve(
+    clip: Path, tmp_path: Path, monkeypatch, capsys
+) -> None:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bones = import_clip(clip).armature.data.bones
+    bones["LeftToeBase"].name, bones["RightToeBase"].name = "toe!", "toe?"
+    path = tmp_path / "named.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    monkeypatch.setattr(commands, "solve", lambda *_: pytest.fail("it was solved"))
+    text = EDIT + '[export]\nformat = "usd"\n[bones]\n"left toe" = "toe!"\n"right toe" = "toe?"\n'
+    assert run(tmp_path, path, text) == 2
+    assert "would be one name in a USD file" in capsys.readouterr().err
+
+
+def test_a_wrong_option_is_wrong_input(capsys) -> None:
+    assert main(["adapt", "x.bvh", "--recipe", "x.toml", "--mass", "-3"]) == 2
+    assert main(["adapt", "x.bvh"]) == 2
+    assert main(["fly"]) == 2
+    assert "Traceback" not in capsys.readouterr().err
+    assert main(["--help"]) == 0
+
+
+def test_a_job_without_a_clip(tmp_path: Path, capsys) -> None:
+    (tmp_path / "edit.toml").write_text(EDIT)
+    assert main(["adapt", "--recipe", str(tmp_path / "edit.toml")]) == 2
+    assert "no recording" in one_line(capsys)
