@@ -13,6 +13,8 @@ from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
 from ...solver.data.solver_options import ShapeSource
 from ..accessors import attached
+from ..rows.finding import CLASSES as FINDING_CLASSES
+from ..rows.finding import HangtimeFinding
 from ..rows.row import CLASSES as ROW_CLASSES
 from ..rows.row import (
     HIDDEN,
@@ -115,6 +117,11 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     fit_quality: hidden(text())
     analysed: hidden(text())  # digest
     unseen: hidden(text())  # JSON: [first, last frame] of each span that something unseen carries
+    repairs: hidden(text())  # JSON: those that count, see bridge/repairs
+    findings: bpy.props.CollectionProperty(type=HangtimeFinding, override=OVERRIDABLE_LIST)
+    examined: hidden(text())  # digest
+    examination_stale: hidden(boolean())
+    feet: hidden(text())  # JSON: the repairs that they were looked at with, and the feet's faults
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
     active_contact: hidden(whole())
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
@@ -357,6 +364,7 @@ CLASSES = (
     *KEYS_CLASSES,
     *LOOP_CLASSES,
     HangtimePart,
+    *FINDING_CLASSES,
     *CONTACT_CLASSES,
     HangtimeSettings,
     HangtimeScene,

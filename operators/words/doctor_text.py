@@ -32,6 +32,31 @@ SENTENCES = {
 }
 
 
+# Of the buttons. {n}: the remedy's number.
+REMEDIES = {
+    FindingKind.UP_AXIS: "Turn Upright",
+    FindingKind.BIND_POSE: "Leave Out",
+    FindingKind.FLIP: "Turn Back",
+    FindingKind.SPIKE: "Smooth Over",
+    FindingKind.HELD_FRAMES: "Fill In",
+    FindingKind.BONE_LENGTH: "Hold Lengths",
+    FindingKind.NOISE: "Smooth",
+    FindingKind.FLOOR: "Put on the Floor",
+    FindingKind.SLIDING: "Hold Still",
+}
+
+
+def remedy_label(finding: Finding, remedy: Repairs, mass: float) -> str:
+    """What a remedy does, for its button. mass: kg, of a finding about the mass."""
+    if mass:
+        return f"Set {mass:.0f} kg"
+    if remedy.time_scale != 1.0:
+        return f"Durations × {remedy.time_scale:.3g}"
+    if remedy.scale != 1.0:
+        return f"Size × {remedy.scale:.3g}"
+    return REMEDIES[finding.kind]
+
+
 def finding_sentence(finding: Finding) -> str:
     """What is wrong and where."""
     told = SENTENCES[finding.kind].format(

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
-from ..data.reports.constraints import LetGoReport, UnseenSupportReport
+from ..data.reports.constraints import FitNeeds, LetGoReport, UnseenSupportReport
 from ..stages.fit import Fit
 from ..transcription.motion import Motion
 from .flight_summary import scene_frame
@@ -45,6 +45,13 @@ def let_go(fit: Fit) -> Iterator[LetGoReport]:
     for each in fit.let_go:
         start, end = (scene_frame(fit, t) for t in (each.contact.start, each.contact.end))
         yield LetGoReport(each.contact.name, start, end, 1000.0 * each.off)
+
+
+def fit_needs(fit: Fit, motion: Motion | None = None) -> FitNeeds:
+    """What a fit needs beside what the recording shows; of an adaptation of it where its motion is
+    given."""
+    carried = tuple(unseen_support(fit, motion or fit.motion))
+    return FitNeeds(carried, tuple(let_go(fit)))
 
 
 def worst_joint(fit: Fit, apart: FloatArray) -> tuple[str, float, float]:

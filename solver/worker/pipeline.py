@@ -40,6 +40,7 @@ from ..data.scaling import (
 from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
+from ..doctor.repair import as_asked
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
 from ..optimisation.sqp import Step
@@ -127,6 +128,14 @@ class Subject:
         return scaled_schedule(self.analysis.schedule, 1.0 / self.factor)
 
     @property
+    def drifted(self) -> tuple[float, float]:
+        """How far, m along the floor, the recording is at its end from where it is without drift,
+        in its own lengths."""
+        x, y = self.problem.drift
+        seconds = float(self.recording.times[-1])
+        return x * seconds, y * seconds
+
+    @property
     def shape_changes(self) -> ShapeChanges:
         """Of the recording's own figure. Raises StillBone, NotAboveZero."""
         performance = self.analysis.performance
@@ -191,7 +200,9 @@ class AdaptationResult:
     def moved(self) -> StanceMove | None:
         """The last stance's move, in the recording's own lengths; None where there is none."""
         move = last_stance_move(self.adaptation)
-        return None if move is None else move.scaled(1.0 / self.subject.factor)
+        if move is None:
+            return None
+        return move.scaled(1.0 / self.subject.factor).from_elsewhere(self.subject.drifted)
 
     def traces(self) -> Traces:
         """In the recording's own lengths."""
@@ -216,6 +227,7 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
 
     Raises what `analyse`, `find_cycle` and `check_loop` do.
     """
+    recording = as_asked(recording, problem)
     if problem.height is None:
         analysis, cycle = _analysed(recording, problem)
         return Subject(analysis, problem, analysis.performance.character.height, 1.0, cycle)

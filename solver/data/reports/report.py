@@ -17,6 +17,7 @@ from .certificate import CertificateLine
 from .constraints import (
     ConstraintReport,
     ContactReport,
+    FitNeeds,
     LetGoReport,
     MovingGroundReport,
     PinReport,
@@ -155,6 +156,11 @@ class Report:
     loop: LoopReport | None = field(default=None, metadata=OMIT_NONE)
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
+
+    @property
+    def needs(self) -> FitNeeds:
+        """What the motion needs beside what the recording shows."""
+        return FitNeeds(self.unseen_support, self.let_go)
 
     @property
     def given_up(self) -> tuple[ConstraintReport, ...]:

@@ -5,7 +5,8 @@ from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.bridge.recipe.recording import RECORDING
 from hangtime.bridge.recipe_syntax.toml_text import sections
 from hangtime.solver.data.faults import BadRecipe
-from hangtime.solver.doctor.repairs import Mend, Repairs, UpAxis
+from hangtime.solver.data.problem import Mend
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
 
 FULL = Repairs(
     UpAxis.MINUS_X, 2, (Mend.FLIPS, Mend.HELD_FRAMES), 0.8, 1.6, (0.1, -0.25), floor=0.12
