@@ -42,7 +42,18 @@ MODULES = (
     *(bone_presets, choose_named, examine, remedies, repair, trim, results, takes),
     *(export_takes, recipe_export, save_plots),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
-    *(lists, menus, setup, recording, contact_panels, constraint_panels, world, solve, keys, display),
+    *(
+        lists,
+        menus,
+        setup,
+        recording,
+        contact_panels,
+        constraint_panels,
+        world,
+        solve,
+        keys,
+        display,
+    ),
     *(pin_handles, limit_handles),
 )
 

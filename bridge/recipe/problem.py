@@ -373,11 +373,12 @@ def write_recipe(
     files: Mapping[str, str] = MappingProxyType({}),
     result: ResultOptions | None = None,
     keys: KeyOptions | None = None,
+    repairs: Repairs | None = None,
 ) -> str:
     """The TOML text that `parse_recipe` reads as this problem.
 
-    files: of objects' meshes, by the objects' names; what has none is written out. result, keys:
-    left out where they are the usual ones, which a recipe that says nothing means.
+    files: of objects' meshes, by the objects' names; what has none is written out. result, keys,
+    repairs: left out where they are the usual ones, which a recipe that says nothing means.
     """
     top = {
         "clip": clip,
@@ -392,6 +393,8 @@ def write_recipe(
         parts.append("[bones]\n" + entries(problem.bones))
     parts += sections(RESULT.header, RESULT.write(result)) if result is not None else []
     parts += sections(KEYS.header, KEYS.write(keys)) if keys is not None else []
+    if repairs is not None:
+        parts += sections(RECORDING.header, RECORDING.write(repairs))
     if problem.loop:
         parts.append(f"[{LOOP.header}]")
     parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)

@@ -21,7 +21,8 @@ MARK = "hangtime_repairs"  # of the empty, whatever the artist calls it
 
 def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
     """Has these repairs count instead of those before."""
-    current_scene().render.fps_base *= repairs.time_scale / applied(settings_of(armature)).time_scale
+    before = applied(settings_of(armature))
+    current_scene().render.fps_base *= repairs.time_scale / before.time_scale
     _place(armature, repairs)
     settings_of(armature).repairs = text_of(repairs)
     present(bpy.context.view_layer).update()
@@ -30,7 +31,7 @@ def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
 def _place(armature: bpy.types.Object, repairs: Repairs) -> None:
     """Turns the figure upright, scales it about the world's origin and lowers it to the floor."""
     top = armature
-    while top.parent is not None and MARK not in top.parent:
+    while top.parent is not None and not top.parent.get(MARK):
         top = top.parent
     above = top.parent
     if repairs.up is UpAxis.Z and repairs.scale == 1.0 and repairs.floor == 0.0:

@@ -6,7 +6,6 @@ import json
 
 import bpy
 
-from ...solver.doctor.repairs import Repairs
 from ..accessors import present, shown_range
 from ..armature.actions import recorded_action
 from ..properties.settings import settings_of
@@ -45,9 +44,3 @@ def _leave_out(armature: bpy.types.Object, row: HangtimeFinding, *, used: bool) 
         return
     settings.first_frame = int(first)
     settings.use_range = settings.last_frame < int(last)
-
-
-def repairs_to_write(armature: bpy.types.Object) -> Repairs | None:
-    """The repairs for a recipe; None where there are none."""
-    found = applied(settings_of(armature))
-    return None if found == Repairs() else found

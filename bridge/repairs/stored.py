@@ -29,26 +29,23 @@ def applied(settings: HangtimeSettings) -> Repairs:
     return repairs_in(settings.repairs)
 
 
+def repairs_to_write(settings: HangtimeSettings) -> Repairs | None:
+    """The repairs for a recipe; None where there are none."""
+    return applied(settings) if settings.repairs else None
+
+
 def repairs_in(stored: str) -> Repairs:
     """Repairs in a stored text; those that change nothing in an empty one."""
-    if not stored:
-        return Repairs()
-    held = json.loads(stored)
-    known = {
-        "up": lambda word: UpAxis(word),
-        "mend": lambda words: tuple(Mend(word) for word in words),
-        "drift": tuple,
-    }
-    return Repairs(**{name: known.get(name, lambda v: v)(value) for name, value in held.items()})
+    held = {**USUAL, **json.loads(stored or "{}")}
+    mend, drift = tuple(map(Mend, held.pop("mend"))), tuple(held.pop("drift"))
+    return Repairs(**{**held, "up": UpAxis(held["up"]), "mend": mend, "drift": drift})
 
 
 def text_of(repairs: Repairs) -> str:
     """Repairs as a text to be stored; "" of those that change nothing."""
-    held = {name: value for name, value in asdict(repairs).items() if value != USUAL[name]}
-    if not held:
-        return ""
     plain = {"up": repairs.up.value, "mend": [each.value for each in repairs.mend]}
-    return json.dumps({name: plain.get(name, value) for name, value in held.items()})
+    held = {n: plain.get(n, value) for n, value in asdict(repairs).items() if value != USUAL[n]}
+    return json.dumps(held) if held else ""
 
 
 def write_diagnosis(
@@ -56,9 +53,7 @@ def write_diagnosis(
 ) -> None:
     """Keeps what was found, and of what. Findings whose remedy counts stay, found again or not."""
     settings = settings_of(armature)
-    kept = [
-        (finding_of(row), row.mass) for row in findings(settings) if is_applied(settings, row)
-    ]
+    kept = [(finding_of(row), row.mass) for row in findings(settings) if is_applied(settings, row)]
     found = [
         (finding, diagnosis.mass or 0.0 if finding.kind is FindingKind.MASS else 0.0)
         for finding in diagnosis.findings
@@ -93,7 +88,7 @@ def finding_of(row: HangtimeFinding) -> Finding:
 def is_applied(settings: HangtimeSettings, row: HangtimeFinding, *, other: bool = False) -> bool:
     """Whether a row's remedy counts. other: its other one."""
     if row.mass:
-        return abs(settings.mass - row.mass) < 0.5
+        return bool(abs(settings.mass - row.mass) < 0.5)
     remedy = repairs_in(row.other if other else row.remedy)
     if remedy.trim:
         last = json.loads(row.frames)[-1][-1]
@@ -119,7 +114,7 @@ def examined_key(armature: bpy.types.Object) -> str:
     if action is None:
         return ""
     clock = frames_per_second(current_scene()) * applied(settings_of(armature)).time_scale
-    scale = " ".join(f"{each:.4g}" for each in armature.scale)
+    scale = " ".join(f"{each:.4g}" for each in armature.scale.to_tuple())
     return f"{take_digest(armature, action)} {clock:.4g} {scale}"
 
 

@@ -4,7 +4,7 @@ import bpy
 
 from ...bridge.constraints.bone_mapping import chosen_parts, find_parts, missing_parts
 from ...bridge.properties.settings import scene_settings, settings_of
-from ...bridge.repairs.stored import applied, findings, finding_of, is_applied, write_diagnosis
+from ...bridge.repairs.stored import applied, finding_of, findings, is_applied, write_diagnosis
 from ...bridge.worker_client import shared
 from ...solver.data.faults import MissingPart
 from ...solver.data.problem import MotionProblem

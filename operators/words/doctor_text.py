@@ -3,6 +3,7 @@
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
 from ...solver.doctor.diagnose import Diagnosis
+from ...solver.doctor.feet import FootFault
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs
 
@@ -63,6 +64,11 @@ def finding_sentence(finding: Finding) -> str:
         n=finding.amount, part=finding.part, where=_where(finding), clock=_clock(finding)
     )
     return told[0].upper() + told[1:]
+
+
+def foot_fault_words(fault: FootFault) -> str:
+    """Such as "Left toe slides 8 cm"."""
+    return f"{fault.point} {fault.kind.value} {100.0 * fault.amount:.0f} cm"
 
 
 def diagnosis_text(diagnosis: Diagnosis) -> str:

@@ -22,7 +22,7 @@ from ..analysis.analyse import Analysis, analyse, build_figure
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
-from ..data.contacts import ContactSchedule
+from ..data.contacts import ContactSchedule, gaps
 from ..data.faults import NoFit, NoSolution, NotComputable, Treadmill, UnseenSupport
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
@@ -60,6 +60,7 @@ from .lasting_fit import lasting_fit
 from .other_phases import on_phases_of
 from .possible import check_requested
 
+APART, LEAST_SOUND = 0.1, 0.5  # s: about what cannot be held; of a part that is worth keeping
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
 
 
@@ -338,7 +339,23 @@ def solve(
 
 def no_fit(fitted: Fit) -> NoSolution:
     """The fault of a fit that failed."""
-    return _unsolved(NoFit, unadapted(fitted), MotionProblem())
+    fault = _unsolved(NoFit, unadapted(fitted), MotionProblem())
+    return replace(fault, sound=_sound(fitted)) if isinstance(fault, NoFit) else fault
+
+
+def _sound(failed: Fit) -> tuple[int, int] | None:
+    """First and last frame of the longest part of a failed fit in which its rows hold."""
+    outcome, recording = failed.outcome, failed.performance.recording
+    rows = outcome.transcription.rows(outcome.x, outcome.places)
+    wrong = rows.time[np.abs(rows.violation()) > rows.tolerance]
+    spans = [(t - APART, t + APART) for t in wrong]
+    longest = max(
+        gaps(spans, float(recording.times[-1])), key=lambda g: g.end - g.start, default=None
+    )
+    if not len(wrong) or longest is None or longest.end - longest.start < LEAST_SOUND:
+        return None
+    first, last = np.interp((longest.start, longest.end), recording.times, recording.frames)
+    return int(np.ceil(first)), int(np.floor(last))
 
 
 def dynamics_of(motion: Motion) -> InverseDynamics:
