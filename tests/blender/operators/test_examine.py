@@ -11,7 +11,9 @@ from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.fcurves import curves_of
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.constraints.motion_problem import problem_of, repaired_since
+from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.repairs.placed_armature import repair
 from hangtime.bridge.repairs.stored import (
     applied,
     finding_of,
@@ -26,7 +28,7 @@ from hangtime.solver.doctor.feet import FootFaultKind
 from hangtime.solver.doctor.repair import as_asked, unplaced
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.tests.blender.helpers import rigs
-from hangtime.tests.helpers.clips import JUMP_FRAMES
+from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap_path
 
 SPIKED, TURN, RAISED, SLOWED = 150, 0.8, 0.2, 1.25
 
@@ -37,7 +39,7 @@ pytestmark = pytest.mark.usefixtures("_enabled")
 def damaged(jump: bpy.types.Object) -> bpy.types.Object:
     """The jump with a spike in an arm, 0.2 m above the floor, played 1.25 times too fast."""
     for curve in curves_of(jump):
-        if "LeftArm\"" in curve.data_path and "rotation" in curve.data_path:
+        if 'LeftArm"' in curve.data_path and "rotation" in curve.data_path:
             key = curve.keyframe_points[SPIKED - 1]
             assert key.co[0] == SPIKED
             key.co[1] += TURN * (curve.array_index == 2)
@@ -154,16 +156,15 @@ def test_repairs_are_undone_saved_and_exported(examined, tmp_path) -> None:
     assert repaired_since(again.hangtime)
 
 
-def test_frames_at_rest_are_left_out_by_the_range(jump) -> None:
-    """A pose at rest before the jump, as the frame range has it."""
-    jump.hangtime.use_range = False
-    for curve in curves_of(jump):
-        if "rotation" in curve.data_path:
-            curve.keyframe_points[0].co[1] = 0.0
+def test_frames_at_rest_are_left_out_by_the_range(tmp_path) -> None:
+    rigs.reset()
+    jump = import_clip(begun_at_rest(mocap_path(JUMP), tmp_path)).armature
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
-    assert "bind pose" in kinds(jump)
+    assert kinds(jump) == ["bind pose"]
     bpy.ops.hangtime.repair(kind="bind pose")
     assert (jump.hangtime.use_range, jump.hangtime.first_frame) == (True, 2)
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert kinds(jump) == ["bind pose"]  # to be left in again
     bpy.ops.hangtime.repair(kind="bind pose")
     assert not jump.hangtime.use_range
 
@@ -177,9 +178,6 @@ def test_a_trim_makes_the_frame_range(jump) -> None:
 
 def test_unplaced_takes_back_what_the_scene_shows(jump) -> None:
     raw = read_recorded(jump, *JUMP_FRAMES)
-    bpy.ops.hangtime.examine()
-    from hangtime.bridge.repairs.placed_armature import repair
-
     repairs = Repairs(UpAxis.Y, time_scale=0.8, scale=0.5, floor=0.3)
     repair(jump, repairs)
     back = unplaced(read_recorded(jump, *JUMP_FRAMES), repairs)
