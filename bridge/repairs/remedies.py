@@ -39,7 +39,7 @@ def _leave_out(armature: bpy.types.Object, row: HangtimeFinding, *, used: bool) 
     if used:
         if not settings.use_range:
             settings.last_frame = int(last)
-        settings.first_frame = int(json.loads(row.frames)[-1][-1]) + 1
+        settings.first_frame = int(json.loads(row.frames)[0][-1]) + 1
         settings.use_range = True
         return
     settings.first_frame = int(first)

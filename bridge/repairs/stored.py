@@ -91,7 +91,7 @@ def is_applied(settings: HangtimeSettings, row: HangtimeFinding, *, other: bool 
         return bool(abs(settings.mass - row.mass) < 0.5)
     remedy = repairs_in(row.other if other else row.remedy)
     if remedy.trim:
-        last = json.loads(row.frames)[-1][-1]
+        last = json.loads(row.frames)[0][-1]
         return bool(settings.use_range and settings.first_frame > last)
     return remedy != Repairs() and applied(settings).includes(remedy)
 

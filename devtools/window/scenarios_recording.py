@@ -57,6 +57,19 @@ def shows_finding(driver: Driver) -> Actions:
     data = armature().data
     assert isinstance(data, bpy.types.Armature)
     assert present(data.bones.active).name == BONE, "another bone is active"
+    yield from doubts_in_timeline(driver)
+
+
+def doubts_in_timeline(driver: Driver) -> Actions:
+    """A picture of the workspace whose dope sheet is high."""
+    window = driver.screen.window
+    usual = window.workspace
+    window.workspace = bpy.data.workspaces["Animation"]
+    yield 1.0
+    yield from driver.picture("doubts_in_timeline")
+    window.workspace = usual
+    yield 1.0
+    driver.screen.forget()
 
 
 def repairs_all(driver: Driver) -> Actions:
@@ -78,6 +91,7 @@ def adapts_repaired(driver: Driver) -> Actions:
     yield from fill_in(driver, landing_field("forward"), "0.2")
     yield from press(driver, "hangtime.adapt")
     yield Until("an adapted action", lambda: idle() and shown_action() != before, 90)
+    yield 0.5
     rows = [row for row in settings().contacts if row.phase == LANDING]
     went = (Vector(rows[0].at) - Vector(rows[0].found_at)).length
     assert abs(went - 0.2) < 1e-3, f"the landing went {went:g} m"

@@ -10,7 +10,7 @@ from ..analysis.performance import perform
 from ..body.character import build_character
 from ..data.recording import Recording
 from ..skeleton.bind_pose import bind_frames
-from .falls import find_scale, refined
+from .falls import find_leaps, find_scale, refined
 from .figure import figure_of
 from .finding import Finding, FindingKind
 from .footing import find_footing
@@ -47,6 +47,7 @@ def diagnose(
     Raises MissingPart, ZeroLengthBone.
     """
     found: list[Finding] = []
+    count = len(recording.frames)
 
     def cured(recording: Recording, finding: Finding | None) -> Recording:
         """Keeps a finding; the recording with its remedy."""
@@ -76,6 +77,8 @@ def diagnose(
             performance = perform(resized, build_character(resized, chosen=chosen))
         found.append(scale)
     height = performance.character.height
+    leaps = find_leaps(performance, count - len(recording.frames))
+    found += [leaps] if leaps is not None else []
     found += find_footing(performance)
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
