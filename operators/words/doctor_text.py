@@ -23,8 +23,8 @@ SENTENCES = {
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
     FindingKind.MASS: "{n:.0f} kg do not go with the figure's height.",
-    FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture does "
-    "that had lost it: nothing pulls like this.",
+    FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture "
+    "does that had lost it: nothing pulls like this.",
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
     FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
