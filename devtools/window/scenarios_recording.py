@@ -72,12 +72,17 @@ def doubts_in_timeline(driver: Driver) -> Actions:
     driver.screen.forget()
 
 
+def keys_now() -> list[float]:
+    """The tenth key of each of the shown action's curves."""
+    return [curve.keyframe_points[9].co.y for curve in shown_action().fcurves]
+
+
 def repairs_all(driver: Driver) -> Actions:
-    action, keys = shown_action(), [tuple(c.keyframe_points[9].co) for c in shown_action().fcurves]
+    action, keys = shown_action(), keys_now()
     yield from press(driver, "hangtime.repair_all")
     yield Until("repairs", lambda: bool(settings().repairs))
     assert shown_action() == action, "another action is shown"
-    assert keys == [tuple(curve.keyframe_points[9].co) for curve in action.fcurves], "keys changed"
+    assert keys == keys_now(), "keys changed"
     rate = current_scene().render.fps / current_scene().render.fps_base
     assert abs(rate - RATE / 1.25) < 0.1, f"the scene has {rate:g} frames a second"
     height = armature().matrix_world.translation.z
