@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 
+from ..analysis.analyse import MIN_CLIP_DURATION
 from ..analysis.performance import perform
 from ..body.character import build_character
+from ..data.faults import ClipTooShort
 from ..data.recording import Recording
 from ..skeleton.bind_pose import bind_frames
 from .falls import find_leaps, find_scale, refined
@@ -22,6 +24,7 @@ from .single_frames import find_dropped, find_flips, find_held, find_spikes
 from .upright import find_up
 
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
+FEWEST_FRAMES = 5  # which have a fourth difference
 USUAL_MASS_BY_SQUARE = 22.0  # kg/m²
 
 
@@ -44,8 +47,9 @@ def diagnose(
 ) -> Diagnosis:
     """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist.
 
-    Raises MissingPart, ZeroLengthBone.
+    Raises ClipTooShort, MissingPart, ZeroLengthBone.
     """
+    _require_length(recording)
     found: list[Finding] = []
     count = len(recording.frames)
 
@@ -58,6 +62,7 @@ def diagnose(
 
     recording = cured(recording, find_up(recording, figure_of(recording, chosen)))
     recording = cured(recording, _find_bind_pose(recording))
+    _require_length(recording)
     figure = figure_of(recording, chosen)
     for find in (find_flips, find_spikes):
         recording = cured(recording, find(recording, figure))
@@ -85,6 +90,12 @@ def diagnose(
         fitting = USUAL_MASS_BY_SQUARE * height**2
         found.append(Finding(FindingKind.MASS, mass, "kg"))
     return Diagnosis(tuple(found), fitting)
+
+
+def _require_length(recording: Recording) -> None:
+    """What is shorter tells nothing. Raises ClipTooShort."""
+    if len(recording.frames) < FEWEST_FRAMES:
+        raise ClipTooShort(float(recording.times[-1]), MIN_CLIP_DURATION)
 
 
 def _find_bind_pose(recording: Recording) -> Finding | None:

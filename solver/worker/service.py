@@ -245,7 +245,7 @@ def _analysed(request: int, subject: Subject) -> Analysed:
 def _examined(request: Request) -> Examined:
     """The diagnosis of a recording as it was before all repairs, and its feet as they are read now.
 
-    Raises MissingPart, ZeroLengthBone.
+    Raises ClipTooShort, MissingPart, ZeroLengthBone.
     """
     assert request.recording is not None
     problem, placed = request.problem, request.placed or Repairs()

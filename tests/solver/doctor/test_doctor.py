@@ -23,6 +23,7 @@ from hangtime.devtools.doctor.damages import (
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.character import Character, build_character
+from hangtime.solver.data.faults import ClipTooShort
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.diagnose import diagnose
@@ -226,3 +227,9 @@ def test_repairs_are_left_out_one_by_one() -> None:
     assert both.without(one) == Repairs(mend=(Mend.FLIPS,), scale=2.0)
     assert not both.without(one).includes(one)
     assert both.without(Repairs(scale=3.0)) == Repairs(mend=(Mend.FLIPS, Mend.NOISE))
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_a_clip_of_a_few_frames_is_refused_in_words(count: int) -> None:
+    with pytest.raises(ClipTooShort):
+        diagnose(jump().part(slice(0, count)))
