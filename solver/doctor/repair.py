@@ -55,11 +55,9 @@ def _without_drift(
 
 def unplaced(recording: Recording, repairs: Repairs) -> Recording:
     """As it was before it was turned, put on another clock and scale, and on the floor."""
-    higher = replace(Repairs(), floor=-repairs.floor)
-    recording = placed(recording, higher)
+    raised = placed(recording, Repairs(floor=-repairs.floor))
     back = Repairs(time_scale=1.0 / repairs.time_scale, scale=1.0 / repairs.scale)
-    turn = turn_upright(repairs.up).T
-    return _rotated(placed(recording, back), turn)
+    return _rotated(placed(raised, back), turn_upright(repairs.up).T)
 
 
 def turned(recording: Recording, repairs: Repairs) -> Recording:

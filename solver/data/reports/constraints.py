@@ -90,19 +90,6 @@ class UnseenSupportReport:
 
 
 @dataclass(frozen=True)
-class AcceptedReport:
-    """A contact that is held as near to its place as the artist calls good enough.
-
-    off_mm: by how much its point misses its place at its worst.
-    """
-
-    name: str
-    start_frame: float
-    end_frame: float
-    off_mm: float
-
-
-@dataclass(frozen=True)
 class LetGoReport:
     """A contact that was found, but that no valid motion near the recording holds beside others.
 
@@ -121,4 +108,3 @@ class FitNeeds:
 
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
-    accepted: tuple[AcceptedReport, ...] = ()
