@@ -40,6 +40,7 @@ _KEPT = (
     *("name", "point", "bone", "phase", "added", "used", "empty", "on"),
     *("found_start", "found_end", "start_frame", "end_frame", "found_at", "at"),
 )
+_METRES_PER_MM = 1e-3
 _UNMOVED = 1e-5  # Blender units
 _SAME_START = 2.0  # frames; how far apart two analyses may see the same contact begin
 _SAME_PLACE = 0.01  # Blender units
@@ -110,6 +111,7 @@ def problem_of(
         requests=_requests(settings, span, scene) if with_contacts else Requests(),
         loop=loop_options(settings) is not None,
         skin=skin,
+        good_enough=_METRES_PER_MM * round(settings.good_enough, 4),
         mend=repairs.mend,
         drift=repairs.drift,
     )

@@ -251,6 +251,18 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         )
     )
 
+    good_enough: chosen(
+        number(
+            "Good Enough (mm)",
+            "A contact that no motion holds exactly may be off its place by this; the report tells "
+            "by how much it is. One that is further off is let go",
+            default=0.5,
+            min=0.0,
+            soft_max=10.0,
+            max=100.0,
+        )
+    )
+
     result: bpy.props.PointerProperty(type=HangtimeResultOptions, override=OVERRIDABLE)
     result_keys: bpy.props.PointerProperty(type=HangtimeKeys, override=OVERRIDABLE)
     loop: bpy.props.PointerProperty(type=HangtimeLoop, override=OVERRIDABLE)

@@ -85,6 +85,11 @@ def accepted_lines(needs: FitNeeds) -> list[str]:
             for each in needs.let_go
         )
         lines.append(f"Contacts let go, as they cannot be held with the others: {names}")
+    if needs.accepted:
+        names = ", ".join(
+            f"{each.name} ({length(each.off_mm / 1000.0)})" for each in needs.accepted
+        )
+        lines.append(f"Contacts off their places by what counts as good enough: {names}")
     return lines
 
 

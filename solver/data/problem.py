@@ -86,7 +86,8 @@ class MotionProblem:
     frames: first and last scene frame, None for all. mass: kg. height: m, None as the armature is.
     loop: whether the motion shall repeat; it is then made of the cycle nearest to the frames.
     skin: of the recording's figure, where it has one. unseen: what to do where the recording does
-    not show what carries the body. mend: repairs of the recording's poses, and drift: m/s along the
+    not show what carries the body. good_enough: m by which a contact that the fit cannot hold
+    exactly may miss its place. mend: repairs of the recording's poses, and drift: m/s along the
     floor, that is taken out of its way from the first frame on; before anything else.
     """
 
@@ -103,6 +104,7 @@ class MotionProblem:
     loop: bool = False
     skin: Skin | None = None
     unseen: Unseen = Unseen.SHOW
+    good_enough: float = 5e-4
     mend: tuple[Mend, ...] = ()
     drift: tuple[float, float] = (0.0, 0.0)
 

@@ -277,6 +277,7 @@ def fit_subject(subject: Subject, clock: StageClock) -> Fit:
             subject.analysis.performance,
             subject.analysis.schedule,
             lambda schedule: recorded_rides(schedule, scene, recording),
+            good_enough=subject.problem.good_enough * subject.factor,
             periodic=subject.cycle is not None,
             progress=clock.step,
         )

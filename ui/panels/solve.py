@@ -75,6 +75,7 @@ class AdvancedPanel(ArmaturePanel):
         layout.operator(OperatorId.FIT, icon="CON_FOLLOWPATH")
         if settings.fit_quality:
             lines(layout, wrapped(context, settings.fit_quality), icon="CHECKMARK")
+        layout.prop(settings, "good_enough")
         layout.prop(settings, "method")
         layout.prop(settings, "keep_times")
         layout.prop(settings, "human_ranges")

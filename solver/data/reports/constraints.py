@@ -103,8 +103,17 @@ class LetGoReport:
 
 
 @dataclass(frozen=True)
+class AcceptedReport:
+    """A contact that no motion holds exactly, but near enough. off_mm: at its worst."""
+
+    name: str
+    off_mm: float
+
+
+@dataclass(frozen=True)
 class FitNeeds:
     """What a valid motion needs beside what the recording shows; see `Report`."""
 
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
+    accepted: tuple[AcceptedReport, ...] = ()
