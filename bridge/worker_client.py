@@ -26,6 +26,7 @@ from ..solver.data.faults import WorkerDied
 from ..solver.data.problem import MotionProblem
 from ..solver.data.recording import Recording, digest
 from ..solver.data.status import DragStatus
+from ..solver.doctor.repairs import Repairs
 from ..solver.one_thread import ONE_THREAD
 from ..solver.worker.protocol import (
     PROTOCOL,
@@ -167,16 +168,20 @@ class Worker:
         return self._process.pid if self._process is not None and self._process.alive else None
 
     def ask(
-        self, kind: RequestKind, recording: Recording | None, problem: MotionProblem
+        self,
+        kind: RequestKind,
+        recording: Recording | None,
+        problem: MotionProblem,
+        placed: Repairs | None = None,
     ) -> PendingRequest:
         """Makes a request, in a new process if there is none alive.
 
-        recording: None is the last request's. Raises WorkerDied where none can be started,
+        recording, placed: as of `Request`. Raises WorkerDied where none can be started,
         RuntimeError while another is under way.
         """
         process = self._free_process()
         self._end_preparation(process, recording, problem)
-        self._pending = PendingRequest(Request(next(self._ids), kind, recording, problem))
+        self._pending = PendingRequest(Request(next(self._ids), kind, recording, problem, placed))
         process.ask(self._pending)
         return self._pending
 

@@ -24,24 +24,36 @@ from ..operators.lists import (
     support_box,
     surfaces,
 )
-from ..operators.solve import adapt, analyze, remedies, results, session, takes, watch
+from ..operators.recording import examine, remedies, repair, trim
+from ..operators.solve import adapt, analyze, results, session, takes, watch
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
 from .gizmos import limit_handles, pin_handles
 from .overlay import handlers as overlay
 from .panels import constraints as constraint_panels
 from .panels import contacts as contact_panels
-from .panels import display, keys, lists, menus, setup, solve, world
+from .panels import display, keys, lists, menus, recording, setup, solve, world
 from .plots import handler as plots
 from .timeline import handler as timeline
 
 # A panel comes after the one that it is part of.
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, surfaces, support_box, presets),
-    *(bone_presets, choose_named, remedies, results, takes),
+    *(bone_presets, choose_named, examine, remedies, repair, trim, results, takes),
     *(export_takes, recipe_export, save_plots),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
-    *(lists, menus, setup, contact_panels, constraint_panels, world, solve, keys, display),
+    *(
+        lists,
+        menus,
+        setup,
+        recording,
+        contact_panels,
+        constraint_panels,
+        world,
+        solve,
+        keys,
+        display,
+    ),
     *(pin_handles, limit_handles),
 )
 

@@ -20,6 +20,7 @@ from ...solver.data.recording import Recording, Skin, digest
 from ...solver.data.requests import Clear, Requests
 from ...solver.data.scene import CLEARANCE, SceneObject
 from ...solver.data.solver_options import HumanRanges, ShapeSource
+from ...solver.doctor.repairs import Repairs
 from ...solver.worker.protocol import Analysed
 from ..accessors import current_scene
 from ..armature.poses import frames_per_second, metres_per_unit
@@ -27,6 +28,8 @@ from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
+from ..repairs.stored import applied, of_recording
+from ..rows.copying import resized
 from ..rows.phases import phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
 from ..takes.options import loop_options
@@ -37,6 +40,7 @@ _KEPT = (
     *("name", "point", "bone", "phase", "added", "used", "empty", "on"),
     *("found_start", "found_end", "start_frame", "end_frame", "found_at", "at"),
 )
+_METRES_PER_MM = 1e-3
 _UNMOVED = 1e-5  # Blender units
 _SAME_START = 2.0  # frames; how far apart two analyses may see the same contact begin
 _SAME_PLACE = 0.01  # Blender units
@@ -60,11 +64,18 @@ def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, fl
 
 def analysis_key(settings: HangtimeSettings, recording: Recording) -> str:
     """What an analysis is of: the recording, the range where there are frames beyond it, and
-    whether it is a loop's. Raises BadRecipe."""
+    whether it is a loop's, and its repairs. Raises BadRecipe."""
     span, key = span_of(settings, recording), digest(recording)
     whole = span == (recording.frames[0], recording.frames[-1])
     key = key if whole else f"{key} {span[0]:g} {span[1]:g}"
-    return key if loop_options(settings) is None else f"{key} loop"
+    key = key if loop_options(settings) is None else f"{key} loop"
+    return f"{key}\n{settings.repairs}" if settings.repairs else key
+
+
+def repaired_since(settings: HangtimeSettings) -> bool:
+    """Whether the recording was analysed with other repairs than it has now."""
+    key = str(settings.analysed)
+    return bool(key) and key.partition("\n")[2] != settings.repairs
 
 
 def problem_of(
@@ -85,6 +96,8 @@ def problem_of(
     if with_contacts:
         _require_ordered(settings)
     span = span_of(settings, recording)
+    armature: Any = settings.id_data
+    repairs = applied(settings) if of_recording(armature) else Repairs()
     return MotionProblem(
         frames=span,
         mass=settings.mass,
@@ -98,6 +111,9 @@ def problem_of(
         requests=_requests(settings, span, scene) if with_contacts else Requests(),
         loop=loop_options(settings) is not None,
         skin=skin,
+        good_enough=_METRES_PER_MM * round(settings.good_enough, 4),
+        mend=repairs.mend,
+        drift=repairs.drift,
     )
 
 
@@ -250,12 +266,12 @@ def write_analysis(settings: HangtimeSettings, recording: Recording, found: Anal
     unseen = [[first + u.start * rate, first + u.end * rate] for u in found.schedule.unseen]
     settings.unseen = json.dumps(unseen) if unseen else ""
     for stance, (name, axes) in zip(
-        _resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
+        resized(settings.stances, len(found.axes)), found.axes.items(), strict=True
     ):
         stance.name, stance.shifted, stance.turned = name, (0.0, 0.0, 0.0), 0.0
         stance.forward_axis = axes[:, 0]
     contacts = found.schedule.contacts
-    rows = _resized(settings.contacts, len(contacts) + len(added))
+    rows = resized(settings.contacts, len(contacts) + len(added))
     for row, contact in zip(rows, contacts, strict=False):
         row.used, row.added, row.empty, row.on = True, False, None, None
         phase = _ground_phase(found.schedule, contact)
@@ -285,22 +301,6 @@ def _choose_first_landing(settings: HangtimeSettings) -> None:
         flown = flown or not phase.is_ground
     phases = [row.phase for row in settings.contacts]
     settings.active_contact = phases.index(landing) if landing in phases else 0
-
-
-def _resized(rows: Any, count: int) -> list[Any]:
-    """That many rows of a list, the old ones first.
-
-    An override cannot drop rows of the linked file: those left over are switched off.
-    """
-    while len(rows) < count:
-        rows.add()
-    for i in reversed(range(count, len(rows))):
-        rows.remove(i)
-    for row in rows[count:]:
-        row.name = ""
-        if hasattr(row, "used"):
-            row.used = False
-    return list(rows[:count])
 
 
 def _restore(settings: HangtimeSettings, edits: list[SimpleNamespace]) -> None:

@@ -13,6 +13,8 @@ from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
 from ...solver.data.solver_options import ShapeSource
 from ..accessors import attached
+from ..rows.finding import CLASSES as FINDING_CLASSES
+from ..rows.finding import HangtimeFinding
 from ..rows.row import CLASSES as ROW_CLASSES
 from ..rows.row import (
     HIDDEN,
@@ -115,6 +117,11 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     fit_quality: hidden(text())
     analysed: hidden(text())  # digest
     unseen: hidden(text())  # JSON: [first, last frame] of each span that something unseen carries
+    repairs: hidden(text())  # JSON: those that count, see bridge/repairs
+    findings: bpy.props.CollectionProperty(type=HangtimeFinding, override=OVERRIDABLE_LIST)
+    examined: hidden(text())  # digest
+    examination_stale: hidden(boolean())
+    feet: hidden(text())  # JSON: the repairs that they were looked at with, and the feet's faults
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
     active_contact: hidden(whole())
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
@@ -244,6 +251,18 @@ class HangtimeSettings(bpy.types.PropertyGroup):
         )
     )
 
+    good_enough: chosen(
+        number(
+            "Good Enough (mm)",
+            "A contact that no motion holds exactly may be off its place by this; the report tells "
+            "by how much it is. One that is further off is let go",
+            default=0.5,
+            min=0.0,
+            soft_max=10.0,
+            max=100.0,
+        )
+    )
+
     result: bpy.props.PointerProperty(type=HangtimeResultOptions, override=OVERRIDABLE)
     result_keys: bpy.props.PointerProperty(type=HangtimeKeys, override=OVERRIDABLE)
     loop: bpy.props.PointerProperty(type=HangtimeLoop, override=OVERRIDABLE)
@@ -357,6 +376,7 @@ CLASSES = (
     *KEYS_CLASSES,
     *LOOP_CLASSES,
     HangtimePart,
+    *FINDING_CLASSES,
     *CONTACT_CLASSES,
     HangtimeSettings,
     HangtimeScene,

@@ -36,6 +36,11 @@ class HangtimeView(bpy.types.PropertyGroup):
         on=False,
     )
     shapes: _switch("Shapes", "The body's solid shapes; red where one is in something", on=False)
+    faults: _switch(
+        "Recording's Faults",
+        "Points of feet that slide, float or sink, and bones at frames that are wrong, as the "
+        "recording was examined",
+    )
     ghosts: _switch("Ghosts", "The adapted motion beside the recording, at chosen frames")
     ghost_auto: _switch(
         "Automatic",

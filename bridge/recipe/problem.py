@@ -6,6 +6,7 @@ mass = 70.0                     # kg
 height = 1.69                   # m, optional
 mass_table = "thesis"           # or "de leva"
 unseen_support = "show"         # fits and tells where something unseen carries; or "refuse"
+good_enough = 0.0005            # m by which a contact that cannot be held exactly may be off
 [bones]                         # optional: part of the body = bone
 "left foot" = "Fuss.L"
 [[pin]]                         # any number of them
@@ -94,7 +95,7 @@ from ..recipe_syntax.items import (
     word,
 )
 from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
-from ..recipe_syntax.table import ABOVE_ZERO, Source, Table
+from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, Source, Table
 from ..recipe_syntax.toml_text import entries, sections
 from .export import EXPORT, ExportOptions
 from .keys import KEYS, KeyOptions
@@ -110,7 +111,15 @@ OWN_KEYS = (
     *("clip", "frames", "mass", "height", "mass_table", "bones", "pin", "contact"),
     *("recording", "keys", "loop", "export"),
 )
-TOP_KEYS = (*OWN_KEYS, "unseen_support", "add_contact", OBJECT, *REQUEST_KEYS, RESULT.header)
+TOP_KEYS = (
+    *OWN_KEYS,
+    "unseen_support",
+    "good_enough",
+    "add_contact",
+    OBJECT,
+    *REQUEST_KEYS,
+    RESULT.header,
+)
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
 PARTS = (
@@ -177,6 +186,7 @@ def recipe_of(values: dict[str, Any], source: Source) -> Recipe:
         requests=read_requests(table),
         loop=LOOP.header in table.values,
         unseen=table.choice("unseen_support", Unseen) or MotionProblem.unseen,
+        good_enough=_good_enough(table),
     )
     _refuse_same_names(table)
     result = RESULT.read(table) if RESULT.header in table.values else None
@@ -294,6 +304,11 @@ def _mass(table: Table) -> float:
     return table.number("mass", ABOVE_ZERO) or MotionProblem.mass
 
 
+def _good_enough(table: Table) -> float:
+    limit = table.number("good_enough", NOT_NEGATIVE)
+    return MotionProblem.good_enough if limit is None else limit
+
+
 def _bones(table: Table) -> dict[str, str]:
     return {part: table.needed_word(part) for part in table.values}
 
@@ -381,11 +396,12 @@ def write_recipe(
     files: Mapping[str, str] = MappingProxyType({}),
     result: ResultOptions | None = None,
     keys: KeyOptions | None = None,
+    repairs: Repairs | None = None,
 ) -> str:
     """The TOML text that `parse_recipe` reads as this problem.
 
-    files: of objects' meshes, by the objects' names; what has none is written out. result, keys:
-    left out where they are the usual ones, which a recipe that says nothing means.
+    files: of objects' meshes, by the objects' names; what has none is written out. result, keys,
+    repairs: left out where they are the usual ones, which a recipe that says nothing means.
     """
     top = {
         "clip": clip,
@@ -394,12 +410,17 @@ def write_recipe(
         "height": problem.height,
         "mass_table": problem.mass_table.value,
         "unseen_support": None if problem.unseen is Unseen.SHOW else problem.unseen.value,
+        "good_enough": None
+        if problem.good_enough == MotionProblem.good_enough
+        else problem.good_enough,
     }
     parts = [entries(top)]
     if problem.bones:
         parts.append("[bones]\n" + entries(problem.bones))
     parts += sections(RESULT.header, RESULT.write(result)) if result is not None else []
     parts += sections(KEYS.header, KEYS.write(keys)) if keys is not None else []
+    if repairs is not None:
+        parts += sections(RECORDING.header, RECORDING.write(repairs))
     if problem.loop:
         parts.append(f"[{LOOP.header}]")
     parts += PIN.text(problem.pins) + CONTACT.text(problem.contacts)

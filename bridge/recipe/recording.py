@@ -12,7 +12,8 @@ floor = 0.12                    # m; the height that becomes 0
 
 from __future__ import annotations
 
-from ...solver.doctor.repairs import Mend, Repairs, UpAxis
+from ...solver.data.problem import Mend
+from ...solver.doctor.repairs import Repairs, UpAxis
 from ..recipe_syntax.items import Item, Kind, Values, choice, number, whole
 from ..recipe_syntax.table import ABOVE_ZERO, NumberRange, Table
 

@@ -93,3 +93,19 @@ def _stored(group: Any, skip: Collection[str]) -> list[tuple[str, object]]:
             if value != (tuple(what.default_array) if many else what.default):
                 found.append((name, value))  # else it is as if nobody had touched it
     return found
+
+
+def resized(rows: Any, count: int) -> list[Any]:
+    """Makes a list that many rows long, the old ones first: these rows.
+
+    An override cannot drop rows of the linked file: those left over are switched off.
+    """
+    while len(rows) < count:
+        rows.add()
+    for i in reversed(range(count, len(rows))):
+        rows.remove(i)
+    for row in rows[count:]:
+        row.name = ""
+        if hasattr(row, "used"):
+            row.used = False
+    return list(rows[:count])

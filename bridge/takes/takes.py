@@ -31,14 +31,15 @@ from ..rows.copying import copy_settings, settings_digest, settings_targets
 from .difference import bake_combined, difference_shown
 from .span import ResultSpan
 
+_OF_RECORDING = ("repairs", "findings", "examined", "examination_stale", "feet")
 _NOT_ASKED = (  # of the next result
     *("marks", "adapted", "source", "status", "met", "measured_height", "fit_quality"),
     *("shapes_told", "unseen"),
     *("whole_stance", "active_contact", "active_constraint", "active_surface"),
     "active_body_change",
-    "keep_polish",
+    *("keep_polish", *_OF_RECORDING),
 )
-_NOT_KEPT = ("marks", "adapted", "source")
+_NOT_KEPT = ("marks", "adapted", "source", *_OF_RECORDING)
 _LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
 
 
@@ -214,7 +215,7 @@ def note_made(
     made.asked_targets.clear()
     for target in settings_targets(settings_of(armature), _NOT_ASKED):
         made.asked_targets.add().target = target
-    made.take_key, made.own_key = _take_digest(armature, source), _digest(action)
+    made.take_key, made.own_key = take_digest(armature, source), _digest(action)
     made.stale, made.polished, made.holds_polish = "", False, False
     spans = []
     if span is not None:
@@ -252,7 +253,7 @@ def look_again(armature: bpy.types.Object) -> bool:
         if take.action not in keys:
             keys[take.action] = _digest(take.action)
         if take.source not in sources:
-            sources[take.source] = _take_digest(armature, take.source)
+            sources[take.source] = take_digest(armature, take.source)
         edit = settings if take.action == settings.adapted else kept.edit
         stale = ""
         if sources[take.source] != kept.take_key:
@@ -283,7 +284,7 @@ def polished_result(armature: bpy.types.Object) -> bpy.types.Action | None:
     return result if kept.holds_polish or _digest(result) != kept.own_key else None
 
 
-def _take_digest(armature: bpy.types.Object, take: bpy.types.Action) -> str:
+def take_digest(armature: bpy.types.Object, take: bpy.types.Action) -> str:
     """Of the keys of what results are made from, and of when a strip plays it."""
     time, found = strip_time(armature, take), _digest(take)
     return found if time is None else f"{found} {time}"
@@ -303,7 +304,7 @@ def bake_shown(armature: bpy.types.Object, result: bpy.types.Action) -> None:
     if source is None or difference_shown(result) is None:
         return
     now = _digest(result)
-    if (_take_digest(armature, source), now) != (made.take_key, made.own_key):
+    if (take_digest(armature, source), now) != (made.take_key, made.own_key):
         _, _, difference = now.partition(" ")
         made.holds_polish |= difference != made.own_key.partition(" ")[2]
         with in_scene_time(armature, source) as take:

@@ -13,7 +13,13 @@ from pathlib import Path
 
 import bpy
 
-from . import scenarios_latency, scenarios_rig, scenarios_robustness, scenarios_workflow
+from . import (
+    scenarios_latency,
+    scenarios_recording,
+    scenarios_rig,
+    scenarios_robustness,
+    scenarios_workflow,
+)
 from .actions import FOLDER
 from .driver import Driver, Scenario, drive_by_timer, run_scenarios
 from .input_device import InputDevice
@@ -26,6 +32,7 @@ SCENARIOS = (
     *scenarios_latency.SCENARIOS,
     *scenarios_robustness.SCENARIOS,
     *scenarios_workflow.LAST,
+    *scenarios_recording.SCENARIOS,
     *scenarios_robustness.LAST,
     *scenarios_rig.SCENARIOS,
     *scenarios_robustness.QUITS,

@@ -14,6 +14,7 @@ from ...bridge.properties.settings import settings_of
 from ...bridge.recipe.object_texts import mesh_files
 from ...bridge.recipe.problem import write_recipe
 from ...bridge.recipe.shortest import shortest
+from ...bridge.repairs.stored import repairs_to_write
 from ...bridge.takes.options import result_options
 from ...solver.data.problem import MotionProblem
 from ...solver.data.scene import SceneObject
@@ -65,6 +66,7 @@ class ExportRecipeOperator(FaultyOperator, bpy.types.Operator, ExportHelper):  #
                 files=files,
                 result=shortest(result_options(settings)),
                 keys=shortest(key_options(settings)),
+                repairs=repairs_to_write(settings),
             )
             outbox.write_text(path.name, text)
             for thing in problem.scene:

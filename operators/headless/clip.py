@@ -10,7 +10,7 @@ from ...solver.data.faults import ClipNotOpened, NoArmature
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
-from ...solver.doctor.repair import mended, placed, trimmed
+from ...solver.doctor.repair import trimmed
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
@@ -76,9 +76,11 @@ def load(
     with stages.stage("Importing the clip"):
         armature, origin = _import(clip)
         if repairs is not None:
-            from ...bridge.files.placed_armature import place_armature
+            from ...bridge.properties.attached_groups import ensure_groups
+            from ...bridge.repairs.placed_armature import repair
 
-            place_armature(armature, repairs)
+            ensure_groups()
+            repair(armature, repairs)
     with stages.stage("Finding contacts"):
         recording = _read(armature, problem)
         count = bind_frames(recording) if problem.frames is None else 0
@@ -89,8 +91,7 @@ def load(
         if repairs is not None:
             if count == 0 and problem.frames is None and repairs.trim:
                 recording = trimmed(recording, repairs)
-            recording = mended(recording, repairs, problem.bones)
-            recording = placed(recording, Repairs(drift=repairs.drift))
+            problem = replace(problem, mend=repairs.mend, drift=repairs.drift)
         read = _skin(armature, recording)
         subject = measure(recording, replace(problem, skin=read.skin))
     return LoadedClip(armature, origin, problem, subject, read)

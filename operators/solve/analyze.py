@@ -28,6 +28,7 @@ from ...solver.data.faults import (
 from ...solver.data.loop import Cycle
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
+from ...solver.data.reports.constraints import FitNeeds
 from ...solver.data.reports.report import FitQuality
 from ...solver.data.scene import SceneRole
 from ...solver.data.solver_options import SolverOptions
@@ -36,6 +37,7 @@ from ...solver.skeleton.mapping import UNSURE
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
+from ..words.headline import accepted_lines
 from ..words.report_text import higher
 from ..words.shape_text import shapes_told
 from .adapt import Adapting, ask_for, read_wanted, require_writable
@@ -188,12 +190,8 @@ def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:
 
 
 def _unseen(answer: Analysed) -> str:
-    """Words on where something unseen carries the body: all frames, and what the first tells."""
-    if not answer.unseen:
-        return ""
-    spans = [f"{u.first:g} to {u.last:g}" for u in answer.unseen if isinstance(u, UnseenSupport)]
-    others = f" Also frames {', '.join(spans[1:])}." if spans[1:] else ""
-    return f". {said(answer.unseen[0])}{others}"
+    """Words on where something unseen carries the body: everywhere."""
+    return "".join(f". {said(each).rstrip('.')}" for each in answer.unseen)
 
 
 def _leave_out_bind_pose(settings: HangtimeSettings, recording: Recording) -> str:
@@ -271,22 +269,27 @@ class FitOperator(TaskOperator, bpy.types.Operator):
         session().advance(SolveState.SOLVING)
         job = shared().ask(RequestKind.FIT, asked.recording, asked.problem)
         answer = yield from answered(job, Fitted)
-        settings_of(armature).fit_quality = quality(answer.quality)
-        return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.quality)}"
+        settings_of(armature).fit_quality = quality(answer.quality, answer.needs)
+        return f"Fitted in {answer.seconds:.1f} s: {in_words(answer.quality, answer.needs)}"
 
 
-def in_words(fit: FitQuality) -> str:
+def in_words(fit: FitQuality, needs: FitNeeds) -> str:
     """Quality of a fit in words."""
     off = fit.joint_centres_rms_cm
-    return next((words for limit, words in CLOSENESS_WORDS if off < limit), LOOSE)
+    words = next((words for limit, words in CLOSENESS_WORDS if off < limit), LOOSE)
+    told = accepted_lines(needs)
+    return f"{words}. {'. '.join(told)}" if told else words
 
 
-def quality(fit: FitQuality) -> str:
+def quality(fit: FitQuality, needs: FitNeeds) -> str:
     """Lines for the sidebar."""
-    words = in_words(fit)
-    return (
-        f"{words[0].upper()}{words[1:]}\n"
-        f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
-        f"apex {higher(fit.pelvis_apex_difference_cm)}\n"
-        f"At worst {fit.worst_frame_rms_cm:.1f} cm (frame {fit.worst_frame:.0f})"
+    words = in_words(fit, FitNeeds())
+    return "\n".join(
+        [
+            f"{words[0].upper()}{words[1:]}",
+            f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
+            f"apex {higher(fit.pelvis_apex_difference_cm)}",
+            f"At worst {fit.worst_frame_rms_cm:.1f} cm (frame {fit.worst_frame:.0f})",
+            *accepted_lines(needs),
+        ]
     )

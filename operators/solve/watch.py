@@ -4,6 +4,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ...bridge.accessors import current_action
+from ...bridge.repairs.stored import look_at_examination
 from ...bridge.takes.takes import look_again
 from .common import chosen_armature
 from .live import editors
@@ -32,6 +33,6 @@ def _look() -> None:
     armature = chosen_armature(bpy.context)
     if session().running or armature is None or current_action(armature) is None:
         return
-    if look_again(armature):
+    if any([look_again(armature), look_at_examination(armature)]):
         for area in editors("VIEW_3D"):
             area.tag_redraw()

@@ -19,7 +19,8 @@ REACH = 8.0  # how far from an edge it can be grabbed
 
 @dataclass(frozen=True)
 class Bar:
-    """A contact or a phase; used: whether it counts; chosen: in the list of contacts."""
+    """A contact, a phase or frames that the doctor doubts; used: whether it counts; chosen: in the
+    list of contacts."""
 
     name: str
     start: float
@@ -27,7 +28,8 @@ class Bar:
     used: bool = True
     chosen: bool = False
     is_phase: bool = False
-    firm: bool = False  # a phase that has no edges of its own: a flight
+    firm: bool = False  # has no edges of its own that can be pulled: a flight, a doubt
+    is_doubt: bool = False
 
 
 @dataclass(frozen=True)

@@ -161,7 +161,7 @@ class PickContactOperator(_OfKnownContacts, bpy.types.Operator):
         bars = bars_in(context)
         x, y = event.mouse_region_x, event.mouse_region_y
         bar = bars.bar_at(x, y) if bars is not None else None
-        if bar is None or bar.is_phase or bar.chosen:
+        if bar is None or bar.is_phase or bar.is_doubt or bar.chosen:
             return {"PASS_THROUGH"}
         self.contact = bar.name
         return self.execute(context) | {"PASS_THROUGH"}

@@ -1,6 +1,6 @@
 """The bars of the chosen armature's contacts in a timeline or dope sheet."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import bpy
 
@@ -8,13 +8,15 @@ from ...bridge.accessors import present
 from ...bridge.plots.screen import Axis
 from ...bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
 from ...bridge.properties.shown_times import shown_frames
+from ...bridge.repairs.stored import finding_of, findings, is_applied
 from ...bridge.rows.phases import carried, clip_ends, phases
 from ...solver.data.contacts import PhaseKind
 from ..solve.common import chosen_armature
 from .contact_bars import Bar, Bars, Row, lay_out
 
 SIDES = ("Left", "Right")
-PHASES = "Phases"
+PHASES, DOUBTS = "Phases", "Recording"
+HALF = 0.5  # frames
 
 
 def bars_in(context: bpy.types.Context) -> Bars | None:
@@ -38,13 +40,15 @@ def frames_axis(region: bpy.types.Region) -> Axis | None:
 
 
 def rows_of(settings: HangtimeSettings, shown: Callable[[float], float]) -> tuple[Row, ...]:
-    """A row for each point that touches, left before right, and the phases; none if none do.
+    """A row of what is wrong with the recording, one for each point that touches, left before
+    right, and the phases; none of what there is not.
 
     shown: where the recording's frames are in the action that is shown.
     """
-    ends = clip_ends(settings)
+    ends, doubts = clip_ends(settings), tuple(_doubts(settings, shown))
+    wrong = (Row(DOUBTS, doubts),) if doubts else ()
     if ends is None:
-        return ()
+        return wrong
     points: dict[str, list[Bar]] = {}
     for index, row in enumerate(settings.contacts):
         chosen = index == settings.active_contact
@@ -56,7 +60,23 @@ def rows_of(settings: HangtimeSettings, shown: Callable[[float], float]) -> tupl
         Bar(s.name, shown(s.start), shown(s.end), is_phase=True, firm=s.kind is PhaseKind.FLIGHT)
         for s in spans
     )
-    return (*rows, Row(PHASES, bars))
+    return (*wrong, *rows, Row(PHASES, bars))
+
+
+def _doubts(settings: HangtimeSettings, shown: Callable[[float], float]) -> Iterator[Bar]:
+    """The frames of what is wrong with the recording, each half a frame wider on both sides; what
+    is repaired already does not count."""
+    for row in findings(settings):
+        mended = any(is_applied(settings, row, other=other) for other in (False, True))
+        for first, last in finding_of(row).frames:
+            yield Bar(
+                row.name.capitalize(),
+                shown(first) - HALF,
+                shown(last) + HALF,
+                used=not mended,
+                firm=True,
+                is_doubt=True,
+            )
 
 
 def _order(item: tuple[str, list[Bar]]) -> tuple[int, str]:

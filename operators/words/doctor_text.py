@@ -3,6 +3,7 @@
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
 from ...solver.doctor.diagnose import Diagnosis
+from ...solver.doctor.feet import FootFault
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs
 
@@ -22,6 +23,8 @@ SENTENCES = {
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
     FindingKind.MASS: "{n:.0f} kg do not go with the figure's height.",
+    FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture "
+    "does that had lost it: nothing pulls like this.",
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
     FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
@@ -32,12 +35,43 @@ SENTENCES = {
 }
 
 
+# Of the buttons. {n}: the remedy's number.
+REMEDIES = {
+    FindingKind.UP_AXIS: "Turn Upright",
+    FindingKind.BIND_POSE: "Leave Out",
+    FindingKind.FLIP: "Turn Back",
+    FindingKind.SPIKE: "Smooth Over",
+    FindingKind.HELD_FRAMES: "Fill In",
+    FindingKind.BONE_LENGTH: "Hold Lengths",
+    FindingKind.NOISE: "Smooth",
+    FindingKind.LEAP: "Leave Out",
+    FindingKind.FLOOR: "Put on the Floor",
+    FindingKind.SLIDING: "Hold Still",
+}
+
+
+def remedy_label(finding: Finding, remedy: Repairs, mass: float) -> str:
+    """What a remedy does, for its button. mass: kg, of a finding about the mass."""
+    if mass:
+        return f"Set {mass:.0f} kg"
+    if remedy.time_scale != 1.0:
+        return f"Durations × {remedy.time_scale:.3g}"
+    if remedy.scale != 1.0:
+        return f"Size × {remedy.scale:.3g}"
+    return REMEDIES[finding.kind]
+
+
 def finding_sentence(finding: Finding) -> str:
     """What is wrong and where."""
     told = SENTENCES[finding.kind].format(
         n=finding.amount, part=finding.part, where=_where(finding), clock=_clock(finding)
     )
     return told[0].upper() + told[1:]
+
+
+def foot_fault_words(fault: FootFault) -> str:
+    """Such as "Left toe slides 8 cm"."""
+    return f"{fault.point} {fault.kind.value} {100.0 * fault.amount:.0f} cm"
 
 
 def diagnosis_text(diagnosis: Diagnosis) -> str:

@@ -2,7 +2,7 @@
 
 from ...solver.data.faults import NoFit
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
-from ...solver.data.reports.constraints import ConstraintReport
+from ...solver.data.reports.constraints import ConstraintReport, FitNeeds
 from ...solver.data.reports.report import FitQuality, Report
 from ...solver.data.row_kinds import RowKind
 from ...solver.data.status import Status
@@ -42,7 +42,7 @@ def headline(report: Report) -> list[str]:
         return [sentence(NoFit(report.status))]
     if report.status is not Status.SOLVED:
         return [outcome(report.status)]
-    accepted = accepted_lines(report)
+    accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *given_up_lines(report)]
     told += [line_told(line) for line in most_telling(report.failed)]
     return [_solved(report, shown=not accepted), *(f"  {line}" for line in told)]
@@ -70,21 +70,26 @@ def nearness(fit: FitQuality) -> str:
     return f"{said}; worst {worst}, frame {fit.worst_joint_frame:.0f}"
 
 
-def accepted_lines(report: Report) -> list[str]:
+def accepted_lines(needs: FitNeeds) -> list[str]:
     """What the motion needs beside what the recording shows, all frames at once: lines."""
     lines = []
-    if report.unseen_support:
+    if needs.unseen_support:
         spans = ", ".join(
             f"{each.first_frame:.0f} to {each.last_frame:.0f} ({plain(each.force_bw)})"
-            for each in report.unseen_support
+            for each in needs.unseen_support
         )
         lines.append(f"Something unseen carries the body in frames (by body weights) {spans}")
-    if report.let_go:
+    if needs.let_go:
         names = ", ".join(
             f"{each.name} ({length(each.off_mm / 1000.0)} off)" if each.off_mm else each.name
-            for each in report.let_go
+            for each in needs.let_go
         )
         lines.append(f"Contacts let go, as they cannot be held with the others: {names}")
+    if needs.accepted:
+        names = ", ".join(
+            f"{each.name} ({length(each.off_mm / 1000.0)})" for each in needs.accepted
+        )
+        lines.append(f"Contacts off their places by what counts as good enough: {names}")
     return lines
 
 

@@ -26,7 +26,7 @@ def summary(answer: Adapted) -> str:
         [
             said,
             nearness(report.fit_to_recording),
-            *accepted_lines(report),
+            *accepted_lines(report.needs),
             *([] if worst is None else [_slides(worst)]),
             *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
             *(

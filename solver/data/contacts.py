@@ -95,6 +95,7 @@ class Contact:
     start, end: s; the instants at which the force begins and ends. A contact that the clip cuts
     off starts at 0 or ends at the schedule's duration. rise: m above its place at these two; the
     sole gives as much. on: the object of the scene that the recording has it on, None: the floor.
+    slack: m by which its point may miss its place; 0 but where no motion holds it exactly.
     """
 
     name: str
@@ -106,6 +107,7 @@ class Contact:
     place: FloatArray
     rise: tuple[float, float] = (0.0, 0.0)
     on: str | None = None
+    slack: float = 0.0
 
     @property
     def asked_for(self) -> bool:

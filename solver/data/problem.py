@@ -22,6 +22,16 @@ class Unseen(Enum):
     REFUSE = "refuse"
 
 
+class Mend(Enum):
+    """A repair of poses. Its value is the word in recipes."""
+
+    FLIPS = "flips"
+    SPIKES = "spikes"
+    HELD_FRAMES = "held frames"
+    BONE_LENGTHS = "bone lengths"
+    NOISE = "noise"
+
+
 class OffsetAxes(Enum):
     """Axes of a pin's offset: the world's, or forward, left and up of the travel."""
 
@@ -76,7 +86,9 @@ class MotionProblem:
     frames: first and last scene frame, None for all. mass: kg. height: m, None as the armature is.
     loop: whether the motion shall repeat; it is then made of the cycle nearest to the frames.
     skin: of the recording's figure, where it has one. unseen: what to do where the recording does
-    not show what carries the body.
+    not show what carries the body. good_enough: m by which a contact that the fit cannot hold
+    exactly may miss its place. mend: repairs of the recording's poses, and drift: m/s along the
+    floor, that is taken out of its way from the first frame on; before anything else.
     """
 
     frames: tuple[float, float] | None = None
@@ -92,6 +104,9 @@ class MotionProblem:
     loop: bool = False
     skin: Skin | None = None
     unseen: Unseen = Unseen.SHOW
+    good_enough: float = 5e-4
+    mend: tuple[Mend, ...] = ()
+    drift: tuple[float, float] = (0.0, 0.0)
 
     def known_to_fit(self) -> str:
         """Everything but pins, scene, skin and requests, which the fit does not know, as text."""

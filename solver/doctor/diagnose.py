@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 
+from ..analysis.analyse import MIN_CLIP_DURATION
 from ..analysis.performance import perform
 from ..body.character import build_character
+from ..data.faults import ClipTooShort
 from ..data.recording import Recording
 from ..skeleton.bind_pose import bind_frames
-from .falls import find_scale, refined
+from .falls import find_leaps, find_scale, refined
 from .figure import figure_of
 from .finding import Finding, FindingKind
 from .footing import find_footing
@@ -22,6 +24,7 @@ from .single_frames import find_dropped, find_flips, find_held, find_spikes
 from .upright import find_up
 
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
+FEWEST_FRAMES = 5  # which have a fourth difference
 USUAL_MASS_BY_SQUARE = 22.0  # kg/m²
 
 
@@ -44,9 +47,11 @@ def diagnose(
 ) -> Diagnosis:
     """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist.
 
-    Raises MissingPart, ZeroLengthBone.
+    Raises ClipTooShort, MissingPart, ZeroLengthBone.
     """
+    _require_length(recording)
     found: list[Finding] = []
+    count = len(recording.frames)
 
     def cured(recording: Recording, finding: Finding | None) -> Recording:
         """Keeps a finding; the recording with its remedy."""
@@ -57,6 +62,7 @@ def diagnose(
 
     recording = cured(recording, find_up(recording, figure_of(recording, chosen)))
     recording = cured(recording, _find_bind_pose(recording))
+    _require_length(recording)
     figure = figure_of(recording, chosen)
     for find in (find_flips, find_spikes):
         recording = cured(recording, find(recording, figure))
@@ -76,12 +82,20 @@ def diagnose(
             performance = perform(resized, build_character(resized, chosen=chosen))
         found.append(scale)
     height = performance.character.height
+    leaps = find_leaps(performance, count - len(recording.frames))
+    found += [leaps] if leaps is not None else []
     found += find_footing(performance)
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2
         found.append(Finding(FindingKind.MASS, mass, "kg"))
     return Diagnosis(tuple(found), fitting)
+
+
+def _require_length(recording: Recording) -> None:
+    """What is shorter tells nothing. Raises ClipTooShort."""
+    if len(recording.frames) < FEWEST_FRAMES:
+        raise ClipTooShort(float(recording.times[-1]), MIN_CLIP_DURATION)
 
 
 def _find_bind_pose(recording: Recording) -> Finding | None:

@@ -32,6 +32,9 @@ UNIT_RATIOS = tuple(
 CLEARLY = 1.5  # times nearer than the next ratio
 HEIGHTS = (1.1, 2.1)  # m; persons; others are read at a wrong scale
 USUAL_HEIGHT = 1.75  # m
+LEAP = 3.0  # g, downwards, of the centre of mass; honest recordings have 1.0 to 1.8
+LEAP_WINDOW, LEAP_FRAMES = 0.05, 2  # s, on each side, and frames at least
+EARLY = 0.5  # s; a leap that is over by then is left out with what is before it
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,29 @@ def refined(size: Finding, resized: Performance) -> Finding:
     if apart[first] < near and apart[second] > CLEARLY * apart[first]:
         scale = UNIT_RATIOS[first]
     return replace(size, remedy=Repairs(scale=scale))
+
+
+def find_leaps(performance: Performance, before: int) -> Finding | None:
+    """Where the whole body is jerked downwards as nothing can: capture that lost it and finds it
+    again leaves such jumps. One that ends soon after the beginning is to be left out.
+
+    performance: in its right size and time. before: frames that are left out at its beginning.
+    """
+    recording, height = performance.recording, performance.com[:, 2]
+    reach = max(LEAP_FRAMES, round(LEAP_WINDOW * recording.rate))
+    if len(height) <= 2 * reach:
+        return None
+    seconds = reach / recording.rate
+    bent = height[2 * reach :] - 2.0 * height[reach:-reach] + height[: -2 * reach]
+    fall = -bent / seconds**2 / STANDARD_GRAVITY
+    places = runs(np.pad(fall > LEAP, reach))
+    if not places:
+        return None
+    frames = tuple((float(recording.frames[a]), float(recording.frames[b])) for a, b in places)
+    end = places[0][1] + 1
+    early = float(recording.times[end]) < EARLY
+    remedy = Repairs(trim=before + end) if early else None
+    return Finding(FindingKind.LEAP, float(fall.max()), "g", frames, remedy=remedy)
 
 
 def _usual(clock: float, rate: float, longest: float) -> float:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.problem import Mend
 from ..data.recording import Recording
 from .figure import Figure
 from .finding import Finding, FindingKind
 from .local_poses import LocalPoses, spans
-from .repairs import Mend, Repairs
+from .repairs import Repairs
 
 CHANGED = 0.02  # of its usual length, and
 CHANGED_BY = 0.005  # m; rigs that stretch do more, float32 and files' digits far less

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..data.problem import Mend
 from ..data.recording import Recording
 from ..numerics.rotations import rotation_matrix, rotation_vector
 from .figure import Figure
 from .finding import Finding, FindingKind
 from .local_poses import LocalPoses, fourth_differences
-from .repairs import Mend, Repairs
+from .repairs import Repairs
 
 TREMBLING = 0.0015  # m, rms of a joint's place; laboratories' recordings have a tenth to a half
 ALTERNATING = -0.5  # correlation of what neighbouring frames are off; noise has -0.8

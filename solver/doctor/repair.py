@@ -8,13 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.problem import Mend, MotionProblem
 from ..data.recording import Recording
 from ..data.scaling import scaled_recording
+from ..skeleton.bind_pose import bind_frames
 from .figure import Figure, figure_of
 from .lengths import kept_lengths
 from .local_poses import LocalPoses
 from .noise import smoothed
-from .repairs import Mend, Repairs
+from .repairs import Repairs
 from .single_frames import held_frames, unflipped, unsound_spikes
 from .upright import turn_upright
 
@@ -29,9 +31,42 @@ def repaired(
     return placed(mended(trimmed(turned(recording, repairs), repairs), repairs, chosen), repairs)
 
 
+def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
+    """The recording with what a problem asks to be mended, in its own lengths, and without drift
+    from the problem's first frame on. Raises MissingPart."""
+    if problem.mend:
+        held = bind_frames(recording)  # else the jump from the rest pose is smoothed into the rest
+        if problem.frames is None or recording.frames[held] <= problem.frames[0]:
+            recording = trimmed(recording, Repairs(trim=held))
+        recording = mended(recording, Repairs(mend=problem.mend), problem.bones)
+    if not any(problem.drift):
+        return recording
+    first = recording.frames[0] if problem.frames is None else problem.frames[0]
+    begins = float(np.interp(first, recording.frames, recording.times))
+    return _without_drift(recording, recording.times - begins, problem.drift)
+
+
+def _without_drift(
+    recording: Recording, times: FloatArray, drift: tuple[float, float]
+) -> Recording:
+    away = times[:, None] * np.array([*drift, 0.0])
+    return replace(recording, heads=recording.heads - away[:, None])
+
+
+def unplaced(recording: Recording, repairs: Repairs) -> Recording:
+    """As it was before it was turned, put on another clock and scale, and on the floor."""
+    raised = placed(recording, Repairs(floor=-repairs.floor))
+    back = Repairs(time_scale=1.0 / repairs.time_scale, scale=1.0 / repairs.scale)
+    return _rotated(placed(raised, back), turn_upright(repairs.up).T)
+
+
 def turned(recording: Recording, repairs: Repairs) -> Recording:
     """With the axis that is up along Z."""
-    turn = turn_upright(repairs.up)
+    return _rotated(recording, turn_upright(repairs.up))
+
+
+def _rotated(recording: Recording, turn: FloatArray) -> Recording:
+    """Turned about the world's origin by a rotation (3, 3)."""
     bones = tuple(
         replace(b, head=turn @ b.head, tail=turn @ b.tail, rotation=turn @ b.rotation)
         for b in recording.bones
@@ -79,10 +114,7 @@ def placed(recording: Recording, repairs: Repairs) -> Recording:
     """At the scales of time and size, without drift, on the floor at 0."""
     scaled = scaled_recording(recording, repairs.scale)
     times = repairs.time_scale * scaled.times
-    drift = np.array([*repairs.drift, 0.0])
-    away: FloatArray = times[:, None] * drift + np.array([0.0, 0.0, repairs.floor])
-    bones = tuple(
-        replace(b, head=b.head - (0.0, 0.0, repairs.floor), tail=b.tail - (0.0, 0.0, repairs.floor))
-        for b in scaled.bones
-    )
-    return replace(scaled, bones=bones, times=times, heads=scaled.heads - away[:, None])
+    lower = np.array([0.0, 0.0, -repairs.floor])
+    bones = tuple(replace(b, head=b.head + lower, tail=b.tail + lower) for b in scaled.bones)
+    lowered = replace(scaled, bones=bones, times=times, heads=scaled.heads + lower)
+    return _without_drift(lowered, times, repairs.drift)

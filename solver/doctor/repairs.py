@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from enum import Enum
 
-
-class Mend(Enum):
-    """A repair of poses. Its value is the word in recipes."""
-
-    FLIPS = "flips"
-    SPIKES = "spikes"
-    HELD_FRAMES = "held frames"
-    BONE_LENGTHS = "bone lengths"
-    NOISE = "noise"
+from ..data.problem import Mend
 
 
 class UpAxis(Enum):
@@ -43,6 +35,20 @@ class Repairs:
     scale: float = 1.0
     drift: tuple[float, float] = (0.0, 0.0)
     floor: float = 0.0
+
+    def without(self, other: Repairs) -> Repairs:
+        """These, but for what the other changes."""
+        usual = Repairs()
+        kept = {
+            f.name: getattr(usual, f.name)
+            for f in fields(Repairs)
+            if getattr(other, f.name) != getattr(usual, f.name)
+        }
+        return replace(self, **{**kept, "mend": tuple(m for m in self.mend if m not in other.mend)})
+
+    def includes(self, other: Repairs) -> bool:
+        """Whether these change all that the other changes."""
+        return other.without(self) == Repairs()
 
     def joined(self, other: Repairs) -> Repairs:
         """These, and where the other changes something, what it changes."""

@@ -6,12 +6,13 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..body.anatomy import Part
+from ..data.problem import Mend
 from ..data.recording import Recording
 from ..numerics.rotations import rotation_matrix, rotation_vector
 from .figure import Figure
 from .finding import Finding, FindingKind
 from .local_poses import LocalPoses, angles_between, fourth_differences, runs, spans
-from .repairs import Mend, Repairs
+from .repairs import Repairs
 
 # From the cubic through the frames around; honest toes that strike the ground are 25° off, and no
 # other joint is 13° off.

@@ -48,7 +48,7 @@ from .joint_report import joint_changes, recorded_ranges
 from .moving_ground import moving_ground
 from .npz_export import instants
 from .torque_curve import exact_torques, torque_curve
-from .unseen_support import let_go, unseen_support, worst_joint
+from .unseen_support import accepted, let_go, unseen_support, worst_joint
 from .violations import condition_violations, pins_of_contacts, worst_constraints
 
 SAMPLE_RATE = 1000.0  # Hz, of what is measured between the nodes
@@ -105,6 +105,7 @@ def report(
         stages=None if stages is None else tuple(stages),
         unseen_support=tuple(unseen_support(fit, motion)),
         let_go=tuple(let_go(fit)),
+        accepted_contacts=tuple(accepted(motion)),
     )
 
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
-from ..data.reports.constraints import LetGoReport, UnseenSupportReport
+from ..data.reports.constraints import AcceptedReport, FitNeeds, LetGoReport, UnseenSupportReport
 from ..stages.fit import Fit
-from ..transcription.motion import Motion
+from ..transcription.motion import Motion, pinned_instants
 from .flight_summary import scene_frame
 
 SAMPLE_RATE = 500.0  # Hz
@@ -45,6 +45,22 @@ def let_go(fit: Fit) -> Iterator[LetGoReport]:
     for each in fit.let_go:
         start, end = (scene_frame(fit, t) for t in (each.contact.start, each.contact.end))
         yield LetGoReport(each.contact.name, start, end, 1000.0 * each.off)
+
+
+def fit_needs(fit: Fit, motion: Motion | None = None) -> FitNeeds:
+    """What a fit needs beside what the recording shows; of an adaptation of it where its motion is
+    given."""
+    motion = motion or fit.motion
+    carried = tuple(unseen_support(fit, motion))
+    return FitNeeds(carried, tuple(let_go(fit)), tuple(accepted(motion)))
+
+
+def accepted(motion: Motion) -> Iterator[AcceptedReport]:
+    """The contacts of a motion that miss their places by what is good enough."""
+    for i, each in enumerate(motion.transcription.contacts):
+        if each.contact.slack > 0.0:
+            off = motion.drift(i, pinned_instants(each, SAMPLE_RATE))
+            yield AcceptedReport(each.contact.name, 1000.0 * float(off.max()))
 
 
 def worst_joint(fit: Fit, apart: FloatArray) -> tuple[str, float, float]:

@@ -23,6 +23,7 @@ from .ride import Ride
 from .rows import Layout, Rows
 
 DEFAULT_FRICTION = 1.0  # of a rubber sole on a hall's floor
+SLACK_RATE = 50.0  # 1/s, of a speed that goes with a slack of places
 VELOCITY_STEP = 1e-3  # s, of the central differences that give a moving place its velocity
 
 
@@ -157,7 +158,7 @@ class _PinPairs:
 
     point: (M,) of the contact. axes: (M, 3, 3), rows the directions in which it may be held.
     holds: M poses that its place is held at, or their rates. kept: (3 M,) held directions. turned:
-    whether any axes are not the world's.
+    whether any axes are not the world's. slack: (M,) m, or m/s, that count as met.
     """
 
     contact: IntArray
@@ -167,6 +168,7 @@ class _PinPairs:
     holds: Poses
     kept: BoolArray
     turned: bool
+    slack: FloatArray | float
 
     def held(self, places: FloatArray) -> FloatArray:
         """(M, 3) where places (n_contacts, 3) m are held, m, or how fast that goes, m/s."""
@@ -220,7 +222,9 @@ class Pins:
                 axes[mine, :count], kept[mine, count:] = each.held, False
         point = np.array([c.point for c in contacts], dtype=int)[contact]
         turned = any(c.held is not None for c in contacts)
-        return _PinPairs(contact, at, point, axes, holds, kept.ravel(), turned)
+        slack = np.array([c.contact.slack for c in contacts])[contact] if len(contact) else 0.0
+        slack = slack * (SLACK_RATE if velocity else 1.0)
+        return _PinPairs(contact, at, point, axes, holds, kept.ravel(), turned, slack)
 
     def angles(self, window: FloatArray) -> FloatArray:
         """(U, n_angles) joint angles at the pins' breaks, rad; window (U, 4, n_block)."""
@@ -307,5 +311,5 @@ class Pins:
         if held.turned:
             jacobian = np.einsum("mij,mjkn->mikn", held.axes, jacobian)
         spans, times = self.spans[held.at], self.times[held.at]
-        rows = Rows.of(spans, value, jacobian, kind, times, held.contact)
+        rows = Rows.of(spans, value, jacobian, kind, times, held.contact, slack=held.slack)
         return rows.some(held.kept) if held.turned else rows

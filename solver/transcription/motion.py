@@ -184,7 +184,11 @@ def spans_to_refine(motion: Motion, tolerance: DenseTolerance) -> IntArray:
         for i, contact in enumerate(transcription.contacts):
             pinned = (times > contact.contact.start) & (times < contact.contact.end)
             off = contact.pin_error(at[:, contact.point], motion.places[i], times)
-            weak[spans[pinned & (np.linalg.norm(off, axis=1) > tolerance.drift)]] = True
+            weak[
+                spans[
+                    pinned & (np.linalg.norm(off, axis=1) > tolerance.drift + contact.contact.slack)
+                ]
+            ] = True
     return np.flatnonzero(weak)
 
 

@@ -86,6 +86,7 @@ class Rows:
 
     span: the span that a row depends on; jacobian: (R, 4, n_block) by that span's four blocks.
     time: s. owner: the index of a contact, or of a constraint counted on from those, else -1.
+    slack: what counts as met beyond the kind's tolerance, in its unit.
     """
 
     span: IntArray
@@ -96,6 +97,7 @@ class Rows:
     kind: NDArray[np.object_]
     time: FloatArray
     owner: IntArray
+    slack: FloatArray
 
     @staticmethod
     def join(parts: Sequence["Rows"]) -> "Rows":
@@ -112,8 +114,10 @@ class Rows:
         times: FloatArray,
         owner: IntArray | int = -1,
         bounds: tuple[FloatArray, FloatArray] | None = None,
+        slack: FloatArray | float = 0.0,
     ) -> "Rows":
-        """Rows of M vectors: value (M, m), Jacobian (M, m, 4, n_block), bounds each (M, m)."""
+        """Rows of M vectors: value (M, m), Jacobian (M, m, 4, n_block), bounds each (M, m), owner
+        and slack (M,) or one."""
         each = value.shape[1]
         count = value.size
         lower, upper = (np.zeros(count),) * 2 if bounds is None else (b.ravel() for b in bounds)
@@ -126,6 +130,7 @@ class Rows:
             np.full(count, kind),
             np.repeat(times, each),
             np.repeat(np.broadcast_to(owner, len(spans)), each),
+            np.repeat(np.broadcast_to(slack, len(spans)), each),
         )
 
     def some(self, which: BoolArray | IntArray) -> "Rows":
@@ -145,7 +150,7 @@ class Rows:
     @property
     def tolerance(self) -> FloatArray:
         """(R,) feasibility tolerance of each, in its kind's unit."""
-        return by_kind(self.kind, {kind: kind.tolerance for kind in RowKind})
+        return by_kind(self.kind, {kind: kind.tolerance for kind in RowKind}) + self.slack
 
     def violation(self, value: FloatArray | None = None) -> FloatArray:
         """(R,) signed violation of the bounds by values (R,), the rows' own by default."""

@@ -34,12 +34,15 @@ def lasting_fit(
     schedule: ContactSchedule,
     rides: Rides,
     *,
+    good_enough: float = 0.0,
     periodic: bool = False,
     progress: Progress | None = None,
 ) -> Fit:
     """The valid motion nearest to the recording, with as many of its contacts as go together.
 
-    rides: of a schedule's contacts. Of a motion that repeats nothing is let go: as `fit` has it.
+    rides: of a schedule's contacts. good_enough: m by which contacts that cannot be held exactly
+    may miss their places before any is let go. Of a motion that repeats nothing is let go: as `fit`
+    has it.
     """
     let_go: list[LetGo] = []
     for remaining in reversed(range(MAX_ROUNDS + 1)):
@@ -48,6 +51,10 @@ def lasting_fit(
         )
         if found.solved or periodic or remaining == 0:
             break
+        accepted = _accepted(found, schedule, good_enough)
+        if accepted is not schedule:
+            schedule = accepted
+            continue
         released = _contradictory(found) if remaining > 1 else _every(schedule)
         easier = _without(schedule, released) if released else _carried(found)
         if remaining == 1:
@@ -86,6 +93,30 @@ def _never_flown(found: Fit) -> tuple[Interval, ...]:
     )
 
 
+def _accepted(failed: Fit, schedule: ContactSchedule, good_enough: float) -> ContactSchedule:
+    """The schedule with slack for the contacts that a failed fit misses, where all are missed by
+    no more than what is good enough; else as it is."""
+    missed = _missed(failed)
+    if max(missed, default=0.0) > good_enough:
+        return schedule
+    contacts = tuple(
+        replace(contact, slack=good_enough) if off > RowKind.PIN.tolerance else contact
+        for contact, off in zip(schedule.contacts, missed, strict=True)
+    )
+    same = all(a.slack == b.slack for a, b in zip(contacts, schedule.contacts, strict=True))
+    return schedule if same else replace(schedule, contacts=contacts)
+
+
+def _missed(fitted: Fit) -> list[float]:
+    """By how much, m, each contact's point misses its place at its worst."""
+    rows = _rows(fitted)
+    off, pinned = np.abs(rows.violation()), rows.kind == RowKind.PIN
+    return [
+        float(off[pinned & (rows.owner == i)].max(initial=0.0))
+        for i in range(len(fitted.schedule.contacts))
+    ]
+
+
 def _every(schedule: ContactSchedule) -> list[LetGo]:
     return [LetGo(contact, 0.0) for contact in schedule.contacts]
 
@@ -93,12 +124,7 @@ def _every(schedule: ContactSchedule) -> list[LetGo]:
 def _contradictory(failed: Fit) -> list[LetGo]:
     """The contacts that a failed fit misses the furthest; none where others are to blame."""
     rows = _rows(failed)
-    missed = np.abs(rows.violation())
-    pinned = rows.kind == RowKind.PIN
-    worst = [
-        (float(missed[pinned & (rows.owner == i)].max(initial=0.0)), contact)
-        for i, contact in enumerate(failed.schedule.contacts)
-    ]
+    worst = list(zip(_missed(failed), failed.schedule.contacts, strict=True))
     most = max((off for off, _ in worst), default=0.0)
     if most < CONTRADICTORY and _violated_phases(failed, rows):
         return []

@@ -22,7 +22,7 @@ from ..analysis.analyse import Analysis, analyse, build_figure
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
-from ..data.contacts import ContactSchedule
+from ..data.contacts import ContactSchedule, gaps
 from ..data.faults import NoFit, NoSolution, NotComputable, Treadmill, UnseenSupport
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
@@ -40,6 +40,7 @@ from ..data.scaling import (
 from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
+from ..doctor.repair import as_asked
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
 from ..optimisation.sqp import Step
@@ -60,6 +61,7 @@ from .lasting_fit import lasting_fit
 from .other_phases import on_phases_of
 from .possible import check_requested
 
+APART, LEAST_SOUND = 0.1, 0.5  # s: about what cannot be held; of a part that is worth keeping
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
 
 
@@ -132,6 +134,14 @@ class Subject:
         return scaled_schedule(self.analysis.schedule, 1.0 / self.factor)
 
     @property
+    def drifted(self) -> tuple[float, float]:
+        """How far, m along the floor, the recording is at its end from where it is without drift,
+        in its own lengths."""
+        x, y = self.problem.drift
+        seconds = float(self.recording.times[-1])
+        return x * seconds, y * seconds
+
+    @property
     def shape_changes(self) -> ShapeChanges:
         """Of the recording's own figure. Raises StillBone, NotAboveZero."""
         performance = self.analysis.performance
@@ -196,7 +206,9 @@ class AdaptationResult:
     def moved(self) -> StanceMove | None:
         """The last stance's move, in the recording's own lengths; None where there is none."""
         move = last_stance_move(self.adaptation)
-        return None if move is None else move.scaled(1.0 / self.subject.factor)
+        if move is None:
+            return None
+        return move.scaled(1.0 / self.subject.factor).from_elsewhere(self.subject.drifted)
 
     def traces(self) -> Traces:
         """In the recording's own lengths."""
@@ -221,6 +233,7 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
 
     Raises what `analyse`, `find_cycle` and `check_loop` do.
     """
+    recording = as_asked(recording, problem)
     if problem.height is None:
         analysis, cycle = _analysed(recording, problem)
         return Subject(analysis, problem, analysis.performance.character.height, 1.0, cycle)
@@ -269,6 +282,7 @@ def fit_subject(subject: Subject, clock: StageClock) -> Fit:
             subject.analysis.performance,
             subject.analysis.schedule,
             lambda schedule: recorded_rides(schedule, scene, recording),
+            good_enough=subject.problem.good_enough * subject.factor,
             periodic=subject.cycle is not None,
             progress=clock.step,
         )
@@ -337,7 +351,23 @@ def solve(
 
 def no_fit(fitted: Fit) -> NoSolution:
     """The fault of a fit that failed."""
-    return _unsolved(NoFit, unadapted(fitted), MotionProblem())
+    fault = _unsolved(NoFit, unadapted(fitted), MotionProblem())
+    return replace(fault, sound=_sound(fitted)) if isinstance(fault, NoFit) else fault
+
+
+def _sound(failed: Fit) -> tuple[int, int] | None:
+    """First and last frame of the longest part of a failed fit in which its rows hold."""
+    outcome, recording = failed.outcome, failed.performance.recording
+    rows = outcome.transcription.rows(outcome.x, outcome.places)
+    wrong = rows.time[np.abs(rows.violation()) > rows.tolerance]
+    spans = [(t - APART, t + APART) for t in wrong]
+    longest = max(
+        gaps(spans, float(recording.times[-1])), key=lambda g: g.end - g.start, default=None
+    )
+    if not len(wrong) or longest is None or longest.end - longest.start < LEAST_SOUND:
+        return None
+    first, last = np.interp((longest.start, longest.end), recording.times, recording.frames)
+    return int(np.ceil(first)), int(np.floor(last))
 
 
 def dynamics_of(motion: Motion) -> InverseDynamics:

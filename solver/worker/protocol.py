@@ -31,11 +31,15 @@ if TYPE_CHECKING:
     from ..data.loop import Cycle
     from ..data.problem import MotionProblem
     from ..data.recording import PoseTrack, Recording
+    from ..data.reports.constraints import FitNeeds
     from ..data.reports.report import DragSummary, FitQuality, Report
     from ..data.stance_move import StanceMove
     from ..data.traces import Traces
+    from ..doctor.diagnose import Diagnosis
+    from ..doctor.feet import FootFault
+    from ..doctor.repairs import Repairs
 
-PROTOCOL = 6
+PROTOCOL = 7
 LARGEST = 1 << 30  # bytes; a longer message is not one
 _HEAD = struct.Struct("<Q")  # length of the pickle
 _NUMPY = {
@@ -66,6 +70,7 @@ class RequestKind(Enum):
     """Task that a request sets the worker."""
 
     ANALYSE = "analyse"
+    EXAMINE = "examine"  # what is wrong with a recording, which the doctor tells
     FIT = "fit"
     ADAPT = "adapt"
     FOLLOW = "follow"  # a pin that is being dragged: the next few steps, not a whole solve
@@ -90,13 +95,15 @@ class Ready:
 class Request:
     """A task for the worker; id comes back with everything that is said about it.
 
-    recording: None is the last request's.
+    recording: None is the last request's. placed: to be examined: the repairs by which the scene
+    has it turned, in size, on the floor and in time already; None where there are none.
     """
 
     id: int
     kind: RequestKind
     recording: Recording | None
     problem: MotionProblem
+    placed: Repairs | None = None
 
 
 class Ending(Enum):
@@ -152,13 +159,23 @@ class Analysed:
 
 
 @dataclass(frozen=True)
+class Examined:
+    """What is wrong with a recording before any repair, and with its feet as it is read now."""
+
+    id: int
+    diagnosis: Diagnosis
+    feet: tuple[FootFault, ...]
+
+
+@dataclass(frozen=True)
 class Fitted:
-    """The nearest valid motion is found."""
+    """The nearest valid motion is found. needs: what it needs beside what the recording shows."""
 
     id: int
     quality: FitQuality
     seconds: float
     traces: Traces
+    needs: FitNeeds
 
 
 @dataclass(frozen=True)
@@ -203,7 +220,7 @@ class Failed:
     fault: Fault
 
 
-Answer = Analysed | Fitted | Adapted | Followed | Cancelled | Failed
+Answer = Analysed | Examined | Fitted | Adapted | Followed | Cancelled | Failed
 Message = Hello | Ready | Request | Halt | Progress | Answer
 
 

@@ -6,15 +6,22 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 
+from ..analysis.performance import perform
 from ..analysis.pinned_places import travel_axes
+from ..body.character import build_character
 from ..data.contacts import PhaseKind
 from ..data.faults import Fault
 from ..data.problem import MotionProblem
 from ..data.recording import Recording, digest
 from ..data.reports.recording import Origin
 from ..data.scene import SceneObject
+from ..doctor.diagnose import diagnose
+from ..doctor.feet import find_feet
+from ..doctor.repair import as_asked, unplaced
+from ..doctor.repairs import Repairs
 from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality
+from ..results.unseen_support import fit_needs
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..stages.interactive import Follower, change, pelvis_range
@@ -39,6 +46,7 @@ from .protocol import (
     Answer,
     Cancelled,
     Ending,
+    Examined,
     Failed,
     Fitted,
     Followed,
@@ -97,6 +105,8 @@ class Service:
         return replace(request, recording=self._recording)
 
     def _met(self, request: Request, tell: Tell) -> Answer:
+        if request.kind is RequestKind.EXAMINE:
+            return _examined(request)
         subject = self._subject_of(request)
         if request.kind is RequestKind.ANALYSE:
             return _analysed(request.id, subject)
@@ -111,7 +121,8 @@ class Service:
         if not fitted.solved:
             raise no_fit(fitted)
         traces = subject.motion_traces(fitted.motion, fitted.schedule, subject.shape_changes)
-        return Fitted(request.id, fit_quality(fitted), watch.done[-1].seconds, traces)
+        seconds, needs = watch.done[-1].seconds, fit_needs(fitted)
+        return Fitted(request.id, fit_quality(fitted), seconds, traces, needs)
 
     def _adapted(self, request: int, subject: Subject, watch: "_Watch") -> Adapted:
         result = solve(subject, watch, partial(self._fit, fitted_by=fit_possible))
@@ -232,6 +243,21 @@ def _analysed(request: int, subject: Subject) -> Analysed:
         subject.cycle,
         subject.analysis.unseen,
     )
+
+
+def _examined(request: Request) -> Examined:
+    """The diagnosis of a recording as it was before all repairs, and its feet as they are read now.
+
+    Raises ClipTooShort, MissingPart, ZeroLengthBone.
+    """
+    assert request.recording is not None
+    problem, placed = request.problem, request.placed or Repairs()
+    with computable():
+        as_made = unplaced(request.recording, placed)
+        diagnosis = diagnose(as_made, problem.bones, problem.mass)
+        now = as_asked(request.recording, problem)
+        performance = perform(now, build_character(now, chosen=problem.bones))
+    return Examined(request.id, diagnosis, find_feet(performance))
 
 
 def _named(names: Collection[str], scene: Sequence[SceneObject]) -> tuple[SceneObject, ...]:

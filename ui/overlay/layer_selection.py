@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from .context.figure_cache import FigureCache
 from .context.layer import Layer, Part
 from .context.view_context import ViewContext
-from .layers import changes, ghosts, limits, motion, pins, shapes
+from .layers import changes, faults, ghosts, limits, motion, pins, shapes
 
 
 def layers(view: ViewContext, figures: FigureCache) -> Iterator[Layer]:
@@ -18,6 +18,8 @@ def layers(view: ViewContext, figures: FigureCache) -> Iterator[Layer]:
         yield limits.layer(view, figures)
     if options.poses and (poses := ghosts.poses(view, figures)) is not None:
         yield poses
+    if options.faults and not view.performs_adapted:
+        yield faults.layer(view)
     yield from _motion(view)
     if options.ghosts:
         yield from _ghosts(view)

@@ -11,7 +11,7 @@ from .sidebar import ArmaturePanel, split
 
 _COLUMNS = {
     "Constraints": ("pins", "limits", "all_limits", "poses"),
-    "Motion": ("path", "forces", "momentum", "changes", "shapes"),
+    "Motion": ("path", "forces", "momentum", "changes", "shapes", "faults"),
 }
 _CURVES = ("plot_forces", "plot_com", "plot_torque")
 

@@ -11,7 +11,7 @@ from ...operators.lists.choose_named import named_row
 from ...operators.names import OperatorId
 from ...operators.solve.session import session
 from ...operators.words.failure_text import Failure
-from ...solver.data.faults import NoSolution, OddHeight, UnseenSupport
+from ...solver.data.faults import NoFit, NoSolution, OddHeight, UnseenSupport
 from ..drawing.editor import ui_scale
 from .sidebar import lines
 
@@ -73,8 +73,14 @@ def _draw_remedy(layout: bpy.types.UILayout, failure: Failure, settings: Hangtim
         case UnseenSupport(rate=int() as rate):
             button = layout.operator(OperatorId.SET_FRAME_RATE, text=f"Set {rate} fps", icon="TIME")
             button.rate = rate
+        case UnseenSupport():
+            layout.operator(OperatorId.EXAMINE, text="Examine the Recording", icon="VIEWZOOM")
         case OddHeight(factor=factor):
             layout.operator(OperatorId.SCALE_TO_HUMAN, icon="FULLSCREEN_EXIT").factor = factor
+        case NoFit() as fault:
+            _draw_untick(layout, failure, settings)
+            _draw_trim(layout, fault)
+            layout.operator(OperatorId.EXAMINE, text="Examine the Recording", icon="VIEWZOOM")
         case NoSolution():
             _draw_untick(layout, failure, settings)
 
@@ -87,3 +93,12 @@ def _draw_untick(layout: bpy.types.UILayout, failure: Failure, settings: Hangtim
         text = f"Untick {found.name}, Try Again"
         button = layout.operator(OperatorId.TICK_NAMED, text=text, icon="CHECKBOX_DEHLT")
         button.name, button.then = worst, failure.of
+
+
+def _draw_trim(layout: bpy.types.UILayout, fault: NoFit) -> None:
+    """A button for the longest part of the frame range without what cannot be held."""
+    if fault.sound is not None:
+        first, last = fault.sound
+        text = f"Trim to Frames {first} to {last}"
+        button = layout.operator(OperatorId.TRIM, text=text, icon="TIME")
+        button.first, button.last = first, last

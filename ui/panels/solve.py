@@ -74,7 +74,8 @@ class AdvancedPanel(ArmaturePanel):
         settings = settings_in(context)
         layout.operator(OperatorId.FIT, icon="CON_FOLLOWPATH")
         if settings.fit_quality:
-            lines(layout, settings.fit_quality, icon="CHECKMARK")
+            lines(layout, wrapped(context, settings.fit_quality), icon="CHECKMARK")
+        layout.prop(settings, "good_enough")
         layout.prop(settings, "method")
         layout.prop(settings, "keep_times")
         layout.prop(settings, "human_ranges")

@@ -12,6 +12,7 @@ RIGHT: Colour = (0.95, 0.5, 0.3, 0.75)
 OTHER: Colour = (0.5, 0.75, 0.4, 0.75)
 GROUND: Colour = (0.55, 0.5, 0.42, 0.85)
 FLIGHT: Colour = (0.3, 0.42, 0.7, 0.45)
+DOUBT: Colour = (0.85, 0.65, 0.1, 0.85)
 EDGE: Colour = (1.0, 1.0, 1.0, 0.85)
 CHOSEN: Colour = (1.0, 1.0, 1.0, 1.0)
 UNUSED: Colour = (0.7, 0.7, 0.7, 0.55)
@@ -75,6 +76,8 @@ def _name(bar: Bar, seen: Rect, y: float, padding: float, colour: Colour, size: 
 
 
 def _colour(bar: Bar) -> Colour:
+    if bar.is_doubt:
+        return DOUBT
     if bar.is_phase:
         return FLIGHT if bar.firm else GROUND
     if bar.name.startswith("Left"):

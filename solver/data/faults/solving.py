@@ -47,7 +47,13 @@ class NoSolution(Fault):
 
 @dataclass
 class NoFit(NoSolution):
-    """The same for the recording's own motion, before any pin has moved."""
+    """The same for the recording's own motion, before any pin has moved.
+
+    sound: first and last frame of the longest part in which everything holds; None where none is
+    worth keeping.
+    """
+
+    sound: tuple[int, int] | None = None
 
 
 @dataclass

@@ -100,3 +100,20 @@ class LetGoReport:
     start_frame: float
     end_frame: float
     off_mm: float
+
+
+@dataclass(frozen=True)
+class AcceptedReport:
+    """A contact that no motion holds exactly, but near enough. off_mm: at its worst."""
+
+    name: str
+    off_mm: float
+
+
+@dataclass(frozen=True)
+class FitNeeds:
+    """What a valid motion needs beside what the recording shows; see `Report`."""
+
+    unseen_support: tuple[UnseenSupportReport, ...] = ()
+    let_go: tuple[LetGoReport, ...] = ()
+    accepted: tuple[AcceptedReport, ...] = ()

@@ -15,8 +15,10 @@ from ..solver_options import ReductionKind
 from ..status import Durations, Status
 from .certificate import CertificateLine
 from .constraints import (
+    AcceptedReport,
     ConstraintReport,
     ContactReport,
+    FitNeeds,
     LetGoReport,
     MovingGroundReport,
     PinReport,
@@ -120,7 +122,7 @@ class Report:
     recorded_ranges: worst first; none where the figure is no human. joint_changes: the joints that
     changed most. stages: None where nobody timed them. keys: None where none were left out.
     unseen_support: where something unseen carries the body. let_go: contacts that the fit found
-    no way to hold.
+    no way to hold. accepted_contacts: those that it holds near enough to their places.
     """
 
     status: Status
@@ -155,6 +157,12 @@ class Report:
     loop: LoopReport | None = field(default=None, metadata=OMIT_NONE)
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
+    accepted_contacts: tuple[AcceptedReport, ...] = ()
+
+    @property
+    def needs(self) -> FitNeeds:
+        """What the motion needs beside what the recording shows."""
+        return FitNeeds(self.unseen_support, self.let_go, self.accepted_contacts)
 
     @property
     def given_up(self) -> tuple[ConstraintReport, ...]:

@@ -1,11 +1,12 @@
 """Repairs of the recording in a recipe."""
 
 import pytest
-from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.recipe.problem import parse_recipe, write_recipe
 from hangtime.bridge.recipe.recording import RECORDING
 from hangtime.bridge.recipe_syntax.toml_text import sections
 from hangtime.solver.data.faults import BadRecipe
-from hangtime.solver.doctor.repairs import Mend, Repairs, UpAxis
+from hangtime.solver.data.problem import Mend, MotionProblem
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
 
 FULL = Repairs(
     UpAxis.MINUS_X, 2, (Mend.FLIPS, Mend.HELD_FRAMES), 0.8, 1.6, (0.1, -0.25), floor=0.12
@@ -29,3 +30,12 @@ def test_a_mistake_is_told_with_its_line(line: str) -> None:
     with pytest.raises(BadRecipe) as told:
         parse_recipe(f"[recording]\n{line}\n")
     assert told.value.line == 2
+
+
+def test_what_is_good_enough_comes_back() -> None:
+    problem = parse_recipe("good_enough = 0.002").problem
+    assert problem.good_enough == 0.002
+    assert "good_enough = 0.002" in write_recipe(problem)
+    assert "good_enough" not in write_recipe(MotionProblem())
+    with pytest.raises(BadRecipe, match="zero or more"):
+        parse_recipe("good_enough = -1")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import check_motion, check_npz
-from hangtime.operators.words.headline import headline
+from hangtime.operators.words.headline import accepted_lines, headline
 from hangtime.operators.words.report_text import as_text
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import MotionProblem, Pin
@@ -18,6 +18,7 @@ from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.traces import UNSEEN_SUPPORT
 from hangtime.solver.results.npz_export import save
 from hangtime.solver.results.report import fit_quality
+from hangtime.solver.results.unseen_support import fit_needs
 from hangtime.solver.stages.fit import Fit
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.solver.worker.lasting_fit import lasting_fit
@@ -166,3 +167,24 @@ def test_a_contact_that_contradicts_the_others_is_let_go_and_told() -> None:
     assert {each.contact.point.split()[0] for each in found.let_go} == {wrong.point.split()[0]}
     assert all(each.off > RowKind.PIN.tolerance for each in found.let_go)
     assert [p.name for p in found.schedule.phases] == [p.name for p in schedule.phases]
+
+
+@pytest.mark.slow
+def test_a_contact_that_is_near_enough_is_accepted_and_told() -> None:
+    """The same, where that far off is said to be good enough."""
+    schedule, performance = hop().schedule, hop().performance
+    shifted = schedule.contacts[-1]
+    wrong = replace(shifted, place=shifted.place + np.array([0.0, 0.3, 0.0]))
+    contacts = (*schedule.contacts[:-1], wrong)
+    found = lasting_fit(
+        performance,
+        replace(schedule, contacts=contacts),
+        lambda s: [None] * len(s.contacts),
+        good_enough=0.3,
+    )
+    assert found.solved
+    assert found.let_go == ()
+    needs = fit_needs(found)
+    assert needs.accepted
+    assert all(0.01 < each.off_mm < 310.0 for each in needs.accepted)
+    assert any("good enough" in line for line in accepted_lines(needs))

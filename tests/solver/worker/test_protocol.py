@@ -9,10 +9,17 @@ import numpy as np
 import pytest
 from hangtime.solver.data import faults
 from hangtime.solver.data.contacts import Contact, ContactSchedule
-from hangtime.solver.data.problem import MassTable, MotionProblem, Pin
+from hangtime.solver.data.problem import MassTable, Mend, MotionProblem, Pin
 from hangtime.solver.data.recording import Bone, PoseTrack, Recording
 from hangtime.solver.data.reports.certificate import CertificateItem, CertificateLine
-from hangtime.solver.data.reports.constraints import ConstraintReport, MovingGroundReport, PinReport
+from hangtime.solver.data.reports.constraints import (
+    ConstraintReport,
+    FitNeeds,
+    LetGoReport,
+    MovingGroundReport,
+    PinReport,
+    UnseenSupportReport,
+)
 from hangtime.solver.data.reports.dynamics import (
     DenseResiduals,
     ForcePeak,
@@ -52,6 +59,10 @@ from hangtime.solver.data.solver_options import ReductionKind
 from hangtime.solver.data.stance_move import StanceMove
 from hangtime.solver.data.status import DragStatus, Durations, Status
 from hangtime.solver.data.traces import FlightParabola, Traces
+from hangtime.solver.doctor.diagnose import Diagnosis
+from hangtime.solver.doctor.feet import FootFault, FootFaultKind
+from hangtime.solver.doctor.finding import Finding, FindingKind
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.solver.worker.protocol import (
     LARGEST,
     PROTOCOL,
@@ -59,6 +70,7 @@ from hangtime.solver.worker.protocol import (
     Analysed,
     Cancelled,
     Ending,
+    Examined,
     Failed,
     Fitted,
     Followed,
@@ -144,6 +156,11 @@ REPORT = Report(
     stages=(StageReport("Adapting", 1.5),),
 )
 MOVED = StanceMove("ground 2", (1.0, 0.0, 0.0), 0.5, (0.3, 0.0, 0.0))
+REPAIRS = Repairs(UpAxis.Y, 1, (Mend.NOISE,), 0.8, 2.0, (0.1, 0.0), 0.2)
+FINDING = Finding(FindingKind.SPIKE, 30.0, "°", ((2.0, 2.0),), "arm", REPAIRS)
+FOOT = FootFault(FootFaultKind.SINKS, "Left toe", "toe.L", (0.0, 0.1, 0.0), 1.0, 4.0, 0.05)
+SUPPORT = UnseenSupportReport(1.0, 4.0, 0.5, 2.0, 0.1)
+LET_GO = LetGoReport("Left toe 1", 1.0, 4.0, 12.0)
 MESSAGES: tuple[Message, ...] = (
     Hello(PROTOCOL, ("somewhere",)),
     Ready(PROTOCOL),
@@ -152,7 +169,9 @@ MESSAGES: tuple[Message, ...] = (
     Halt(2, Ending.AS_IT_STANDS),
     Progress(1, "fit", 2, 3.5, "Left toe 1", 0.25),
     Analysed(1, SCHEDULE, 1.7, {"ground 1": np.eye(3)}, {"pelvis": "hips"}, TRACES),
-    Fitted(1, REPORT.fit_to_recording, 2.0, TRACES),
+    Request(3, RequestKind.EXAMINE, RECORDING, PROBLEM, REPAIRS),
+    Examined(3, Diagnosis((FINDING,), 30.0), (FOOT,)),
+    Fitted(1, REPORT.fit_to_recording, 2.0, TRACES, FitNeeds((SUPPORT,), (LET_GO,))),
     Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, MOVED, None),
     Adapted(1, TRACK, REPORT, SCHEDULE, TRACES, None, FAULT),
     Followed(1, TRACES, DragStatus.CONVERGED, DragSummary(3.0, 1.0, 2.0, 4.5)),

@@ -32,6 +32,7 @@ class Part(Enum):
     ADAPTED_GHOSTS = auto()
     GHOST_NOW = auto()
     CHANGES = auto()
+    FAULTS = auto()
 
 
 @dataclass(frozen=True)

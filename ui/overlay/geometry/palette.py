@@ -16,6 +16,7 @@ LIVE: Colour = (0.25, 0.95, 0.85, 1.0)
 PARABOLA: Colour = (1.0, 0.68, 0.20, 1.0)
 FORCE: Colour = (0.35, 0.85, 0.38, 1.0)
 UNSEEN: Colour = (1.0, 0.45, 0.85, 1.0)  # the force of what the recording does not show
+FAULT: Colour = (1.0, 0.55, 0.0, 1.0)  # what is wrong with a recording
 SOLID_SHAPE: Colour = (0.85, 0.85, 0.85, 0.6)
 OVERLAP: Colour = (1.00, 0.10, 0.10, 1.0)
 MOMENTUM: Colour = (0.74, 0.52, 1.0, 1.0)

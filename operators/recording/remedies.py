@@ -7,8 +7,8 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.files.object_scale import scale_object
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import hindrance, required_armature
-from .session import session
+from ..solve.common import hindrance, required_armature
+from ..solve.session import session
 
 
 class SetFrameRateOperator(PolledOperator, bpy.types.Operator):

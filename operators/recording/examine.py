@@ -1,0 +1,66 @@
+"""Examine: what is wrong with a recording, before anything is fitted."""
+
+import bpy
+
+from ...bridge.constraints.bone_mapping import chosen_parts, find_parts, missing_parts
+from ...bridge.properties.settings import scene_settings, settings_of
+from ...bridge.repairs.stored import applied, finding_of, findings, is_applied, write_diagnosis
+from ...bridge.worker_client import shared
+from ...solver.data.faults import MissingPart
+from ...solver.data.problem import MotionProblem
+from ...solver.worker.protocol import Examined, RequestKind
+from ..names import OperatorId
+from ..solve.adapt import read_wanted
+from ..solve.common import required_armature
+from ..solve.live import redraw
+from ..solve.session import session
+from ..solve.solving import SolveState
+from ..solve.task import Task, TaskOperator, answered
+from ..words.doctor_text import HEALTHY
+
+FOUND = "Found {} in the recording; the panel Recording tells what, and the remedies"
+
+
+class ExamineOperator(TaskOperator, bpy.types.Operator):
+    bl_idname = OperatorId.EXAMINE
+    bl_label = "Examine"
+    bl_description = (
+        "Look for what is wrong with the recording: frame rate, size, single frames, trembling, "
+        "feet that slide. Nothing is changed; remedies are offered"
+    )
+    bl_options = {"UNDO"}
+
+    def task(self, context: bpy.types.Context) -> Task:
+        armature = required_armature(context)
+        settings = settings_of(armature)
+        recording = yield from read_wanted(armature)
+        find_parts(armature)
+        yield None
+        for missing in missing_parts(settings):
+            raise MissingPart(missing)
+        session().advance(SolveState.SOLVING)
+        repairs = applied(settings)
+        problem = MotionProblem(
+            frames=(float(recording.frames[0]), float(recording.frames[-1])),
+            mass=settings.mass,
+            bones=chosen_parts(settings),
+            mend=repairs.mend,
+            drift=repairs.drift,
+        )
+        job = shared().ask(RequestKind.EXAMINE, recording, problem, repairs)
+        answer = yield from answered(job, Examined)
+        yield None
+        write_diagnosis(armature, answer.diagnosis, answer.feet)
+        scene_settings(context.scene).armature = armature
+        redraw("VIEW_3D", "DOPESHEET_EDITOR")
+        wrong = [
+            row
+            for row in findings(settings)
+            if not (finding_of(row).kind.note or is_applied(settings, row))
+        ]
+        return FOUND.format(faults(len(wrong))) if wrong else HEALTHY
+
+
+def faults(count: int) -> str:
+    """Such as "3 faults"."""
+    return "1 fault" if count == 1 else f"{count} faults"

@@ -1,0 +1,193 @@
+"""The doctor in Blender: what is wrong appears in rows, and remedies mend what is read."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.armature.fcurves import curves_of
+from hangtime.bridge.armature.keys_digest import keys_digest
+from hangtime.bridge.constraints.motion_problem import problem_of, repaired_since
+from hangtime.bridge.files.import_clip import import_clip
+from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.repairs.placed_armature import repair
+from hangtime.bridge.repairs.stored import (
+    applied,
+    finding_of,
+    findings,
+    foot_faults,
+    is_applied,
+    look_at_examination,
+)
+from hangtime.operators.timeline.timeline_bars import rows_of
+from hangtime.solver.data.problem import Mend
+from hangtime.solver.doctor.feet import FootFaultKind
+from hangtime.solver.doctor.repair import as_asked, unplaced
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap_path
+
+SPIKED, TURN, RAISED, SLOWED = 150, 0.8, 0.2, 1.25
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def damaged(jump: bpy.types.Object) -> bpy.types.Object:
+    """The jump with a spike in an arm, 0.2 m above the floor, played 1.25 times too fast."""
+    for curve in curves_of(jump):
+        if 'LeftArm"' in curve.data_path and "rotation" in curve.data_path:
+            key = curve.keyframe_points[SPIKED - 1]
+            assert key.co[0] == SPIKED
+            key.co[1] += TURN * (curve.array_index == 2)
+    jump.location.z = RAISED
+    bpy.context.scene.render.fps = 150
+    return jump
+
+
+@pytest.fixture
+def examined(damaged: bpy.types.Object) -> bpy.types.Object:
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    return damaged
+
+
+def kinds(armature: bpy.types.Object) -> list[str]:
+    return [row.name for row in findings(armature.hangtime)]
+
+
+def test_what_is_wrong_is_listed_with_its_frames_and_remedies(examined) -> None:
+    rows = {row.name: finding_of(row) for row in findings(examined.hangtime)}
+    assert set(rows) == {"spike", "time scale", "floor"}
+    assert rows["spike"].frames == ((SPIKED, SPIKED),)
+    assert rows["spike"].part == "LeftArm"
+    assert rows["time scale"].remedy.time_scale == pytest.approx(SLOWED)
+    assert rows["time scale"].alternative.scale == pytest.approx(SLOWED**-2, rel=0.05)
+    feet = foot_faults(examined.hangtime)
+    assert {fault.kind for fault in feet} == {FootFaultKind.FLOATS}
+    assert feet[0].amount == pytest.approx(RAISED, abs=0.03)
+
+
+def test_all_remedies_count_at_once_and_no_key_changes(examined) -> None:
+    action, scene = examined.animation_data.action, bpy.context.scene
+    before = keys_digest(action)
+    assert bpy.ops.hangtime.repair_all() == {"FINISHED"}
+    assert keys_digest(action) == before
+    assert scene.render.fps / scene.render.fps_base == pytest.approx(120.0)
+    assert examined.matrix_world.translation.z == pytest.approx(0.0, abs=0.03)
+    recording = read_recorded(examined, *JUMP_FRAMES)
+    problem = problem_of(examined.hangtime, recording)
+    assert problem.mend == (Mend.SPIKES,)
+    arm, at = recording.index("LeftArm"), SPIKED - JUMP_FRAMES[0]
+    turned = as_asked(recording, problem).rotations[at, arm].T @ recording.rotations[at, arm]
+    assert np.degrees(np.arccos(0.5 * (np.trace(turned) - 1.0))) > 30.0
+    assert not foot_faults(examined.hangtime)  # they were seen elsewhere
+    assert not bpy.ops.hangtime.repair_all.poll()
+
+
+def test_a_remedy_is_left_out_again(examined) -> None:
+    scene = bpy.context.scene
+    bpy.ops.hangtime.repair_all()
+    for row in findings(examined.hangtime):
+        assert is_applied(examined.hangtime, row)
+        bpy.ops.hangtime.repair(kind=row.name)
+        assert not is_applied(examined.hangtime, row)
+    assert examined.parent is None
+    assert scene.render.fps / scene.render.fps_base == pytest.approx(150.0)
+    assert applied(examined.hangtime) == Repairs()
+
+
+def test_one_remedy_takes_the_place_of_the_other(examined) -> None:
+    bpy.ops.hangtime.repair(kind="time scale")
+    bpy.ops.hangtime.repair(kind="time scale", other=True)
+    now = applied(examined.hangtime)
+    assert now.time_scale == 1.0
+    assert now.scale == pytest.approx(SLOWED**-2, rel=0.05)
+
+
+def test_what_is_repaired_is_found_again_as_such(examined) -> None:
+    found = kinds(examined)
+    bpy.ops.hangtime.repair_all()
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert kinds(examined) == found
+    assert all(is_applied(examined.hangtime, row) for row in findings(examined.hangtime))
+
+
+def test_a_row_leads_to_its_frame_and_bone(examined) -> None:
+    bpy.context.scene.frame_set(1)
+    bpy.ops.hangtime.show_finding(kind="spike")
+    assert bpy.context.scene.frame_current == SPIKED
+    assert examined.data.bones.active.name == "LeftArm"
+
+
+def test_the_timeline_has_a_row_of_doubtful_frames(examined) -> None:
+    (row,) = rows_of(examined.hangtime, lambda frame: frame)
+    spike = next(bar for bar in row.bars if bar.name == "Spike")
+    assert (spike.start, spike.end) == (SPIKED - 0.5, SPIKED + 0.5)
+    assert spike.used
+    bpy.ops.hangtime.repair_all()
+    assert not any(bar.used for bar in rows_of(examined.hangtime, lambda frame: frame)[0].bars)
+
+
+def test_another_key_makes_the_examination_stale(examined) -> None:
+    bpy.ops.hangtime.repair_all()
+    assert not look_at_examination(examined)
+    curves_of(examined)[0].keyframe_points[3].co[1] += 0.1
+    assert look_at_examination(examined)
+    assert examined.hangtime.examination_stale
+
+
+def test_repairs_are_undone_saved_and_exported(examined, tmp_path) -> None:
+    bpy.ops.hangtime.repair_all()
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert not repaired_since(examined.hangtime)
+    repairs = applied(examined.hangtime)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "repaired.blend"))
+    bpy.ops.hangtime.export_recipe(filepath=str(tmp_path / "repaired.toml"))
+    recipe = parse_recipe((tmp_path / "repaired.toml").read_text(encoding="utf-8"))
+    assert recipe.repairs == repairs
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "repaired.blend"))
+    again = bpy.context.scene.hangtime.armature
+    assert applied(again.hangtime) == repairs
+    assert len(findings(again.hangtime)) == 3
+    bpy.ops.hangtime.repair(kind="spike")
+    assert repaired_since(again.hangtime)
+
+
+def test_frames_at_rest_are_left_out_by_the_range(tmp_path) -> None:
+    rigs.reset()
+    jump = import_clip(begun_at_rest(mocap_path(JUMP), tmp_path)).armature
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert kinds(jump) == ["bind pose"]
+    bpy.ops.hangtime.repair(kind="bind pose")
+    assert (jump.hangtime.use_range, jump.hangtime.first_frame) == (True, 2)
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert kinds(jump) == ["bind pose"]  # to be left in again
+    bpy.ops.hangtime.repair(kind="bind pose")
+    assert not jump.hangtime.use_range
+
+
+def test_a_trim_makes_the_frame_range(jump) -> None:
+    assert bpy.ops.hangtime.trim(first=100, last=290) == {"FINISHED"}
+    assert (jump.hangtime.first_frame, jump.hangtime.last_frame) == (100, 290)
+    with pytest.raises(RuntimeError, match="no range"):
+        bpy.ops.hangtime.trim(first=100, last=90)
+
+
+def test_unplaced_takes_back_what_the_scene_shows(jump) -> None:
+    raw = read_recorded(jump, *JUMP_FRAMES)
+    repairs = Repairs(UpAxis.Y, time_scale=0.8, scale=0.5, floor=0.3)
+    repair(jump, repairs)
+    back = unplaced(read_recorded(jump, *JUMP_FRAMES), repairs)
+    np.testing.assert_allclose(back.heads, raw.heads, atol=1e-5)
+    np.testing.assert_allclose(back.times, raw.times, atol=1e-6)
+    np.testing.assert_allclose(back.rotations, raw.rotations, atol=1e-5)
+    np.testing.assert_allclose(back.bones[5].head, raw.bones[5].head, atol=1e-5)
+
+
+def test_a_figure_without_feet_is_refused_in_words() -> None:
+    rigs.reset()
+    with pytest.raises(RuntimeError):
+        bpy.ops.hangtime.examine()
