@@ -13,29 +13,23 @@ from pathlib import Path
 
 import bpy
 
-from . import (
-    scenarios_latency,
-    scenarios_recording,
-    scenarios_rig,
-    scenarios_robustness,
-    scenarios_workflow,
-)
-from .actions import FOLDER
-from .driver import Driver, Scenario, drive_by_timer, run_scenarios
-from .input_device import InputDevice
-from .profiler import Profiler
-from .screen import Screen, present
+from .driving.actions import FOLDER
+from .driving.driver import Driver, Scenario, drive_by_timer, run_scenarios
+from .driving.input_device import InputDevice
+from .driving.profiler import Profiler
+from .driving.screen import Screen, present
+from .scenarios import latency, recording, rig, robustness, workflow
 
 OUT = Path("/mnt/out")
 SCENARIOS = (
-    *scenarios_workflow.SCENARIOS,
-    *scenarios_latency.SCENARIOS,
-    *scenarios_robustness.SCENARIOS,
-    *scenarios_workflow.LAST,
-    *scenarios_recording.SCENARIOS,
-    *scenarios_robustness.LAST,
-    *scenarios_rig.SCENARIOS,
-    *scenarios_robustness.QUITS,
+    *workflow.SCENARIOS,
+    *latency.SCENARIOS,
+    *robustness.SCENARIOS,
+    *workflow.LAST,
+    *recording.SCENARIOS,
+    *robustness.LAST,
+    *rig.SCENARIOS,
+    *robustness.QUITS,
 )
 
 

@@ -11,7 +11,7 @@ import pytest
 from hangtime.devtools.checks import summary
 from hangtime.devtools.environment.problem import SetUpError
 from hangtime.devtools.window import results, sandbox
-from hangtime.devtools.window.input_device import duration, quoted, smooth_path
+from hangtime.devtools.window.driving.input_device import duration, quoted, smooth_path
 from hangtime.devtools.window.results import RunRecord
 
 PICTURES = ["01_adapts.png"]

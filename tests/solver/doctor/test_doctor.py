@@ -196,8 +196,9 @@ def test_a_leap_of_the_whole_body_is_named_and_left_out() -> None:
     assert found is not None
     assert found.amount > 3.0
     first, last = found.frames[0]
-    assert first - 10 <= JUMP_FRAMES[0] + 12 <= last + 10
-    assert found.remedy == Repairs(trim=int(last - JUMP_FRAMES[0]) + 2)
+    begun = jump().frames[0]
+    assert first - 10 <= begun + 12 <= last + 10
+    assert found.remedy == Repairs(trim=int(last - begun) + 2)
     assert find_leaps(perform(jump(), character()), 0) is None
 
 
@@ -214,7 +215,8 @@ def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:
 
 
 def test_drift_is_taken_out_from_the_first_frame_that_is_asked_for_on() -> None:
-    asked = MotionProblem(frames=(JUMP_FRAMES[0] + 60.0, JUMP_FRAMES[1]), drift=(0.24, 0.18))
+    first, last = jump().frames[[0, -1]].tolist()
+    asked = MotionProblem(frames=(first + 60.0, last), drift=(0.24, 0.18))
     without = as_asked(sliding(0.3).of(jump()).recording, asked)
     apart = without.heads - jump().heads
     np.testing.assert_allclose(apart, np.broadcast_to(apart[0], apart.shape), atol=1e-9)

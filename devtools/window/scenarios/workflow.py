@@ -8,7 +8,7 @@ from pathlib import Path
 import bpy
 from mathutils import Vector
 
-from .actions import (
+from ..driving.actions import (
     ASIDE,
     CATEGORY,
     CLIP,
@@ -37,9 +37,9 @@ from .actions import (
     shown_action,
     solve_stage,
 )
-from .driver import Actions, Driver, Scenario, Until
-from .scenarios_latency import drags_landing
-from .screen import present
+from ..driving.driver import Actions, Driver, Scenario, Until
+from ..driving.screen import present
+from .latency import drags_landing
 
 SHIFT = 0.3  # m that the landing goes forward
 SAVED = Path("/tmp/artist.blend")

@@ -9,7 +9,7 @@ import time
 import addon_utils
 import bpy
 
-from .actions import (
+from ..driving.actions import (
     PACKAGE,
     armature,
     current_scene,
@@ -23,7 +23,7 @@ from .actions import (
     solve_stage,
     worker_pid,
 )
-from .driver import Actions, Driver, Scenario, Until
+from ..driving.driver import Actions, Driver, Scenario, Until
 
 
 def begin(driver: Driver, kilograms: float) -> Actions:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 from mathutils import Vector
 
-from .actions import (
+from ..driving.actions import (
     LANDING,
     armature,
     current_scene,
@@ -16,9 +16,9 @@ from .actions import (
     settings,
     shown_action,
 )
-from .driver import Actions, Driver, Scenario, Until
-from .scenarios_workflow import imports
-from .screen import present
+from ..driving.driver import Actions, Driver, Scenario, Until
+from ..driving.screen import present
+from .workflow import imports
 
 SPIKED, BONE, TURN = 150, "LeftArm", 0.8  # a frame, whose key of this bone is turned, rad
 RAISED = 0.2  # m above the floor

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 from mathutils import Matrix, Vector
 
-from .actions import (
+from ..driving.actions import (
     CATEGORY,
     LANDING,
     RIG,
@@ -23,9 +23,9 @@ from .actions import (
     press,
     settings,
 )
-from .driver import Actions, Driver, Scenario, Until
-from .scenarios_workflow import export
-from .screen import present, window_manager
+from ..driving.driver import Actions, Driver, Scenario, Until
+from ..driving.screen import present, window_manager
+from .workflow import export
 
 FILE = Path("/tmp/artist.rigify.blend")
 FOOT = "foot_ik.L"

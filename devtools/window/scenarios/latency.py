@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import bpy
 from mathutils import Vector
 
-from .actions import (
+from ..driving.actions import (
     ASIDE,
     LANDING,
     armature,
@@ -24,12 +24,12 @@ from .actions import (
     shown_action,
     worker_seconds,
 )
-from .driver import Actions, Driver, Scenario, Until
-from .input_device import Place
-from .screen import present
+from ..driving.driver import Actions, Driver, Scenario, Until
+from ..driving.input_device import Place
+from ..driving.screen import present
 
 if TYPE_CHECKING:  # as in actions.py
-    from ...operators.solve.live import Live
+    from ....operators.solve.live import Live
 
 DRAG = 4.0  # s that the pin is dragged about while the ghost's updates are counted
 LEGS = 4
