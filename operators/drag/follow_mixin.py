@@ -8,6 +8,7 @@ from ...bridge.accessors import present
 from ...bridge.armature.incremental import Incremental
 from ...bridge.constraints.motion_problem import analysis_key, problem_of
 from ...bridge.properties.settings import settings_of
+from ...bridge.scene.members import present_members
 from ...bridge.worker_client import shared
 from ...solver.data.faults import Fault
 from ...solver.data.status import DragStatus
@@ -144,28 +145,37 @@ class FollowedDrag(PolledOperator):
     # -- the motion that follows ---------------------------------------------------------------
 
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
-        """Has the worker follow what is dragged: of the recording as it was read last, while it is
-        read again in parts. Raises ChangedMeanwhile where it is another."""
-        reading, asked = ask_for(context), self._read_before()
+        """Has the worker follow what is dragged: of recording and scene as they were read last,
+        while they are read again in parts. Raises ChangedMeanwhile where it is another recording.
+        """
+        reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
             asked = yield from reading
-        session().dragged = asked
-        stream, skin = shared().follow(asked.recording), asked.problem.skin
+        stream = shared().follow(asked.recording)
         while True:
-            next(reading, None)
+            try:
+                next(reading)
+            except StopIteration as end:
+                if end.value is not None:
+                    asked, self._moved = end.value, True
+            session().dragged = asked
             if self._moved:
                 self._moved = False
-                settings = settings_of(self._armature)
+                settings, skin = settings_of(self._armature), asked.problem.skin
                 stream.want(problem_of(settings, asked.recording, asked.scene.objects, skin=skin))
             for message in stream.news():
                 self._hear(message)
             yield
 
-    def _read_before(self) -> Asked | None:
+    def _read_before(self, context: bpy.types.Context) -> Asked | None:
+        """What was read last, where it was of this armature, its analysis and these surfaces."""
         asked, settings = session().dragged, settings_of(self._armature)
         if asked is None or asked.uid != self._armature.session_uid:
             return None
-        return asked if analysis_key(settings, asked.recording) == settings.analysed else None
+        there = {(m.name, m.role) for m in present_members(settings, present(context.scene))}
+        same = {(thing.name, thing.role) for thing in asked.scene.objects} == there
+        analysed = analysis_key(settings, asked.recording) == settings.analysed
+        return asked if same and analysed else None
 
     def _hear(self, message: Progress | Answer) -> None:
         if isinstance(message, Progress):
