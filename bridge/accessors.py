@@ -5,6 +5,7 @@ Settings as a whole: `settings_of` and its like in properties/settings.py.
 
 from __future__ import annotations
 
+from math import ceil, floor
 from typing import Any, TypeVar
 
 import bpy
@@ -67,6 +68,13 @@ def shown_range(armature: bpy.types.Object, action: bpy.types.Action) -> tuple[f
     first, last = action.frame_range.to_tuple()
     strip = mapped_strip(armature, action)
     return (first, last) if strip is None else time_of(strip).clipped(first, last)
+
+
+def play_to_end(scene: bpy.types.Scene, before: float, last: float) -> None:
+    """Where a scene plays a take to its end, frame `before`, it plays what the take became to its
+    own, frame `last`."""
+    if floor(before) <= scene.frame_end < last:
+        scene.frame_end = ceil(last)
 
 
 def mapped_strip(armature: bpy.types.Object, action: bpy.types.Action) -> bpy.types.NlaStrip | None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...bridge.accessors import present
+from ...bridge.accessors import current_scene, play_to_end, present, shown_range
 from ...bridge.armature.actions import (
     read_recorded_incrementally,
     recorded_action,
@@ -270,6 +270,8 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
         done = yield from _write_own(asked, answer, armature)
     remarks = note_surfaces(armature, asked, answer.report, stale)
     settings = settings_of(armature)
+    ends = (present(each) for each in (recorded_action(armature), settings.adapted))
+    play_to_end(current_scene(), *(shown_range(armature, each)[1] for each in ends))
     refined = asked.problem.requests.solution.method is Method.EXPLICIT
     action_settings(present(settings.adapted)).refined = refined
     settings.status = "\n".join([settings.status, *remarks])

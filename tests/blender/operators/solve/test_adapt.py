@@ -106,12 +106,16 @@ def test_a_text_of_requests_is_met(analysed: bpy.types.Object) -> None:
 
 
 @pytest.mark.slow
-def test_a_longer_jump_has_more_frames(analysed: bpy.types.Object) -> None:
+def test_a_longer_jump_has_more_frames_and_is_played_to_its_end(
+    analysed: bpy.types.Object,
+) -> None:
+    scene, recorded = bpy.context.scene, analysed.animation_data.action
+    scene.frame_end = int(recorded.frame_range[1])
     analysed.hangtime.stances["ground 2"].forward = 0.2
-    recorded = analysed.animation_data.action
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     adapted = analysed.animation_data.action
     assert adapted.frame_range[1] > recorded.frame_range[1] + 3
+    assert adapted.frame_range[1] <= scene.frame_end < adapted.frame_range[1] + 1
     assert re.search(r"Flight 1: 0\.\d\d s, was 0\.4\d s", analysed.hangtime.status)
     assert "Flight 1    takes 0." in adapted.hangtime.report
 
