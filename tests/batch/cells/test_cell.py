@@ -53,6 +53,8 @@ def test_a_cell_leaves_what_was_asked_for_in_a_folder_of_its_own(batch: Path) ->
     assert set(result.files) == wanted
     assert {p.name for p in cell_folder(batch, cell).iterdir()} == {*wanted, "result.json"}
     assert read_result(batch, cell) == result
+    assert all(name == name.lower() for name in result.figures)
+    assert len(set(result.figures.values())) == len(result.figures)  # nothing is told twice
 
 
 def test_a_cell_that_is_solved_is_not_solved_again(batch: Path) -> None:
