@@ -108,9 +108,10 @@ def _ended(
         raise FolderGone(said) from fault  # it is the folder's, not the cell's
     except NoSolution as fault:
         return _Ended(State.NO_SOLUTION, explained(fault, recipe))
-    except (Fault, InputChanged) as fault:
-        said = str(fault) if isinstance(fault, InputChanged) else explained(fault, recipe)
-        return _Ended(State.WRONG_INPUT, said)
+    except InputChanged as fault:  # no end of what was planned: it may come back
+        return _Ended(State.FAILED, str(fault))
+    except Fault as fault:
+        return _Ended(State.WRONG_INPUT, explained(fault, recipe))
     except (OSError, MemoryError, BatchFault):
         raise
     except Exception as error:  # noqa: BLE001  # one cell's crash is not the batch's

@@ -47,9 +47,9 @@ class SharedFits:
     def __init__(self, folder: Path) -> None:
         self._folder = folder / FITS
         self._recent: OrderedDict[str, Fit] = OrderedDict()
-        self._analysed: tuple[object, Analysed] | None = None
+        self._analysed: tuple[str, Analysed] | None = None
 
-    def analysed(self, key: object, analyse: Callable[[], Analysed]) -> Analysed:
+    def analysed(self, key: str, analyse: Callable[[], Analysed]) -> Analysed:
         """The last analysis where it was of the same, else a new one. Raises as `analyse`."""
         if self._analysed is None or self._analysed[0] != key:
             self._analysed = None
@@ -127,9 +127,14 @@ def fit_key(subject: Subject) -> str:
     )
     performance = subject.analysis.performance
     recordings = (performance.recording, performance.take.recording)
-    told = (version(), [digest(each) for each in recordings], known, subject.analysis.schedule)
+    recorded = [digest(each) for each in recordings]
+    return digest_of(version(), recorded, known, subject.analysis.schedule, subject.cycle)
+
+
+def digest_of(*values: object) -> str:
+    """SHA-256, hexadecimal, of records and what is in them."""
     content = hashlib.sha256()
-    for part in _parts((*told, subject.cycle)):
+    for part in _parts(values):
         content.update(part)
     return content.hexdigest()
 

@@ -20,7 +20,7 @@ class State(Enum):
     DONE = "done"
     NO_SOLUTION = "no solution"
     WRONG_INPUT = "wrong input"
-    FAILED = "failed"  # by no fault of what was asked: a crash, too little memory
+    FAILED = "failed"  # by no fault of what was asked: a crash, too little memory, a lost clip
 
     @property
     def exit_code(self) -> int:

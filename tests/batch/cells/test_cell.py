@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from hangtime.batch.cells.cell import run_cell
 from hangtime.batch.cells.fits import FITS
+from hangtime.batch.cells import work
 from hangtime.batch.cells.work import cell_files
 from hangtime.batch.commands import run
 from hangtime.batch.planning.plan import Asked, plan
+from hangtime.batch.records.faults import WrongPlan
 from hangtime.batch.records.manifest import BatchSettings, CellPlan, Output, read_manifest
 from hangtime.batch.records.result import CELLS, State, cell_folder, read_result
 from hangtime.bridge.formats.bvh import read_bvh
@@ -113,18 +115,46 @@ def test_every_file_that_a_cell_reads_is_told(batch: Path) -> None:
     assert cell_files(cell) == (Path(cell.clip), Path(cell.recipe))
 
 
+@pytest.mark.parametrize("lost", [False, True])
 @pytest.mark.parametrize("which", ["clip", "recipe"])
-def test_what_changed_since_it_was_planned_is_not_solved(tmp_path: Path, which: str) -> None:
+def test_what_changed_or_went_since_it_was_planned_is_not_solved_and_may_come_back(
+    tmp_path: Path, which: str, lost: bool
+) -> None:
     clip, recipe = tmp_path / "hop.bvh", tmp_path / "recipe.toml"
     clip.write_bytes(mocap_path("hop_01_01.bvh").read_bytes())
     recipe.write_text(RECIPE.format("ground 2", "[0.1]"))
     folder = tmp_path / "out"
     plan(Asked(BatchSettings(), [str(clip)], [str(recipe)]), folder)
     changed = clip if which == "clip" else recipe
-    changed.write_text(changed.read_text() + ("\n" if which == "clip" else "up = 0.1\n"))
+    if lost:
+        changed.unlink()
+    else:
+        changed.write_text(changed.read_text() + ("\n" if which == "clip" else "up = 0.1\n"))
     result = run_cell(folder, cells(folder)[0].cell)
-    assert result.state is State.WRONG_INPUT
+    assert result.state is State.FAILED  # which the same command tries again
     assert f"{changed} has changed since" in result.sentence
+
+
+def test_half_a_clip_is_not_taken_for_the_clips_end(tmp_path: Path) -> None:
+    clip = tmp_path / "hop.bvh"
+    clip.write_bytes(mocap_path("hop_01_01.bvh").read_bytes())
+    plan(Asked(BatchSettings(check=True), [str(clip)]), tmp_path / "out")
+    clip.write_bytes(clip.read_bytes()[:2000])
+    result = run_cell(tmp_path / "out", cells(tmp_path / "out")[0].cell)
+    assert result.state is State.FAILED
+    assert "changed" in result.sentence
+
+
+def test_without_blender_a_clip_that_needs_it_is_told_and_keeps_no_result(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "hop.fbx").write_text("")
+    plan(Asked(BatchSettings(check=True), [str(tmp_path / "hop.fbx")]), tmp_path / "out")
+    monkeypatch.setattr(work, "blender_is_here", lambda: False)
+    cell = cells(tmp_path / "out")[0].cell
+    with pytest.raises(WrongPlan, match=r"hop\.fbx .* needs Blender"):
+        run_cell(tmp_path / "out", cell)
+    assert read_result(tmp_path / "out", cell) is None
 
 
 def test_the_command_line_runs_a_batch_and_goes_on_with_it(
