@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,13 +23,12 @@ from ...solver.worker.pipeline import (
     fit_subject,
     require_possible,
 )
+from ...solver.worker.unpickling import Unreadable, unpickled
 from ..records.aside import written_aside
 from ..records.locks import held
 from ..records.manifest import version
 from .reading import ReadClip
 
-SOLVER = ".solver."
-PACKAGE = __name__.removesuffix(".batch.cells.fits")
 FITS = "fits"  # within a batch's folder
 FILE = "fit.pickle"
 Analysed = tuple[Subject, ReadClip]
@@ -41,7 +39,7 @@ class SharedFits:
     """What the cells of a clip share. In place of `fit_possible`: a fit is solved once, by whoever
     needs it first; others wait. The last analysis is remembered by who holds this.
 
-    Fits are pickles: read a batch's folder only where those who write to it are trusted.
+    Fits are pickles that can name the solver's own classes and numpy's arrays alone.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -93,24 +91,15 @@ class SharedFits:
 
     def _read(self, key: str) -> Fit | None:
         try:
-            with (self._folder / key / FILE).open("rb") as file:
-                fitted = _Unpickler(file).load()
+            fitted = unpickled((self._folder / key / FILE).read_bytes())
         except FileNotFoundError:
             return None
-        except (pickle.UnpicklingError, EOFError, AttributeError, ImportError):
+        except Unreadable:
+            fitted = None
+        if not isinstance(fitted, Fit):
             shutil.rmtree(self._folder / key, ignore_errors=True)  # a disk's fault: solved anew
             return None
-        assert isinstance(fitted, Fit)
         return fitted
-
-
-class _Unpickler(pickle.Unpickler):
-    """Finds the solver's classes whatever the package is called: in Blender an extension has
-    another name than in a worker."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        _, solver, inner = module.partition(SOLVER)
-        return super().find_class(f"{PACKAGE}{solver}{inner}" if solver else module, name)
 
 
 def fit_key(subject: Subject) -> str:

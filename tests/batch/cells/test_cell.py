@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hangtime.batch.cells.cell import run_cell
-from hangtime.batch.cells.fits import FITS
+from hangtime.batch.cells.fits import FILE, FITS
 from hangtime.batch.cells import work
 from hangtime.batch.cells.work import cell_files
 from hangtime.batch.commands import run
@@ -14,6 +14,8 @@ from hangtime.batch.records.faults import WrongPlan
 from hangtime.batch.records.manifest import BatchSettings, CellPlan, Output, read_manifest
 from hangtime.batch.records.result import CELLS, State, cell_folder, read_result
 from hangtime.bridge.formats.bvh import read_bvh
+from hangtime.solver.stages.fit import Fit
+from hangtime.solver.worker.unpickling import Unreadable, unpickled
 from hangtime.tests.helpers.clips import mocap_path
 
 RECIPE = """
@@ -84,6 +86,21 @@ def test_cells_of_a_clip_share_its_fit_and_find_it_as_it_was_to_the_bit(
     one = np.load(cell_folder(batch, second) / TRAJECTORY)
     two = np.load(cell_folder(other, alone[0]) / TRAJECTORY)
     assert all(np.array_equal(one[k], two[k], equal_nan=one[k].dtype.kind == "f") for k in one)
+
+
+def test_a_fit_that_is_damaged_or_names_a_program_is_none(batch: Path) -> None:
+    def read(content: bytes) -> str:
+        with pytest.raises(Unreadable) as caught:
+            unpickled(content)
+        return str(caught.value)
+
+    run_cell(batch, cells(batch)[0].cell)
+    fit = next((batch / FITS).glob(f"[!.]*/{FILE}")).read_bytes()
+    assert isinstance(unpickled(fit), Fit)
+    assert read(fit[: len(fit) // 2])
+    assert "os.getcwd is not expected" in read(b"cos\ngetcwd\n(tR.")
+    inside = b"changtime.solver.worker.main\nThread\n(tR."  # that the solver imports, and is not its own
+    assert "Thread is not expected" in read(inside)
 
 
 def test_the_bvh_plays_the_adapted_motion_on_the_clips_own_skeleton(batch: Path) -> None:
