@@ -165,8 +165,8 @@ def run_batch(options: argparse.Namespace) -> int:
         try:
             _solve(options, manifest, progress)
         finally:
-            manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
             with suppress(BatchFault):  # that of the run is the one to be told
+                manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
                 write_manifest(folder, manifest)
         collect(folder)
     return _told_end(folder, manifest)

@@ -7,14 +7,13 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
-from ..records.faults import FolderTaken, OtherVersion, WrongManifest, WrongPlan
+from ..records.faults import FolderTaken, OtherVersion, WrongManifest, WrongPlan, gone
 from ..records.manifest import (
     KEY_SHOWN,
     BatchSettings,
     CellPlan,
     Manifest,
     Value,
-    gone,
     read_manifest,
     write_manifest,
 )
