@@ -57,7 +57,7 @@ def plan(asked: Asked, folder: Path) -> Planned:
     if asked.table is not None:
         pairs = read_table(asked.table, check=check)
     else:
-        pairs = crossed(asked.clips, asked.recipes, check=check)
+        pairs = crossed(asked.clips, asked.recipes, folder, check=check)
     found = list(_cells(pairs))
     unique = {cell.key(asked.settings): cell for cell in found}
     _refuse_another(folder, {cell.clip for cell in found})

@@ -62,7 +62,16 @@ def test_every_clip_of_a_folder_goes_with_every_value(library: Library) -> None:
 def test_files_folders_and_patterns_mean_each_clip_once(library: Library) -> None:
     clips = library.folder / "clips"
     words = [str(clips / "a.bvh"), str(clips), str(clips / "**" / "*.bvh")]
-    assert len(find_clips(words)) == 3
+    assert len(find_clips(words, library.out)) == 3
+
+
+def test_a_batchs_own_results_are_neither_its_clips_nor_its_recipes(library: Library) -> None:
+    words = [str(library.folder)]
+    first = plan(Asked(BatchSettings(), words, words), library.out)
+    library.solve(first)  # a result.json in each cell's folder
+    (library.out / "cells" / first.manifest.cells[0].cell / "motion.bvh").write_text("a result")
+    again = plan(Asked(BatchSettings(), words, words), library.out)
+    assert [c.cell for c in again.manifest.cells] == [c.cell for c in first.manifest.cells]
 
 
 def test_planned_again_what_is_solved_keeps_its_name_and_state(library: Library) -> None:
