@@ -170,9 +170,9 @@ def _loaded(
     if needs_blender(plan.clip, settings.outputs):
         if not blender_is_here():
             raise WrongPlan(
-                f"{plan.clip} or an output that was asked for needs Blender, which is not here; run "
-                "the batch by `blender --command hangtime batch`, or take BVH or AMC clips and the "
-                "outputs npz and bvh."
+                f"{plan.clip} or an output that was asked for needs Blender, which is not here; "
+                "run the batch by `blender --command hangtime batch`, or take BVH or AMC clips and "
+                "the outputs npz and bvh."
             )
         clip = Clip(Path(plan.clip), settings.unit, settings.up, settings.rate)
         scene = load(clip, problem, stages, recipe.repairs)

@@ -38,12 +38,11 @@ class Pair:
     values: Mapping[str, Value] = field(default_factory=dict)
 
 
-def crossed(
-    clips: Sequence[str], recipes: Sequence[str], out: Path, *, check: bool
-) -> list[Pair]:
+def crossed(clips: Sequence[str], recipes: Sequence[str], out: Path, *, check: bool) -> list[Pair]:
     """Every clip with every recipe; where no clip is given, each recipe with its own.
 
-    out: the batch's folder, in which none of them lies. check: no recipe is needed. Raises WrongPlan, BadRecipe.
+    out: the batch's folder, in which none of them lies. check: no recipe is needed. Raises
+    WrongPlan, BadRecipe.
     """
     found = find_recipes(recipes, out)
     if not found and not check:

@@ -49,7 +49,8 @@ def is_data(kind: type) -> bool:
 def unpickled(content: bytes, expected: Callable[[type], bool] = lambda _: True) -> Any:
     """What a pickle of the solver's records holds, whatever its writer calls the package.
 
-    It may name numpy's arrays, and classes of the solver that are `expected`. Raises Unreadable, MemoryError.
+    It may name numpy's arrays, and classes of the solver that are `expected`. Raises Unreadable,
+    MemoryError.
     """
     try:
         return _Reader(content, expected).load()

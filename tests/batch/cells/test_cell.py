@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hangtime.batch.cells import work
 from hangtime.batch.cells.cell import run_cell
 from hangtime.batch.cells.fits import FILE, FITS
-from hangtime.batch.cells import work
 from hangtime.batch.cells.work import cell_files
 from hangtime.batch.commands import run
 from hangtime.batch.planning.plan import Asked, plan
@@ -99,8 +99,8 @@ def test_a_fit_that_is_damaged_or_names_a_program_is_none(batch: Path) -> None:
     assert isinstance(unpickled(fit), Fit)
     assert read(fit[: len(fit) // 2])
     assert "os.getcwd is not expected" in read(b"cos\ngetcwd\n(tR.")
-    inside = b"changtime.solver.worker.main\nThread\n(tR."  # that the solver imports, and is not its own
-    assert "Thread is not expected" in read(inside)
+    imported = b"changtime.solver.worker.main\nThread\n(tR."  # by the solver, and not its own
+    assert "Thread is not expected" in read(imported)
 
 
 def test_the_bvh_plays_the_adapted_motion_on_the_clips_own_skeleton(batch: Path) -> None:
