@@ -1,12 +1,14 @@
 """Cells that are truly solved: one short hop, whose fit the tests of this file share."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hangtime.batch.cells import work
 from hangtime.batch.cells.cell import run_cell
-from hangtime.batch.cells.fits import FILE, FITS
+from hangtime.batch.cells.fits import FILE, FITS, SharedFits
+from hangtime.batch.cells.reading import ReadClip, read_clip
 from hangtime.batch.cells.work import cell_files
 from hangtime.batch.commands import run
 from hangtime.batch.planning.plan import Asked, plan
@@ -86,6 +88,29 @@ def test_cells_of_a_clip_share_its_fit_and_find_it_as_it_was_to_the_bit(
     one = np.load(cell_folder(batch, second) / TRAJECTORY)
     two = np.load(cell_folder(other, alone[0]) / TRAJECTORY)
     assert all(np.array_equal(one[k], two[k], equal_nan=one[k].dtype.kind == "f") for k in one)
+
+
+def test_a_clip_is_analysed_once_wherever_copies_of_it_lie(
+    batch: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reads = []
+
+    def read(*args: Any, **kwargs: Any) -> ReadClip:
+        reads.append(args)
+        return read_clip(*args, **kwargs)
+
+    monkeypatch.setattr(work, "read_clip", read)
+    run_cell(batch, cells(batch)[0].cell)
+    clip, fits = Path(cells(batch)[0].clip), SharedFits(batch)
+    for name in ("one", "two"):  # as cells are sent to workers that do not share the folder
+        copy = tmp_path / name / clip.name
+        copy.parent.mkdir()
+        copy.write_bytes(clip.read_bytes())
+        (copy.parent / "r.toml").write_text(RECIPE.format("ground 2", "0.1"))
+        asked = Asked(BatchSettings(), [str(copy)], [str(copy.parent / "r.toml")])
+        cell = plan(asked, copy.parent / "out").manifest.cells[0]
+        assert run_cell(copy.parent / "out", cell.cell, fits).state is State.DONE
+    assert len([args for args in reads if args[0].is_relative_to(tmp_path)]) == 1
 
 
 def test_a_fit_that_is_damaged_or_names_a_program_is_none(batch: Path) -> None:
