@@ -170,6 +170,12 @@ def test_a_folder_with_another_batch_is_refused_and_its_manifest_stays(library: 
     assert (library.out / MANIFEST).read_text(encoding="utf-8") == before
 
 
+def test_a_library_that_moved_goes_on_with_its_batch(library: Library) -> None:
+    library.solve(library.plan())
+    (library.folder / "clips").rename(library.folder / "moved")
+    assert all(c.state is State.DONE for c in library.plan("moved").manifest.cells)
+
+
 def test_an_edited_manifest_is_written_anew_and_what_is_solved_kept(library: Library) -> None:
     library.solve(library.plan())
     path = library.out / MANIFEST
