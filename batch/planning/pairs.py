@@ -128,13 +128,21 @@ def _csv_rows(text: str, path: Path) -> Iterator[tuple[str, dict[str, Any]]]:
             "“recipe” and places in the recipe."
         )
     reader.fieldnames = head
-    for row in reader:
+    for row in _read(reader, path):
         if None in row or None in row.values():
             problem = f"line {reader.line_num} has another number of columns than line 1"
             raise WrongPlan(f"Table {path}: {problem}; correct it.")
         files = {key: row.pop(key) for key in ("clip", "recipe") if key in row}
         given = {key: _value(text) for key, text in row.items() if text.strip()}
         yield f"line {reader.line_num}", {**files, **given}
+
+
+def _read(reader: csv.DictReader[str], path: Path) -> Iterator[dict[str, Any]]:
+    try:
+        yield from reader
+    except csv.Error as error:
+        problem = f"line {reader.line_num + 1} cannot be read ({error})"
+        raise WrongPlan(f"Table {path}: {problem}; correct it.") from error
 
 
 def _value(text: str) -> Value:

@@ -206,7 +206,7 @@ def test_the_command_line_runs_a_batch_and_goes_on_with_it(
     recipe.write_text(RECIPE.format("ground 2", "[0.1]"))
     command = [clip, "--recipes", str(recipe), "--out", str(tmp_path / "out"), "--jobs", "1"]
     assert run(command) == 0
-    assert "1 cells: 1 done" in capsys.readouterr().out
+    assert "1 cell: 1 done" in capsys.readouterr().out
     recipe.write_text(RECIPE.format("ground 7", "[0.1]"))
     assert run(command) == 2
     told = capsys.readouterr().out

@@ -132,6 +132,7 @@ def test_a_table_names_the_pairs_and_gives_values_in_place_of_the_ranges(library
         ("t.csv", "clip,recipe\nclips/none.bvh,recipe.toml\n", "line 2: there is no clip"),
         ("t.csv", "clip,recipe\nclips/a.bvh,\n", "line 2 has no recipe"),
         ("t.csv", "clip,recipe,pin.Take.up\nclips/a.bvh,recipe.toml,1\n", "no “pin.Take.up”"),
+        ("t.csv", f"clip\n{'x' * 200_000}\n", "line 2 cannot be read"),
         ("t.toml", "pair = 1", "must hold"),
         ("t.toml", "[[pair", "not TOML"),
     ],
