@@ -208,7 +208,9 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     counts = Counter(cell.state for cell in manifest.cells)
     others = [cell for cell in manifest.cells if cell.state is not State.DONE]
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
-    print(f"{counted(len(manifest.cells), 'cell')}: {summary}. Look at them in {folder / 'index.html'}.")
+    print(
+        f"{counted(len(manifest.cells), 'cell')}: {summary}. Look at them in {folder / 'index.html'}."
+    )
     for cell in others[:MOST_TOLD]:
         result = read_result(folder, cell.cell)
         if result is not None:
