@@ -208,9 +208,8 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     counts = Counter(cell.state for cell in manifest.cells)
     others = [cell for cell in manifest.cells if cell.state is not State.DONE]
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
-    print(
-        f"{counted(len(manifest.cells), 'cell')}: {summary}. Look at them in {folder / 'index.html'}."
-    )
+    cells = counted(len(manifest.cells), "cell")
+    print(f"{cells}: {summary}. Look at them in {folder / 'index.html'}.")
     for cell in others[:MOST_TOLD]:
         result = read_result(folder, cell.cell)
         if result is not None:
@@ -252,8 +251,8 @@ def _planned(options: argparse.Namespace) -> Planned:
         print(f"Left out, as the same as others: {counted(planned.twice, 'pair')}.")
     if planned.strays:
         print(
-            f"Left as they are in {options.out / 'cells'}: {counted(len(planned.strays), 'folder')} "
-            f"of an earlier plan, such as {planned.strays[0]}."
+            f"{counted(len(planned.strays), 'folder')} of an earlier plan left as found in "
+            f"{options.out / 'cells'}, such as {planned.strays[0]}."
         )
     return planned
 

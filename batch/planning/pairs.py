@@ -137,7 +137,7 @@ def _csv_rows(text: str, path: Path) -> Iterator[tuple[str, dict[str, Any]]]:
         yield f"line {reader.line_num}", {**files, **given}
 
 
-def _read(reader: csv.DictReader[str], path: Path) -> Iterator[dict[str, Any]]:
+def _read(reader: csv.DictReader[str], path: Path) -> Iterator[dict[str | Any, str | Any]]:
     try:
         yield from reader
     except csv.Error as error:
