@@ -25,7 +25,7 @@ from .records.locks import batch_lock
 from .records.manifest import BatchSettings, Manifest, Output, write_manifest
 from .records.result import State, read_result
 from .running.memory import MemoryWatch
-from .running.progress import Progress, told
+from .running.progress import Progress, counted, told
 from .running.runner import LocalRun
 from .running.workers import worker_command
 
@@ -165,8 +165,8 @@ def run_batch(options: argparse.Namespace) -> int:
         try:
             _solve(options, manifest, progress)
         finally:
-            manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
             with suppress(BatchFault):  # that of the run is the one to be told
+                manifest = replace(manifest, cells=refreshed(folder, manifest.cells))
                 write_manifest(folder, manifest)
         collect(folder)
     return _told_end(folder, manifest)
@@ -208,7 +208,8 @@ def _told_end(folder: Path, manifest: Manifest) -> int:
     counts = Counter(cell.state for cell in manifest.cells)
     others = [cell for cell in manifest.cells if cell.state is not State.DONE]
     summary = ", ".join(f"{count} {state.value}" for state, count in counts.items())
-    print(f"{len(manifest.cells)} cells: {summary}. Look at them in {folder / 'index.html'}.")
+    cells = counted(len(manifest.cells), "cell")
+    print(f"{cells}: {summary}. Look at them in {folder / 'index.html'}.")
     for cell in others[:MOST_TOLD]:
         result = read_result(folder, cell.cell)
         if result is not None:
@@ -245,13 +246,13 @@ def _planned(options: argparse.Namespace) -> Planned:
     planned = plan(asked, options.out)
     cells = planned.manifest.cells
     done = sum(_done(planned.manifest).values())
-    print(f"{len(cells)} cells" + (f", {done} of them solved before" if done else "") + ".")
+    print(counted(len(cells), "cell") + (f", {done} of them solved before" if done else "") + ".")
     if planned.twice:
-        print(f"{planned.twice} pairs are the same as others and are done once.")
+        print(f"Left out, as the same as others: {counted(planned.twice, 'pair')}.")
     if planned.strays:
         print(
-            f"{len(planned.strays)} folders in {options.out / 'cells'} are of an earlier plan and "
-            f"are left as they are, such as {planned.strays[0]}."
+            f"{counted(len(planned.strays), 'folder')} of an earlier plan left as found in "
+            f"{options.out / 'cells'}, such as {planned.strays[0]}."
         )
     return planned
 

@@ -15,9 +15,9 @@ from ...operators.headless.stages import Stages
 from ...solver.data.faults import Fault, NoSolution, OutputNotWritable
 from ...solver.worker.pipeline import ADAPTING, FITTING
 from ..records.aside import written_aside
-from ..records.faults import BatchFault, FolderGone
-from ..records.manifest import BatchSettings, CellPlan, gone, read_plan
-from ..records.result import RESULT, CellResult, State, cell_folder, drop_failure, read_result
+from ..records.faults import BatchFault, FolderGone, gone
+from ..records.manifest import BatchSettings, CellPlan, read_plan
+from ..records.result import RESULT, CellResult, State, cell_folder, drop_failure, lasting_result
 from .fits import SharedFits
 from .work import MEASURING, Done, InputChanged, adapt_cell, check_cell
 
@@ -43,8 +43,8 @@ def run_cell(
     fits: kept from cell to cell by who solves several. work: in place of the solve, in tests.
     Raises WrongManifest where the manifest has no such cell, FolderGone.
     """
-    found = read_result(folder, cell)
-    if found is not None and found.state is not State.FAILED:
+    found = lasting_result(folder, cell)
+    if found is not None:
         return found
     settings, plan = read_plan(folder, cell)
     act = work or (check_cell if settings.check else adapt_cell)
@@ -108,9 +108,10 @@ def _ended(
         raise FolderGone(said) from fault  # it is the folder's, not the cell's
     except NoSolution as fault:
         return _Ended(State.NO_SOLUTION, explained(fault, recipe))
-    except (Fault, InputChanged) as fault:
-        said = str(fault) if isinstance(fault, InputChanged) else explained(fault, recipe)
-        return _Ended(State.WRONG_INPUT, said)
+    except InputChanged as fault:  # no end of what was planned: it may come back
+        return _Ended(State.FAILED, str(fault))
+    except Fault as fault:
+        return _Ended(State.WRONG_INPUT, explained(fault, recipe))
     except (OSError, MemoryError, BatchFault):
         raise
     except Exception as error:  # noqa: BLE001  # one cell's crash is not the batch's

@@ -1,8 +1,27 @@
-"""Figures of a cell: a report's main numbers under flat names that end with their units."""
+"""Figures of a cell: a report's main numbers under flat names that end with their units.
+
+Names are of small letters, so that no two are the same to a spreadsheet; none tells what another
+tells already.
+"""
 
 from __future__ import annotations
 
+from math import isfinite
+
+from ...solver.data.reports.certificate import CertificateItem
 from ...solver.data.reports.report import FitQuality, Report
+
+UNITS = {  # of the certificate, as names end
+    "%": "_percent",
+    "N": "_n",
+    "N·m": "_nm",
+    "N·m/kg": "_nm_per_kg",
+    "BW": "_bw",
+    "BW/s": "_bw_per_s",
+    "mm": "_mm",
+    "cm": "_cm",
+    "": "",
+}
 
 
 def figures(report: Report) -> dict[str, float]:
@@ -14,22 +33,16 @@ def figures(report: Report) -> dict[str, float]:
         "certificate_failed": float(len(report.failed)),
         "recorded_peak_force_bw": report.forces.recorded_peak_bw,
     }
-    peaks = report.forces.peaks
-    if peaks:
-        found["peak_force_bw"] = max(peak.peak_bw for peak in peaks)
-        found["friction_needed"] = max(peak.friction_coefficient_needed for peak in peaks)
-    if report.contacts:
-        found["slide_mm"] = max(contact.loaded_slide_mm for contact in report.contacts)
     for jump in report.jumps:
         name = jump.flight.replace(" ", "_")
         found[f"{name}_length_m"] = jump.adapted.flight_length_m
         found[f"{name}_apex_higher_cm"] = jump.apex_higher_cm
         found[f"{name}_s"] = jump.landing_s - jump.take_off_s
-    for item in (line.item for line in report.certificate):
-        lines = [line for line in report.certificate if line.item is item]
-        unit = "".join(c if c.isalnum() else "_" for c in lines[0].unit)
-        found[f"{_flat(item.value)}_{unit}".rstrip("_")] = max(line.value for line in lines)
-    return {name: float(value) for name, value in found.items() if value == value}
+    for line in report.certificate:
+        if line.item is not CertificateItem.FIT_RMS:  # told by `fit_figures`
+            name = f"{_flat(line.item.value)}{UNITS[line.unit]}"
+            found[name] = max(line.value, found.get(name, line.value))
+    return {name: float(value) for name, value in found.items() if isfinite(value)}
 
 
 def fit_figures(quality: FitQuality) -> dict[str, float]:

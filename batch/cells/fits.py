@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -24,13 +23,12 @@ from ...solver.worker.pipeline import (
     fit_subject,
     require_possible,
 )
+from ...solver.worker.unpickling import Unreadable, unpickled
 from ..records.aside import written_aside
 from ..records.locks import held
 from ..records.manifest import version
 from .reading import ReadClip
 
-SOLVER = ".solver."
-PACKAGE = __name__.removesuffix(".batch.cells.fits")
 FITS = "fits"  # within a batch's folder
 FILE = "fit.pickle"
 Analysed = tuple[Subject, ReadClip]
@@ -41,15 +39,15 @@ class SharedFits:
     """What the cells of a clip share. In place of `fit_possible`: a fit is solved once, by whoever
     needs it first; others wait. The last analysis is remembered by who holds this.
 
-    Fits are pickles: read a batch's folder only where those who write to it are trusted.
+    Fits are pickles that can name the solver's own classes and numpy's arrays alone.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder / FITS
         self._recent: OrderedDict[str, Fit] = OrderedDict()
-        self._analysed: tuple[object, Analysed] | None = None
+        self._analysed: tuple[str, Analysed] | None = None
 
-    def analysed(self, key: object, analyse: Callable[[], Analysed]) -> Analysed:
+    def analysed(self, key: str, analyse: Callable[[], Analysed]) -> Analysed:
         """The last analysis where it was of the same, else a new one. Raises as `analyse`."""
         if self._analysed is None or self._analysed[0] != key:
             self._analysed = None
@@ -93,24 +91,15 @@ class SharedFits:
 
     def _read(self, key: str) -> Fit | None:
         try:
-            with (self._folder / key / FILE).open("rb") as file:
-                fitted = _Unpickler(file).load()
+            fitted = unpickled((self._folder / key / FILE).read_bytes())
         except FileNotFoundError:
             return None
-        except (pickle.UnpicklingError, EOFError, AttributeError, ImportError):
+        except Unreadable:
+            fitted = None
+        if not isinstance(fitted, Fit):
             shutil.rmtree(self._folder / key, ignore_errors=True)  # a disk's fault: solved anew
             return None
-        assert isinstance(fitted, Fit)
         return fitted
-
-
-class _Unpickler(pickle.Unpickler):
-    """Finds the solver's classes whatever the package is called: in Blender an extension has
-    another name than in a worker."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        _, solver, inner = module.partition(SOLVER)
-        return super().find_class(f"{PACKAGE}{solver}{inner}" if solver else module, name)
 
 
 def fit_key(subject: Subject) -> str:
@@ -127,9 +116,14 @@ def fit_key(subject: Subject) -> str:
     )
     performance = subject.analysis.performance
     recordings = (performance.recording, performance.take.recording)
-    told = (version(), [digest(each) for each in recordings], known, subject.analysis.schedule)
+    recorded = [digest(each) for each in recordings]
+    return digest_of(version(), recorded, known, subject.analysis.schedule, subject.cycle)
+
+
+def digest_of(*values: object) -> str:
+    """SHA-256, hexadecimal, of records and what is in them."""
     content = hashlib.sha256()
-    for part in _parts((*told, subject.cycle)):
+    for part in _parts(values):
         content.update(part)
     return content.hexdigest()
 

@@ -21,7 +21,7 @@ from ...operators.headless.stages import Stages
 from ...operators.words.doctor_text import diagnosis_text, finding_sentence
 from ...operators.words.doubt_text import doubts_of
 from ...operators.words.headline import headline, nearness
-from ...solver.data.faults import NoSolution
+from ...solver.data.faults import BadRecipe, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import Requests
@@ -33,8 +33,8 @@ from ..planning.recipes import VariedRecipe
 from ..records.faults import WrongPlan
 from ..records.manifest import BatchSettings, CellPlan, Output
 from .figures import figures, fit_figures
-from .fits import SharedFits
-from .outputs import needs_blender, write_motion, write_plain
+from .fits import SharedFits, digest_of
+from .outputs import blender_is_here, needs_blender, write_motion, write_plain
 from .reading import ReadClip, read_clip
 
 DIAGNOSIS = "doctor.txt"
@@ -43,7 +43,7 @@ FORMS = {Output.FBX: FileFormat.FBX, Output.GLTF: FileFormat.GLTF}
 
 
 class InputChanged(Exception):
-    """A clip or a recipe is no longer what was planned; the text is for people."""
+    """A clip or a recipe is not, or no longer, what was planned; the text is for people."""
 
 
 @dataclass(frozen=True)
@@ -135,10 +135,10 @@ def _recipe(plan: CellPlan) -> Recipe:
     try:
         varied = VariedRecipe.read(plan.recipe, plan.values)
         resolved = varied.resolved(plan.values)
-    except WrongPlan as fault:  # a value's place is gone
+        recipe, sha256 = varied.recipe(resolved), varied.sha256(resolved)
+    except (WrongPlan, BadRecipe, OSError) as fault:  # when it was planned it could be read
         raise InputChanged(_changed(plan.recipe)) from fault
-    recipe = varied.recipe(resolved)
-    if varied.sha256(resolved) != plan.recipe_sha256:
+    if sha256 != plan.recipe_sha256:
         raise InputChanged(_changed(plan.recipe))
     return recipe
 
@@ -146,23 +146,45 @@ def _recipe(plan: CellPlan) -> Recipe:
 def _load(
     settings: BatchSettings, plan: CellPlan, recipe: Recipe, fits: SharedFits, stages: Stages
 ) -> _Loaded:
-    """Reads and analyses the clip, in Blender where that is needed."""
+    """Reads and analyses the clip, in Blender where that is needed. What came of it counts only
+    where the clip still is what was planned afterwards."""
+    try:
+        return _loaded(settings, plan, recipe, fits, stages)
+    finally:
+        _require_unchanged(plan)
+
+
+def _require_unchanged(plan: CellPlan) -> None:
+    try:
+        same = clip_sha256(plan.clip) == plan.clip_sha256
+    except OSError as error:
+        raise InputChanged(_changed(plan.clip)) from error
+    if not same:
+        raise InputChanged(_changed(plan.clip))
+
+
+def _loaded(
+    settings: BatchSettings, plan: CellPlan, recipe: Recipe, fits: SharedFits, stages: Stages
+) -> _Loaded:
     problem = recipe.problem
     if needs_blender(plan.clip, settings.outputs):
+        if not blender_is_here():
+            raise WrongPlan(
+                f"{plan.clip} or an output that was asked for needs Blender, which is not here; "
+                "run the batch by `blender --command hangtime batch`, or take BVH or AMC clips and "
+                "the outputs npz and bvh."
+            )
         clip = Clip(Path(plan.clip), settings.unit, settings.up, settings.rate)
         scene = load(clip, problem, stages, recipe.repairs)
-        loaded = _Loaded(scene.subject, scene.origin, scene.problem, scene)
-    else:
-        # Neither pins nor requests tell what was recorded (as in worker/service.py).
-        asked = replace(problem, pins=(), requests=Requests())
-        key = (plan.clip, plan.clip_sha256, settings, recipe.repairs, asked)
-        with stages.stage("Finding contacts"):
-            subject, read = fits.analysed(key, partial(_analysed, settings, plan, recipe))
-        problem = replace(problem, frames=read.problem.frames)
-        loaded = _Loaded(subject.asked(problem), read.origin, problem)
-    if clip_sha256(plan.clip) != plan.clip_sha256:  # after it was read: then this was what counts
-        raise InputChanged(_changed(plan.clip))
-    return loaded
+        return _Loaded(scene.subject, scene.origin, scene.problem, scene)
+    # Neither pins nor requests tell what was recorded (as in worker/service.py); nor does the
+    # folder that a clip lies in, which is another for each cell where clips are sent to workers.
+    asked = replace(problem, pins=(), requests=Requests())
+    key = digest_of(Path(plan.clip).name, plan.clip_sha256, settings, recipe.repairs, asked)
+    with stages.stage("Finding contacts"):
+        subject, read = fits.analysed(key, partial(_analysed, settings, plan, recipe))
+    problem = replace(problem, frames=read.problem.frames)
+    return _Loaded(subject.asked(problem), read.origin, problem)
 
 
 def _analysed(settings: BatchSettings, plan: CellPlan, recipe: Recipe) -> tuple[Subject, ReadClip]:
@@ -179,8 +201,8 @@ def _analysed(settings: BatchSettings, plan: CellPlan, recipe: Recipe) -> tuple[
 
 def _changed(path: str) -> str:
     return (
-        f"{path} has changed since the batch was planned; give the batch's command again, which "
-        "plans it as it is now."
+        f"{path} has changed since the batch was planned, or is gone; give the batch's command "
+        "again, which plans it as it is then."
     )
 
 

@@ -21,9 +21,9 @@ from distributed import Client, Future, wait
 from ..cells.cell import write_failure
 from ..cells.fits import FITS
 from ..cells.outputs import needs_blender
-from ..records.faults import BatchFault, FolderGone, WrongPlan
-from ..records.manifest import CellPlan, Manifest, gone, read_manifest
-from ..records.result import CellResult, State, read_result
+from ..records.faults import BatchFault, FolderGone, WrongPlan, gone
+from ..records.manifest import CellPlan, Manifest, read_manifest
+from ..records.result import CellResult, State, lasting_result
 from .attempts import MOST_TRIES, Attempt, Attempts, pair_of
 from .crew import Crew
 from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of
@@ -70,7 +70,7 @@ def run_on_dask(
             "Dask's workers have no Blender, which FBX files and outputs like pictures need; take "
             "BVH or AMC clips and the outputs npz and bvh, or run the batch here or by Flamenco."
         )
-    plans = [plan for plan in manifest.cells if unfinished(folder, plan)]
+    plans = [plan for plan in manifest.cells if lasting_result(folder, plan.cell) is None]
     if not plans:
         return
     with connected(address) as client:
@@ -82,11 +82,6 @@ def run_on_dask(
                 f"The scheduler at {address} is gone ({error or type(error).__name__}). What has "
                 "ended is kept: start it again, and give the same command."
             ) from error
-
-
-def unfinished(folder: Path, plan: CellPlan) -> bool:
-    result = read_result(folder, plan.cell)
-    return result is None or result.state is State.FAILED
 
 
 @contextmanager

@@ -10,9 +10,9 @@ from pathlib import Path, PurePosixPath
 from ..cells.fits import FITS
 from ..cells.work import cell_files
 from ..records.aside import written_aside
-from ..records.faults import FolderGone
-from ..records.manifest import CellPlan, gone
-from ..records.result import State, cell_folder, drop_failure, read_result
+from ..records.faults import FolderGone, gone
+from ..records.manifest import CellPlan
+from ..records.result import cell_folder, drop_failure, lasting_result
 from .worker_side import Files, write_files
 
 CLIP = "clip.sha256"  # within a fit's folder: whose it is
@@ -44,8 +44,7 @@ def deliver_cell(folder: Path, cell: str, files: Files) -> None:
 
     Raises FolderGone.
     """
-    before = read_result(folder, cell)
-    if before is None or before.state is State.FAILED:
+    if lasting_result(folder, cell) is None:
         drop_failure(folder, cell)
         _deliver(cell_folder(folder, cell), files)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..records.manifest import gone
+from ..records.faults import gone
 from ..records.result import State, cell_folder
 from .files import file_aside
 from .gathering import PICTURE, GatheredBatch, short_keys, short_names

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from ..records.manifest import gone
+from ..records.faults import gone
 
 
 @contextmanager

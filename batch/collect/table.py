@@ -6,14 +6,17 @@ import csv
 from pathlib import Path
 
 from .files import file_aside
-from .gathering import GatheredBatch
+from .gathering import GatheredBatch, short_names
 
 LEADING = ("cell", "clip", "recipe", "state", "exit_code", "sentence")
 
 
 def write_table(batch: GatheredBatch, path: Path) -> None:
-    """Numbers in full; empty where a cell has none. UTF-8 with a mark that spreadsheets need to
-    read names in other letters. Raises FolderGone."""
+    """Clips and recipes by the names that the page has; numbers in full, empty where a cell has
+    none. UTF-8 with a mark that spreadsheets need to read names in other letters. Raises
+    FolderGone."""
+    clips = short_names(plan.clip for plan in batch.plans)
+    recipes = short_names(plan.recipe for plan in batch.plans)
     seconds = {f"{name}_s": column for name, column in batch.seconds.items()}
     more = [*batch.values.items(), *seconds.items(), *batch.figures.items()]
     with file_aside(path) as aside, aside.open("w", encoding="utf-8-sig", newline="") as file:
@@ -22,5 +25,6 @@ def write_table(batch: GatheredBatch, path: Path) -> None:
         cells = zip(batch.plans, batch.states, batch.results, strict=True)
         for i, (plan, state, result) in enumerate(cells):
             code, why = ("", "") if result is None else (result.exit_code, result.sentence)
-            leading = (plan.cell, plan.clip, plan.recipe, state.value, code, why)
+            names = plan.cell, clips[plan.clip], recipes[plan.recipe]
+            leading = (*names, state.value, code, why)
             writer.writerow([*leading, *(column[i] for _, column in more)])

@@ -6,7 +6,7 @@ from typing import Any
 
 from ..records.faults import WrongPlan
 from ..records.manifest import Manifest, read_manifest
-from ..records.result import State, read_result
+from ..records.result import lasting_result
 from .cell_range import range_text
 
 PLATFORMS = {"win32": "windows"}  # as Flamenco calls them, where that is not as Python does
@@ -53,9 +53,5 @@ def cells_without_result(folder: Path) -> str:
 
 def waiting_cells(folder: Path, manifest: Manifest) -> list[int]:
     """Places in the manifest, from 1, of the cells that have no result but a failure."""
-    results = (read_result(folder, plan.cell) for plan in manifest.cells)
-    return [
-        place
-        for place, result in enumerate(results, start=1)
-        if result is None or result.state is State.FAILED
-    ]
+    results = (lasting_result(folder, plan.cell) for plan in manifest.cells)
+    return [place for place, result in enumerate(results, start=1) if result is None]

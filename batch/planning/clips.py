@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 from glob import glob
 from pathlib import Path
 
@@ -16,12 +16,12 @@ IN_FOLDERS = (".bvh", ".amc", ".fbx")  # a .blend is taken where it is named its
 SUFFIXES = (*IN_FOLDERS, ".blend")
 
 
-def find_clips(words: Sequence[str]) -> list[str]:
+def find_clips(words: Sequence[str], out: Path) -> list[str]:
     """The clips that files, folders (with all below) and patterns mean: paths, each once, sorted
-    within each word. Raises WrongPlan."""
+    within each word. out: the batch's folder, in which only results lie. Raises WrongPlan."""
     found: dict[Path, str] = {}
     for word in words:
-        paths = _meant(word)
+        paths = _meant(word, out)
         if not paths:
             raise WrongPlan(
                 f"No clip is meant by “{word}”: there is no such file, or no {_listed()} file in "
@@ -32,19 +32,22 @@ def find_clips(words: Sequence[str]) -> list[str]:
     return list(found.values())
 
 
-def _meant(word: str) -> list[Path]:
+def _meant(word: str, out: Path) -> list[Path]:
     path = Path(word)
     if path.is_file():
         if path.suffix.lower() not in SUFFIXES:
             raise WrongPlan(f"{path} is no recording; clips are {_listed()} and .blend files.")
         return [path]
-    if path.is_dir():
-        return _clips_of(each for each in path.rglob("*"))
-    return _clips_of(Path(each) for each in glob(word, recursive=True))
+    return files_meant(word, IN_FOLDERS, out)
 
 
-def _clips_of(paths: Iterable[Path]) -> list[Path]:
-    return sorted(p for p in paths if p.suffix.lower() in IN_FOLDERS and p.is_file())
+def files_meant(word: str, suffixes: Collection[str], out: Path) -> list[Path]:
+    """The files with such suffixes that a folder (with all below) or a pattern means, sorted; none
+    of the batch's own folder."""
+    path, own = Path(word), out.resolve()
+    inside = path.rglob("*") if path.is_dir() else map(Path, glob(word, recursive=True))
+    files = (p for p in inside if p.suffix.lower() in suffixes and p.is_file())
+    return sorted(p for p in files if not p.resolve().is_relative_to(own))
 
 
 def _listed() -> str:

@@ -16,14 +16,13 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from glob import glob
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
 from ..records.faults import WrongPlan
 from ..records.manifest import Value
-from .clips import absolute, find_clips
+from .clips import absolute, files_meant, find_clips
 from .recipes import VariedRecipe
 
 RECIPES = (".toml", ".json")
@@ -39,34 +38,35 @@ class Pair:
     values: Mapping[str, Value] = field(default_factory=dict)
 
 
-def crossed(clips: Sequence[str], recipes: Sequence[str], *, check: bool) -> list[Pair]:
+def crossed(clips: Sequence[str], recipes: Sequence[str], out: Path, *, check: bool) -> list[Pair]:
     """Every clip with every recipe; where no clip is given, each recipe with its own.
 
-    check: no recipe is needed. Raises WrongPlan, BadRecipe.
+    out: the batch's folder, in which none of them lies. check: no recipe is needed. Raises
+    WrongPlan, BadRecipe.
     """
-    found = find_recipes(recipes)
+    found = find_recipes(recipes, out)
     if not found and not check:
         raise WrongPlan("No recipe is given; add --recipes FILES, or --check to only diagnose.")
     if not clips:
-        return [Pair(_own_clip(recipe), recipe) for recipe in found]
-    every = find_clips(clips)
+        return [Pair(_own_clip(recipe, out), recipe) for recipe in found]
+    every = find_clips(clips, out)
     return [Pair(clip, recipe) for clip in every for recipe in found or [""]]
 
 
-def _own_clip(recipe: str) -> str:
+def _own_clip(recipe: str, out: Path) -> str:
     clip = VariedRecipe.read(recipe).clip
     if clip is None:
         raise WrongPlan(f'No clip is given, and {recipe} names none; add it, or clip = "…" there.')
-    return find_clips([clip])[0]
+    return find_clips([clip], out)[0]
 
 
-def find_recipes(words: Sequence[str]) -> list[str]:
-    """The recipes that files, folders and patterns mean. Raises WrongPlan."""
+def find_recipes(words: Sequence[str], out: Path) -> list[str]:
+    """The recipes that files, folders and patterns mean. out: as in `find_clips`. Raises
+    WrongPlan."""
     found: dict[str, None] = {}
     for word in words:
         path = Path(word)
-        inside = path.rglob("*") if path.is_dir() else map(Path, glob(word, recursive=True))
-        paths = [path] if path.is_file() else sorted(p for p in inside if p.suffix in RECIPES)
+        paths = [path] if path.is_file() else files_meant(word, RECIPES, out)
         if not paths:
             raise WrongPlan(f"No recipe (.toml, .json) is meant by “{word}”; check the path.")
         found.update(dict.fromkeys(map(absolute, paths)))
@@ -128,13 +128,21 @@ def _csv_rows(text: str, path: Path) -> Iterator[tuple[str, dict[str, Any]]]:
             "“recipe” and places in the recipe."
         )
     reader.fieldnames = head
-    for row in reader:
+    for row in _read(reader, path):
         if None in row or None in row.values():
             problem = f"line {reader.line_num} has another number of columns than line 1"
             raise WrongPlan(f"Table {path}: {problem}; correct it.")
         files = {key: row.pop(key) for key in ("clip", "recipe") if key in row}
         given = {key: _value(text) for key, text in row.items() if text.strip()}
         yield f"line {reader.line_num}", {**files, **given}
+
+
+def _read(reader: csv.DictReader[str], path: Path) -> Iterator[dict[str | Any, str | Any]]:
+    try:
+        yield from reader
+    except csv.Error as error:
+        problem = f"line {reader.line_num + 1} cannot be read ({error})"
+        raise WrongPlan(f"Table {path}: {problem}; correct it.") from error
 
 
 def _value(text: str) -> Value:

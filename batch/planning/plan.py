@@ -7,14 +7,13 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
-from ..records.faults import FolderTaken, OtherVersion, WrongManifest, WrongPlan
+from ..records.faults import FolderTaken, OtherVersion, WrongManifest, WrongPlan, gone
 from ..records.manifest import (
     KEY_SHOWN,
     BatchSettings,
     CellPlan,
     Manifest,
     Value,
-    gone,
     read_manifest,
     write_manifest,
 )
@@ -58,10 +57,10 @@ def plan(asked: Asked, folder: Path) -> Planned:
     if asked.table is not None:
         pairs = read_table(asked.table, check=check)
     else:
-        pairs = crossed(asked.clips, asked.recipes, check=check)
+        pairs = crossed(asked.clips, asked.recipes, folder, check=check)
     found = list(_cells(pairs))
     unique = {cell.key(asked.settings): cell for cell in found}
-    _refuse_another(folder, {cell.clip for cell in found})
+    _refuse_another(folder, found)
     cells, strays = _named(unique, folder)
     manifest = Manifest(asked.settings, refreshed(folder, cells))
     write_manifest(folder, manifest)
@@ -121,20 +120,26 @@ def _refuse_many(count: int) -> None:
         )
 
 
-def _refuse_another(folder: Path, clips: set[str]) -> None:
-    """A folder is one batch's: some clip of what was planned before must be asked for again."""
+def _refuse_another(folder: Path, cells: Sequence[CellPlan]) -> None:
+    """A folder is one batch's: some clip of what was planned before must be asked for again, be it
+    changed, or moved with the library."""
     if not folder.exists():
         return
     try:
-        before = {cell.clip for cell in read_manifest(folder).cells}
+        before = read_manifest(folder).cells
     except OtherVersion:
         raise
     except WrongManifest:
         return  # it is written anew
-    if before and not before & clips:
+    if before and not _paths_and_hashes(before) & _paths_and_hashes(cells):
+        clips = len({cell.clip for cell in before})
         raise FolderTaken(
-            f"{folder} holds another batch, with {len(before)} other clips; take another folder."
+            f"{folder} holds another batch, with {clips} other clips; take another folder."
         )
+
+
+def _paths_and_hashes(cells: Sequence[CellPlan]) -> set[str]:
+    return {word for cell in cells for word in (cell.clip, cell.clip_sha256)}
 
 
 def _named(

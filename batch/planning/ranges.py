@@ -122,7 +122,8 @@ def _range(table: Table) -> ValueRange:
     if steps is None:
         return ValueRange(table.place, bounds=(low, high), mirrored=mirrored)
     count = int(steps)
-    apart = tuple(_plain(low + (high - low) * i / (count - 1)) for i in range(count))
+    numbers = (_plain(low + (high - low) * i / (count - 1)) for i in range(count))
+    apart = tuple(dict.fromkeys(numbers))
     return ValueRange(table.place, _both_ways(apart, table) if mirrored else apart)
 
 
@@ -208,15 +209,14 @@ def variants(ranges: Sequence[ValueRange], how: Combination) -> Iterator[tuple[V
 def _samples(ranges: Sequence[ValueRange], how: Combination) -> Iterator[tuple[Value, ...]]:
     assert how.count is not None
     random = Random(how.seed)
-    lengths = [len(each.values) for each in ranges]
-    if not all(lengths):
-        for _ in range(how.count):
-            yield tuple(each.drawn(random) for each in ranges)
-        return
-    # None is drawn twice where there are so many and no more.
-    for number in random.sample(range(math.prod(lengths)), how.count):
-        chosen = []
-        for each, length in zip(ranges, lengths, strict=True):
-            number, at = divmod(number, length)
-            chosen.append(each.values[at])
-        yield tuple(chosen)
+    # None is drawn twice where values are listed: `count_of` has seen that there are so many.
+    listed = all(each.bounds is None for each in ranges)
+    drawn: set[tuple[Value, ...]] = set()
+    left = how.count
+    while left:
+        chosen = tuple(each.drawn(random) for each in ranges)
+        if listed and chosen in drawn:
+            continue
+        drawn.add(chosen)
+        left -= 1
+        yield chosen

@@ -24,6 +24,9 @@ def written_aside(target: Path) -> Iterator[Path]:
     try:
         os.chmod(aside, 0o755)  # a colleague may look
         yield aside
+        for path in aside.rglob("*"):
+            if path.is_file():
+                _onto_disk(path)
         try:
             os.rename(aside, target)
         except OSError as error:
@@ -31,6 +34,12 @@ def written_aside(target: Path) -> Iterator[Path]:
                 raise
     finally:
         shutil.rmtree(aside, ignore_errors=True)
+
+
+def _onto_disk(path: Path) -> None:
+    """Else a power cut might leave the name, and of what is in the file only some."""
+    with path.open("r+b") as file:  # Windows lets no other mode
+        os.fsync(file.fileno())
 
 
 def remove_abandoned(folder: Path) -> None:

@@ -1,5 +1,7 @@
 """What can be wrong with a batch; each text is a sentence: what is wrong, where, what to do."""
 
+from pathlib import Path
+
 
 class BatchFault(Exception):
     """A batch that cannot be planned, begun or gone on with."""
@@ -23,3 +25,12 @@ class FolderTaken(BatchFault):
 
 class FolderGone(BatchFault):
     """A folder that cannot be read or written, or is full."""
+
+
+def gone(path: Path, error: OSError) -> FolderGone:
+    """The fault of a folder that cannot be used; what is in it stays."""
+    why = error.strerror or type(error).__name__
+    return FolderGone(
+        f"{path} cannot be used ({why}); make room or mend that, then give the same command again, "
+        "which goes on where this ended."
+    )

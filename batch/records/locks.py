@@ -8,8 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from .faults import FolderTaken
-from .manifest import gone
+from .faults import FolderTaken, gone
 
 LOCK = ".lock"
 _BYTE = 1 << 30  # that is locked on Windows: not one that anybody reads
@@ -34,10 +33,12 @@ def batch_lock(folder: Path) -> Iterator[None]:
     with file:
         try:
             _lock(file, wait=False)
-        except OSError as error:
+        except (BlockingIOError, PermissionError) as error:  # the latter on Windows
             raise FolderTaken(
                 f"Another batch is running in {folder}; wait until it ends, or take another folder."
             ) from error
+        except OSError as error:  # a file system without locks
+            raise gone(folder / LOCK, error) from error
         yield
 
 

@@ -15,7 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
-from .faults import FolderGone, OtherVersion, WrongManifest
+from .faults import OtherVersion, WrongManifest, gone
 from .result import State
 
 MANIFEST = "manifest.jsonl"
@@ -155,15 +155,6 @@ def write_manifest(folder: Path, manifest: Manifest) -> None:
         raise gone(folder, error) from error
 
 
-def gone(path: Path, error: OSError) -> FolderGone:
-    """The fault of a folder that cannot be used; what is in it stays."""
-    why = error.strerror or type(error).__name__
-    return FolderGone(
-        f"{path} cannot be used ({why}); make room or mend that, then give the same command again, "
-        "which goes on where this ended."
-    )
-
-
 def _text(folder: Path) -> str:
     path = folder / MANIFEST
     try:
@@ -206,7 +197,8 @@ def _cell(folder: Path, number: int, line: str) -> CellPlan:
 def _require_true(folder: Path, manifest: Manifest) -> None:
     """A line that was edited by hand is no longer what its name says."""
     for cell in manifest.cells:
-        if not cell.cell.endswith(f"-{cell.key(manifest.settings)[:KEY_SHOWN]}"):
+        number, _, key = cell.cell.partition("-")
+        if not number.isdecimal() or key != cell.key(manifest.settings)[:KEY_SHOWN]:
             raise WrongManifest(
                 f"{folder / MANIFEST}: the line of cell “{cell.cell}” was changed after it was "
                 f"written; change clips and recipes instead, and {AGAIN}."

@@ -9,6 +9,8 @@ from dataclasses import asdict, dataclass, field
 from enum import Enum
 from pathlib import Path
 
+from .faults import gone
+
 CELLS = "cells"  # within a batch's folder
 RESULT = "result.json"  # within a cell's; its last file to be written
 
@@ -20,7 +22,7 @@ class State(Enum):
     DONE = "done"
     NO_SOLUTION = "no solution"
     WRONG_INPUT = "wrong input"
-    FAILED = "failed"  # by no fault of what was asked: a crash, too little memory
+    FAILED = "failed"  # by no fault of what was asked: a crash, too little memory, a lost clip
 
     @property
     def exit_code(self) -> int:
@@ -79,16 +81,24 @@ def cell_folder(folder: Path, cell: str) -> Path:
 
 
 def read_result(folder: Path, cell: str) -> CellResult | None:
-    """The result of a cell in a batch's folder, None where there is none that is whole."""
+    """The result of a cell in a batch's folder, None where there is none that is whole. Raises
+    FolderGone where nobody can tell."""
+    path = cell_folder(folder, cell) / RESULT
     try:
-        text = (cell_folder(folder, cell) / RESULT).read_text(encoding="utf-8")
-        return CellResult.parsed(text)
+        return CellResult.parsed(path.read_text(encoding="utf-8"))
     except (FileNotFoundError, NotADirectoryError, ValueError):
         return None
+    except OSError as error:
+        raise gone(path, error) from error
+
+
+def lasting_result(folder: Path, cell: str) -> CellResult | None:
+    """The result of a cell that is not solved again: any but a failure. Raises FolderGone."""
+    found = read_result(folder, cell)
+    return None if found is None or found.state is State.FAILED else found
 
 
 def drop_failure(folder: Path, cell: str) -> None:
-    """A failure, or a folder without a result, makes room for what comes now. Raises OSError."""
-    found = read_result(folder, cell)
-    if found is None or found.state is State.FAILED:
+    """A failure, or a folder without a result, makes room for what comes now. Raises FolderGone."""
+    if lasting_result(folder, cell) is None:
         shutil.rmtree(cell_folder(folder, cell), ignore_errors=True)

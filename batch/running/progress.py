@@ -76,6 +76,11 @@ def told(plan: CellPlan, result: CellResult) -> str:
     return f"{result.state.value}: {which}{f' ({values})' if values else ''}: {result.sentence}"
 
 
+def counted(count: int, word: str) -> str:
+    """Such as "1 cell", "2 cells"."""
+    return f"{count} {word}" + ("" if count == 1 else "s")
+
+
 def duration(seconds: float) -> str:
     """Such as "45 s", "3 min", "2.5 h"."""
     if seconds < 90.0:

@@ -13,8 +13,8 @@ from ..cells.cell import write_failure
 from ..cells.fits import FITS
 from ..records.aside import remove_abandoned
 from ..records.faults import BatchFault, FolderGone
-from ..records.manifest import CellPlan, Manifest
-from ..records.result import CELLS, State, read_result
+from ..records.manifest import Manifest
+from ..records.result import CELLS, lasting_result, read_result
 from .memory import MemoryWatch
 from .progress import Progress
 from .queue import CellQueue
@@ -41,7 +41,7 @@ class LocalRun:
 
     def __post_init__(self) -> None:
         self._plans = {cell.cell: cell for cell in self.manifest.cells}
-        waiting = [cell for cell in self.manifest.cells if not self._final(cell)]
+        waiting = [c for c in self.manifest.cells if lasting_result(self.folder, c.cell) is None]
         self._queue = CellQueue(waiting)
         self._left = len(waiting)
         self._tries: Counter[str] = Counter()
@@ -64,10 +64,6 @@ class LocalRun:
             for name in (CELLS, FITS):
                 with suppress(OSError):
                     remove_abandoned(self.folder / name)
-
-    def _final(self, cell: CellPlan) -> bool:
-        result = read_result(self.folder, cell.cell)
-        return result is not None and result.state is not State.FAILED
 
     def _hand_out(self) -> None:
         """Gives cells to who has none, as far as memory goes; one works whatever there is."""
@@ -129,7 +125,7 @@ class LocalRun:
             if self._stillborn >= MOST_STILLBORN:
                 raise BatchFault(f"No worker process can be started: one ended {how}.")
             return
-        if read_result(self.folder, cell) is not None and self._final(self._plans[cell]):
+        if lasting_result(self.folder, cell) is not None:
             self._ended(cell, worker)  # it had finished
         elif self._tries[cell] < MOST_TRIES:
             self.progress.note(f"A worker ended {how}; cell {cell} is done again.")

@@ -60,7 +60,6 @@ class WorkerProcess:
         except OSError as error:
             raise BatchFault(f"{command[0]} cannot be started ({error.strerror}).") from error
         self.cell: str | None = None
-        self.group: object = None
         self.ready = False
         self.rss = 0
         self._news = news
@@ -108,7 +107,8 @@ class WorkerProcess:
     def _hear(self) -> None:
         assert self._popen.stdout is not None
         for line in self._popen.stdout:
-            self._news.put((self, json.loads(line)))
+            if line.startswith(b"{"):  # Blender greets before the worker's program runs
+                self._news.put((self, json.loads(line)))
         self._news.put((self, None))
 
     def _keep_errors(self) -> None:

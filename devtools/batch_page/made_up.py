@@ -132,7 +132,7 @@ def _result(plan: CellPlan, chance: Random, pictures: bool) -> CellResult:
         "change_joint_centres_rms_cm": 0.4 + 6 * forward**2 + abs(chance.gauss(0.0, 0.2)),
         "momentum_between_nodes_rms_bw_m": math.exp(chance.gauss(-8.0, 0.8)),
         "steps": float(chance.randrange(4, 30)),
-        **{f"torque_of_joint_{k:02}_N_m": chance.gauss(120.0, 25.0) for k in range(18)},
+        **{f"torque_of_joint_{k:02}_nm": chance.gauss(120.0, 25.0) for k in range(18)},
     }
     headline = (f"Solved: it lands {forward:g} m further.", f"At most {peak:.2f} body weights.")
     files = ("log.txt", "report.json", "report.txt", "trajectory.npz")

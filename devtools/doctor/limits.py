@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ...solver.doctor.finding import FindingKind
+from ..figures.limits import WorstFigure
 from .measure import Examined
 
 NOISE = "30 Hz, 3 mm and 1° noise"
@@ -16,42 +16,13 @@ ANY = "size × 1.6"  # no ratio of units
 KNOWN_ANY = 5.0
 
 
-@dataclass(frozen=True)
-class DoctorFigure:
-    """One figure over all clips. must, aim: bounds, lower ones where `least`. where: the worst.
-
-    known: what a must that is not reached yet must not pass meanwhile.
-    """
-
-    name: str
-    value: float
-    unit: str
-    must: float
-    aim: float
-    where: str = ""
-    least: bool = False
-    known: float | None = None
-
-    @property
-    def ok(self) -> bool:
-        """Whether it keeps what it must."""
-        return self.value >= self.must if self.least else self.value <= self.must
-
-    @property
-    def missed(self) -> bool:
-        """Whether it misses what it must, and not as is known."""
-        if self.ok or self.known is None:
-            return not self.ok
-        return self.value < self.known if self.least else self.value > self.known
-
-
-def figures(examined: Sequence[Examined]) -> list[DoctorFigure]:
+def figures(examined: Sequence[Examined]) -> list[WorstFigure]:
     """Every figure that these give."""
     clean = [each for each in examined if each.kind is None]
     damaged = [each for each in examined if each.kind is not None]
     alarms = [each for each in clean if each.false]
     made = [
-        DoctorFigure(
+        WorstFigure(
             *("false alarms on clean clips", len(alarms), "1", 0, 0),
             ", ".join(f"{each.clip}: {', '.join(each.false)}" for each in alarms),
         )
@@ -62,12 +33,12 @@ def figures(examined: Sequence[Examined]) -> list[DoctorFigure]:
     right = len(damaged) - len(missed)
     false = sum(len(each.false) for each in damaged)
     made += [
-        DoctorFigure(
+        WorstFigure(
             *("damages named rightly (recall)", 100.0 * right / len(damaged), "%", 90.0, 98.0),
             f"{len(missed)} of {len(damaged)} missed",
             least=True,
         ),
-        DoctorFigure(
+        WorstFigure(
             *("findings that are right (precision)", 100.0 * right / (right + false), "%"),
             *(90.0, 98.0),
             f"{false} others",
@@ -89,9 +60,9 @@ def figures(examined: Sequence[Examined]) -> list[DoctorFigure]:
             middle = round(float(np.median([error for error, _ in told])), 6)
             at = f"worst {worst:.1f}: {where.clip}, {where.damage}"
             name = f"{words}: recovered, off by (median)"
-            made.append(DoctorFigure(name, middle, "%", 3.0, 1.0, at, known=known))
+            made.append(WorstFigure(name, middle, "%", 3.0, 1.0, at, known=known))
     noisy = [100.0 * each.after for each in damaged if each.damage == NOISE]
     if noisy:
         name = "joint centres off after noise was smoothed (mean)"
-        made.append(DoctorFigure(name, float(np.mean(noisy)), "cm", 2.5, 1.5))
+        made.append(WorstFigure(name, float(np.mean(noisy)), "cm", 2.5, 1.5))
     return made

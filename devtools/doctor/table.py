@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .limits import DoctorFigure
+from ..figures.limits import WorstFigure
 from .measure import Examined
 
 HEAD = """# The doctor
@@ -35,7 +35,7 @@ COLUMNS = (
 )
 
 
-def page(examined: Sequence[Examined], found: Sequence[DoctorFigure], minutes: float) -> str:
+def page(examined: Sequence[Examined], found: Sequence[WorstFigure], minutes: float) -> str:
     """The whole page."""
     damages = dict.fromkeys(each.damage for each in examined if each.damage)
     rows = [row([e for e in examined if e.damage == damage]) for damage in damages]
@@ -78,15 +78,14 @@ def row(alike: Sequence[Examined]) -> str:
 BOTH = ("before", "after")
 
 
-def verdict(figure: DoctorFigure) -> str:
+def verdict(figure: WorstFigure) -> str:
     """In a word."""
     if not figure.ok:
         return "missed" if figure.missed else "known miss"
-    reached = figure.value >= figure.aim if figure.least else figure.value <= figure.aim
-    return "aim" if reached else "ok"
+    return "aim" if figure.reached else "ok"
 
 
-def text(found: Sequence[DoctorFigure]) -> str:
+def text(found: Sequence[WorstFigure]) -> str:
     """The figures for a terminal."""
     return "\n".join(
         f"{f.name:<52} {f.value:8.3g} {f.unit:<3} must {f.must:g}: {verdict(f)}  {f.where}"

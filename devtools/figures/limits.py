@@ -71,6 +71,40 @@ class Figure:
     edit: str
 
 
+@dataclass(frozen=True)
+class WorstFigure:
+    """One figure over all cases. must, aim: bounds, lower ones where `least`. where: the worst.
+
+    known: what a must that is not reached yet must not pass meanwhile.
+    """
+
+    name: str
+    value: float
+    unit: str
+    must: float
+    aim: float
+    where: str = ""
+    least: bool = False
+    known: float | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether it keeps what it must."""
+        return self.value >= self.must if self.least else self.value <= self.must
+
+    @property
+    def reached(self) -> bool:
+        """Whether it is what is aimed at."""
+        return self.value >= self.aim if self.least else self.value <= self.aim
+
+    @property
+    def missed(self) -> bool:
+        """Whether it misses what it must, and not as is known."""
+        if self.ok or self.known is None:
+            return not self.ok
+        return self.value < self.known if self.least else self.value > self.known
+
+
 def figure(
     name: str, value: float, clip: str, edit: str, limits: Mapping[str, Limit] = LIMITS
 ) -> Figure:

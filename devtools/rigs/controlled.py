@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from .limits import RigFigure
+from ..figures.limits import WorstFigure
 
 OFF_MM, OFF_AIM_MM = 1.0, 0.1
 TURNED_DEGREES, TURNED_AIM_DEGREES = 0.2, 0.05
@@ -112,7 +112,7 @@ class ControlResult:
     sparse: SparseKeys | None = None
 
 
-def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
+def control_figures(results: Sequence[ControlResult]) -> list[WorstFigure]:
     """Every figure that these control rigs give."""
     if not results:
         return []
@@ -120,7 +120,7 @@ def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
     unmapped = [r.name for r in results if not r.mapped]
     count = len(results)
     found = [
-        RigFigure(
+        WorstFigure(
             "control rigs mapped with no hand work",
             count - len(unmapped),
             "1",
@@ -129,7 +129,7 @@ def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
             ", ".join(unmapped),
             least=True,
         ),
-        RigFigure(
+        WorstFigure(
             "control rigs to which the edit was written",
             count - len(refused),
             "1",
@@ -156,17 +156,17 @@ def control_figures(results: Sequence[ControlResult]) -> list[RigFigure]:
         if tried:
             worst, rig = max(tried, key=lambda each: each[0].value)
             where = f"{rig}: {worst.place}"
-            found.append(RigFigure(name, worst.value, unit, must, aim, where))
+            found.append(WorstFigure(name, worst.value, unit, must, aim, where))
     return found + _sparse_figures([(r.name, r.sparse) for r in results if r.sparse])
 
 
-def _sparse_figures(found: Sequence[tuple[str, SparseKeys]]) -> list[RigFigure]:
+def _sparse_figures(found: Sequence[tuple[str, SparseKeys]]) -> list[WorstFigure]:
     """Of reduced keys on controls; the worst rig of each."""
     figures = []
     if found:
         rig, most = max(found, key=lambda each: each[1].rate)
         figures.append(
-            RigFigure(
+            WorstFigure(
                 "reduced keys on controls, a second and channel",
                 most.rate,
                 "1",
@@ -184,7 +184,7 @@ def _sparse_figures(found: Sequence[tuple[str, SparseKeys]]) -> list[RigFigure]:
         tried = [(getattr(keys, quantity), rig) for rig, keys in found if getattr(keys, quantity)]
         if tried:
             worst, rig = max(tried, key=lambda each: each[0].value)
-            figures.append(RigFigure(name, worst.value, unit, must, aim, f"{rig}: {worst.place}"))
+            figures.append(WorstFigure(name, worst.value, unit, must, aim, f"{rig}: {worst.place}"))
     return figures
 
 

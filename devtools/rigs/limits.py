@@ -3,28 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from ..figures.limits import WorstFigure
 from .result import RigResult
-
-
-@dataclass(frozen=True)
-class RigFigure:
-    """One figure over all rigs. must, aim: bounds, lower ones where `least`. where: the worst."""
-
-    name: str
-    value: float
-    unit: str
-    must: float
-    aim: float
-    where: str = ""
-    least: bool = False
-
-    @property
-    def ok(self) -> bool:
-        """Whether it keeps what it must."""
-        return self.value >= self.must if self.least else self.value <= self.must
-
 
 CONVENTIONS = 14
 DIFFERENCE_MM, DIFFERENCE_AIM_MM = 10.0, 2.0
@@ -32,12 +13,12 @@ FILE_MM, FILE_AIM_MM = 1.0, 0.1
 FILE_DEGREES, FILE_AIM_DEGREES = 0.1, 0.01
 
 
-def figures(results: Sequence[RigResult]) -> list[RigFigure]:
+def figures(results: Sequence[RigResult]) -> list[WorstFigure]:
     """Every figure that these rigs give."""
     known = [r for r in results if not r.unknown]
     strange = [r for r in results if r.unknown]
     found = [
-        RigFigure(
+        WorstFigure(
             "conventions mapped with no hand work",
             sum(r.mapped for r in known),
             "1",
@@ -46,7 +27,7 @@ def figures(results: Sequence[RigResult]) -> list[RigFigure]:
             ", ".join(r.name for r in known if not r.mapped),
             least=True,
         ),
-        RigFigure(
+        WorstFigure(
             "skeletons of unknown names mapped with no hand work",
             sum(r.mapped for r in strange),
             "1",
@@ -61,7 +42,7 @@ def figures(results: Sequence[RigResult]) -> list[RigFigure]:
         worst = max(tried, key=lambda r: r.difference_mm or 0.0)
         where = f"{worst.name}: {worst.joint}, frame {worst.frame:g}"
         found.append(
-            RigFigure(
+            WorstFigure(
                 "same edit: largest difference of a joint centre",
                 worst.difference_mm or 0.0,
                 "mm",
@@ -73,12 +54,12 @@ def figures(results: Sequence[RigResult]) -> list[RigFigure]:
         found += _of_files(tried)
     unsolved = [r.name for r in tried if not r.solved] + [r.name for r in results if r.failed]
     found.append(
-        RigFigure("rigs on which the edit failed", len(unsolved), "1", 0, 0, ", ".join(unsolved))
+        WorstFigure("rigs on which the edit failed", len(unsolved), "1", 0, 0, ", ".join(unsolved))
     )
     return found
 
 
-def _of_files(tried: Sequence[RigResult]) -> list[RigFigure]:
+def _of_files(tried: Sequence[RigResult]) -> list[WorstFigure]:
     """The worst of all rigs and formats, of places and of turns."""
     every = [(r.name, file) for r in tried for file in r.files]
     if not every:
@@ -86,7 +67,7 @@ def _of_files(tried: Sequence[RigResult]) -> list[RigFigure]:
     off = max(every, key=lambda each: each[1].mm)
     turned = max(every, key=lambda each: each[1].degrees)
     return [
-        RigFigure(
+        WorstFigure(
             "file round trip: largest difference of a bone's place",
             off[1].mm,
             "mm",
@@ -94,7 +75,7 @@ def _of_files(tried: Sequence[RigResult]) -> list[RigFigure]:
             FILE_AIM_MM,
             f"{off[0]}, {off[1].name}",
         ),
-        RigFigure(
+        WorstFigure(
             "file round trip: largest difference of a bone's turn",
             turned[1].degrees,
             "°",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from ..figures.limits import WorstFigure
 from .controlled import ControlResult, control_page
-from .limits import RigFigure
 from .result import RigResult
 
 HEAD = """# Rigs
@@ -34,7 +34,7 @@ COLUMNS = ("rig", "bones", "named as", "mapped", "by", "same edit (mm)", "worst"
 def page(
     results: Sequence[RigResult],
     controlled: Sequence[ControlResult],
-    found: Sequence[RigFigure],
+    found: Sequence[WorstFigure],
     minutes: float,
 ) -> str:
     """The whole page."""
@@ -57,7 +57,7 @@ def page(
     return "\n".join(parts) + "\n"
 
 
-def text(found: Sequence[RigFigure]) -> str:
+def text(found: Sequence[WorstFigure]) -> str:
     """The figures for a terminal."""
     width = max(len(f.name) for f in found)
     return "\n".join(
@@ -86,8 +86,7 @@ def _cells(result: RigResult) -> Iterator[str]:
     yield f"{result.joint}, frame {result.frame:g}" if tried and result.difference_mm else ""
 
 
-def _verdict(found: RigFigure) -> str:
+def _verdict(found: WorstFigure) -> str:
     if not found.ok:
         return "MISSED"
-    reached = found.value >= found.aim if found.least else found.value <= found.aim
-    return "aim" if reached else "must"
+    return "aim" if found.reached else "must"

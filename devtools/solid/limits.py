@@ -7,28 +7,19 @@ from statistics import median
 
 from ..checks.joint_ranges import JointExcess
 from ..checks.penetrations import Keeper
+from ..figures.limits import Limit
 from .cases import Source
 from .result import CaseResult, Physics
 
-
-@dataclass(frozen=True)
-class SolidLimit:
-    """Upper bound that a figure must keep, and the one aimed at; None where it is only told."""
-
-    unit: str
-    must: float | None = None
-    aim: float | None = None
-
-
-DEPTH = SolidLimit("mm", 5.0, 1.0)
-JOINTS = SolidLimit("degrees", 3.0, 0.0)
-NOT_SOLVED = SolidLimit("1", 0.0, 0.0)
-RATIO, WORST_RATIO = SolidLimit("1", 1.6, 1.15), SolidLimit("1")
+DEPTH = Limit("mm", 5.0, 1.0)
+JOINTS = Limit("degrees", 3.0, 0.0)
+NOT_SOLVED = Limit("1", 0.0, 0.0)
+RATIO, WORST_RATIO = Limit("1", 1.6, 1.15), Limit("1")
 PHYSICS = {
-    "flight_force": SolidLimit("BW", 0.003, 0.0005),
-    "flight_moment": SolidLimit("BW·m", 0.001, 0.0003),
-    "ground_force": SolidLimit("BW", 0.003, 0.0005),
-    "ground_moment": SolidLimit("BW·m", 0.001, 0.0003),
+    "flight_force": Limit("BW", 0.003, 0.0005),
+    "flight_moment": Limit("BW·m", 0.001, 0.0003),
+    "ground_force": Limit("BW", 0.003, 0.0005),
+    "ground_moment": Limit("BW·m", 0.001, 0.0003),
 }
 BENT = "joints beyond recording and human range"
 # Musts that are not reached yet, each with the value that it must not pass meanwhile.
@@ -63,18 +54,18 @@ def faults(result: CaseResult) -> list[str]:
         return [result.failed]
     found = [] if result.solved else ["not solved"]
     for each in result.penetrations:
-        if not _holds(DEPTH, each.deeper_mm):
+        if not DEPTH.holds(each.deeper_mm):
             found.append(f"{each.what} by {each.deeper_mm:.1f} mm at frame {each.frame:g}")
     joint = result.joint
-    if joint and not _holds(JOINTS, joint.degrees):
+    if joint and not JOINTS.holds(joint.degrees):
         found.append(f"{joint.joint} {joint.degrees:.1f}° beyond at frame {joint.frame:g}")
     for name, limit in PHYSICS.items():
-        if result.physics and not _holds(limit, value := getattr(result.physics, name)):
+        if result.physics and not limit.holds(value := getattr(result.physics, name)):
             found.append(f"{_words(name)} {value:.2g} {limit.unit}")
     return found
 
 
-def _found(results: Sequence[CaseResult]) -> Iterator[tuple[str, float, SolidLimit, str]]:
+def _found(results: Sequence[CaseResult]) -> Iterator[tuple[str, float, Limit, str]]:
     bad = [r.name for r in results if r.failed or not r.solved]
     yield "cases not solved", len(bad), NOT_SOLVED, ", ".join(bad)
     good = [r for r in results if not r.failed]
@@ -97,7 +88,7 @@ def _found(results: Sequence[CaseResult]) -> Iterator[tuple[str, float, SolidLim
 
 def _worst_joint(
     figure: str, bent: Sequence[tuple[JointExcess, str]]
-) -> Iterator[tuple[str, float, SolidLimit, str]]:
+) -> Iterator[tuple[str, float, Limit, str]]:
     if bent:
         joint, name = max(bent, key=lambda each: each[0].degrees)
         where = f"{name}: {joint.joint}, frame {joint.frame:g}" if joint.joint else ""
@@ -108,18 +99,14 @@ def _of(key: str, measured: Sequence[tuple[Physics, str]]) -> Iterator[tuple[flo
     return ((getattr(physics, key), name) for physics, name in measured)
 
 
-def _split(worst: tuple[float, str], limit: SolidLimit) -> tuple[float, SolidLimit, str]:
+def _split(worst: tuple[float, str], limit: Limit) -> tuple[float, Limit, str]:
     return worst[0], limit, worst[1]
 
 
-def _figure(name: str, value: float, limit: SolidLimit, where: str) -> SolidFigure:
-    ok = _holds(limit, value)
+def _figure(name: str, value: float, limit: Limit, where: str) -> SolidFigure:
+    ok = bool(limit.holds(value))
     known = not ok and bool(value <= KNOWN_MISSES.get(name, -math.inf))
     return SolidFigure(name, float(value), limit.unit, limit.must, limit.aim, ok, known, where)
-
-
-def _holds(limit: SolidLimit, value: float) -> bool:
-    return limit.must is None or bool(value <= limit.must)
 
 
 def _words(key: str) -> str:

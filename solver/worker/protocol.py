@@ -15,13 +15,12 @@ from __future__ import annotations
 
 import pickle
 import struct
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass
 from enum import Enum
-from importlib import import_module
-from io import BytesIO
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 from ..data.status import DragStatus
+from .unpickling import Unreadable, is_data, unpickled
 
 # Standard library only: the worker learns where numpy is from the first message.
 if TYPE_CHECKING:
@@ -42,28 +41,6 @@ if TYPE_CHECKING:
 PROTOCOL = 7
 LARGEST = 1 << 30  # bytes; a longer message is not one
 _HEAD = struct.Struct("<Q")  # length of the pickle
-_NUMPY = {
-    ("numpy", "ndarray"),
-    ("numpy", "dtype"),
-    *(
-        (f"numpy.{core}.multiarray", name)
-        for core in ("core", "_core")
-        for name in ("_reconstruct", "scalar")
-    ),
-    *((f"numpy.{core}.numeric", "_frombuffer") for core in ("core", "_core")),
-}
-# What unpickling raises on nonsense.
-_UNREADABLE = (
-    pickle.UnpicklingError,
-    AttributeError,
-    EOFError,
-    ImportError,
-    LookupError,
-    MemoryError,
-    OverflowError,
-    TypeError,
-    ValueError,
-)
 
 
 class RequestKind(Enum):
@@ -251,24 +228,9 @@ def receive(stream: IO[bytes]) -> Message | None:
         body = stream.read(length)
         if len(body) < length:
             raise ProtocolError("a message breaks off")
-        message = _Reader(BytesIO(body)).load()
-    except _UNREADABLE as problem:
+        message = unpickled(body, is_data)
+    except (Unreadable, MemoryError) as problem:
         raise ProtocolError(f"a message cannot be read: {problem}") from problem
     if not isinstance(message, Message):
         raise ProtocolError(f"{type(message).__name__} is not a message")
     return message
-
-
-class _Reader(pickle.Unpickler):
-    """Finds this package's classes whatever the sender calls the package, and little else."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        if (module, name) in _NUMPY:
-            return super().find_class(module, name)
-        package = __name__.rpartition(".solver.")[0]
-        below = module.rpartition(".solver.")[2]
-        if module.endswith(f".solver.{below}") and below.replace(".", "_").isidentifier():
-            found = getattr(import_module(f"{package}.solver.{below}"), name)
-            if isinstance(found, type) and (is_dataclass(found) or issubclass(found, Enum)):
-                return found
-        raise pickle.UnpicklingError(f"{module}.{name} is not expected")

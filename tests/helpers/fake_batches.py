@@ -105,4 +105,5 @@ if __name__ == "__main__":
     else:
         from hangtime.batch.running.worker import serve
 
+        print("Blender 4.5.0 (hash of its build)", flush=True)  # as Blender greets
         serve(_solver)

@@ -1,17 +1,23 @@
 """Cells that are truly solved: one short hop, whose fit the tests of this file share."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from hangtime.batch.cells import work
 from hangtime.batch.cells.cell import run_cell
-from hangtime.batch.cells.fits import FITS
+from hangtime.batch.cells.fits import FILE, FITS, SharedFits
+from hangtime.batch.cells.reading import ReadClip, read_clip
 from hangtime.batch.cells.work import cell_files
 from hangtime.batch.commands import run
 from hangtime.batch.planning.plan import Asked, plan
+from hangtime.batch.records.faults import WrongPlan
 from hangtime.batch.records.manifest import BatchSettings, CellPlan, Output, read_manifest
 from hangtime.batch.records.result import CELLS, State, cell_folder, read_result
 from hangtime.bridge.formats.bvh import read_bvh
+from hangtime.solver.stages.fit import Fit
+from hangtime.solver.worker.unpickling import Unreadable, unpickled
 from hangtime.tests.helpers.clips import mocap_path
 
 RECIPE = """
@@ -53,6 +59,8 @@ def test_a_cell_leaves_what_was_asked_for_in_a_folder_of_its_own(batch: Path) ->
     assert set(result.files) == wanted
     assert {p.name for p in cell_folder(batch, cell).iterdir()} == {*wanted, "result.json"}
     assert read_result(batch, cell) == result
+    assert all(name == name.lower() for name in result.figures)
+    assert len(set(result.figures.values())) == len(result.figures)  # nothing is told twice
 
 
 def test_a_cell_that_is_solved_is_not_solved_again(batch: Path) -> None:
@@ -80,6 +88,44 @@ def test_cells_of_a_clip_share_its_fit_and_find_it_as_it_was_to_the_bit(
     one = np.load(cell_folder(batch, second) / TRAJECTORY)
     two = np.load(cell_folder(other, alone[0]) / TRAJECTORY)
     assert all(np.array_equal(one[k], two[k], equal_nan=one[k].dtype.kind == "f") for k in one)
+
+
+def test_a_clip_is_analysed_once_wherever_copies_of_it_lie(
+    batch: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reads = []
+
+    def read(*args: Any, **kwargs: Any) -> ReadClip:
+        reads.append(args)
+        return read_clip(*args, **kwargs)
+
+    monkeypatch.setattr(work, "read_clip", read)
+    run_cell(batch, cells(batch)[0].cell)
+    clip, fits = Path(cells(batch)[0].clip), SharedFits(batch)
+    for name in ("one", "two"):  # as cells are sent to workers that do not share the folder
+        copy = tmp_path / name / clip.name
+        copy.parent.mkdir()
+        copy.write_bytes(clip.read_bytes())
+        (copy.parent / "r.toml").write_text(RECIPE.format("ground 2", "0.1"))
+        asked = Asked(BatchSettings(), [str(copy)], [str(copy.parent / "r.toml")])
+        cell = plan(asked, copy.parent / "out").manifest.cells[0]
+        assert run_cell(copy.parent / "out", cell.cell, fits).state is State.DONE
+    assert len([args for args in reads if args[0].is_relative_to(tmp_path)]) == 1
+
+
+def test_a_fit_that_is_damaged_or_names_a_program_is_none(batch: Path) -> None:
+    def read(content: bytes) -> str:
+        with pytest.raises(Unreadable) as caught:
+            unpickled(content)
+        return str(caught.value)
+
+    run_cell(batch, cells(batch)[0].cell)
+    fit = next((batch / FITS).glob(f"[!.]*/{FILE}")).read_bytes()
+    assert isinstance(unpickled(fit), Fit)
+    assert read(fit[: len(fit) // 2])
+    assert "os.getcwd is not expected" in read(b"cos\ngetcwd\n(tR.")
+    imported = b"changtime.solver.worker.main\nThread\n(tR."  # by the solver, and not its own
+    assert "Thread is not expected" in read(imported)
 
 
 def test_the_bvh_plays_the_adapted_motion_on_the_clips_own_skeleton(batch: Path) -> None:
@@ -111,18 +157,46 @@ def test_every_file_that_a_cell_reads_is_told(batch: Path) -> None:
     assert cell_files(cell) == (Path(cell.clip), Path(cell.recipe))
 
 
+@pytest.mark.parametrize("lost", [False, True])
 @pytest.mark.parametrize("which", ["clip", "recipe"])
-def test_what_changed_since_it_was_planned_is_not_solved(tmp_path: Path, which: str) -> None:
+def test_what_changed_or_went_since_it_was_planned_is_not_solved_and_may_come_back(
+    tmp_path: Path, which: str, lost: bool
+) -> None:
     clip, recipe = tmp_path / "hop.bvh", tmp_path / "recipe.toml"
     clip.write_bytes(mocap_path("hop_01_01.bvh").read_bytes())
     recipe.write_text(RECIPE.format("ground 2", "[0.1]"))
     folder = tmp_path / "out"
     plan(Asked(BatchSettings(), [str(clip)], [str(recipe)]), folder)
     changed = clip if which == "clip" else recipe
-    changed.write_text(changed.read_text() + ("\n" if which == "clip" else "up = 0.1\n"))
+    if lost:
+        changed.unlink()
+    else:
+        changed.write_text(changed.read_text() + ("\n" if which == "clip" else "up = 0.1\n"))
     result = run_cell(folder, cells(folder)[0].cell)
-    assert result.state is State.WRONG_INPUT
+    assert result.state is State.FAILED  # which the same command tries again
     assert f"{changed} has changed since" in result.sentence
+
+
+def test_half_a_clip_is_not_taken_for_the_clips_end(tmp_path: Path) -> None:
+    clip = tmp_path / "hop.bvh"
+    clip.write_bytes(mocap_path("hop_01_01.bvh").read_bytes())
+    plan(Asked(BatchSettings(check=True), [str(clip)]), tmp_path / "out")
+    clip.write_bytes(clip.read_bytes()[:2000])
+    result = run_cell(tmp_path / "out", cells(tmp_path / "out")[0].cell)
+    assert result.state is State.FAILED
+    assert "changed" in result.sentence
+
+
+def test_without_blender_a_clip_that_needs_it_is_told_and_keeps_no_result(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "hop.fbx").write_text("")
+    plan(Asked(BatchSettings(check=True), [str(tmp_path / "hop.fbx")]), tmp_path / "out")
+    monkeypatch.setattr(work, "blender_is_here", lambda: False)
+    cell = cells(tmp_path / "out")[0].cell
+    with pytest.raises(WrongPlan, match=r"hop\.fbx .* needs Blender"):
+        run_cell(tmp_path / "out", cell)
+    assert read_result(tmp_path / "out", cell) is None
 
 
 def test_the_command_line_runs_a_batch_and_goes_on_with_it(
@@ -132,7 +206,7 @@ def test_the_command_line_runs_a_batch_and_goes_on_with_it(
     recipe.write_text(RECIPE.format("ground 2", "[0.1]"))
     command = [clip, "--recipes", str(recipe), "--out", str(tmp_path / "out"), "--jobs", "1"]
     assert run(command) == 0
-    assert "1 cells: 1 done" in capsys.readouterr().out
+    assert "1 cell: 1 done" in capsys.readouterr().out
     recipe.write_text(RECIPE.format("ground 7", "[0.1]"))
     assert run(command) == 2
     told = capsys.readouterr().out

@@ -62,7 +62,16 @@ def test_every_clip_of_a_folder_goes_with_every_value(library: Library) -> None:
 def test_files_folders_and_patterns_mean_each_clip_once(library: Library) -> None:
     clips = library.folder / "clips"
     words = [str(clips / "a.bvh"), str(clips), str(clips / "**" / "*.bvh")]
-    assert len(find_clips(words)) == 3
+    assert len(find_clips(words, library.out)) == 3
+
+
+def test_a_batchs_own_results_are_neither_its_clips_nor_its_recipes(library: Library) -> None:
+    words = [str(library.folder)]
+    first = plan(Asked(BatchSettings(), words, words), library.out)
+    library.solve(first)  # a result.json in each cell's folder
+    (library.out / "cells" / first.manifest.cells[0].cell / "motion.bvh").write_text("a result")
+    again = plan(Asked(BatchSettings(), words, words), library.out)
+    assert [c.cell for c in again.manifest.cells] == [c.cell for c in first.manifest.cells]
 
 
 def test_planned_again_what_is_solved_keeps_its_name_and_state(library: Library) -> None:
@@ -123,6 +132,7 @@ def test_a_table_names_the_pairs_and_gives_values_in_place_of_the_ranges(library
         ("t.csv", "clip,recipe\nclips/none.bvh,recipe.toml\n", "line 2: there is no clip"),
         ("t.csv", "clip,recipe\nclips/a.bvh,\n", "line 2 has no recipe"),
         ("t.csv", "clip,recipe,pin.Take.up\nclips/a.bvh,recipe.toml,1\n", "no “pin.Take.up”"),
+        ("t.csv", f"clip\n{'x' * 200_000}\n", "line 2 cannot be read"),
         ("t.toml", "pair = 1", "must hold"),
         ("t.toml", "[[pair", "not TOML"),
     ],
@@ -159,6 +169,12 @@ def test_a_folder_with_another_batch_is_refused_and_its_manifest_stays(library: 
     with pytest.raises(FolderTaken, match="another batch"):
         library.plan("clips/second take")
     assert (library.out / MANIFEST).read_text(encoding="utf-8") == before
+
+
+def test_a_library_that_moved_goes_on_with_its_batch(library: Library) -> None:
+    library.solve(library.plan())
+    (library.folder / "clips").rename(library.folder / "moved")
+    assert all(c.state is State.DONE for c in library.plan("moved").manifest.cells)
 
 
 def test_an_edited_manifest_is_written_anew_and_what_is_solved_kept(library: Library) -> None:

@@ -86,6 +86,14 @@ def test_as_many_variants_as_are_counted_before_and_samples_are_all_different(
     assert len({tuple(v.items()) for v in drawn}) == count
 
 
+def test_samples_are_drawn_from_more_combinations_than_could_ever_be_counted(
+    tmp_path: Path,
+) -> None:
+    each = "{ from = 0, to = 1, steps = 100_000 }"
+    ways = "".join(f"{way} = {each}\n" for way in ("forward", "left", "up", "turn"))
+    assert len(values_of(tmp_path, ways, SAMPLE.format(5, 1))) == 5
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

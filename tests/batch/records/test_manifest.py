@@ -49,6 +49,7 @@ def test_a_manifest_is_read_as_it_was_written_whole_or_cell_by_cell(
     ("line", "change", "said"),
     [
         (1, lambda text: text.replace("/clips/a.bvh", "/clips/c.bvh"), "was changed after"),
+        (1, lambda text: text.replace('"cell": "', '"cell": "../../'), "was changed after"),
         (1, lambda text: text[:-9], "line 2: that is no cell"),
         (0, lambda text: text.replace("npz", "xyz"), "no batch's first line"),
         (0, lambda text: text.replace('"format": 1', '"format": 2'), "no batch's first line"),

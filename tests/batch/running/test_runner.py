@@ -1,5 +1,7 @@
 """The local runner, with cells that are cheap: order, deaths, memory, kills and resuming."""
 
+import errno
+import os
 import random
 import shutil
 import subprocess
@@ -10,7 +12,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from hangtime.batch.records.faults import BatchFault, FolderTaken
+from hangtime.batch.records.faults import BatchFault, FolderGone, FolderTaken
 from hangtime.batch.records.locks import batch_lock
 from hangtime.batch.records.manifest import read_manifest
 from hangtime.batch.records.result import CELLS, State, read_result
@@ -100,6 +102,17 @@ def test_a_second_batch_in_the_folder_is_refused_while_one_runs(tmp_path: Path) 
     with batch_lock(tmp_path), pytest.raises(FolderTaken, match="running"), batch_lock(tmp_path):
         pass
     with batch_lock(tmp_path):
+        pass
+
+
+def test_a_folder_that_knows_no_locks_is_told_as_that(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def flock(_file: int, _how: int) -> None:
+        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
+
+    monkeypatch.setattr("fcntl.flock", flock)
+    with pytest.raises(FolderGone, match="not implemented"), batch_lock(tmp_path):
         pass
 
 
