@@ -52,6 +52,11 @@ class FollowedDrag(PolledOperator):
         """A key was pressed; whether it means something."""
         return False
 
+    @property
+    def held(self) -> str:
+        """Name of the contact that the mouse holds; "" of none."""
+        raise NotImplementedError
+
     def put_back(self) -> None:
         """All is as it was."""
         raise NotImplementedError
@@ -149,14 +154,19 @@ class FollowedDrag(PolledOperator):
         reading, asked = ask_for(context), self._read_before()
         if asked is None:
             asked = yield from reading
-        session().dragged = asked
-        stream, skin = shared().follow(asked.recording), asked.problem.skin
+        stream = shared().follow(asked.recording)
         while True:
-            next(reading, None)
+            try:
+                next(reading)
+            except StopIteration as end:
+                if end.value is not None:  # surfaces may be elsewhere than they were
+                    asked, self._moved = end.value, True
+            session().dragged = asked
             if self._moved:
                 self._moved = False
-                settings = settings_of(self._armature)
-                stream.want(problem_of(settings, asked.recording, asked.scene.objects, skin=skin))
+                settings, skin = settings_of(self._armature), asked.problem.skin
+                problem = partial(problem_of, settings, asked.recording, asked.scene.objects)
+                stream.want(problem(skin=skin, held=self.held))
             for message in stream.news():
                 self._hear(message)
             yield
