@@ -18,7 +18,7 @@ from io import BufferedReader, FileIO
 from itertools import count
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from threading import Condition, Lock, Thread
+from threading import Condition, Event, Lock, Thread
 from time import monotonic
 from typing import cast
 
@@ -179,33 +179,34 @@ class Worker:
         recording, placed: as of `Request`. Raises WorkerDied where none can be started,
         RuntimeError while another is under way.
         """
+        request = Request(next(self._ids), kind, recording, problem, placed)
         process = self._free_process()
-        self._end_preparation(process, recording, problem)
-        self._pending = PendingRequest(Request(next(self._ids), kind, recording, problem, placed))
+        self._end_preparation(process, request)
+        self._pending = PendingRequest(request)
         process.ask(self._pending)
         return self._pending
 
     def prepare(self, recording: Recording, problem: MotionProblem) -> PendingRequest:
         """Has the worker make what a drag begins with, so that the first ghost need not wait for
-        the fit. Nobody need wait for it: a request about another fit ends it. Raises as `ask` does.
+        the fit. Nobody need wait for it: a request about another fit, or about none, ends it.
+        Raises as `ask` does.
         """
-        process = self._free_process()
-        self._end_preparation(process, recording, problem)
         request = Request(next(self._ids), RequestKind.FOLLOW, recording, problem)
+        process = self._free_process()
+        self._end_preparation(process, request)
         self._prepared = PendingRequest(request)
         process.ask(self._prepared)
         return self._prepared
 
-    def _end_preparation(
-        self, process: _Process, recording: Recording | None, problem: MotionProblem
-    ) -> None:
+    def _end_preparation(self, process: _Process, now: Request) -> None:
         prepared, self._prepared = self._prepared, None
         if prepared is None:
             return
         begun = prepared.request
         assert begun.recording is not None
-        of_same = recording is None or digest(recording) == digest(begun.recording)
-        if not (of_same and problem.known_to_fit() == begun.problem.known_to_fit()):
+        fits = now.kind not in (RequestKind.EXAMINE, RequestKind.ANALYSE)
+        of_same = now.recording is None or digest(now.recording) == digest(begun.recording)
+        if not (fits and of_same and now.problem.known_to_fit() == begun.problem.known_to_fit()):
             process.halt(prepared, Ending.CANCEL)
 
     def follow(self, recording: Recording) -> DragStream:
@@ -285,7 +286,7 @@ class _Process:
         self._to_worker = self._popen.stdin
         # Without a buffer (above) the pipe is a raw FileIO, which the stubs do not know.
         self._from_worker = BufferedReader(cast(FileIO, self._popen.stdout))
-        self._greeted = False
+        self._greeted = Event()
         self._sending = Lock()
         self._asked: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
@@ -311,6 +312,7 @@ class _Process:
 
     def _halt(self, halt: Halt) -> None:
         _survive_broken_pipes()
+        self._greeted.wait()  # of who is not greeted first a worker wants nothing
         with suppress(OSError, ValueError):  # a worker that has gone has ended it
             self._send(halt)
 
@@ -342,6 +344,7 @@ class _Process:
         """Kills the process and lets go of it."""
         self._popen.kill()
         self._popen.wait()
+        self._greeted.set()  # for who waits to halt something
         self._asked.put(None)
         self._listener.join(_LAST_WORDS_S)
         for pipe in (self._to_worker, self._from_worker, self._popen.stderr):
@@ -349,7 +352,7 @@ class _Process:
             pipe.close()
 
     def _talk(self, request: Request) -> Iterator[Progress | Answer]:
-        if not self._greeted:
+        if not self._greeted.is_set():
             self._greet()
         self._send(request)
         while True:
@@ -369,7 +372,7 @@ class _Process:
         ready = self._hear()
         if not isinstance(ready, Ready) or ready.protocol != PROTOCOL:
             raise ProtocolError(f"{ready} is no greeting of version {PROTOCOL}")
-        self._greeted = True
+        self._greeted.set()
 
     def _hear(self) -> Message:
         message = receive(self._from_worker)

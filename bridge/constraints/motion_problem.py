@@ -85,12 +85,14 @@ def problem_of(
     *,
     skin: Skin | None = None,
     with_contacts: bool = True,
+    held: str = "",
 ) -> MotionProblem:
     """What the settings ask of a recording.
 
     scene, skin: the surfaces, and what the armature deforms, as they were read (bridge/scene).
-    with_contacts: whether corrections, pins
-    and surfaces count; an analysis starts without them.
+    with_contacts: whether corrections, pins and surfaces count; an analysis starts without them.
+    held: name of a contact that is pinned even where it was found, for of a long take what is
+    solved is what pins are about, and a drag's shall be that before the mouse has moved.
     Raises EmptyRange for a contact that ends before it begins, BadRecipe, and as `requests_of`.
     """
     if with_contacts:
@@ -106,7 +108,7 @@ def problem_of(
         bones=chosen_parts(settings),
         contacts=_edits(settings) if with_contacts else (),
         added=_added(settings) if with_contacts else (),
-        pins=_pins(settings, span) if with_contacts else (),
+        pins=_pins(settings, span, held) if with_contacts else (),
         scene=scene if with_contacts else (),
         requests=_requests(settings, span, scene) if with_contacts else Requests(),
         loop=loop_options(settings) is not None,
@@ -193,8 +195,8 @@ def _added(settings: HangtimeSettings) -> tuple[AddedContact, ...]:
     )
 
 
-def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, ...]:
-    """A pin for each contact that has been moved, or stands on a surface.
+def _pins(settings: HangtimeSettings, span: tuple[float, float], held: str) -> tuple[Pin, ...]:
+    """A pin for each contact that has been moved, stands on a surface, or is held.
 
     Corrections renumber contacts and phases, so pins name both as they are called afterwards.
     """
@@ -213,7 +215,7 @@ def _pins(settings: HangtimeSettings, span: tuple[float, float]) -> tuple[Pin, .
     for row, contact in zip(used, bare, strict=True):
         phase = _ground_phase(schedule, contact)
         on = next((each.name for each in ground if each.object == row.on), None)
-        if phase is None or not (moved(row) or on):
+        if phase is None or not (moved(row) or on or row.name == held):
             continue
         x, y, z = (metres * value for value in row.at)
         name = called[contact.point, contact.start]

@@ -112,7 +112,9 @@ class Painter:
             head = self.head(tier, floor, elevation) + 0.6 * caption
             top = bottom - (head + caption + GAP if i else 0.0)
             title = tier.title if elevation == self.elevation else f"{tier.title} (from above)"
-            with self.seen_from(elevation, i * APART * self.away + top * self.up):
+            # The tilt is about the world's origin, which the floor need not be at.
+            turned = layout.floor * (cos(self.elevation) - cos(elevation))
+            with self.seen_from(elevation, i * APART * self.away + (top + turned) * self.up):
                 self.stage(floor)
                 # a motion alone is an adapted one
                 self.tier(tier, k if len(layout.tiers) > 1 else ADAPTED, floor, label)

@@ -53,6 +53,11 @@ class FollowedDrag(PolledOperator):
         """A key was pressed; whether it means something."""
         return False
 
+    @property
+    def held(self) -> str:
+        """Name of the contact that the mouse holds; "" of none."""
+        raise NotImplementedError
+
     def put_back(self) -> None:
         """All is as it was."""
         raise NotImplementedError
@@ -156,13 +161,14 @@ class FollowedDrag(PolledOperator):
             try:
                 next(reading)
             except StopIteration as end:
-                if end.value is not None:
+                if end.value is not None:  # surfaces may be elsewhere than they were
                     asked, self._moved = end.value, True
             session().dragged = asked
             if self._moved:
                 self._moved = False
                 settings, skin = settings_of(self._armature), asked.problem.skin
-                stream.want(problem_of(settings, asked.recording, asked.scene.objects, skin=skin))
+                problem = partial(problem_of, settings, asked.recording, asked.scene.objects)
+                stream.want(problem(skin=skin, held=self.held))
             for message in stream.news():
                 self._hear(message)
             yield

@@ -120,6 +120,11 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         to = self._drag.move((x, y, z), precise=event.shift, snap=event.ctrl)
         self._put(Vector(to) / self._metres, self._standing)
 
+    @property
+    def held(self) -> str:
+        row = self._row
+        return row.name if isinstance(row, HangtimeContact) else ""
+
     def let_go(self) -> bool:
         moved, self.ground = self._drag.let_go(), self._standing
         self.shift = Vector(self._drag.shift) / self._metres

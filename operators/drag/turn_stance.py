@@ -62,6 +62,11 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
             self._angle - self._began, precise=event.shift, snap=event.ctrl
         )
 
+    @property
+    def held(self) -> str:
+        there = stance_contacts(settings_of(self._armature), self._name)
+        return next((row.name for row in there if row.used), "")
+
     def let_go(self) -> bool:
         self.by = self._drag.value - self._drag.start
         return self._drag.let_go()

@@ -1,6 +1,7 @@
 """Analyze and Fit: what touches when in a recording, and how near physics comes to it."""
 
 from collections.abc import Generator
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
@@ -18,8 +19,10 @@ from ...bridge.properties.settings import (
     scene_settings,
     settings_of,
 )
+from ...bridge.properties.stances import active_contact
 from ...bridge.worker_client import PendingRequest, shared
 from ...solver.data.faults import (
+    Fault,
     MissingPart,
     OddHeight,
     OutsideKeys,
@@ -184,9 +187,15 @@ def analysis(context: bpy.types.Context) -> Task:
 
 
 def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:
-    """Has the worker make meanwhile what the first drag would wait for."""
-    asked = session().dragged = yield from ask_for(context)
-    shared().prepare(asked.recording, asked.problem)
+    """Has the worker make meanwhile what the first drag would wait for, most likely of the contact
+    that is chosen. What is wrong with what is asked is no fault of the analysis: Adapt tells."""
+    settings = settings_of(required_armature(context))
+    chosen = active_contact(settings)
+    with suppress(Fault):
+        asked = session().dragged = yield from ask_for(context)
+        skin, held = asked.problem.skin, chosen.name if chosen is not None else ""
+        problem = problem_of(settings, asked.recording, asked.scene.objects, skin=skin, held=held)
+        shared().prepare(asked.recording, problem)
 
 
 def _unseen(answer: Analysed) -> str:

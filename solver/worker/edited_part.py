@@ -4,7 +4,8 @@ A landing that moves changes the push before it and the stance after it; what a 
 adaptation of all the other jumps would cost buys nothing. Where pins alone are asked for, the
 frames from the push before the first pinned stance to where the last one has come to rest are
 solved as if they had been chosen as the range: the take before them stays, and what follows is
-carried along with the last stance, as it is after any range (bridge/takes/whole_take.py).
+carried along with the last stance, as it is after any range (bridge/takes/whole_take.py). A take
+that is mended is solved whole: what stays would be what the recording was before.
 """
 
 from collections.abc import Sequence
@@ -13,7 +14,7 @@ from dataclasses import replace
 from ..analysis.analyse import Analysis, part_of
 from ..analysis.pinned_places import phase_of
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
-from ..data.problem import MotionProblem
+from ..data.problem import MotionProblem, Pin
 from ..data.requests import Requests
 
 PUSH = 0.8  # s before a take-off, which a crouch and the swing of the arms take
@@ -37,14 +38,31 @@ def edited_part(analysis: Analysis, problem: MotionProblem) -> Analysis:
 def _span(schedule: ContactSchedule, problem: MotionProblem) -> tuple[float, float] | None:
     alone = replace(problem.requests, solution=Requests().solution) == Requests()
     moving = any(thing.moves for thing in problem.scene)
-    if problem.loop or moving or not alone or not problem.pins:
+    mended = bool(problem.mend) or any(problem.drift)
+    if problem.loop or moving or mended or not alone or not problem.pins:
         return None
     stances = [phase for phase in schedule.phases if phase.kind is PhaseKind.GROUND]
     pinned = [stances.index(phase_of(pin, schedule)) for pin in problem.pins]
     start = _begin(stances[: min(pinned)], schedule)
     last = max(*pinned, 1)  # a first stance that is moved changes the jump after it
-    end = None if last == len(stances) else _end(stances[last], schedule)
+    if last == len(stances):
+        return None
+    end = _end(stances[last], schedule, _pinned_until(stances[last], problem.pins, schedule))
     return None if end is None else (start, end)
+
+
+def _pinned_until(stance: Phase, pins: Sequence[Pin], schedule: ContactSchedule) -> float:
+    """The instant by which all contacts that pins move have begun, as the steps of a walk do.
+
+    A stance that is pushed or raised as one needs none of the later ones: all move alike.
+    """
+    if all(
+        not pin.touching and pin.place is None and pin.turn == 0.0
+        for pin in pins
+        if pin.phase == stance.name
+    ):
+        return stance.start
+    return max(contact.start for contact in schedule.of_phase(stance))
 
 
 def _begin(before: Sequence[Phase], schedule: ContactSchedule) -> float:
@@ -56,14 +74,20 @@ def _begin(before: Sequence[Phase], schedule: ContactSchedule) -> float:
     return 0.0
 
 
-def _end(stance: Phase, schedule: ContactSchedule) -> float | None:
-    """An instant in a stance at which the body has come to rest; None where it lasts too short."""
-    if stance.end >= schedule.duration and stance.end - stance.start <= REST:
+def _end(stance: Phase, schedule: ContactSchedule, pinned: float) -> float | None:
+    """An instant in a stance at which the body has come to rest; None where it lasts too short.
+
+    pinned: s, as of `_pinned_until`.
+    """
+    ends = stance.end >= schedule.duration
+    if ends and stance.end - stance.start <= REST:
         return schedule.duration
-    found = _cut(schedule, stance.start + REST, CUT_STEP, stance)
+    found = _cut(schedule, max(stance.start + REST, pinned + CUT_APART), CUT_STEP, stance)
     if found is None:
         found = _cut(schedule, stance.end - CUT_APART, -CUT_STEP, stance)
-    return found if found is not None and found - stance.start >= MIN_REST else None
+    if found is not None and found - stance.start >= MIN_REST and found > pinned:
+        return found
+    return schedule.duration if ends else None
 
 
 def _cut(schedule: ContactSchedule, at: float, step: float, stance: Phase) -> float | None:

@@ -91,6 +91,23 @@ def test_from_above_both_rows_are_shown_once_more_and_tell_what_goes_sideways(tm
     assert high[2] - high[3] > 0.15  # of its part's height: the landing lies further up
 
 
+def test_from_above_a_floor_that_is_high_up_is_where_one_at_zero_is(tmp_path):
+    seen = []
+    for up in (0.0, 3.0):
+        pictures = [raised(row, up) for row, _ in sideways()]
+        draw_sheet(
+            pictures, tmp_path / "sheet.png", View(heading=(1.0, 0.0), above=True), width=200
+        )
+        seen.append(read(tmp_path / "sheet.png"))
+    assert np.abs(seen[1] - seen[0]).mean() < 0.01
+
+
+def raised(row: SheetRow, up: float) -> SheetRow:
+    shift = np.array([0.0, 0.0, up])
+    limbs = tuple(replace(limb, centre=limb.centre + shift) for limb in row.limbs)
+    return replace(row, limbs=limbs, com=row.com + shift, pins=row.pins + shift)
+
+
 def sideways():
     # The pin of the landing 0.4 m to the left in the second row.
     left = np.array([[0.0, 0.0, 0.0], [0.0, 0.4, 0.0]])

@@ -27,6 +27,7 @@ from hangtime.solver.worker.protocol import (
     Adapted,
     Analysed,
     Cancelled,
+    Examined,
     Failed,
     Fitted,
     Followed,
@@ -266,6 +267,17 @@ def test_a_request_about_another_fit_ends_what_is_prepared(worker: Worker, jump:
     prepared = worker.prepare(jump, MotionProblem(frames=SPAN))
     other = MotionProblem(frames=(SPAN[0], SPAN[1] - 20.0))
     assert isinstance(worker.ask(RequestKind.ANALYSE, jump, other).wait(), Analysed)
+    assert isinstance(prepared.wait(), Cancelled)
+
+
+@pytest.mark.parametrize("kind", [RequestKind.EXAMINE, RequestKind.ANALYSE])
+def test_what_needs_no_fit_does_not_wait_for_one(
+    worker: Worker, jump: Recording, kind: RequestKind
+) -> None:
+    problem = MotionProblem(frames=SPAN)
+    prepared = worker.prepare(jump, problem)
+    answer = worker.ask(kind, jump, problem).wait()
+    assert isinstance(answer, Analysed | Examined), answer
     assert isinstance(prepared.wait(), Cancelled)
 
 

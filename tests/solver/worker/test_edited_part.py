@@ -6,8 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 from hangtime.devtools.recordings import HOPS
+from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of
 from hangtime.solver.data.contacts import PhaseKind
-from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.data.problem import Mend, MotionProblem, Pin
 from hangtime.solver.data.requests import BodyChange, Requests
 from hangtime.solver.worker.pipeline import StageClock, Subject, measure, solve
 from hangtime.tests.helpers.clips import load_recording
@@ -54,6 +55,35 @@ def test_what_is_about_all_of_a_take_is_solved_on_all_of_it() -> None:
     heavy = Requests(body=BodyChange(mass=80.0))
     for problem in (MotionProblem(), replace(pinned("ground 5"), requests=heavy)):
         assert hops().asked(problem).edited().analysis is hops().analysis
+
+
+@pytest.mark.parametrize("phase", ["ground 5", "ground 8"])
+def test_contacts_that_pins_name_are_in_the_part_however_late_they_begin(phase: str) -> None:
+    """Who lands walks on: what drags the whole stance pins each of its steps."""
+    schedule = hops().analysis.schedule
+    there = schedule.of_phase(next(p for p in schedule.phases if p.name == phase))
+    each = [Pin(c.name, phase, (c.name,), place=tuple(c.place + FURTHER)) for c in there]
+    part = hops().asked(MotionProblem(pins=tuple(each))).edited().analysis
+    assert part is not hops().analysis
+    for pin in each:
+        assert chosen_contacts(pin, phase_of(pin, part.schedule), part.schedule)
+
+
+def test_a_stance_that_is_turned_or_placed_as_one_is_in_the_part_as_one() -> None:
+    """About the middle of all its contacts, which is another without the last of them."""
+    whole = hops().analysis.schedule
+    there = {c.name for c in whole.of_phase(next(p for p in whole.phases if p.name == "ground 5"))}
+    for pin in (Pin("turned", "ground 5", turn=0.3), Pin("there", "ground 5", place=FURTHER)):
+        part = hops().asked(MotionProblem(pins=(pin,))).edited().analysis.schedule
+        assert there <= {contact.name for contact in part.contacts}
+
+
+def test_what_is_mended_is_mended_everywhere() -> None:
+    for mended in (
+        replace(pinned("ground 5"), mend=(Mend.NOISE,)),
+        replace(pinned("ground 5"), drift=(0.1, 0.0)),
+    ):
+        assert hops().asked(mended).edited().analysis is hops().analysis
 
 
 def test_a_stance_that_is_too_short_to_carry_what_follows_is_solved_with_it() -> None:

@@ -1,0 +1,97 @@
+"""What the worker prepares for the first drag, and what a drag asks of it."""
+
+from __future__ import annotations
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.constraints.motion_problem import problem_of
+from hangtime.bridge.worker_client import shared
+from hangtime.operators.drag.follow_mixin import FollowedDrag
+from hangtime.operators.solve.analyze import _prepare_drag
+from hangtime.operators.solve.session import session
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.tests.helpers.clips import JUMP_FRAMES
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+class Asked:
+    """In the worker's stead: the problems that are prepared and followed."""
+
+    def __init__(self) -> None:
+        self.problems: list[MotionProblem] = []
+
+    def prepare(self, _recording, problem: MotionProblem) -> None:
+        self.problems.append(problem)
+
+    def follow(self, _recording) -> Asked:
+        return self
+
+    want = staticmethod(lambda _: None)
+    news = staticmethod(lambda: ())
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
+    worker = Asked()
+    worker.want = worker.problems.append
+    monkeypatch.setattr(shared(), "prepare", worker.prepare)
+    monkeypatch.setattr(shared(), "follow", worker.follow)
+    return worker
+
+
+class Drag(FollowedDrag):
+    """Of the chosen contact, without a mouse."""
+
+    held = "Left toe 2"
+    _moved = True
+
+    def __init__(self, armature: bpy.types.Object) -> None:
+        self._armature = armature
+
+
+def test_a_contact_that_is_held_is_pinned_where_it_was_found(analysed) -> None:
+    settings, recording = analysed.hangtime, read_recorded(analysed, *JUMP_FRAMES)
+    assert not problem_of(settings, recording).pins
+    row = settings.contacts["Left toe 2"]
+    (pin,) = problem_of(settings, recording, held=row.name).pins
+    assert (pin.phase, pin.touching) == ("ground 2", ("Left toe 2",))
+    assert pin.place == pytest.approx(tuple(row.found_at))
+
+
+def test_the_drag_of_the_chosen_contact_is_prepared_as_it_will_be_asked_for(
+    analysed, asked: Asked
+) -> None:
+    complete(_prepare_drag(bpy.context))
+    (prepared,) = asked.problems
+    chosen = analysed.hangtime.contacts[analysed.hangtime.active_contact]
+    assert [pin.phase for pin in prepared.pins] == [chosen.phase] == ["ground 2"]
+    drag = Drag(analysed)
+    drag.held = chosen.name
+    next(drag._follow(bpy.context))
+    assert asked.problems[1:] == [prepared]
+
+
+def test_what_adapt_will_refuse_is_no_fault_of_the_analysis(analysed, asked: Asked) -> None:
+    row = analysed.hangtime.contacts[0]
+    row.start_frame, row.end_frame = row.end_frame, row.start_frame
+    complete(_prepare_drag(bpy.context))
+    assert not asked.problems
+
+
+def test_a_drag_is_among_the_surfaces_as_they_are_now(analysed, asked: Asked) -> None:
+    complete(_prepare_drag(bpy.context))
+    bpy.ops.mesh.primitive_cube_add(location=(20.0, 0.0, 0.5))
+    bpy.context.object.select_set(True)
+    bpy.context.view_layer.objects.active = analysed
+    assert bpy.ops.hangtime.add_surfaces(role="OBSTACLE") == {"FINISHED"}
+    assert not session().dragged.scene.objects
+    following = Drag(analysed)._follow(bpy.context)
+    while len(asked.problems) < 3:
+        next(following)
+    assert [len(problem.scene) for problem in asked.problems] == [0, 0, 1]
+    assert len(session().dragged.scene.objects) == 1
