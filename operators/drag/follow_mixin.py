@@ -107,7 +107,7 @@ class FollowedDrag(PolledOperator):
             self.pull(context, event)
             self._moved = True
             self._redraw()
-        if event.type == "TIMER" and self._press.dragging:
+        if self._press.dragging:  # at every event, for a timer's comes after all is drawn
             self._look()
         self._show()
         return {"RUNNING_MODAL"}
