@@ -12,13 +12,16 @@ from .browser import browser
 
 # Prints seconds and megabytes; in a process of its own, whose memory is the collecting's alone.
 COLLECT = """
-import resource, runpy, sys, time
+import runpy, sys, time
 from pathlib import Path
 runpy.run_path(sys.argv[1])["load"]()
 from hangtime.batch.collect.collecting import collect
 begun = time.perf_counter()
 collect(Path(sys.argv[2]))
-print(time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000)
+seconds = time.perf_counter() - begun
+# Not getrusage: its peak outlives exec, so it may be that of the process that started this one.
+status = dict(line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
+print(seconds, int(status["VmHWM"].split()[0]) * 1024 / 1e6)
 """
 PAINTED = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? 0"
 READY = "document.documentElement.dataset.ready"  # ms, set by the page's last line

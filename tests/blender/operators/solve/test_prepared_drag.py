@@ -91,7 +91,9 @@ def test_a_drag_is_among_the_surfaces_as_they_are_now(analysed, asked: Asked) ->
     assert bpy.ops.hangtime.add_surfaces(role="OBSTACLE") == {"FINISHED"}
     assert not session().dragged.scene.objects
     following = Drag(analysed)._follow(bpy.context)
-    while len(asked.problems) < 3:
+    for _ in range(1000):
+        if len(asked.problems) == 2:
+            break
         next(following)
-    assert [len(problem.scene) for problem in asked.problems] == [0, 0, 1]
+    assert [len(problem.scene) for problem in asked.problems] == [0, 1]
     assert len(session().dragged.scene.objects) == 1
