@@ -42,8 +42,11 @@ def render_film(layout: Layout, view: View, path: Path, width: int, rate: int) -
         cycles = present(scene.cycles)
         cycles.use_denoising, cycles.samples = False, FILM_SAMPLES  # nothing is lit, see `shaded`
         cycles.max_bounces = 0
-        with _quiet():
-            bpy.ops.render.render(animation=True, scene=scene.name)
+        try:
+            with _quiet():
+                bpy.ops.render.render(animation=True, scene=scene.name)
+        finally:  # frees what it keeps, which would outlive the scene
+            scene.render.use_persistent_data = False
 
 
 def _choose_encoder(scene: bpy.types.Scene) -> None:
