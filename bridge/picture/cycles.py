@@ -45,8 +45,10 @@ def render_film(layout: Layout, view: View, path: Path, width: int, rate: int) -
         try:
             with _quiet():
                 bpy.ops.render.render(animation=True, scene=scene.name)
-        finally:  # frees what it keeps, which would outlive the scene
+        finally:  # what the renderer keeps, and keys, would outlive what they are of
             scene.render.use_persistent_data = False
+            for each in scene.objects:
+                each.animation_data_clear()
 
 
 def _choose_encoder(scene: bpy.types.Scene) -> None:

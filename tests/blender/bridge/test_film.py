@@ -1,5 +1,7 @@
 """The film of a result: as long as the motion, a figure that moves, and no trace in the scene."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -24,30 +26,39 @@ def slider(further: float) -> SheetRow:
     )
 
 
+# In a process of its own: what the sequencer of 4.2 leaves behind ends Blender minutes later.
+READ = """
+import os, sys
+import bpy
+path, folder = sys.argv[1:]
+scene = bpy.context.scene
+clip = bpy.data.movieclips.load(path)
+editor = scene.sequence_editor_create()
+strips = editor.strips if hasattr(editor, "strips") else editor.sequences
+strips.new_movie("film", path, channel=1, frame_start=1)
+scene.render.resolution_x, scene.render.resolution_y = clip.size
+scene.render.resolution_percentage = 100
+scene.render.image_settings.file_format = "PNG"
+scene.view_settings.view_transform = "Standard"
+scene.frame_start, scene.frame_end = 1, clip.frame_duration
+scene.render.filepath = os.path.join(folder, "frame")
+bpy.ops.render.render(animation=True)
+sys.stdout.flush()
+os._exit(0)
+"""
+
+
 def frames(path: Path) -> list[np.ndarray]:
     """Every frame of a film, (H, W, 3), as Blender reads it back."""
-    clip = bpy.data.movieclips.load(str(path))
-    scene = bpy.data.scenes.new("reading")
-    try:
-        wide, high = clip.size
-        editor = scene.sequence_editor_create()
-        strips = editor.strips if hasattr(editor, "strips") else editor.sequences
-        strips.new_movie("film", str(path), channel=1, frame_start=1)
-        scene.render.resolution_x, scene.render.resolution_y = wide, high
-        scene.render.image_settings.file_format = "PNG"
-        scene.view_settings.view_transform = "Standard"
-        scene.frame_start, scene.frame_end = 1, clip.frame_duration
-        scene.render.filepath = str(path.with_name("frame"))
-        bpy.ops.render.render(animation=True, scene=scene.name)
-        found = []
-        for file in sorted(path.parent.glob("frame*.png")):
-            image = bpy.data.images.load(str(file))
-            found.append(np.array(image.pixels[:]).reshape(high, wide, -1)[::-1, :, :3])
-            bpy.data.images.remove(image)
-        return found
-    finally:
-        bpy.data.scenes.remove(scene)
-        bpy.data.movieclips.remove(clip)
+    command = [sys.executable, "-c", READ, str(path), str(path.parent)]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    found = []
+    for file in sorted(path.parent.glob("frame*.png")):
+        image = bpy.data.images.load(str(file))
+        wide, high = image.size
+        found.append(np.array(image.pixels[:]).reshape(high, wide, -1)[::-1, :, :3])
+        bpy.data.images.remove(image)
+    return found
 
 
 def middle_of_blue(picture: np.ndarray) -> float:
