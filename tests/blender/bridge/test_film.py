@@ -26,8 +26,7 @@ def slider(further: float) -> SheetRow:
     )
 
 
-# Drawn and read in processes of their own: after films have been in it Blender 4.2 ends minutes later
-# with a segmentation fault, in whatever is done then.
+# Drawn and read in processes of their own, which may leave behind what they like.
 LOADER = str(Path(__file__).parents[3] / "devtools" / "package.py")
 DRAW = """
 import os, runpy, sys
