@@ -16,6 +16,7 @@ from .installed import program_in
 from .plans import CLIP, contents, differing, half_written, plan_hops, recipe_of
 
 SOON, LATE = 0.3, 7.0  # s after its start, between which a batch is killed
+PATIENCE = 10.0  # s, in which a worker ends whose batch was killed: it notices between cells
 
 
 @dataclass(frozen=True)
@@ -60,8 +61,17 @@ def killed_and_resumed(
             ended = now
             if whole:
                 break
-        bad += len({*differing(contents(batch, manifest), expected), *half_written(batch)})
+        left = left_half_written(batch)
+        bad += len({*differing(contents(batch, manifest), expected), *left})
     return bad
+
+
+def left_half_written(batch: Path) -> list[str]:
+    """What is half-written once the workers of a batch that was killed have noticed and ended."""
+    until = time.monotonic() + PATIENCE
+    while (left := half_written(batch)) and time.monotonic() < until:
+        time.sleep(0.2)
+    return left
 
 
 def end_at(batch: Path, package: Path, moment: float | None, jobs: int = 2) -> bool:
