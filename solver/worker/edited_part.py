@@ -5,7 +5,8 @@ adaptation of all the other jumps would cost buys nothing. Where pins alone are 
 frames from the push before the first pinned stance to where the last one has come to rest are
 solved as if they had been chosen as the range: the take before them stays, and what follows is
 carried along with the last stance, as it is after any range (bridge/takes/whole_take.py). A take
-that is mended is solved whole: what stays would be what the recording was before.
+that is mended, or whose contacts the artist has corrected, is solved whole: what stays would be
+what the recording was before.
 """
 
 from collections.abc import Sequence
@@ -39,7 +40,8 @@ def _span(schedule: ContactSchedule, problem: MotionProblem) -> tuple[float, flo
     alone = replace(problem.requests, solution=Requests().solution) == Requests()
     moving = any(thing.moves for thing in problem.scene)
     mended = bool(problem.mend) or any(problem.drift)
-    if problem.loop or moving or mended or not alone or not problem.pins:
+    corrected = bool(problem.contacts or problem.added)
+    if problem.loop or moving or mended or corrected or not alone or not problem.pins:
         return None
     stances = [phase for phase in schedule.phases if phase.kind is PhaseKind.GROUND]
     pinned = [stances.index(phase_of(pin, schedule)) for pin in problem.pins]

@@ -8,7 +8,7 @@ import pytest
 from hangtime.devtools.recordings import HOPS
 from hangtime.solver.analysis.pinned_places import chosen_contacts, phase_of
 from hangtime.solver.data.contacts import PhaseKind
-from hangtime.solver.data.problem import Mend, MotionProblem, Pin
+from hangtime.solver.data.problem import ContactEdit, Mend, MotionProblem, Pin
 from hangtime.solver.data.requests import BodyChange, Requests
 from hangtime.solver.worker.pipeline import StageClock, Subject, measure, solve
 from hangtime.tests.helpers.clips import load_recording
@@ -78,8 +78,9 @@ def test_a_stance_that_is_turned_or_placed_as_one_is_in_the_part_as_one() -> Non
         assert there <= {contact.name for contact in part.contacts}
 
 
-def test_what_is_mended_is_mended_everywhere() -> None:
+def test_what_is_mended_or_corrected_is_so_everywhere() -> None:
     for mended in (
+        replace(pinned("ground 5"), contacts=(ContactEdit("Left toe 9", remove=True),)),
         replace(pinned("ground 5"), mend=(Mend.NOISE,)),
         replace(pinned("ground 5"), drift=(0.1, 0.0)),
     ):
