@@ -13,12 +13,12 @@ from __future__ import annotations
 import os
 import sys
 
-from ..solver.one_thread import ONE_THREAD
+from ..solver.one_thread import ONE_CORE
 
 
 def main(argv: list[str] | None = None) -> int:
     """Runs a batch, or a part of one; the exit code. argv: by default the program's own."""
-    for name, value in ONE_THREAD.items():
+    for name, value in ONE_CORE.items():
         os.environ.setdefault(name, value)
     from .commands import run  # loads numpy, which reads them
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import signal
 import sys
 from collections import Counter
@@ -15,6 +14,7 @@ from pathlib import Path
 
 from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
+from ..solver.numerics.parallel import cores
 from .cells.cell import run_cell
 from .cells.outputs import needs_blender
 from .collect.collecting import collect
@@ -143,13 +143,6 @@ def _count(text: str) -> int:
     if not text.isdecimal() or int(text) == 0:
         raise argparse.ArgumentTypeError(f"{text} is no number of workers; write 1 or more")
     return int(text)
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 # ---------------------------------------------------------------- the commands

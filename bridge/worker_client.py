@@ -17,23 +17,22 @@ from functools import cache
 from io import BufferedReader, FileIO
 from itertools import count
 from pathlib import Path
-from queue import Empty, SimpleQueue
-from threading import Condition, Event, Lock, Thread
+from queue import SimpleQueue
+from threading import Event, Lock, Thread
 from time import monotonic
 from typing import cast
 
 from ..solver.data.faults import WorkerDied
 from ..solver.data.problem import MotionProblem
 from ..solver.data.recording import Recording, digest
-from ..solver.data.status import DragStatus
 from ..solver.doctor.repairs import Repairs
 from ..solver.one_thread import ONE_THREAD
+from ..solver.worker.program import LOADING, TIMED_OUT
 from ..solver.worker.protocol import (
     PROTOCOL,
     Answer,
     Ending,
     Failed,
-    Followed,
     Halt,
     Hello,
     Message,
@@ -45,104 +44,13 @@ from ..solver.worker.protocol import (
     receive,
     send,
 )
+from .worker_requests import DragStream, PendingRequest
 
-_PROGRAM = Path(__file__).resolve().parents[1] / "solver" / "worker" / "main.py"
+_PROGRAM = Path(__file__).resolve().parents[1] / "solver" / "worker" / "program.py"
+_MODULE = "solver.worker.main"  # what it runs
 _KEPT_LINES = 20
 _LAST_WORDS_S = 2.0
 _PATIENCE_S = 2.0  # with a request that was dropped, before the worker is ended for it
-
-
-class PendingRequest:
-    """Pending request; `answer` is set once polling has consumed the reply."""
-
-    def __init__(self, request: Request) -> None:
-        self.request = request
-        self.answer: Answer | None = None
-        self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
-
-    def requests(self) -> Iterator[Request]:
-        """This one alone."""
-        yield self.request
-
-    def deliver(self, message: Progress | Answer) -> None:
-        """Called by the thread that listens to the worker."""
-        self._arrived.put(message)
-
-    def news(self) -> Iterator[Progress | Answer]:
-        """Messages that arrived since the last poll; never waits."""
-        while self.answer is None:
-            try:
-                yield self._seen(self._arrived.get_nowait())
-            except Empty:
-                return
-
-    def wait(self, told: Callable[[Progress], None] | None = None) -> Answer:
-        """The answer, however long it takes; each progress is told on the way."""
-        while self.answer is None:
-            message = self._seen(self._arrived.get())
-            if told is not None and isinstance(message, Progress):
-                told(message)
-        return self.answer
-
-    def _seen(self, message: Progress | Answer) -> Progress | Answer:
-        if not isinstance(message, Progress):
-            self.answer = message
-        return message
-
-
-class DragStream:
-    """Stream of requests during a drag, each about the latest problem: the next one leaves as soon
-    as the last is answered, without waiting until Blender polls."""
-
-    def __init__(self, recording: Recording, ids: Iterator[int]) -> None:
-        self._recording: Recording | None = recording
-        self._ids = ids
-        self._changed = Condition()
-        self._problem: MotionProblem | None = None
-        self._ended = False
-        self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
-
-    def want(self, problem: MotionProblem) -> None:
-        """Sets the problem to follow from now on."""
-        with self._changed:
-            self._problem = problem
-            self._changed.notify()
-
-    def end(self) -> None:
-        """Ends the stream."""
-        with self._changed:
-            self._ended = True
-            self._changed.notify()
-
-    def news(self) -> Iterator[Progress | Answer]:
-        """Messages that arrived since the last poll; never waits."""
-        while True:
-            try:
-                yield self._arrived.get_nowait()
-            except Empty:
-                return
-
-    def requests(self) -> Iterator[Request]:
-        """The requests one after another; waits while there is nothing new. Runs on the thread that
-        listens to the worker, which delivers what comes before it takes the next."""
-        problem: MotionProblem | None = None
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._ended or self._problem is not None)
-                if self._ended:
-                    return
-                problem, self._problem = self._problem, None
-            assert problem is not None
-            self._last = problem
-            yield Request(next(self._ids), RequestKind.FOLLOW, self._recording, problem)
-            self._recording = None  # the worker knows it now
-
-    def deliver(self, message: Progress | Answer) -> None:
-        """Called by the thread that listens; a motion that is still on its way is asked again."""
-        self._arrived.put(message)
-        if isinstance(message, Followed) and message.status is DragStatus.CONVERGING:
-            with self._changed:
-                self._problem = self._problem or self._last
 
 
 class Worker:
@@ -271,7 +179,7 @@ class _Process:
     def __init__(self) -> None:
         try:
             self._popen = subprocess.Popen(
-                [sys.executable, "-I", str(_PROGRAM)],
+                [sys.executable, "-I", str(_PROGRAM), _MODULE],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
@@ -289,9 +197,11 @@ class _Process:
         self._greeted = Event()
         self._sending = Lock()
         self._asked: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
+        self._heard: SimpleQueue[Message | Exception] = SimpleQueue()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
         self._listener.start()
+        Thread(target=self._listen, daemon=True).start()
         Thread(target=self._converse, daemon=True).start()
 
     @property
@@ -375,10 +285,24 @@ class _Process:
         self._greeted.set()
 
     def _hear(self) -> Message:
-        message = receive(self._from_worker)
-        if message is None:
-            raise EOFError
-        return message
+        heard = self._heard.get()
+        if isinstance(heard, Exception):
+            self._heard.put(heard)  # for who asks next
+            raise heard
+        return heard
+
+    def _listen(self) -> None:
+        """Hears the worker out, on a thread of its own. Who talks nonsense or no more is ended, for
+        one that does not listen either would be written to for ever."""
+        try:
+            while (message := receive(self._from_worker)) is not None:
+                self._heard.put(message)
+            self._heard.put(EOFError())
+        except (OSError, ValueError, ProtocolError) as problem:  # ValueError: closed by end()
+            self._heard.put(problem)
+        with suppress(subprocess.TimeoutExpired):
+            self._popen.wait(_LAST_WORDS_S)
+        self._popen.kill()
 
     def _keep_errors(self) -> None:
         assert self._popen.stderr is not None
@@ -393,6 +317,8 @@ class _Process:
         code = self._popen.wait()
         self._listener.join(_LAST_WORDS_S)
         said = [line for line in self._last_lines if line]
+        if any(line.startswith(TIMED_OUT) for line in said):
+            return f"it could not load in {LOADING:g} s; there may be too little memory"
         return f"{said[-1]} (exit code {code})" if said else f"exit code {code}"
 
 

@@ -13,3 +13,7 @@ ONE_THREAD = dict.fromkeys(
     ),
     "1",
 )
+# The most threads that a solve takes for arrays that it can part (numerics/parallel.py).
+SOLVER_THREADS = "HANGTIME_THREADS"
+# Of a process beside which others solve, as many as there are cores.
+ONE_CORE = {**ONE_THREAD, SOLVER_THREADS: "1"}

@@ -24,7 +24,7 @@ from ..operators.lists import (
     support_box,
     surfaces,
 )
-from ..operators.recording import examine, remedies, repair, trim
+from ..operators.recording import examine, remedies, repair
 from ..operators.solve import adapt, analyze, results, session, takes, watch
 from ..operators.timeline import contact_edge_operator
 from ..operators.words.translations import TRANSLATIONS
@@ -39,7 +39,7 @@ from .timeline import handler as timeline
 # A panel comes after the one that it is part of.
 MODULES = (
     *(analyze, adapt, contacts, constraints, body_changes, surfaces, support_box, presets),
-    *(bone_presets, choose_named, examine, remedies, repair, trim, results, takes),
+    *(bone_presets, choose_named, examine, remedies, repair, results, takes),
     *(export_takes, recipe_export, save_plots),
     *(pin_operator, turn_stance, limit_operator, contact_edge_operator),
     *(
@@ -82,6 +82,8 @@ def register() -> Callable[[], None]:
         for follow in (_follow_empties, watch.follow_takes):
             bpy.app.handlers.depsgraph_update_post.append(follow)
             undo.callback(bpy.app.handlers.depsgraph_update_post.remove, follow)
+        bpy.app.handlers.load_post.append(session.forget_file)
+        undo.callback(bpy.app.handlers.load_post.remove, session.forget_file)
         undo.callback(watch.forget)
         undo.callback(session.session().end)
         # Keys are pairs, whatever the stubs say.

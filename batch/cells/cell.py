@@ -14,10 +14,9 @@ from ...operators.headless.outbox import Outbox
 from ...operators.headless.stages import Stages
 from ...solver.data.faults import Fault, NoSolution, OutputNotWritable
 from ...solver.worker.pipeline import ADAPTING, FITTING
-from ..records.aside import written_aside
-from ..records.faults import BatchFault, FolderGone, gone
+from ..records.faults import BatchFault, FolderGone
 from ..records.manifest import BatchSettings, CellPlan, read_plan
-from ..records.result import RESULT, CellResult, State, cell_folder, drop_failure, lasting_result
+from ..records.result import RESULT, CellResult, State, lasting_result, written_cell
 from .fits import SharedFits
 from .work import MEASURING, Done, InputChanged, adapt_cell, check_cell
 
@@ -48,26 +47,19 @@ def run_cell(
         return found
     settings, plan = read_plan(folder, cell)
     act = work or (check_cell if settings.check else adapt_cell)
-    try:
-        with written_aside(cell_folder(folder, cell)) as aside:
-            result = _written(settings, plan, fits or SharedFits(folder), aside, act)
-            drop_failure(folder, cell)
-    except OSError as error:
-        raise gone(folder, error) from error
-    return result
+    with written_cell(folder, cell) as aside:
+        result = _written(settings, plan, fits or SharedFits(folder), aside, act)
+    return lasting_result(folder, cell) or result  # another process may have been quicker
 
 
 def write_failure(folder: Path, cell: str, sentence: str) -> CellResult:
-    """The result of a cell whose process could not tell any. Raises as `run_cell` does."""
+    """The result of a cell whose process could not tell any; or what another has told of it
+    meanwhile. Raises as `run_cell` does."""
     settings, plan = read_plan(folder, cell)
     result = _result(settings, plan, _Ended(State.FAILED, sentence), {}, ())
-    try:
-        with written_aside(cell_folder(folder, cell)) as aside:
-            (aside / RESULT).write_text(result.as_json(), encoding="utf-8")
-            drop_failure(folder, cell)
-    except OSError as error:
-        raise gone(folder, error) from error
-    return result
+    with written_cell(folder, cell) as aside:
+        (aside / RESULT).write_text(result.as_json(), encoding="utf-8")
+    return lasting_result(folder, cell) or result
 
 
 def _written(

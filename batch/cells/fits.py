@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import pickle
 import shutil
-from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
@@ -23,6 +22,7 @@ from ...solver.worker.pipeline import (
     fit_subject,
     require_possible,
 )
+from ...solver.worker.recent_fits import RecentFits
 from ...solver.worker.unpickling import Unreadable, unpickled
 from ..records.aside import written_aside
 from ..records.locks import held
@@ -44,7 +44,7 @@ class SharedFits:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder / FITS
-        self._recent: OrderedDict[str, Fit] = OrderedDict()
+        self._recent = RecentFits(IN_MEMORY)
         self._analysed: tuple[str, Analysed] | None = None
 
     def analysed(self, key: str, analyse: Callable[[], Analysed]) -> Analysed:
@@ -62,16 +62,7 @@ class SharedFits:
     def fit(self, subject: Subject, clock: StageClock) -> Fit:
         """The fit, whatever is asked of it. Raises NotComputable, OSError."""
         key = fit_key(subject)
-        found = self._recent.pop(key, None)
-        if found is None:
-            found = self._kept(key, subject, clock)
-        else:
-            with clock.stage(FITTING):
-                pass  # it takes no time
-        self._recent[key] = found
-        while len(self._recent) > IN_MEMORY:
-            self._recent.popitem(last=False)
-        return found
+        return self._recent.of(key, clock, lambda: self._kept(key, subject, clock))
 
     def _kept(self, key: str, subject: Subject, clock: StageClock) -> Fit:
         """From the folder, else solved and put there."""

@@ -21,11 +21,12 @@ from distributed import Client, Future, wait
 from ..cells.cell import write_failure
 from ..cells.fits import FITS
 from ..cells.outputs import needs_blender
+from ..queue.attempts import Attempt, Attempts, pair_of
 from ..records.faults import BatchFault, FolderGone, WrongPlan, gone
 from ..records.manifest import CellPlan, Manifest, read_manifest
 from ..records.result import CellResult, State, lasting_result
-from .attempts import MOST_TRIES, Attempt, Attempts, pair_of
 from .crew import Crew
+from .late import await_results
 from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of
 from .worker_side import (
     Delivery,
@@ -39,6 +40,7 @@ from .worker_side import (
 )
 
 Tell = Callable[[str], None]
+MOST_TRIES = 4  # of a cell that fails, or whose worker ends meanwhile
 PATIENCE = 0.5  # s between looks at the workers
 ANSWERING = 10.0  # s that a scheduler may take
 MOST_SENT = 64  # files that workers keep for later cells, the latest of them
@@ -137,8 +139,8 @@ class Dispatch:
         """Until each has a result. Raises BatchFault, and OSError where the scheduler is gone."""
         self.fits = fits_by_clip(self.folder)
         ended = {plan.cell for plan in self.manifest.cells} - {plan.cell for plan in plans}
-        fitted = [pair_of(plan) for plan in self.manifest.cells if plan.cell in ended]
-        self.attempts = Attempts.of(plans, fitted)
+        fitted = {pair_of(plan) for plan in self.manifest.cells if plan.cell in ended}
+        self.attempts = Attempts(MOST_TRIES, fitted=fitted).add(plans)
         while not self.attempts.over:
             threads = self._meet_workers()
             now = time.monotonic()
@@ -149,6 +151,7 @@ class Dispatch:
                         break
                     self._begin(attempt)
             self._take()
+        await_results(self.folder, (plan.cell for plan in plans), self.tell)
         tidy(str(self.folder))
         sharing = [worker for worker, reach in self.crew.reach.items() if reach is Reach.SHARED]
         self.client.run(tidy, self._shared_folder(), workers=sharing, on_error="ignore")
@@ -248,22 +251,26 @@ class Dispatch:
 
     def _take_in(self, attempt: Attempt, delivery: Delivery) -> None:
         result = delivery.result
-        failed = result.state is State.FAILED
-        if failed and self.attempts.tries[result.cell] + 1 < MOST_TRIES:
-            self.attempts.again(attempt)
+        if result.state is State.FAILED:
+            if not self.attempts.again(attempt):
+                self.ended(self._delivered(delivery))
             return
         clip = attempt.plan.clip_sha256
         deliver_fits(self.folder, delivery.fits, clip)
         self.fits.setdefault(clip, set()).update(name.partition("/")[0] for name in delivery.fits)
-        if delivery.files:
-            deliver_cell(self.folder, result.cell, delivery.files)
+        result = self._delivered(delivery)
         if self.attempts.end(attempt, time.monotonic()):
             self.ended(result)
+
+    def _delivered(self, delivery: Delivery) -> CellResult:
+        """The cell's result, now in the batch's folder."""
+        if delivery.files:
+            deliver_cell(self.folder, delivery.result.cell, delivery.files)
+        return delivery.result
 
     def _retry(self, future: Future, why: str, *, blame: bool = True) -> None:
         """Let a cell wait anew that came to nothing; it fails where that was so too often."""
         attempt = self.futures.pop(future)
-        plan = attempt.plan
-        if not self.attempts.again(attempt, blame=blame) and self.attempts.give_up(plan):
+        if not self.attempts.again(attempt, blame=blame):
             sentence = f"No worker brought a result in {MOST_TRIES} tries; the last: {why}."
-            self.ended(write_failure(self.folder, plan.cell, sentence))
+            self.ended(write_failure(self.folder, attempt.plan.cell, sentence))

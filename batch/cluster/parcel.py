@@ -12,7 +12,7 @@ from ..cells.work import cell_files
 from ..records.aside import written_aside
 from ..records.faults import FolderGone, gone
 from ..records.manifest import CellPlan
-from ..records.result import cell_folder, drop_failure, lasting_result
+from ..records.result import lasting_result, written_cell
 from .worker_side import Files, write_files
 
 CLIP = "clip.sha256"  # within a fit's folder: whose it is
@@ -45,8 +45,8 @@ def deliver_cell(folder: Path, cell: str, files: Files) -> None:
     Raises FolderGone.
     """
     if lasting_result(folder, cell) is None:
-        drop_failure(folder, cell)
-        _deliver(cell_folder(folder, cell), files)
+        with written_cell(folder, cell) as aside:
+            write_files(aside, files)
 
 
 def deliver_fits(folder: Path, files: Files, clip_sha256: str) -> None:
@@ -60,7 +60,11 @@ def deliver_fits(folder: Path, files: Files, clip_sha256: str) -> None:
         by_fit.setdefault(fit, {CLIP: clip_sha256.encode()})["/".join(rest)] = content
     for fit, own in by_fit.items():
         if not (folder / FITS / fit).exists():
-            _deliver(folder / FITS / fit, own)
+            try:
+                with written_aside(folder / FITS / fit) as aside:
+                    write_files(aside, own)
+            except OSError as error:
+                raise gone(folder, error) from error
 
 
 def fits_by_clip(folder: Path) -> dict[str, set[str]]:
@@ -69,11 +73,3 @@ def fits_by_clip(folder: Path) -> dict[str, set[str]]:
     for path in (folder / FITS).glob(f"*/{CLIP}"):
         found.setdefault(path.read_text(), set()).add(path.parent.name)
     return found
-
-
-def _deliver(target: Path, files: Files) -> None:
-    try:
-        with written_aside(target) as aside:
-            write_files(aside, files)
-    except OSError as error:
-        raise gone(target, error) from error

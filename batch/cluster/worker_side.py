@@ -16,7 +16,7 @@ from pathlib import Path, PurePosixPath
 
 from distributed import get_worker
 
-from ...solver.one_thread import ONE_THREAD
+from ...solver.one_thread import ONE_THREAD, SOLVER_THREADS
 from ..cells.cell import run_cell
 from ..cells.fits import FITS, SharedFits
 from ..records.aside import remove_abandoned
@@ -84,6 +84,7 @@ def own_build() -> Build:
 def look_around(folder: str, token: str) -> WorkerState:
     """Who this worker is. folder: the batch's, empty where it is not to be used. token: name of a
     file that lies there."""
+    os.environ[SOLVER_THREADS] = "1"  # a cell takes a core, others work on the rest
     one_thread = all(os.environ.get(name) == "1" for name in list(ONE_THREAD)[:2])
     return WorkerState(own_build(), _reach(folder, token), one_thread, platform.node())
 

@@ -4,7 +4,8 @@ forward = { from = 0.0, to = 0.8, steps = 5 }   # both ends included
 forward = { from = 0.0, to = 0.8 }              # any number between; of samples alone
 forward = [0.0, 0.2, 0.5]                       # these; of keys that hold a number otherwise
 kind = { values = ["pca", "ica"] }              # these, of any key
-turn = { from = 90, to = 180, steps = 2, mirrored = true }   # and the other way round: -90, -180
+turn = { from = 90, to = 180, steps = 2, both_ways = true }  # with the other sign too: -90, -180
+mirrored = [false, true]        # the motion as it was recorded, and mirrored
 
 [batch]                         # optional
 combine = "product"             # every value with every other; "zip": the first with the first;
@@ -16,7 +17,7 @@ seed = 1                        # the same seed draws the same samples; default:
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from itertools import product
@@ -29,16 +30,16 @@ from ...bridge.recipe_syntax.table import NumberRange, Source, Table, shown
 from ..records.manifest import Value
 
 HEADER = "batch"
-# Keys of a recipe that hold one number, so that a list of numbers can only be a range.
-NUMBERS = frozenset(
+# Keys of a recipe that hold one number or flag, so that a list of them can only be a range.
+SINGLE = frozenset(
     (
         *(*TRAVEL_KEYS, *AGAINST, "turn", "mass", "height", "share", "gravity", "length"),
         *("thickness", "by", "at_least", "at_most", "fixed", "frame", "start_frame", "end_frame"),
         *("return_frame", "blend_in", "blend_out", "scale", "time_scale", "floor", "factor"),
-        *("seconds", "slack", "wider", "cone", "friction", "explained", "dimensions"),
+        *("seconds", "slack", "wider", "cone", "friction", "explained", "dimensions", "mirrored"),
     )
 )
-RANGE_KEYS = ("from", "to", "steps", "values", "mirrored")
+RANGE_KEYS = ("from", "to", "steps", "values", "both_ways")
 MOST_STEPS = 100_000
 COUNT = NumberRange("a whole number above zero", lambda n: n >= 1.0 and n.is_integer())
 STEPS = NumberRange(
@@ -62,13 +63,13 @@ class ValueRange:
     place: KeyPath
     values: tuple[Value, ...] = ()
     bounds: tuple[float, float] | None = None
-    mirrored: bool = False
+    both_ways: bool = False
 
     def drawn(self, random: Random) -> Value:
         """A value at random."""
         if self.bounds is None:
             return self.values[random.randrange(len(self.values))]
-        sign = random.choice((1, -1)) if self.mirrored else 1
+        sign = random.choice((1, -1)) if self.both_ways else 1
         return _plain(sign * random.uniform(*self.bounds))
 
 
@@ -95,7 +96,7 @@ def _within(node: object, place: KeyPath, source: Source) -> Iterator[ValueRange
         for key, held in node.items():
             yield from _within(held, (*place, key), source)
     elif isinstance(node, list):
-        if place and place[-1] in NUMBERS:
+        if place and place[-1] in SINGLE:
             yield ValueRange(place, _listed(node, place, source))
             return
         for i, held in enumerate(node):
@@ -104,13 +105,13 @@ def _within(node: object, place: KeyPath, source: Source) -> Iterator[ValueRange
 
 def _range(table: Table) -> ValueRange:
     table.not_both("values", ("from", "to", "steps"))
-    mirrored = table.flag("mirrored")
+    both_ways = table.flag("both_ways")
     if "values" in table.values:
         values = table.values["values"]
         if not isinstance(values, list):
             table.refuse("values", f'"values" must be a list in brackets, not {shown(values)}')
         listed = _listed(values, (*table.place, "values"), table.source)
-        return ValueRange(table.place, _both_ways(listed, table) if mirrored else listed)
+        return ValueRange(table.place, _both_ways(listed, table) if both_ways else listed)
     table.needs(("from",))
     table.needs(("to",))
     low, high, steps = table.number("from"), table.number("to"), table.number("steps", STEPS)
@@ -120,11 +121,11 @@ def _range(table: Table) -> ValueRange:
         why = "is empty; write the number itself" if low == high else "is reversed; swap its ends"
         table.source.refuse(table.place, f"the range from {low:g} to {high:g} {why}")
     if steps is None:
-        return ValueRange(table.place, bounds=(low, high), mirrored=mirrored)
+        return ValueRange(table.place, bounds=(low, high), both_ways=both_ways)
     count = int(steps)
     numbers = (_plain(low + (high - low) * i / (count - 1)) for i in range(count))
     apart = tuple(dict.fromkeys(numbers))
-    return ValueRange(table.place, _both_ways(apart, table) if mirrored else apart)
+    return ValueRange(table.place, _both_ways(apart, table) if both_ways else apart)
 
 
 def _listed(values: list[Any], place: KeyPath, source: Source) -> tuple[Value, ...]:
@@ -142,7 +143,7 @@ def _listed(values: list[Any], place: KeyPath, source: Source) -> tuple[Value, .
 def _both_ways(values: Sequence[Value], table: Table) -> tuple[Value, ...]:
     numbers = [v for v in values if isinstance(v, int | float) and not isinstance(v, bool)]
     if len(numbers) < len(values):
-        table.refuse("mirrored", "only numbers can be mirrored; take that away")
+        table.refuse("both_ways", "only numbers go both ways; take that away")
     return tuple(dict.fromkeys([*numbers, *(-number or 0 for number in numbers)]))
 
 
@@ -209,14 +210,29 @@ def variants(ranges: Sequence[ValueRange], how: Combination) -> Iterator[tuple[V
 def _samples(ranges: Sequence[ValueRange], how: Combination) -> Iterator[tuple[Value, ...]]:
     assert how.count is not None
     random = Random(how.seed)
-    # None is drawn twice where values are listed: `count_of` has seen that there are so many.
-    listed = all(each.bounds is None for each in ranges)
-    drawn: set[tuple[Value, ...]] = set()
-    left = how.count
-    while left:
-        chosen = tuple(each.drawn(random) for each in ranges)
-        if listed and chosen in drawn:
-            continue
-        drawn.add(chosen)
-        left -= 1
-        yield chosen
+    if any(each.bounds is not None for each in ranges):
+        for _ in range(how.count):
+            yield tuple(each.drawn(random) for each in ranges)
+        return
+    lists = [each.values for each in ranges]
+    for place in _places(math.prod(map(len, lists)), how.count, random):
+        yield _combination_at(place, lists)
+
+
+def _places(total: int, count: int, random: Random) -> Iterable[int]:
+    """So many different numbers below `total`, which no machine may be able to count to."""
+    if total <= 2 * count:
+        return random.sample(range(total), count)
+    found: dict[int, None] = {}
+    while len(found) < count:
+        found[random.randrange(total)] = None
+    return found
+
+
+def _combination_at(place: int, lists: Sequence[tuple[Value, ...]]) -> tuple[Value, ...]:
+    """The combination at a place in the product of lists, the last of which changes first."""
+    chosen: list[Value] = []
+    for values in reversed(lists):
+        place, i = divmod(place, len(values))
+        chosen.append(values[i])
+    return tuple(reversed(chosen))

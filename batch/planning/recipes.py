@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from ...bridge.recipe.objects import HEADER as OBJECT
-from ...bridge.recipe.problem import Recipe, read_recipe_text, recipe_of, recipe_values
+from ...bridge.recipe.problem import Recipe, read_recipe_text, recipe_of
 from ...bridge.recipe_syntax.source_lines import KeyPath
 from ...bridge.recipe_syntax.table import Source
+from ...bridge.recipe_syntax.values import recipe_values
 from ...solver.data.problem import MotionProblem
 from ..records.faults import WrongPlan
 from ..records.manifest import Value

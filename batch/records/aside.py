@@ -7,33 +7,52 @@ import shutil
 import socket
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from errno import EEXIST, ENOTEMPTY
 from pathlib import Path
 
+_NO_TURN = nullcontext()
+
 
 @contextmanager
-def written_aside(target: Path) -> Iterator[Path]:
+def written_aside(target: Path, turn: AbstractContextManager[None] = _NO_TURN) -> Iterator[Path]:
     """A folder to write into, which gets the target's name at the end.
 
-    Where another process was quicker its folder stays, and this one is dropped. Raises OSError.
+    Where another process was quicker its folder stays, and this one is dropped. turn: entered
+    about the renaming. Raises OSError.
     """
     target.parent.mkdir(parents=True, exist_ok=True)
-    prefix = f".{target.name}.{socket.gethostname()}.{os.getpid()}."
-    aside = Path(tempfile.mkdtemp(prefix=prefix, dir=target.parent))
+    aside = _beside(target)
     try:
         os.chmod(aside, 0o755)  # a colleague may look
         yield aside
         for path in aside.rglob("*"):
             if path.is_file():
                 _onto_disk(path)
-        try:
-            os.rename(aside, target)
-        except OSError as error:
-            if error.errno not in (EEXIST, ENOTEMPTY) and not target.is_dir():
-                raise
+        with turn:
+            try:
+                os.rename(aside, target)
+            except OSError as error:
+                # Or it was renamed, and a server on the network was asked twice.
+                if error.errno not in (EEXIST, ENOTEMPTY) and not target.is_dir():
+                    raise
     finally:
         shutil.rmtree(aside, ignore_errors=True)
+
+
+def removed(target: Path) -> None:
+    """Away with a folder, whole at once: its name is free even where files in it are still open,
+    which file systems on a network then keep. Raises OSError."""
+    if target.exists():
+        aside = _beside(target)
+        os.rename(target, aside / "old")
+        shutil.rmtree(aside, ignore_errors=True)  # what stays is `remove_abandoned`'s
+
+
+def _beside(target: Path) -> Path:
+    """A new folder beside it whose name tells which process it is of."""
+    prefix = f".{target.name}.{socket.gethostname()}.{os.getpid()}."
+    return Path(tempfile.mkdtemp(prefix=prefix, dir=target.parent))
 
 
 def _onto_disk(path: Path) -> None:

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json
-import shutil
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from enum import Enum
+from errno import ESTALE
 from pathlib import Path
 
+from .aside import removed, written_aside
 from .faults import gone
+from .locks import held
 
 CELLS = "cells"  # within a batch's folder
 RESULT = "result.json"  # within a cell's; its last file to be written
+LOOKS = 3  # at a result that another machine replaces meanwhile
+PLACING = ".placing.lock"  # within a batch's; held while a cell takes its place
 
 
 class State(Enum):
@@ -84,12 +89,16 @@ def read_result(folder: Path, cell: str) -> CellResult | None:
     """The result of a cell in a batch's folder, None where there is none that is whole. Raises
     FolderGone where nobody can tell."""
     path = cell_folder(folder, cell) / RESULT
-    try:
-        return CellResult.parsed(path.read_text(encoding="utf-8"))
-    except (FileNotFoundError, NotADirectoryError, ValueError):
-        return None
-    except OSError as error:
-        raise gone(path, error) from error
+    for looks_left in reversed(range(LOOKS)):
+        try:
+            return CellResult.parsed(path.read_text(encoding="utf-8"))
+        except (FileNotFoundError, NotADirectoryError, ValueError):
+            return None
+        except OSError as error:
+            # On a network: another machine has just put a new folder in the place of this one.
+            if error.errno != ESTALE or not looks_left:
+                raise gone(path, error) from error
+    return None
 
 
 def lasting_result(folder: Path, cell: str) -> CellResult | None:
@@ -98,7 +107,25 @@ def lasting_result(folder: Path, cell: str) -> CellResult | None:
     return None if found is None or found.state is State.FAILED else found
 
 
-def drop_failure(folder: Path, cell: str) -> None:
-    """A failure, or a folder without a result, makes room for what comes now. Raises FolderGone."""
-    if lasting_result(folder, cell) is None:
-        shutil.rmtree(cell_folder(folder, cell), ignore_errors=True)
+@contextmanager
+def written_cell(folder: Path, cell: str) -> Iterator[Path]:
+    """A folder to write a cell into, which takes the cell's place at the end: that of a failure, or
+    of a folder without a result. A lasting result stays, and this one is dropped.
+
+    Two that solve the same cell may end at once, on two machines: one after the other then looks
+    and takes the place, so that neither removes what the other has just put there. Raises
+    FolderGone.
+    """
+    try:
+        with written_aside(cell_folder(folder, cell), _turn(folder, cell)) as aside:
+            yield aside
+    except OSError as error:
+        raise gone(folder, error) from error
+
+
+@contextmanager
+def _turn(folder: Path, cell: str) -> Iterator[None]:
+    with held(folder / PLACING):
+        if lasting_result(folder, cell) is None:
+            removed(cell_folder(folder, cell))
+        yield

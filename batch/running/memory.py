@@ -7,6 +7,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from .cgroups import free_in_groups
+
 _RESERVE = 256 << 20  # left to the system and to who works at the machine
 _FIRST = 700 << 20  # that a cell takes, before any has told
 _UNKNOWN = 1 << 62
@@ -29,8 +31,13 @@ def used() -> dict[str, int]:
 
 
 def available() -> int:
-    """What processes may still take without swapping; as good as endless where the system does not
-    tell."""
+    """What processes may still take without swapping, or by the limit of their container; as good
+    as endless where the system does not tell."""
+    limited = free_in_groups()
+    return _of_machine() if limited is None else min(limited, _of_machine())
+
+
+def _of_machine() -> int:
     try:
         for line in Path("/proc/meminfo").read_text().splitlines():
             if line.startswith("MemAvailable:"):

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import Empty, SimpleQueue
+from time import monotonic
 
 from ..cells.cell import write_failure
 from ..cells.fits import FITS
+from ..queue.attempts import Attempt, Attempts
 from ..records.aside import remove_abandoned
 from ..records.faults import BatchFault, FolderGone
 from ..records.manifest import Manifest
 from ..records.result import CELLS, lasting_result, read_result
 from .memory import MemoryWatch
 from .progress import Progress
-from .queue import CellQueue
 from .workers import Message, WorkerProcess
 
 MOST_TRIES = 2  # of a cell whose worker ends
@@ -40,14 +40,11 @@ class LocalRun:
     memory: MemoryWatch = field(default_factory=MemoryWatch)
 
     def __post_init__(self) -> None:
-        self._plans = {cell.cell: cell for cell in self.manifest.cells}
         waiting = [c for c in self.manifest.cells if lasting_result(self.folder, c.cell) is None]
-        self._queue = CellQueue(waiting)
-        self._left = len(waiting)
-        self._tries: Counter[str] = Counter()
+        self._attempts = Attempts(MOST_TRIES, eager=True).add(waiting)
         self._stillborn = 0
         self._workers: list[WorkerProcess] = []
-        self._last: dict[WorkerProcess, str] = {}
+        self._at: dict[WorkerProcess, Attempt] = {}
         self._news: SimpleQueue[tuple[WorkerProcess, Message | None]] = SimpleQueue()
 
     def run(self) -> None:
@@ -55,7 +52,7 @@ class LocalRun:
         for name in (CELLS, FITS):
             remove_abandoned(self.folder / name)
         try:
-            while self._left:
+            while not self._attempts.over:
                 self._hand_out()
                 self._hear()
         finally:
@@ -67,22 +64,22 @@ class LocalRun:
 
     def _hand_out(self) -> None:
         """Gives cells to who has none, as far as memory goes; one works whatever there is."""
-        while self._queue:
-            idle = next((w for w in self._workers if w.ready and w.cell is None), None)
+        while self._attempts.waiting:
+            idle = next((w for w in self._workers if w.ready and w not in self._at), None)
             if idle is None:
                 starting = sum(1 for w in self._workers if not w.ready)
-                if len(self._workers) >= self.jobs or starting >= len(self._queue):
+                if len(self._workers) >= self.jobs or starting >= self._attempts.n_waiting:
                     return
-            others = any(w.cell is not None or not w.ready for w in self._workers)
+            others = any(w in self._at or not w.ready for w in self._workers)
             if others and not self.memory.fits(0 if idle is None else idle.rss):
                 return  # it waits until another has ended
             if idle is None:
                 self._workers.append(WorkerProcess(self.command, self.folder, self._news))
                 continue
-            cell = self._queue.take(self._last.get(idle))
-            self._tries[cell] += 1
-            self._last[idle] = cell
-            idle.solve(cell)
+            attempt = self._attempts.next_for(str(idle.pid), monotonic())
+            assert attempt is not None
+            self._at[idle] = attempt
+            idle.solve(attempt.plan.cell)
 
     def _hear(self) -> None:
         """One message of a worker, or none for a while."""
@@ -102,38 +99,36 @@ class LocalRun:
             worker.ready = True
             return
         self.memory.told(message["peak"])
-        self._ended(message["cell"], worker)
+        self._ended(self._at.pop(worker))
 
-    def _ended(self, cell: str, worker: WorkerProcess) -> None:
-        worker.cell = None
+    def _ended(self, attempt: Attempt) -> None:
+        cell = attempt.plan.cell
         result = read_result(self.folder, cell)
         if result is None:
             raise FolderGone(
                 f"The result of cell {cell} is not in {self.folder / CELLS}, where it was put; see "
                 "what becomes of that folder, then give the same command again."
             )
-        self._queue.ended(cell)
-        self._left -= 1
-        self.progress.ended(self._plans[cell], result)
+        self._attempts.end(attempt, monotonic())
+        self.progress.ended(attempt.plan, result)
 
     def _died(self, worker: WorkerProcess) -> None:
         """A worker ended: its cell is done again, or told as failed where it is to blame."""
         self._workers.remove(worker)
-        how, cell = worker.how_it_ended(), worker.cell
-        if cell is None:
+        how, attempt = worker.how_it_ended(), self._at.pop(worker, None)
+        if attempt is None:
             self._stillborn += not worker.ready
             if self._stillborn >= MOST_STILLBORN:
                 raise BatchFault(f"No worker process can be started: one ended {how}.")
             return
+        cell = attempt.plan.cell
         if lasting_result(self.folder, cell) is not None:
-            self._ended(cell, worker)  # it had finished
-        elif self._tries[cell] < MOST_TRIES:
+            self._ended(attempt)  # it had finished
+        elif self._attempts.again(attempt):
             self.progress.note(f"A worker ended {how}; cell {cell} is done again.")
-            self._queue.back(cell)
         else:
             sentence = (
-                f"The worker that solved it ended {self._tries[cell]} times, the last time {how}; "
-                "where the system has ended it for want of memory, use fewer --jobs."
+                f"The worker that solved it ended {MOST_TRIES} times, the last time {how}; where "
+                "the system has ended it for want of memory, use fewer --jobs."
             )
-            write_failure(self.folder, cell, sentence)
-            self._ended(cell, worker)
+            self.progress.ended(attempt.plan, write_failure(self.folder, cell, sentence))

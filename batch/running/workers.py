@@ -14,10 +14,11 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import Any
 
-from ...solver.one_thread import ONE_THREAD
+from ...solver.one_thread import ONE_CORE
 from ..records.faults import BatchFault
 
-PROGRAM = Path(__file__).with_name("worker.py")
+PROGRAM = Path(__file__).parents[2] / "solver" / "worker" / "program.py"
+MODULE = "batch.running.worker"  # what it runs
 _KEPT_LINES = 20
 _LAST_WORDS_S = 2.0
 
@@ -30,15 +31,15 @@ def worker_command(*, blender: bool) -> list[str]:
     binary = bpy.app.binary_path if blender and bpy is not None else ""
     if binary:
         flags = ["--background", "--factory-startup", "--python-exit-code", "1", "--python"]
-        return [binary, *flags, str(PROGRAM)]
-    return [sys.executable, "-I", str(PROGRAM)]
+        return [binary, *flags, str(PROGRAM), "--", MODULE]
+    return [sys.executable, "-I", str(PROGRAM), MODULE]
 
 
 class WorkerProcess:
     """One run of the worker program. What it says arrives in `news` as (self, message), None at its
     end.
 
-    cell: which it is solving. rss: bytes that it held when last heard.
+    rss: bytes that it held when last heard.
     """
 
     def __init__(
@@ -53,13 +54,12 @@ class WorkerProcess:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                env={**os.environ, **ONE_THREAD},
+                env={**os.environ, **ONE_CORE},
                 start_new_session=True,  # an interrupt is the parent's, who then ends it
                 creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
             )
         except OSError as error:
             raise BatchFault(f"{command[0]} cannot be started ({error.strerror}).") from error
-        self.cell: str | None = None
         self.ready = False
         self.rss = 0
         self._news = news
@@ -75,7 +75,6 @@ class WorkerProcess:
 
     def solve(self, cell: str) -> None:
         """Names it the next cell."""
-        self.cell = cell
         self._say(cell)
 
     def end(self) -> str:

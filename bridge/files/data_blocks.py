@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
 
 import bpy
 
@@ -22,33 +24,59 @@ def remove_added(before: set[bpy.types.ID]) -> None:
     bpy.data.batch_remove(data_blocks() - before)
 
 
+@dataclass(frozen=True)
+class SceneState:
+    """Selection and mode, and the scene's range, frame, rate and unit."""
+
+    selected: tuple[bpy.types.Object, ...]
+    active: bpy.types.Object | None
+    mode: Any  # one of Blender's words, which the stubs spell out
+    shown: tuple[int, float]
+    frames: tuple[int, int]
+    rate: tuple[int, float]
+    unit: float
+
+    @staticmethod
+    def now() -> SceneState:
+        """As they are."""
+        layer, scene = present(bpy.context.view_layer), current_scene()
+        active = layer.objects.active
+        return SceneState(
+            tuple(o for o in layer.objects if o.select_get()),
+            active,
+            active.mode if active is not None else "OBJECT",
+            (scene.frame_current, scene.frame_subframe),
+            (scene.frame_start, scene.frame_end),
+            (scene.render.fps, scene.render.fps_base),
+            scene.unit_settings.scale_length,
+        )
+
+    def restore(self) -> None:
+        """Has them be as they were; what is selected beside is let be."""
+        layer, scene = present(bpy.context.view_layer), current_scene()
+        scene.frame_start, scene.frame_end = self.frames
+        scene.render.fps, scene.render.fps_base = self.rate
+        scene.unit_settings.scale_length = self.unit
+        scene.frame_set(self.shown[0], subframe=self.shown[1])
+        for thing in self.selected:
+            thing.select_set(True)
+        layer.objects.active = self.active
+        if bpy.context.mode == "OBJECT" != self.mode:
+            bpy.ops.object.mode_set(mode=self.mode)
+
+
 @contextmanager
 def scene_restored() -> Iterator[None]:
-    """Context with nothing selected and in object mode; selection, mode and the scene's range,
-    frame, rate and unit come back.
+    """Context with nothing selected and in object mode; the scene's state comes back.
 
     What was removed inside is not looked at: Blender 4.2 crashes over it.
     """
-    layer, scene = present(bpy.context.view_layer), current_scene()
-    active, selected = layer.objects.active, [o for o in layer.objects if o.select_get()]
-    mode = active.mode if active is not None else "OBJECT"
-    shown = scene.frame_current, scene.frame_subframe
-    start, end = scene.frame_start, scene.frame_end
-    rate, units = (scene.render.fps, scene.render.fps_base), scene.unit_settings
-    length = units.scale_length
-    if mode != "OBJECT":
+    state = SceneState.now()
+    if state.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    for thing in selected:
+    for thing in state.selected:
         thing.select_set(False)
     try:
         yield
     finally:
-        scene.frame_start, scene.frame_end = start, end
-        scene.render.fps, scene.render.fps_base = rate
-        units.scale_length = length
-        scene.frame_set(shown[0], subframe=shown[1])
-        for thing in selected:
-            thing.select_set(True)
-        layer.objects.active = active
-        if mode != "OBJECT":
-            bpy.ops.object.mode_set(mode=mode)
+        state.restore()

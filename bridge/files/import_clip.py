@@ -26,9 +26,10 @@ from ..armature.build_armature import FIRST_FRAME, build_armature
 from ..armature.poses import metres_per_unit
 from ..formats.acclaim import USUAL_RATE, find_asf, read_acclaim
 from ..formats.bvh import read_bvh
+from ..formats.fbx_records import require_sound
 from ..formats.guess import guess_unit, guess_up, likely_unit
 from ..formats.motion_clip import MotionClip, UpAxis
-from .data_blocks import data_blocks, remove_added
+from .data_blocks import SceneState, data_blocks, remove_added
 
 _PLAUSIBLE_HEIGHT = (0.5, 3.0)  # m
 _HEIGHT_SAMPLES = 5
@@ -66,8 +67,8 @@ def import_clip(
     and for an FBX NoArmature, NoAction; nothing that came in is then left behind.
     """
     path = Path(path)
-    _leave_other_modes()
     with _nothing_left_on_failure():
+        _leave_other_modes()
         match path.suffix.lower():
             case ".bvh":
                 return _placed(read_bvh(path), unit, up, partial(_import_bvh, path))
@@ -116,6 +117,7 @@ def _import_bvh(path: Path, _: MotionClip, scale: float, up: UpAxis) -> bpy.type
 def _import_fbx(path: Path, unit: float | None) -> ImportedClip:
     if not path.is_file():
         raise ClipNotOpened(str(path), "there is no such file")
+    require_sound(path)
     before = set(bpy.data.objects)
     with _importer("io_scene_fbx", path):
         bpy.ops.import_scene.fbx(filepath=str(path), anim_offset=0.0)
@@ -182,14 +184,15 @@ def _importer(addon: str, path: Path) -> Iterator[None]:
 def _complaint(error: RuntimeError, path: Path) -> str:
     """Blender's message without its traceback and without the path, which the fault carries."""
     lines = [s for s in str(error).splitlines() if s and not s.startswith((" ", "Location:"))]
-    return lines[-1].removeprefix("Error: ").replace(f" {str(path)!r}", "")
+    told = lines[-1].removeprefix("Error: ").replace(f" {str(path)!r}", "")
+    return f"Blender's importer cannot read it ({told})" if "Traceback" in str(error) else told
 
 
 @contextmanager
 def _nothing_left_on_failure() -> Iterator[None]:
-    """Roll back a failed import: remove what it has put into the file, reset the scene's rate."""
-    before, render = data_blocks(), current_scene().render
-    rate = render.fps, render.fps_base
+    """Roll back a failed import: remove what it has put into the file; selection, mode and the
+    scene's rate, range and frame come back."""
+    before, state = data_blocks(), SceneState.now()
     imported = False
     try:
         yield
@@ -197,7 +200,7 @@ def _nothing_left_on_failure() -> Iterator[None]:
     finally:
         if not imported:
             remove_added(before)
-            render.fps, render.fps_base = rate
+            state.restore()
 
 
 # ---------------------------------------------------------------- FBX

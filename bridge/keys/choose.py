@@ -12,10 +12,11 @@ from ...solver.arrays import FloatArray
 from ...solver.data.reports.keys import KeysReport
 from ..recipe.keys import KeyOptions
 from ..rows.choices import KeyChoice
+from .bezier import BezierKeys
 from .bone_channels import BoneChannels
 from .events import KeyEvents
 from .figure import KeyableFigure
-from .hermite import HermiteKeys, fitted
+from .hermite import fitted
 from .reduction import reduced
 
 TIGHTENINGS = 4  # where errors to first order promise too much, as with bones that inherit in part
@@ -48,7 +49,7 @@ class PosedChannels(Protocol):
 class ChosenKeys:
     """Keys by bone with channels; None for each where every frame has one, linear in between."""
 
-    keys: list[HermiteKeys] | None
+    keys: list[BezierKeys] | None
     report: KeysReport
 
 
@@ -78,7 +79,7 @@ def chosen_keys(
 
 def _within(
     posed: PosedChannels, error: KeyOptions, events: KeyEvents
-) -> Generator[None, None, list[HermiteKeys] | None]:
+) -> Generator[None, None, list[BezierKeys] | None]:
     """The fewest keys that keep an error."""
     asked = _times(error, SAFETY)
     for _ in range(TIGHTENINGS):
@@ -96,7 +97,7 @@ def _times(error: KeyOptions, share: float) -> KeyOptions:
     return replace(error, distance=share * error.distance, angle=share * error.angle)
 
 
-def _as_taken(posed: PosedChannels, taken: dict[str, FloatArray]) -> list[HermiteKeys]:
+def _as_taken(posed: PosedChannels, taken: dict[str, FloatArray]) -> list[BezierKeys]:
     """Keys where the take has them, and at the ends; for bones without any, where others have."""
     ends = posed.frames[[0, -1]]
     everywhere = np.concatenate([ends, *taken.values()])
@@ -111,7 +112,7 @@ def _as_taken(posed: PosedChannels, taken: dict[str, FloatArray]) -> list[Hermit
 
 
 def _report(
-    posed: PosedChannels, choice: KeyChoice, keys: list[HermiteKeys] | None, rate: float
+    posed: PosedChannels, choice: KeyChoice, keys: list[BezierKeys] | None, rate: float
 ) -> Generator[None, None, KeysReport]:
     channels = [own.values.shape[1] for own in posed.channels]
     if keys is None:

@@ -6,64 +6,21 @@ evenly along the Bézier.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ...solver.arrays import FloatArray, IntArray
+from .bezier import BezierKeys
 
 # Weight of the squared second derivative, against samples that weigh 1 each: it decides what the
 # samples do not, a slope between keys on neighbouring frames, and moves nothing else.
 BENDING = 1e-6
 
 
-@dataclass(frozen=True)
-class HermiteKeys:
-    """Keys of n channels that share their frames (K,), ascending.
-
-    values: (K, n). slopes: (K, n), a frame; the same on both sides of a key.
-    """
-
-    frames: FloatArray
-    values: FloatArray
-    slopes: FloatArray
-
-    def part(self, channels: slice) -> HermiteKeys:
-        """The keys of some of the channels."""
-        return HermiteKeys(self.frames, self.values[:, channels], self.slopes[:, channels])
-
-    def at(self, frames: FloatArray) -> FloatArray:
-        """Values (T, n) at frames (T,), constant outside."""
-        frames = np.clip(frames, self.frames[0], self.frames[-1])
-        span, weights = _weights(frames, self.frames)
-        ends = (self.values[span], self.slopes[span], self.values[span + 1], self.slopes[span + 1])
-        return np.asarray(sum(w[:, None] * end for w, end in zip(weights.T, ends, strict=True)))
-
-
-def fitted(samples: FloatArray, frames: FloatArray, at: FloatArray) -> HermiteKeys:
+def fitted(samples: FloatArray, frames: FloatArray, at: FloatArray) -> BezierKeys:
     """Least-squares fit to samples (T, n) at frames (T,), with keys at frames (K,), K >= 2."""
     normal, right = _normal_equations(samples, frames, at)
     solved = np.linalg.solve(normal, right)
-    return HermiteKeys(at, solved[0::2], solved[1::2])
-
-
-def refitted(
-    keys: HermiteKeys, samples: FloatArray, frames: FloatArray, first: int, last: int
-) -> HermiteKeys:
-    """The keys with those from index `first` to `last`, both included, fitted anew to samples
-    (T, n) at frames (T,), while all others stay: only between their neighbours does the curve
-    change."""
-    low, high = max(first - 1, 0), min(last + 1, len(keys.frames) - 1)
-    within = (frames >= keys.frames[low]) & (frames <= keys.frames[high])
-    normal, right = _normal_equations(samples[within], frames[within], keys.frames[low : high + 1])
-    known = np.empty((2 * (high - low + 1), samples.shape[1]))
-    known[0::2], known[1::2] = keys.values[low : high + 1], keys.slopes[low : high + 1]
-    free = slice(2 * (first - low), 2 * (last - low + 1))
-    known[free] = 0.0
-    known[free] = np.linalg.solve(normal[free, free], right[free] - normal[free] @ known)
-    values, slopes = keys.values.copy(), keys.slopes.copy()
-    values[low : high + 1], slopes[low : high + 1] = known[0::2], known[1::2]
-    return HermiteKeys(keys.frames, values, slopes)
+    return BezierKeys.even(at, solved[0::2], solved[1::2])
 
 
 def _normal_equations(

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ..keys.hermite import HermiteKeys
+from ..keys.bezier import BezierKeys
 
 
-def cyclic_keys(frames: FloatArray, values: FloatArray) -> HermiteKeys:
+def cyclic_keys(frames: FloatArray, values: FloatArray) -> BezierKeys:
     """Keys at frames (T,), evenly apart, of channels (T, n) that go on from the last value as they
     did from the first.
 
@@ -22,4 +22,4 @@ def cyclic_keys(frames: FloatArray, values: FloatArray) -> HermiteKeys:
     system[each, each - 1] += 1.0
     system[each - 1, each] += 1.0
     slopes = np.linalg.solve(system, 3.0 * (rises + np.roll(rises, 1, axis=0)) / step)
-    return HermiteKeys(frames, values, np.concatenate([slopes, slopes[:1]]))
+    return BezierKeys.even(frames, values, np.concatenate([slopes, slopes[:1]]))

@@ -6,6 +6,7 @@ mass = 70.0                     # kg
 height = 1.69                   # m, optional
 mass_table = "thesis"           # or "de leva"
 unseen_support = "show"         # fits and tells where something unseen carries; or "refuse"
+mirrored = false                # left does what right did; pins and contacts change sides as well
 good_enough = 0.0005            # m by which a contact that cannot be held exactly may be off
 [bones]                         # optional: part of the body = bone
 "left foot" = "Fuss.L"
@@ -49,8 +50,6 @@ engine = "unreal"               # "unity", "godot"; default: "none", as the arma
 Objects of the scene are in objects.py, and what may be asked for beside in requests.py.
 """
 
-import json
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -70,33 +69,14 @@ from ...solver.data.faults import (
     UnknownReductionBone,
     WrongWeights,
 )
-from ...solver.data.problem import (
-    AddedContact,
-    ContactEdit,
-    MassTable,
-    MotionProblem,
-    OffsetAxes,
-    Pin,
-    Unseen,
-)
+from ...solver.data.problem import MassTable, MotionProblem, Unseen
 from ...solver.doctor.repairs import Repairs
-from ..recipe_syntax.items import (
-    TOUCHING,
-    TRAVEL_KEYS,
-    TRAVEL_WORDS,
-    Item,
-    Kind,
-    Values,
-    angle,
-    number,
-    phase,
-    travelled,
-    vector,
-    word,
-)
-from ..recipe_syntax.source_lines import KeyPath, json_lines, toml_lines
+from ...solver.skeleton.mirror import swapped
+from ..recipe_syntax.source_lines import KeyPath
 from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, Source, Table
 from ..recipe_syntax.toml_text import entries, sections
+from ..recipe_syntax.values import recipe_values
+from .contacts import ADDED, CONTACT, PIN
 from .export import EXPORT, ExportOptions
 from .keys import KEYS, KeyOptions
 from .loop import LOOP, LoopOptions
@@ -115,6 +95,7 @@ TOP_KEYS = (
     *OWN_KEYS,
     "unseen_support",
     "good_enough",
+    "mirrored",
     "add_contact",
     OBJECT,
     *REQUEST_KEYS,
@@ -127,8 +108,6 @@ PARTS = (
     "head",
     *(f"{side} {p.value}" for p in SIDED_PARTS for side in ("left", "right")),
 )
-
-_ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 brackets
 
 
 @dataclass(frozen=True)
@@ -187,7 +166,10 @@ def recipe_of(values: dict[str, Any], source: Source) -> Recipe:
         loop=LOOP.header in table.values,
         unseen=table.choice("unseen_support", Unseen) or MotionProblem.unseen,
         good_enough=_good_enough(table),
+        mirrored=table.flag("mirrored"),
     )
+    if problem.mirrored:
+        problem = swapped(problem)
     _refuse_same_names(table)
     result = RESULT.read(table) if RESULT.header in table.values else None
     keys = KEYS.read(table) if KEYS.header in table.values else None
@@ -251,43 +233,6 @@ def _inside(values: dict[str, Any], place: tuple[str, int], fault: Fault) -> lis
     return [*found, place]
 
 
-# ---------------------------------------------------------------- reading
-
-
-def recipe_values(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
-    """A recipe's values as they are written, and the line of each key and element.
-
-    path is for faults alone. Raises BadRecipe.
-    """
-    if text.lstrip().startswith("{"):
-        return _parse_json(text, path)
-    try:
-        values = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        message, _, place = str(error).rpartition(" (at ")
-        # Past its last character tomllib says "end of document" instead of a line.
-        line = place.split()[1].rstrip(",") if place.startswith("line ") else text.count("\n") + 1
-        raise BadRecipe(path, int(line), f"not TOML ({message}); correct the line") from error
-    except _ABSURD as error:
-        raise BadRecipe(path, None, "not TOML that can be read; see the examples") from error
-    return values, dict(toml_lines(text))
-
-
-def _parse_json(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:
-    try:
-        values = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise BadRecipe(path, error.lineno, f"not JSON ({error.msg}); correct the line") from error
-    except _ABSURD as error:
-        raise BadRecipe(path, None, "not JSON that can be read; see the examples") from error
-    lines: dict[KeyPath, int] = {}
-    for place, line in json_lines(text):
-        if place in lines:
-            raise BadRecipe(path, line, f'"{place[-1]}" is there twice; keep one')
-        lines[place] = line
-    return values, lines
-
-
 def _frames(table: Table) -> tuple[float, float] | None:
     frames = table.pair("frames", "[first, last]")
     if frames is None:
@@ -326,69 +271,6 @@ def _refuse_same_names(top: Table) -> None:
         taken.add(name)
 
 
-def _read_offset(table: Table) -> Values:
-    table.not_both("offset", TRAVEL_WORDS)
-    offset = table.vector("offset")
-    if offset is not None:
-        return {"offset": offset, "axes": OffsetAxes.WORLD}
-    return {"offset": travelled(table)}
-
-
-def _write_offset(pin: Pin) -> Values:
-    if pin.axes is OffsetAxes.WORLD:
-        return {"offset": pin.offset}
-    return {key: amount or None for key, amount in zip(TRAVEL_KEYS, pin.offset, strict=True)}
-
-
-def _read_correction(table: Table) -> Values:
-    table.not_both("remove", ("start_frame", "end_frame"))
-    start, end = table.number("start_frame"), table.number("end_frame")
-    if start is not None and end is not None and start >= end:
-        table.refuse("end_frame", f"the end, {end:g}, must come after the start, {start:g}")
-    return {"start_frame": start, "end_frame": end, "remove": table.flag("remove")}
-
-
-def _write_correction(edit: ContactEdit) -> Values:
-    if edit.remove:
-        return {"remove": True}
-    return {"start_frame": edit.start_frame, "end_frame": edit.end_frame}
-
-
-PIN = Kind(
-    "pin",
-    Pin,
-    (
-        phase("phase"),
-        TOUCHING,
-        Item((*TRAVEL_WORDS, "offset"), _read_offset, _write_offset),
-        vector("place"),
-        angle("turn"),
-        word("on"),
-    ),
-    needs=(("phase",),),
-)
-CONTACT = Kind(
-    "contact",
-    ContactEdit,
-    (
-        word("name"),
-        Item(("start_frame", "end_frame", "remove"), _read_correction, _write_correction),
-    ),
-    needs=(("name",),),
-    named=False,
-)
-
-ADDED = Kind(
-    "add_contact",
-    AddedContact,
-    (word("point"), number("start_frame"), number("end_frame")),
-    needs=(("point",), ("start_frame",), ("end_frame",)),
-    named=False,
-)
-
-# ---------------------------------------------------------------- writing
-
-
 def write_recipe(
     problem: MotionProblem,
     *,
@@ -403,6 +285,8 @@ def write_recipe(
     files: of objects' meshes, by the objects' names; what has none is written out. result, keys,
     repairs: left out where they are the usual ones, which a recipe that says nothing means.
     """
+    if problem.mirrored:
+        problem = swapped(problem)  # a recipe names what the recording has
     top = {
         "clip": clip,
         "frames": problem.frames,
@@ -413,6 +297,7 @@ def write_recipe(
         "good_enough": None
         if problem.good_enough == MotionProblem.good_enough
         else problem.good_enough,
+        "mirrored": problem.mirrored or None,
     }
     parts = [entries(top)]
     if problem.bones:

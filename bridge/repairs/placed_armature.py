@@ -1,6 +1,7 @@
 """Repairs of where a figure stands, how large it is, and of the scene's clock.
 
-An empty above all that the armature hangs on turns, scales and lowers it; no key changes.
+An empty above all that the armature hangs on, and no other does, turns, scales and lowers it; no
+key changes.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 import bpy
 from mathutils import Matrix
 
-from ...solver.doctor.repairs import Repairs, UpAxis
+from ...solver.doctor.repairs import Repairs
 from ...solver.doctor.upright import turn_upright
 from ..accessors import current_scene, present
 from ..armature.poses import metres_per_unit
@@ -30,19 +31,66 @@ def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
 
 def _place(armature: bpy.types.Object, repairs: Repairs) -> None:
     """Turns the figure upright, scales it about the world's origin and lowers it to the floor."""
-    top = armature
-    while top.parent is not None and not top.parent.get(MARK):
-        top = top.parent
-    above = top.parent
-    if repairs.up is UpAxis.Z and repairs.scale == 1.0 and repairs.floor == 0.0:
+    top = _top(armature)
+    above = top.parent if _is_ours(top.parent) else None
+    if not repairs.places:
         if above is not None:
+            top.parent = _followed(above)
             bpy.data.objects.remove(above)
         return
     if above is None:
-        above = bpy.data.objects.new(NAME, None)
-        above[MARK] = True
-        present(current_scene().collection).objects.link(above)
-        top.parent = above
+        above = _put_above(top)
     turn = Matrix(turn_upright(repairs.up).tolist()).to_4x4()
     lowered = Matrix.Translation((0.0, 0.0, -repairs.floor / metres_per_unit(current_scene())))
-    above.matrix_world = lowered @ Matrix.Scale(repairs.scale, 4) @ turn
+    above.matrix_basis = lowered @ Matrix.Scale(repairs.scale, 4) @ turn
+
+
+def _top(armature: bpy.types.Object) -> bpy.types.Object:
+    """What the empty is, or is to be, above: the highest thing on which no other armature hangs."""
+    line = [armature]
+    while line[-1].parent is not None:
+        line.append(line[-1].parent)
+    if applied(settings_of(armature)).places:
+        for thing in line:
+            if _is_ours(thing.parent):
+                return thing
+    top = armature
+    for thing in line[1:]:
+        own = top.parent_type != "OBJECT" or not _carries_others(thing, armature)
+        if _is_ours(thing) or not own:
+            break
+        top = thing
+    return top
+
+
+def _carries_others(thing: bpy.types.Object, armature: bpy.types.Object) -> bool:
+    """Whether another armature hangs on a thing, by an empty of ours, too, or it is one."""
+    each = [thing, *thing.children_recursive]
+    followed = {_followed(one) for one in bpy.data.objects if _is_ours(one)}
+    return any((one.type == "ARMATURE" and one != armature) or one in followed for one in each)
+
+
+def _is_ours(thing: bpy.types.Object | None) -> bool:
+    return thing is not None and bool(thing.get(MARK))
+
+
+def _put_above(top: bpy.types.Object) -> bpy.types.Object:
+    """An empty of which a thing hangs instead of its parent, whose movement the empty follows in
+    the world as it turns and scales it."""
+    above = bpy.data.objects.new(NAME, None)
+    above[MARK] = True
+    present(current_scene().collection).objects.link(above)
+    if top.parent is not None:
+        follow = above.constraints.new("COPY_TRANSFORMS")
+        assert isinstance(follow, bpy.types.CopyTransformsConstraint)
+        follow.target, follow.mix_mode = top.parent, "AFTER_FULL"
+    top.parent = above
+    return above
+
+
+def _followed(above: bpy.types.Object) -> bpy.types.Object | None:
+    """The parent in whose place an empty is."""
+    constraints = [
+        each for each in above.constraints if isinstance(each, bpy.types.CopyTransformsConstraint)
+    ]
+    return constraints[0].target if constraints else None

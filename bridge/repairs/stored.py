@@ -107,13 +107,18 @@ def foot_faults(settings: HangtimeSettings) -> tuple[FootFault, ...]:
     return tuple(replace(f, offset=(f.offset[0], f.offset[1], f.offset[2])) for f in faults)
 
 
+def rate_unrepaired(settings: HangtimeSettings) -> float:
+    """The frames a second that the scene has without the repairs that count."""
+    return frames_per_second(current_scene()) * applied(settings).time_scale
+
+
 def examined_key(armature: bpy.types.Object) -> str:
     """What an examination is of: the recording's keys, the object's scale and the clock, both as
     they are without repairs."""
     action = recorded_action(armature)
     if action is None:
         return ""
-    clock = frames_per_second(current_scene()) * applied(settings_of(armature)).time_scale
+    clock = rate_unrepaired(settings_of(armature))
     scale = " ".join(f"{each:.4g}" for each in armature.scale.to_tuple())
     return f"{take_digest(armature, action)} {clock:.4g} {scale}"
 

@@ -11,6 +11,7 @@ from .choices import HOLD
 from .protocols import Settings
 
 SAME = 1e-3  # frames; single precision keeps frames
+TAKE_OFF = "Take-Off"
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def roles(settings: Settings) -> dict[str, str]:
         elif flown:
             found[phase.name] = f"Landing {flown}" if flights > 1 else "Landing"
         else:
-            found[phase.name] = "Take-Off" if index + 1 < len(every) else "Stance"
+            found[phase.name] = TAKE_OFF if index + 1 < len(every) else "Stance"
     return found
 
 

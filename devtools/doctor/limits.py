@@ -12,8 +12,6 @@ from .measure import Examined
 
 NOISE = "30 Hz, 3 mm and 1° noise"
 ANY = "size × 1.6"  # no ratio of units
-# A fall tells a size half as well as a clock, and half of the clips have falls of 0.2 s or less.
-KNOWN_ANY = 5.0
 
 
 def figures(examined: Sequence[Examined]) -> list[WorstFigure]:
@@ -45,14 +43,10 @@ def figures(examined: Sequence[Examined]) -> list[WorstFigure]:
             least=True,
         ),
     ]
-    for words, alike, known in (
-        ("time scale", [e for e in damaged if e.kind is FindingKind.TIME_SCALE], None),
-        (
-            "wrong unit",
-            [e for e in damaged if e.kind is FindingKind.SIZE and e.damage != ANY],
-            None,
-        ),
-        (ANY, [e for e in damaged if e.damage == ANY], KNOWN_ANY),
+    for words, alike in (
+        ("time scale", [e for e in damaged if e.kind is FindingKind.TIME_SCALE]),
+        ("wrong unit", [e for e in damaged if e.kind is FindingKind.SIZE and e.damage != ANY]),
+        (ANY, [e for e in damaged if e.damage == ANY]),
     ):
         told = [(100.0 * e.scale_error, e) for e in alike if e.scale_error is not None]
         if told:
@@ -60,7 +54,7 @@ def figures(examined: Sequence[Examined]) -> list[WorstFigure]:
             middle = round(float(np.median([error for error, _ in told])), 6)
             at = f"worst {worst:.1f}: {where.clip}, {where.damage}"
             name = f"{words}: recovered, off by (median)"
-            made.append(WorstFigure(name, middle, "%", 3.0, 1.0, at, known=known))
+            made.append(WorstFigure(name, middle, "%", 3.0, 1.0, at))
     noisy = [100.0 * each.after for each in damaged if each.damage == NOISE]
     if noisy:
         name = "joint centres off after noise was smoothed (mean)"

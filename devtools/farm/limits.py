@@ -2,7 +2,7 @@
 
 from ..figures.limits import Limit
 
-OVERHEAD = "overhead a cell beside fit, solve and report"
+OVERHEAD = "overhead a cell beside fit and solve"
 EQUAL = "cells that differ from one core's: "
 LIMITS = {
     EQUAL + "2 workers": Limit("1", 0.0, 0.0),

@@ -10,16 +10,9 @@ LIMITS = {
     "pinned point's drift": Limit("mm", 2.0, 0.5),
     "time": Limit("s"),
 }
-# Musts that are not reached yet, each with the value that it must not pass meanwhile. Even bones
-# that are reduced alone need some 10 keys a second for 0.2 degrees.
-KNOWN_MISSES = {RATE: 15.0}
 ROUNDING = 1.001  # F-curves are single precision
 
 
 def missed(figures: list[Figure]) -> list[Figure]:
-    """Figures beyond their musts that are not known to be."""
-    return [
-        f
-        for f in figures
-        if f.must is not None and f.value > max(f.must * ROUNDING, KNOWN_MISSES.get(f.name, f.must))
-    ]
+    """Figures beyond their musts."""
+    return [f for f in figures if f.must is not None and f.value > f.must * ROUNDING]

@@ -27,7 +27,13 @@ from ..figures.clips import CLIPS, Clip
 from ..figures.limits import Figure, figure, table, write
 from .limits import LIMITS, RATE, missed
 
-EDITS = {CLIPS[0]: "+0.3 m forward", CLIPS[1]: "+0.3 m forward", CLIPS[2]: "+0.2 m up"}
+EDITS = {
+    CLIPS[0]: "+0.3 m forward",
+    CLIPS[1]: "+0.3 m forward",
+    CLIPS[2]: "+0.2 m up",
+    CLIPS[3]: "+0.3 m forward",
+    CLIPS[4]: "+0.3 m forward, +0.2 m up",
+}
 
 
 def main(argv: list[str]) -> int:

@@ -19,6 +19,7 @@ from ..environment.virtual_environment import ROOT
 from ..figures.limits import table, write
 from ..recordings import HELD
 from ..wheel import BuildError
+from .driving import manual_images
 from .results import LIMITS, RunRecord, figure_verdicts, figures_of, junit, scenario_verdicts
 from .sandbox import SUITE, Mount, Sandbox, prepare
 
@@ -72,17 +73,32 @@ def main(argv: list[str]) -> int:
     )
     parser.add_argument("--suite", default=SUITE, help="Debian's; has its own Blender")
     parser.add_argument("--scenes", nargs="+", metavar="NAME", help="only these and their needs")
+    parser.add_argument(
+        "--manual", action="store_true", help="only renew the manual's pictures, in docs/images"
+    )
     options = parser.parse_args(argv)
     options.out.mkdir(parents=True, exist_ok=True)
     try:
         sandbox = prepare(options.suite)
         with tempfile.TemporaryDirectory() as folder:
             zipped = options.zip or own_zip(Path(folder))
-            record = run(sandbox, zipped.resolve(), options.out.resolve(), options.scenes or [])
+            scenes = [*manual_images.SCENARIOS.values()] if options.manual else options.scenes or []
+            record = run(sandbox, zipped.resolve(), options.out.resolve(), scenes)
     except (SetUpError, BuildError) as problem:
         print(problem, file=sys.stderr)
         return 2
+    if options.manual:
+        return renewed(record, options.out)
     return report(record, options.out, options.reports, judged=not options.tell)
+
+
+def renewed(record: RunRecord, out: Path) -> int:
+    """Renew the manual's pictures and tell what was not taken, and why; 1 where one was not."""
+    missing = manual_images.renew(out)
+    failed = [verdict for verdict in scenario_verdicts(record) if verdict.failure]
+    print(*(f"not taken: {name}.png" for name in missing), *failed, sep="\n")
+    print(f"{len(manual_images.SCENARIOS) - len(missing)} pictures are in {manual_images.IMAGES}")
+    return int(bool(missing))
 
 
 def own_zip(folder: Path) -> Path:
@@ -94,7 +110,7 @@ def own_zip(folder: Path) -> Path:
 
 def run(sandbox: Sandbox, zipped: Path, out: Path, scenarios: list[str]) -> RunRecord:
     """Run the scenarios in the sandbox; pictures and Blender's log go to `out`."""
-    for stale in (*out.glob("*.png"), out / "run.json"):
+    for stale in (*out.glob("*.png"), *(out / manual_images.TAKEN).glob("*.png"), out / "run.json"):
         stale.unlink(missing_ok=True)
     mounts = [
         Mount(zipped.parent, "/mnt/zip"),

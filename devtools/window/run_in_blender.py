@@ -18,11 +18,12 @@ from .driving.driver import Driver, Scenario, drive_by_timer, run_scenarios
 from .driving.input_device import InputDevice
 from .driving.profiler import Profiler
 from .driving.screen import Screen, present
-from .scenarios import latency, recording, rig, robustness, workflow
+from .scenarios import latency, manual, recording, rig, robustness, workflow
 
 OUT = Path("/mnt/out")
 SCENARIOS = (
     *workflow.SCENARIOS,
+    *manual.SCENARIOS,
     *latency.SCENARIOS,
     *robustness.SCENARIOS,
     *workflow.LAST,
@@ -50,8 +51,10 @@ def start() -> None:
 
 
 def chosen(names: Sequence[str]) -> list[Scenario]:
-    """The scenarios of those names and whatever they need, in order; all where no name is given."""
-    wanted = set(names) or {scenario.name for scenario in SCENARIOS}
+    """The scenarios of those names and whatever they need, in order; where no name is given all
+    but those that only take pictures for the manual."""
+    usual = {scenario.name for scenario in SCENARIOS if scenario not in manual.SCENARIOS}
+    wanted = set(names) or usual
     for scenario in reversed(SCENARIOS):
         if scenario.name in wanted:
             wanted.update(scenario.needs)

@@ -164,7 +164,7 @@ class FollowedDrag(PolledOperator):
                 if end.value is not None:  # surfaces may be elsewhere than they were
                     asked, self._moved = end.value, True
             session().dragged = asked
-            if self._moved:
+            if self._moved:  # before the news, after which the worker goes on with it
                 self._moved = False
                 settings, skin = settings_of(self._armature), asked.problem.skin
                 problem = partial(problem_of, settings, asked.recording, asked.scene.objects)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...solver.data.faults import ClipNotOpened, NoArmature
+from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
@@ -92,6 +92,8 @@ def load(
             if count == 0 and problem.frames is None and repairs.trim:
                 recording = trimmed(recording, repairs)
             problem = replace(problem, mend=repairs.mend, drift=repairs.drift)
+        if problem.mirrored:
+            raise MirroredInBlender
         read = _skin(armature, recording)
         subject = measure(recording, replace(problem, skin=read.skin))
     return LoadedClip(armature, origin, problem, subject, read)

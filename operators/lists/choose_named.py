@@ -7,7 +7,7 @@ from ...bridge.properties.contact import HangtimeContact
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from ..solve.common import chosen_armature, hindrance, required_armature
+from ..solve.common import ReadyOperator, chosen_armature, required_armature
 from ..solve.live import redraw
 
 NO_ARMATURE = "Select the armature that carries the recording"
@@ -56,7 +56,7 @@ class ChooseNamedOperator(PolledOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class TickNamedOperator(PolledOperator, bpy.types.Operator):
+class TickNamedOperator(ReadyOperator, bpy.types.Operator):
     bl_idname = OperatorId.TICK_NAMED
     bl_label = "Untick"
     bl_description = (
@@ -68,10 +68,6 @@ class TickNamedOperator(PolledOperator, bpy.types.Operator):
     name: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     # The operator that tries again afterwards; none where it is empty.
     then: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
-
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         settings = settings_of(required_armature(context))

@@ -1,17 +1,39 @@
-"""Remedies of a recording whose fall or height is nobody's: the scene's frame rate, the scale."""
+"""Remedies of how a recording is read: the scene's frame rate, the object's scale, the range."""
 
 import bpy
 
-from ...bridge.accessors import present
+from ...bridge.accessors import current_scene
 from ...bridge.armature.actions import recorded_action
 from ...bridge.files.object_scale import scale_object
+from ...bridge.properties.settings import settings_of
 from ..names import OperatorId
-from ..operator_types import OperatorResult, PolledOperator
-from ..solve.common import hindrance, required_armature
+from ..operator_types import OperatorResult
+from ..solve.common import ReadyOperator, required_armature
+from ..solve.live import redraw
 from ..solve.session import session
 
 
-class SetFrameRateOperator(PolledOperator, bpy.types.Operator):
+class MendingOperator(ReadyOperator):
+    """Mixin: `mend` changes what is read, after which the last failure says nothing any more."""
+
+    def execute(self, context: bpy.types.Context) -> OperatorResult:
+        done = self.mend(required_armature(context))
+        if "FINISHED" in done:
+            session().failure = None
+            redraw("VIEW_3D", "DOPESHEET_EDITOR")
+        return done
+
+    def mend(self, armature: bpy.types.Object) -> OperatorResult:
+        """Does it, or refuses."""
+        raise NotImplementedError
+
+    def done(self, told: str) -> OperatorResult:
+        """It is done, which is told."""
+        self.report({"INFO"}, told)
+        return {"FINISHED"}
+
+
+class SetFrameRateOperator(MendingOperator, bpy.types.Operator):
     bl_idname = OperatorId.SET_FRAME_RATE
     bl_label = "Set Frame Rate"
     bl_description = (
@@ -22,19 +44,13 @@ class SetFrameRateOperator(PolledOperator, bpy.types.Operator):
 
     rate: bpy.props.IntProperty(name="Frame Rate", default=24, min=1, max=1000)
 
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        render = present(context.scene).render
+    def mend(self, _armature: bpy.types.Object) -> OperatorResult:
+        render = current_scene().render
         render.fps, render.fps_base = self.rate, 1.0
-        session().failure = None
-        self.report({"INFO"}, f"The scene has {self.rate} frames a second now")
-        return {"FINISHED"}
+        return self.done(f"The scene has {self.rate} frames a second now")
 
 
-class ScaleToHumanOperator(PolledOperator, bpy.types.Operator):
+class ScaleToHumanOperator(MendingOperator, bpy.types.Operator):
     bl_idname = OperatorId.SCALE_TO_HUMAN
     bl_label = "Scale to Human Size"
     bl_description = (
@@ -45,13 +61,24 @@ class ScaleToHumanOperator(PolledOperator, bpy.types.Operator):
 
     factor: bpy.props.FloatProperty(name="Factor", default=1.0, min=1e-6)
 
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        armature = required_armature(context)
+    def mend(self, armature: bpy.types.Object) -> OperatorResult:
         scale_object(armature, recorded_action(armature), self.factor)
-        session().failure = None
-        self.report({"INFO"}, f"{armature.name} is {self.factor:.3g} times as large now")
-        return {"FINISHED"}
+        return self.done(f"{armature.name} is {self.factor:.3g} times as large now")
+
+
+class TrimOperator(MendingOperator, bpy.types.Operator):
+    bl_idname = OperatorId.TRIM
+    bl_label = "Trim"
+    bl_description = "Make the frame range these frames, without what cannot be held. Analyze next"
+    bl_options = {"REGISTER", "UNDO"}
+
+    first: bpy.props.IntProperty(name="First")
+    last: bpy.props.IntProperty(name="Last", default=1)
+
+    def mend(self, armature: bpy.types.Object) -> OperatorResult:
+        if self.last <= self.first:
+            return self.refuse(f"Frames {self.first} to {self.last} are no range")
+        settings = settings_of(armature)
+        settings.first_frame, settings.last_frame = self.first, self.last
+        settings.use_range = True
+        return self.done(f"The range is frames {self.first} to {self.last} now")

@@ -10,10 +10,10 @@ from ...bridge.repairs.stored import finding_of, findings, is_applied
 from ...bridge.rows.finding import HangtimeFinding
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from ..solve.common import chosen_armature, hindrance, required_armature
+from ..solve.common import chosen_armature, required_armature
 from ..solve.live import redraw
-from ..solve.session import session
 from .examine import faults
+from .remedies import MendingOperator
 
 NOT_FOUND = "The recording has no finding “{}”; press Examine"
 NO_REMEDY = "There is no remedy for this: look at the recording"
@@ -35,7 +35,7 @@ def to_repair(settings: HangtimeSettings) -> list[HangtimeFinding]:
     ]
 
 
-class RepairOperator(PolledOperator, bpy.types.Operator):
+class RepairOperator(MendingOperator, bpy.types.Operator):
     bl_idname = OperatorId.REPAIR
     bl_label = "Repair"
     bl_description = (
@@ -47,12 +47,7 @@ class RepairOperator(PolledOperator, bpy.types.Operator):
     kind: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     other: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
 
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
-
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        armature = required_armature(context)
+    def mend(self, armature: bpy.types.Object) -> OperatorResult:
         settings = settings_of(armature)
         row = settings.findings.get(self.kind)
         if row is None:
@@ -61,11 +56,10 @@ class RepairOperator(PolledOperator, bpy.types.Operator):
             return self.refuse(NO_REMEDY, "WARNING")
         used = is_applied(settings, row, other=self.other)
         use_remedy(armature, row, used=not used, other=self.other)
-        _note_repaired()
         return {"FINISHED"}
 
 
-class RepairAllOperator(PolledOperator, bpy.types.Operator):
+class RepairAllOperator(MendingOperator, bpy.types.Operator):
     bl_idname = OperatorId.REPAIR_ALL
     bl_label = "Repair All"
     bl_description = "Apply the remedy of everything that was found. Analyze next"
@@ -73,19 +67,16 @@ class RepairAllOperator(PolledOperator, bpy.types.Operator):
 
     @classmethod
     def obstacle(cls, context: bpy.types.Context) -> str | None:
-        why = hindrance(context)
+        why = super().obstacle(context)
         if why is None and not to_repair(settings_of(required_armature(context))):
             return NOTHING
         return why
 
-    def execute(self, context: bpy.types.Context) -> OperatorResult:
-        armature = required_armature(context)
+    def mend(self, armature: bpy.types.Object) -> OperatorResult:
         rows = to_repair(settings_of(armature))
         for row in rows:
             use_remedy(armature, row, used=True)
-        _note_repaired()
-        self.report({"INFO"}, f"Repaired {faults(len(rows))}{ANALYZE}")
-        return {"FINISHED"}
+        return self.done(f"Repaired {faults(len(rows))}{ANALYZE}")
 
 
 class ShowFindingOperator(PolledOperator, bpy.types.Operator):
@@ -130,8 +121,3 @@ def select(armature: bpy.types.Object, bone: str) -> None:
     for each in pose_of(armature).bones:  # since Blender 5.0 what is selected is the pose's
         owner = each if hasattr(each, "select") else each.bone
         owner.select = each.name == bone
-
-
-def _note_repaired() -> None:
-    session().failure = None
-    redraw("VIEW_3D", "DOPESHEET_EDITOR")

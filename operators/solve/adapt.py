@@ -38,6 +38,7 @@ from ...bridge.properties.shown_times import store_times
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
 from ...bridge.rows.choices import After, LoopRoot, WrittenAs
+from ...bridge.rows.phases import roles
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.take_time import TakeTime
@@ -365,7 +366,7 @@ def _note(
     told: lines about the rest of the take.
     """
     settings = settings_of(armature)
-    settings.status = "\n".join([summary(answer), *told])
+    settings.status = "\n".join([summary(answer, roles(settings)), *told])
     write_status(settings, answer.report)
     action_settings(action).report = "\n".join([as_text(answer.report), *told])
     store_times(action, answer.report.times)

@@ -20,7 +20,8 @@ from ...bridge.properties.settings import (
     settings_of,
 )
 from ...bridge.properties.stances import active_contact
-from ...bridge.worker_client import PendingRequest, shared
+from ...bridge.worker_client import shared
+from ...bridge.worker_requests import PendingRequest
 from ...solver.data.faults import (
     Fault,
     MissingPart,

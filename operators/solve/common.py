@@ -90,6 +90,14 @@ def failed(fault: Fault, uid: int, of: str) -> Failure:
     return failure_of(fault, uid, of, bpy.app.translations.pgettext_rpt)  # type: ignore[arg-type]
 
 
+class ReadyOperator(PolledOperator):
+    """Mixin: an operator that may run where the armature can be read and nothing is at work."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return hindrance(context)
+
+
 class FaultyOperator(PolledOperator):
     """Mixin: `run` may raise what an artist can mend; that is reported, and nothing finished."""
 

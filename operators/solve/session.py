@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Protocol
 
+from bpy.app.handlers import persistent
+
 from ...bridge.scene.read import SceneReading
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import Recording
@@ -57,6 +59,12 @@ class Session:
         for operator in list(self.running):
             operator.leave()
         self.best = self.failure = self.support = self.tried = self.dragged = None
+
+
+@persistent  # type: ignore[untyped-decorator]  # any, in the stubs
+def forget_file(*_of_handlers: object) -> None:
+    """Another file was loaded: nothing that is kept is of it."""
+    session().end()
 
 
 @cache

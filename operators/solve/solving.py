@@ -25,7 +25,7 @@ class SolveState(Enum):
     READING = "reading the recording"
     SOLVING = "starting"
     STOPPING = "taking the motion as it stands"
-    CHECKING = "checking that nothing has changed"
+    CHECKING = "checking for changes"
     WRITING = "writing keyframes"
     ENDED = "done"
 
@@ -37,8 +37,9 @@ SHARES = {SolveState.READING: 0.0, SolveState.CHECKING: 0.9, SolveState.WRITING:
 @dataclass
 class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
-    ValueError, for it would be a mistake of ours."""
+    ValueError, for it would be a mistake of ours. of: the operator that runs it."""
 
+    of: str = ""
     state: SolveState = SolveState.READING
     progress: Progress | None = None
 

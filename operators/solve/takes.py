@@ -16,8 +16,8 @@ from ...bridge.takes.takes import (
 )
 from ...solver.data.faults import BadRecipe
 from ..names import OperatorId
-from ..operator_types import OperatorResult, PolledOperator
-from .common import hindrance, required_armature
+from ..operator_types import OperatorResult
+from .common import ReadyOperator, required_armature
 
 NO_RESULT_SHOWN = "The recording is shown; show the result to start from"
 BESIDE = "The armature {} performs {}, as its limbs are others"
@@ -47,7 +47,7 @@ def left_behind(armature: bpy.types.Object) -> str:
     return LEFT_BEHIND.format(result.name, source.name, result.name, way)
 
 
-class ShowTakeOperator(PolledOperator, bpy.types.Operator):
+class ShowTakeOperator(ReadyOperator, bpy.types.Operator):
     bl_idname = OperatorId.SHOW_TAKE
     bl_label = "Show Take"
     bl_description = "Show this take, with the settings it was made with"
@@ -56,10 +56,6 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
     action: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     # Between a result and what it was made from nothing else changes.
     switch: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
-
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         action = bpy.data.actions.get(self.action)
@@ -77,16 +73,12 @@ class ShowTakeOperator(PolledOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class StartFromOperator(PolledOperator, bpy.types.Operator):
+class StartFromOperator(ReadyOperator, bpy.types.Operator):
     bl_idname = OperatorId.START_FROM
     bl_label = "Start From"
     bl_options = {"UNDO"}
 
     result: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
-
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
 
     @classmethod
     def description(
@@ -112,7 +104,7 @@ class StartFromOperator(PolledOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LeaveEditsOperator(PolledOperator, bpy.types.Operator):
+class LeaveEditsOperator(ReadyOperator, bpy.types.Operator):
     bl_idname = OperatorId.LEAVE_EDITS
     bl_label = "Adapt without the edits made by hand?"
     bl_description = "Adapt, though the last result was edited by hand; that result is kept"
@@ -120,10 +112,6 @@ class LeaveEditsOperator(PolledOperator, bpy.types.Operator):
 
     then: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     text: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
-
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         manager = context.window_manager

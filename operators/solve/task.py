@@ -7,11 +7,12 @@ from typing import TypeVar
 import bpy
 
 from ...bridge.accessors import present
-from ...bridge.worker_client import PendingRequest, shared
+from ...bridge.worker_client import shared
+from ...bridge.worker_requests import PendingRequest
 from ...solver.data.faults import Fault
 from ...solver.worker.protocol import Failed, Progress
 from ..operator_types import OperatorResult
-from .common import FaultyOperator, chosen_armature, failed, hindrance
+from .common import FaultyOperator, ReadyOperator, chosen_armature, failed
 from .live import editors, redraw_viewports
 from .session import session
 from .solving import SolveState, Solving
@@ -38,19 +39,15 @@ def answered(job: PendingRequest, kind: type[A]) -> Generator[PendingRequest, No
     return job.answer
 
 
-class TaskOperator(FaultyOperator):
+class TaskOperator(ReadyOperator, FaultyOperator):
     """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
-
-    @classmethod
-    def obstacle(cls, context: bpy.types.Context) -> str | None:
-        return hindrance(context)
 
     def task(self, context: bpy.types.Context) -> Task:
         """The work. Raises any Fault, having changed nothing."""
         raise NotImplementedError
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
-        solving = session().solving = Solving()
+        solving = session().solving = Solving(type(self).bl_idname)
         task = self.task(context)
         finished = False
         try:
@@ -72,7 +69,7 @@ class TaskOperator(FaultyOperator):
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        self._solving = session().solving = Solving()
+        self._solving = session().solving = Solving(type(self).bl_idname)
         session().failure = None
         armature = chosen_armature(context)
         self._uid = armature.session_uid if armature is not None else 0

@@ -98,7 +98,8 @@ class Bars:
 def lay_out(
     rows: tuple[Row, ...], axis: Axis, height: float, scale: float, *, markers: bool = False
 ) -> Bars | None:
-    """Rows at the foot of an editor; the last alone where it is low, None where it is too low.
+    """Rows at the foot of an editor; the last alone, with the doubts over it, where it is low; None
+    where it is too low.
 
     In Blender's usual layout nothing is free: there the last row reaches a little over the strip
     with the frames' numbers, at whose foot there are none.
@@ -111,4 +112,10 @@ def lay_out(
     if each >= LOWEST * scale:
         return Bars(rows, axis, bottom, each, scale)
     alone = min(max(free, LOWEST * scale), TALLEST * scale)
-    return Bars(rows[-1:], axis, bottom, alone, scale)
+    return Bars((_in_one(rows),), axis, bottom, alone, scale)
+
+
+def _in_one(rows: tuple[Row, ...]) -> Row:
+    """The last row, with what is wrong with the recording drawn over it."""
+    doubts = [bar for row in rows[:-1] for bar in row.bars if bar.is_doubt]
+    return Row(rows[-1].name, (*rows[-1].bars, *doubts))

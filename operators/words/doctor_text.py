@@ -50,14 +50,17 @@ REMEDIES = {
 }
 
 
-def remedy_label(finding: Finding, remedy: Repairs, mass: float) -> str:
-    """What a remedy does, for its button. mass: kg, of a finding about the mass."""
+def remedy_label(finding: Finding, remedy: Repairs, mass: float, rate: float) -> str:
+    """What a remedy does, for its button. mass: kg, of a finding about the mass. rate: the frames a
+    second that the scene has without repairs."""
     if mass:
         return f"Set {mass:.0f} kg"
     if remedy.time_scale != 1.0:
-        return f"Durations × {remedy.time_scale:.3g}"
+        return f"Set {rate / remedy.time_scale:.4g} fps"
     if remedy.scale != 1.0:
-        return f"Size × {remedy.scale:.3g}"
+        if finding.kind is FindingKind.SIZE:
+            return f"Scale to {finding.amount * remedy.scale:.2f} m"
+        return f"Scale × {remedy.scale:.3g}"
     return REMEDIES[finding.kind]
 
 

@@ -6,12 +6,14 @@ from dataclasses import dataclass, replace
 from textwrap import shorten
 
 from ...solver.data.faults import Fault, NoFit, NoSolution
+from ...solver.data.row_kinds import RowKind
 from .messages import Translate, missed, sentence
 
 NO_MOTION = "No motion: {}"
 NO_FIT = "The recording itself cannot be held: {}"
 REACHED = "The best found goes {} % of the way."
 MOST_ROWS = 4
+LAWS = (RowKind.BALANCE, RowKind.MOMENT)  # told last: only what was asked for can be asked less of
 MOST_LETTERS = 100  # of the short line
 
 
@@ -28,7 +30,8 @@ class Failure:
     """Why the last solve of an armature (its number in this session) failed.
 
     short: one line for the status bar. text: the whole of it, or what it says beside that line and
-    the rows where there are rows, worst first. of: the operator that failed. fault: what happened.
+    the rows where there are rows: what was asked for, the worst first, before laws of motion. of:
+    the operator that failed. fault: what happened.
     """
 
     uid: int
@@ -50,9 +53,15 @@ def failure_of(fault: Fault, uid: int, of: str, translate: Translate = str) -> F
     if not isinstance(fault, NoSolution) or not fault.worst:
         first = told.partition("; ")[0].rstrip(".")
         return Failure(uid, of, fault, shorten(first, MOST_LETTERS, placeholder=" …"), told)
-    rows = tuple(FailureRow(each.name, missed(each, translate)) for each in fault.worst[:MOST_ROWS])
-    head = translate(NO_FIT if isinstance(fault, NoFit) else NO_MOTION).format(rows[0].text)
+    worst = sorted(fault.worst, key=lambda each: each.kind in LAWS)[:MOST_ROWS]
+    rows = tuple(FailureRow(each.name, _begun_large(missed(each, translate))) for each in worst)
+    first = missed(worst[0], translate)
+    head = translate(NO_FIT if isinstance(fault, NoFit) else NO_MOTION).format(first)
     advice = sentence(replace(fault, worst=()), translate)
     if fault.reached > 0.0:
         advice = f"{advice} {translate(REACHED).format(round(100.0 * fault.reached))}"
     return Failure(uid, of, fault, head, advice, rows)
+
+
+def _begun_large(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -69,6 +69,17 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is.",
         "No bone was found for the {part} (looked for {tried:names}); say which bone it is.",
     ),
+    faults.NotMirrored: (
+        "The clip cannot be mirrored: no bone's name tells its side; name them such as “LeftFoot” "
+        "and “RightFoot”.",
+        "The clip cannot be mirrored: “{bone}” has no “{partner}” in the same place on the other "
+        "side; give the bones of both sides the same names but for the side.",
+        "The clip cannot be mirrored: “{bone}” is on one side of the body, which its name does not "
+        "tell; name it such as “LeftFoot” or “foot.L”, and its partner likewise.",
+    ),
+    faults.MirroredInBlender: "A clip is mirrored without Blender only, whose armature would keep "
+    "its own sides' lengths; take a BVH or AMC clip and the batch's outputs npz and bvh, or take "
+    "“mirrored” away.",
     faults.BoneTaken: "No bone is left for the {part}, for “{bone}” was chosen for the {by}; "
     "choose another bone for one of them.",
     faults.NotJoined: "The bones {bones:names} have no common bone above them, so that legs and "
@@ -307,6 +318,8 @@ def _variant(fault: Fault) -> int:
     match fault:
         case faults.NoArmature():
             return fault.object_name is not None
+        case faults.NotMirrored():
+            return 2 if fault.bone and fault.bone == fault.partner else bool(fault.bone)
         case faults.MissingPart():
             return min(len(fault.tried), 2)
         case faults.UnreadableClip() | faults.BadRecipe():

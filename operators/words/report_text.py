@@ -91,7 +91,10 @@ def certificate_lines(report: Report) -> list[str]:
     failed, count = report.failed, len(report.certificate)
     if not failed:
         return [f"Certificate: all {count} lines hold"]
-    named = [f"Not: {line_told(line)}" for line in most_telling(failed)]
+    named = [
+        f"Beyond its limit of {with_unit(line.limit, line.unit)}: {line_told(line)}"
+        for line in most_telling(failed)
+    ]
     return [f"Certificate: {count - len(failed)} of {count} lines hold", *named]
 
 

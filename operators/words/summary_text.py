@@ -1,5 +1,7 @@
 """What the sidebar says of a result: whether it holds, how long it took, how hard it is."""
 
+from collections.abc import Mapping
+
 from ...solver.data.reports.constraints import ConstraintReport, ContactReport
 from ...solver.data.reports.dynamics import ForcePeak
 from ...solver.worker.protocol import Adapted
@@ -14,8 +16,11 @@ from .report_text import (
 )
 
 
-def summary(answer: Adapted) -> str:
-    """Lines for the sidebar: how well it holds, how long it took, how hard the ground pushes."""
+def summary(answer: Adapted, roles: Mapping[str, str]) -> str:
+    """Lines for the sidebar: how well it holds, how long it took, how hard the ground pushes.
+
+    roles: what stances are to the clip, such as "Landing", by their phases' names.
+    """
     report = answer.report
     worst = max(report.contacts, key=lambda contact: contact.loaded_slide_mm, default=None)
     seconds = sum(stage.seconds for stage in report.stages or ())
@@ -30,7 +35,8 @@ def summary(answer: Adapted) -> str:
             *([] if worst is None else [_slides(worst)]),
             *(f"{c.name}: {_held(c)}" for c in report.conditions if not c.kind.guards),
             *(
-                f"{p.phase.capitalize()}: {p.adapted_s:.2f} s, was {p.recorded_s:.2f} s"
+                f"{roles.get(p.phase, p.phase.capitalize())}: {p.adapted_s:.2f} s, "
+                f"was {p.recorded_s:.2f} s"
                 for p in retimed(report)
             ),
             *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),

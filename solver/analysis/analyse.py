@@ -24,10 +24,10 @@ from ..data.faults import (
     UnseenSupport,
 )
 from ..data.problem import MotionProblem, Unseen
-from ..data.recording import Recording
+from ..data.recording import Recording, Skin
+from ..scene.belt import belt_speed
 from ..scene.fall_rate import fitting_rate
 from ..scene.support import boxes_beneath
-from .belt import belt_speed
 from .contact_detection import unseen_support
 from .grounding import disjoint, foot_sized, grounded, parted
 from .performance import Performance, contact_points, find_contacts, perform, snap_tolerance
@@ -58,7 +58,7 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     and Treadmill where the problem refuses what they tell.
     """
     within, character = build_figure(recording, problem)
-    performance = _performed(recording, within, character)
+    performance = _performed(recording, within, character, problem.skin)
     # Parted before corrections, for those are the last word.
     found = parted(find_contacts(performance, problem.scene))
     corrected = disjoint(_corrected(found, problem, performance))
@@ -73,11 +73,13 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     return Analysis(performance, schedule, told)
 
 
-def _performed(recording: Recording, within: Recording, character: Character) -> Performance:
+def _performed(
+    recording: Recording, within: Recording, character: Character, skin: Skin | None
+) -> Performance:
     """The performance in a range of a recording, with what is known of the frames beyond."""
-    performance, take = perform(within, character), take_of(recording, within)
+    performance, take = perform(within, character, skin), take_of(recording, within)
     if len(take.frames) > len(within.frames):
-        performance = replace(performance, longer=perform(take, character))
+        performance = replace(performance, longer=perform(take, character, skin))
     return performance
 
 
@@ -90,7 +92,7 @@ def part_of(analysis: Analysis, start: float, end: float) -> Analysis:
     times, frames = whole.times, whole.recording.frames
     some = np.flatnonzero((times >= start) & (times <= end))
     within = whole.recording.window(float(frames[some[0]]), float(frames[some[-1]]))
-    performance = _performed(whole.take.recording, within, whole.character)
+    performance = _performed(whole.take.recording, within, whole.character, whole.skin)
     return Analysis(performance, schedule.part(float(times[some[0]]), float(times[some[-1]])))
 
 

@@ -1,6 +1,6 @@
 """Joint angles and centre of mass of a recording, and its candidate contact points."""
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from functools import partial
 
@@ -11,11 +11,12 @@ from ..body.anatomy import Part, Side
 from ..body.character import Character, body_rotations
 from ..body.kinematics import BodyPoint
 from ..data.contacts import ContactPoint, ContactSchedule, PointKind, snap
-from ..data.recording import Recording
+from ..data.recording import Recording, Skin
 from ..data.scene import SceneObject
 from ..numerics.interpolation import interpolate
 from ..scene.support import StandingGround
 from .contact_detection import detect_contacts
+from .skin import skin_of_bodies
 from .soles import FootTracks, floor_height, foot_points
 
 SNAP_FRAMES = 1.5
@@ -28,7 +29,7 @@ class Performance:
 
     rotations: (T, B, 3, 3) body to world. centres: (T, B, 3) m, joint centres as recorded.
     angles: (T, n_angles) rad. com: (T, 3) m. World frame. longer: the same with frames beyond the
-    recording's, in its times, where there are any.
+    recording's, in its times, where there are any. skin: of the figure, where one tells its soles.
     """
 
     recording: Recording
@@ -38,6 +39,7 @@ class Performance:
     angles: FloatArray
     com: FloatArray
     longer: "Performance | None" = None
+    skin: Skin | None = None
 
     @property
     def take(self) -> "Performance":
@@ -57,7 +59,7 @@ class Performance:
         return interpolate(self.times, self.centres[:, bodies] + turned, times)
 
 
-def perform(recording: Recording, character: Character) -> Performance:
+def perform(recording: Recording, character: Character, skin: Skin | None = None) -> Performance:
     """Joint angles and centre of mass of a recording (the inverse of forward kinematics)."""
     bones = [recording.index(body.bone) for body in character.bodies]
     rotations = body_rotations(recording, bones)
@@ -72,9 +74,8 @@ def perform(recording: Recording, character: Character) -> Performance:
     local = np.stack([body.com for body in character.bodies])
     coms = centres + np.einsum("tbij,bj->tbi", rotations, local)
     com = np.einsum("b,tbi->ti", masses / masses.sum(), coms)
-    return Performance(
-        recording, character, rotations, centres, np.concatenate(columns, axis=1), com
-    )
+    angles = np.concatenate(columns, axis=1)
+    return Performance(recording, character, rotations, centres, angles, com, skin=skin)
 
 
 def find_contacts(performance: Performance, scene: Sequence[SceneObject] = ()) -> ContactSchedule:
@@ -138,9 +139,7 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
     last = foot if toe is None else toe
     ankle = performance.centres[:, foot]
     tip = performance.centres[:, last] + performance.rotations[:, last] @ character.bodies[last].tip
-    rest = [
-        recording.bones[recording.index(character.bodies[i].bone)].rotation for i in (foot, last)
-    ]
+    bones = [recording.bones[recording.index(character.bodies[i].bone)] for i in (foot, last)]
     return FootTracks(
         side=side.value.capitalize(),
         foot_bone=character.bodies[foot].bone,
@@ -151,6 +150,17 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
         tip=tip,
         foot_rotation=performance.rotations[:, foot],
         toe_rotation=performance.rotations[:, last],
-        foot_rest=rest[0],
-        toe_rest=rest[1],
+        foot_rest=bones[0].rotation,
+        toe_rest=bones[1].rotation,
+        skin=_skin_of(performance, {foot, last}, bones[0].head),
     )
+
+
+def _skin_of(performance: Performance, bodies: Set[int], origin: FloatArray) -> FloatArray:
+    """(N, 3) m, points of bodies' skin in the rest pose, from a place (3,) of it."""
+    if performance.skin is None:
+        return np.zeros((0, 3))
+    recording, character = performance.recording, performance.character
+    points = skin_of_bodies(performance.skin, recording, character)
+    heads = {i: recording.bones[recording.index(character.bodies[i].bone)].head for i in bodies}
+    return np.concatenate([points[i] + heads[i] - origin for i in bodies])

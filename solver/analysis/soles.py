@@ -1,4 +1,7 @@
-"""Heel and toe contact points on the foot bones, and floor height, from standing frames."""
+"""Heel and toe contact points on the foot bones, and floor height, from standing frames.
+
+Where the figure has a skin, its soles tell how high they are over the floor and how far they go.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,15 +10,22 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray
 from ..data.contacts import ContactPoint, PointKind
+from ..numerics.rotations import unit
 
 HEEL_OFFSET_RATIO = 0.3  # of the level distance from ankle to ball; where plates see it press
 TOE_OFFSET_RATIO = 0.75  # of the way from ball to tip; what lies beyond cannot dip under the floor
 PRESSING_RATIO = 0.3  # of the same way; where plates see it press until it leaves
 MAX_SOLE_THICKNESS = 0.08  # m from the ball joint to the floor
+MAX_ANKLE_HEIGHT = 0.12  # m, of one in a shoe
 DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
 STANDING_HEIGHT_BAND = 0.02  # m; how much the height of a standing foot varies
 MIN_STANDING_FRAMES = 4
+FEWEST = 30  # points of skin that tell a foot's shape
+OUTSIDE = 0.02  # share of them that lie further out than its sole's ends
+HEEL_OF_SOLE = 0.67  # of the way from ankle to the heel's end; where plates see it press
+# Of the way from ankle to the toes' end, the ball's: from the lengths in skeleton/ends.py.
+BALL_OF_SOLE = 0.66
 
 
 @dataclass(frozen=True)
@@ -25,7 +35,7 @@ class FootTracks:
     side: as in the points' names ("Left"). hip, ankle, ball, tip: (T, 3) m; the heads of the thigh,
     foot and toe bones, and the toe's end. foot_rotation, toe_rotation: (T, 3, 3), body to world;
     foot_rest, toe_rest: (3, 3) bone to body. A rig without toes names its foot bone twice, with
-    the foot's tail as ball and tip.
+    the foot's tail as ball and tip. skin: (N, 3) m, points of foot and toes, in the foot's frame.
     """
 
     side: str
@@ -39,6 +49,25 @@ class FootTracks:
     toe_rotation: FloatArray
     foot_rest: FloatArray
     toe_rest: FloatArray
+    skin: FloatArray
+
+    @property
+    def has_toes(self) -> bool:
+        """Whether a bone of their own moves the toes."""
+        return self.toe_bone != self.foot_bone
+
+
+@dataclass(frozen=True)
+class _Sole:
+    """A standing foot's sole: m from the ankle down, and along the floor back and ahead.
+
+    ahead: (T, 3) unit vectors along the floor, from ankle to ball.
+    """
+
+    down: float
+    back: float
+    front: float
+    ahead: FloatArray
 
 
 def floor_height(times: FloatArray, feet: Sequence[FootTracks]) -> float:
@@ -46,7 +75,20 @@ def floor_height(times: FloatArray, feet: Sequence[FootTracks]) -> float:
 
     The height 0 is taken where it can be the floor, since recordings are made upon it.
     """
-    lowest = min(_standing(times, foot)[1] for foot in feet)
+    standing = [_standing(times, foot) for foot in feet]
+    soles = [_sole(foot, flat) for foot, (flat, _) in zip(feet, standing, strict=True)]
+    ankles = [
+        float(np.median(foot.ankle[flat, 2]))
+        for foot, (flat, _) in zip(feet, standing, strict=True)
+    ]
+    under = [
+        ankle - sole.down for ankle, sole in zip(ankles, soles, strict=True) if sole is not None
+    ]
+    if len(under) == len(feet):
+        return 0.0 if abs(min(under)) <= STANDING_HEIGHT_BAND else min(under)
+    if not any(foot.has_toes for foot in feet) and 0.0 < min(ankles) <= MAX_ANKLE_HEIGHT:
+        return 0.0  # the tails, which are their balls, often lie
+    lowest = min(ball for _, ball in standing)
     return 0.0 if 0.0 < lowest <= MAX_SOLE_THICKNESS else lowest - DEFAULT_SOLE_THICKNESS
 
 
@@ -60,8 +102,9 @@ def foot_points(
     points = {}
     for foot in feet:
         flat, _ = _standing(times, foot)
-        heel = foot.ankle - HEEL_OFFSET_RATIO * _level(foot.ball - foot.ankle)
-        toe_head = foot.ankle if foot.toe_bone == foot.foot_bone else foot.ball
+        sole = _sole(foot, flat)
+        heel, ball, tip = _joint_places(foot) if sole is None else _sole_places(foot, sole)
+        toe_head = foot.ball if foot.has_toes else foot.ankle
         toe, pressing = (
             _fixed_in(
                 PointKind.TOE,
@@ -69,7 +112,7 @@ def foot_points(
                 toe_head,
                 foot.toe_rotation,
                 foot.toe_rest,
-                _on_floor(foot.ball + ratio * _level(foot.tip - foot.ball), floor_m),
+                _on_floor(ball + ratio * _level(tip - ball), floor_m),
                 flat,
             )
             for ratio in (TOE_OFFSET_RATIO, PRESSING_RATIO)
@@ -88,6 +131,40 @@ def foot_points(
         )
         points[f"{foot.side} toe"] = replace(toe, hip=foot.hip, pressing=pressing.track)
     return points
+
+
+def _joint_places(foot: FootTracks) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Tracks (T, 3) m of what the heel stands over, of the ball and of the toes' end."""
+    heel = foot.ankle - HEEL_OFFSET_RATIO * _level(foot.ball - foot.ankle)
+    return heel, foot.ball, foot.tip
+
+
+def _sole_places(foot: FootTracks, sole: _Sole) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The same by the sole. A rig without toes does not tell the ball: its tail may be anywhere."""
+    heel = foot.ankle - HEEL_OF_SOLE * sole.back * sole.ahead
+    tip = foot.ankle + sole.front * sole.ahead
+    ball = foot.ball if foot.has_toes else foot.ankle + BALL_OF_SOLE * sole.front * sole.ahead
+    return heel, ball, tip
+
+
+def _sole(foot: FootTracks, flat: BoolArray) -> _Sole | None:
+    """None where too little skin tells, or the ankle is not within it.
+
+    flat: (T,) frames in which the foot stands.
+    """
+    ahead = _level(foot.ball - foot.ankle)
+    lengths = np.linalg.norm(ahead, axis=1, keepdims=True)
+    if len(foot.skin) < FEWEST or not lengths.all():
+        return None
+    ahead = ahead / lengths
+    onwards = np.einsum("tji,tj->i", foot.foot_rotation[flat], ahead[flat])
+    up = foot.foot_rotation[flat][:, 2].sum(axis=0)
+    heights, along = foot.skin @ unit(up), foot.skin @ unit(onwards)
+    down, back = -np.quantile(heights, OUTSIDE), -np.quantile(along, OUTSIDE)
+    front = np.quantile(along, 1.0 - OUTSIDE)
+    if min(down, back, front) <= 0.0:
+        return None
+    return _Sole(float(down), float(back), float(front), ahead)
 
 
 def _standing(times: FloatArray, foot: FootTracks) -> tuple[BoolArray, float]:

@@ -113,12 +113,21 @@ class MomentumRate:
         Accelerations are from the root's centre: what all bodies share has no moment about the
         centre of mass.
         """
+        carried, spin = self.of_bodies(posed, speeds, accelerations)
+        moment = cross(instants_last(posed.body_coms), self.masses * carried) + spin
+        return np.asarray(moment.sum(axis=0).T)
+
+    def of_bodies(
+        self, posed: Pose, speeds: FloatArray, accelerations: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """(B, 3, N) of each body, world axes: its centre of mass's acceleration from the root's
+        centre, m/s², and the rate of its spin about it, I alpha + omega x I omega, N·m."""
         axes, centres, coms = (
-            _instants_last(v) for v in (posed.axes, posed.centres, posed.body_coms)
+            instants_last(v) for v in (posed.axes, posed.centres, posed.body_coms)
         )
         turn = axes * speeds.T[:, None]
         turned = _summed(turn, self._angles_before)
-        gained = axes * accelerations.T[:, None] + _cross(turned - turn, turn)
+        gained = axes * accelerations.T[:, None] + cross(turned - turn, turn)
         omega, alpha = (
             turned[self._last_angle],
             _summed(gained, self._angles_before)[self._last_angle],
@@ -126,11 +135,17 @@ class MomentumRate:
         above = np.maximum(self._bodies_before, 0)
         hung = _swung(omega[above], alpha[above], centres - centres[above])
         carried = _summed(hung, self._bodies_before) + _swung(omega, alpha, coms - centres)
-        R = _instants_last(posed.rotations)
+        R = instants_last(posed.rotations)
         omega, alpha = (_times(R.swapaxes(1, 2), each) for each in (omega, alpha))
-        spin = _times(self._inertias, alpha) + _cross(omega, _times(self._inertias, omega))
-        moment = _cross(coms, self.masses * carried) + _times(R, spin)
-        return np.asarray(moment.sum(axis=0).T)
+        spin = _times(self._inertias, alpha) + cross(omega, _times(self._inertias, omega))
+        return carried, _times(R, spin)
+
+    def outward(self, each: FloatArray) -> FloatArray:
+        """(B, ...) sums over each body and all that hangs on it."""
+        total = each.copy()
+        for i in reversed(range(1, len(self._bodies_before))):
+            total[self._bodies_before[i]] += total[i]
+        return total
 
     def derivatives(
         self, posed: Pose, speeds: FloatArray, accelerations: FloatArray
@@ -148,9 +163,9 @@ class MomentumRate:
         with Q the integral of place times place.
         """
         axes, centres, coms = (
-            _instants_last(v) for v in (posed.axes, posed.centres, posed.body_coms)
+            instants_last(v) for v in (posed.axes, posed.centres, posed.body_coms)
         )
-        S = _Spatial(axes, _cross(centres[self.character.body_of_angle], axes))
+        S = _Spatial(axes, cross(centres[self.character.body_of_angle], axes))
         own = S.scaled(speeds)
         V = own.summed(self._angles_before)
         before = V.less(own)
@@ -163,11 +178,11 @@ class MomentumRate:
         A_before = A.less(gained)
         A_before = _Spatial(A_before.turn, A_before.move - bodies.shared)
         second = A_before.across(S).plus(before.across(rate))
-        whole = bodies.outward(self._bodies_before)
+        whole = bodies.each(self.outward)
         sums = whole.some(self.character.body_of_angle)
         by_a = sums.momentum(S)
         by_v = 2.0 * (sums.momentum(rate) + sums.swept(S.turn))
-        by_q = _cross(S.turn, sums.moment) + _cross(S.move, sums.force) + sums.momentum(second)
+        by_q = cross(S.turn, sums.moment) + cross(S.move, sums.force) + sums.momentum(second)
         by_q += 2.0 * sums.swept(rate.turn)
         return whole.moment[0], by_q, by_v, by_a
 
@@ -199,9 +214,9 @@ class _Spatial:
 
     def across(self, other: "_Spatial") -> "_Spatial":
         """Spatial cross product (Featherstone 2008, ch. 2.9)."""
-        move = _cross(self.turn, other.move)
-        move += _cross(self.move, other.turn)
-        return _Spatial(_cross(self.turn, other.turn), move)
+        move = cross(self.turn, other.move)
+        move += cross(self.move, other.turn)
+        return _Spatial(cross(self.turn, other.turn), move)
 
 
 @dataclass(frozen=True)
@@ -225,38 +240,28 @@ class _BodySums:
         mass = rate.masses
         local = rate.local_seconds  # about its own centre of mass
         R = posed.rotations
-        own = _instants_last(R @ local @ np.swapaxes(R, -1, -2))
+        own = instants_last(R @ local @ np.swapaxes(R, -1, -2))
         first = mass * coms
-        velocity = V.move + _cross(V.turn, coms)
-        acceleration = A.move + _cross(A.turn, coms) + _cross(V.turn, velocity)
+        velocity = V.move + cross(V.turn, coms)
+        acceleration = A.move + cross(A.turn, coms) + cross(V.turn, velocity)
         shared = (mass * acceleration).sum(axis=0) / mass.sum()
         force = mass * (acceleration - shared)
-        turning = np.stack([_cross(V.turn, own[:, :, k]) for k in range(3)], axis=2)
-        spin = _trace(own) * A.turn - _times(own, A.turn) - _cross(V.turn, _times(own, V.turn))
+        turning = np.stack([cross(V.turn, own[:, :, k]) for k in range(3)], axis=2)
+        spin = _trace(own) * A.turn - _times(own, A.turn) - cross(V.turn, _times(own, V.turn))
         return _BodySums(
             own + first[:, :, None] * coms[:, None],
             first,
             turning + velocity[:, :, None] * first[:, None],
             force,
-            spin + _cross(coms, force),
+            spin + cross(coms, force),
             shared,
         )
 
-    def outward(self, before: list[int]) -> "_BodySums":
-        """Sums over each body and all that hangs on it."""
-
-        def summed(each: FloatArray) -> FloatArray:
-            total = each.copy()
-            for i in reversed(range(1, len(before))):
-                total[before[i]] += total[i]
-            return total
-
-        return self._of_each(summed)
-
     def some(self, which: IntArray) -> "_BodySums":
-        return self._of_each(lambda each: each[which])
+        return self.each(lambda each: each[which])
 
-    def _of_each(self, work: Callable[[FloatArray], FloatArray]) -> "_BodySums":
+    def each(self, work: Callable[[FloatArray], FloatArray]) -> "_BodySums":
+        """What `work` makes of the integrals."""
         return _BodySums(
             work(self.second),
             work(self.first),
@@ -270,7 +275,7 @@ class _BodySums:
         """(K, 3, N) angular momentum of motions of each."""
         found = _trace(self.second) * motion.turn
         found -= _times(self.second, motion.turn)
-        found += _cross(self.first, motion.move)
+        found += cross(self.first, motion.move)
         return found
 
     def swept(self, turns: FloatArray) -> FloatArray:
@@ -283,7 +288,7 @@ def _trace(matrices: FloatArray) -> FloatArray:
     return np.asarray((matrices[:, 0, 0] + matrices[:, 1, 1] + matrices[:, 2, 2])[:, None])
 
 
-def _instants_last(each: FloatArray) -> FloatArray:
+def instants_last(each: FloatArray) -> FloatArray:
     """(..., N) of (N, ...)."""
     return np.ascontiguousarray(np.moveaxis(each, 0, -1))
 
@@ -305,10 +310,10 @@ def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
 
 def _swung(omega: FloatArray, alpha: FloatArray, arm: FloatArray) -> FloatArray:
     """Acceleration of arms' ends from their beginnings."""
-    return _cross(alpha, arm) + _cross(omega, _cross(omega, arm))
+    return cross(alpha, arm) + cross(omega, cross(omega, arm))
 
 
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     """Cross products (K, 3, N) over the middle axis."""
     product = np.empty(a.shape)
     for i in range(3):

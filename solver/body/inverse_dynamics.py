@@ -1,5 +1,5 @@
-"""Equations of motion as CasADi functions: inverse dynamics by the recursive Newton-Euler algorithm
-(Featherstone 2008, ch. 5.3)."""
+"""Inverse dynamics by the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3): in arrays,
+and as CasADi expressions where derivatives are wanted."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,9 +8,9 @@ import casadi as ca
 import numpy as np
 
 from ..arrays import FloatArray
-from ..numerics.batch_function import BatchFunction
 from .character import Character
-from .kinematics import BodyPoint
+from .dynamics import MomentumRate, cross, instants_last
+from .kinematics import BodyPoint, forward_kinematics
 
 
 @dataclass(frozen=True)
@@ -121,17 +121,12 @@ class _Wrench:
 
 
 class InverseDynamics:
-    """Vectorised inverse dynamics of a character with external forces at chosen points."""
+    """Inverse dynamics of a character with external forces at chosen points, in arrays: for what is
+    measured, which needs no derivatives."""
 
     def __init__(self, character: Character, points: Sequence[BodyPoint] = ()) -> None:
-        n = character.n_angles
-        self.n_angles, self.n_points = n, len(points)
-        q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
-        com_acceleration = ca.SX.sym("com_acceleration", 3)
-        forces = ca.SX.sym("forces", 3, len(points))
-        every = inverse_dynamics(character, points, q, v, a, com_acceleration, forces)
-        x = ca.vertcat(q, v, a, com_acceleration, ca.vec(forces))
-        self._function = BatchFunction("inverse_dynamics", x, [ca.cse(every)])
+        self._character, self._points = character, points
+        self._momentum = MomentumRate(character)
 
     def __call__(
         self,
@@ -141,14 +136,29 @@ class InverseDynamics:
         com_acceleration: FloatArray,
         forces: FloatArray,
     ) -> GeneralisedForces:
-        """Generalised forces of a movement.
+        """Generalised forces of a movement, as `inverse_dynamics` tells them.
 
         q, v, a: (N, n_angles) joint angles, rad, and their derivatives by s. com_acceleration:
-        (N, 3) m/s², forces on the body: (N, P, 3) N; both in world axes.
+        (N, 3) m/s², forces on the body: (N, P, 3) N; both in world axes. Wrenches are taken about
+        the centre of mass and summed from the leaves inwards (Featherstone 2008, ch. 5.3).
         """
-        x = np.concatenate([q, v, a, com_acceleration, forces.reshape(len(q), -1)], axis=1)
-        (out,) = self._function(x)
-        return GeneralisedForces(out[:, :3], out[:, 3:6], out[:, 6:])
+        character, masses = self._character, self._momentum.masses
+        posed = forward_kinematics(character, q)
+        carried, moment = self._momentum.of_bodies(posed, v, a)
+        shared = (masses * carried).sum(axis=0) / character.mass
+        fall = np.array([0.0, 0.0, character.gravity])[:, None]
+        force = masses * (carried - shared + com_acceleration.T + fall)
+        moment += cross(instants_last(posed.body_coms), force)
+        if self._points:
+            arms, pushes = (instants_last(v) for v in (posed.points(self._points), forces))
+            bodies = [point.body for point in self._points]
+            np.subtract.at(force, bodies, pushes)
+            np.subtract.at(moment, bodies, cross(arms, pushes))
+        force, moment = self._momentum.outward(force), self._momentum.outward(moment)
+        at_joints = moment - cross(instants_last(posed.centres), force)
+        axes, bodies_of = instants_last(posed.axes), character.body_of_angle
+        torques = (axes * at_joints[bodies_of]).sum(axis=1)
+        return GeneralisedForces(force[0].T, moment[0].T, torques[3:].T)
 
 
 def inverse_dynamics(

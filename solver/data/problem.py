@@ -88,7 +88,9 @@ class MotionProblem:
     skin: of the recording's figure, where it has one. unseen: what to do where the recording does
     not show what carries the body. good_enough: m by which a contact that the fit cannot hold
     exactly may miss its place. mend: repairs of the recording's poses, and drift: m/s along the
-    floor, that is taken out of its way from the first frame on; before anything else.
+    floor, that is taken out of its way from the first frame on; before anything else. mirrored:
+    whether the recording is then mirrored, across the body at the first frame; pins and contacts
+    are on the mirrored one's.
     """
 
     frames: tuple[float, float] | None = None
@@ -107,12 +109,13 @@ class MotionProblem:
     good_enough: float = 5e-4
     mend: tuple[Mend, ...] = ()
     drift: tuple[float, float] = (0.0, 0.0)
+    mirrored: bool = False
 
     def known_to_fit(self) -> str:
-        """Everything but pins, scene, skin and requests, which the fit does not know, as text."""
+        """Everything but pins, scene and requests, which the fit does not know, as text."""
         bones = dict(sorted(self.bones.items()))
         known = replace(self, pins=(), scene=(), skin=None, requests=Requests(), bones=bones)
-        return repr(known)
+        return repr((known, self.skin and self.skin.digest()))
 
     def keeping_times(self) -> "MotionProblem":
         """The same, but for durations that are not asked for."""

@@ -44,6 +44,13 @@ class Skin:
         """With every length times `factor`, about the world's origin."""
         return replace(self, points=factor * self.points)
 
+    def digest(self) -> str:
+        """SHA-256, hexadecimal, of everything."""
+        content = hashlib.sha256(repr((self.meshes, self.bones)).encode())
+        for values in (self.points, self.owners):
+            content.update(values.tobytes())
+        return content.hexdigest()
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Skin):
             return NotImplemented

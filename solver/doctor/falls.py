@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..analysis.performance import Performance, contact_points
+from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import PointKind
 from ..scene.fall_rate import USUAL_RATES
@@ -62,14 +63,24 @@ def falls_of(performance: Performance) -> Falls | None:
         curve = np.polyfit(clock, path, 2)
         missed = float(np.sqrt(np.mean((path - np.polyval(curve, clock)) ** 2)))
         if curve[0] < 0.0 and missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4):
-            found.append((-2.0 * float(curve[0]), float(clock[-1])))
+            found.append((_acceleration(clock, path), float(clock[-1])))
             spans.append((float(frames[first]), float(frames[last])))
     if not found:
         return None
     accelerations, durations = np.array(found).T
-    # Of a parabola through evenly spaced noisy samples the curvature's variance goes as T^-5.
-    mean = float(np.average(accelerations, weights=durations**4))
+    # Of the slope of velocities with independent errors the variance goes as T^-3.
+    mean = float(np.average(accelerations, weights=durations**3))
     return Falls(mean, float(durations.max()), tuple(spans))
+
+
+def _acceleration(clock: FloatArray, path: FloatArray) -> float:
+    """M/s², downwards, of heights (T,), m, at instants (T,), s: minus the slope of the velocities.
+
+    How far the centre of mass is from where it seems wanders slowly, as limbs move whose masses are
+    not known: its steps are independent, not its places, which a parabola would take for so.
+    """
+    middles = 0.5 * (clock[1:] + clock[:-1])
+    return -float(np.polyfit(middles, np.diff(path) / np.diff(clock), 1)[0])
 
 
 def find_scale(performance: Performance) -> Finding | None:

@@ -12,6 +12,7 @@ from ..data.problem import Mend, MotionProblem
 from ..data.recording import Recording
 from ..data.scaling import scaled_recording
 from ..skeleton.bind_pose import bind_frames
+from ..skeleton.mirror import mirrored
 from .figure import Figure, figure_of
 from .lengths import kept_lengths
 from .local_poses import LocalPoses
@@ -32,18 +33,18 @@ def repaired(
 
 
 def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
-    """The recording with what a problem asks to be mended, in its own lengths, and without drift
-    from the problem's first frame on. Raises MissingPart."""
+    """The recording with what a problem asks to be mended, in its own lengths, without drift from
+    the problem's first frame on, and mirrored. Raises MissingPart, NotMirrored."""
     if problem.mend:
         held = bind_frames(recording)  # else the jump from the rest pose is smoothed into the rest
         if problem.frames is None or recording.frames[held] <= problem.frames[0]:
             recording = trimmed(recording, Repairs(trim=held))
         recording = mended(recording, Repairs(mend=problem.mend), problem.bones)
-    if not any(problem.drift):
-        return recording
-    first = recording.frames[0] if problem.frames is None else problem.frames[0]
-    begins = float(np.interp(first, recording.frames, recording.times))
-    return _without_drift(recording, recording.times - begins, problem.drift)
+    first = float(recording.frames[0]) if problem.frames is None else problem.frames[0]
+    if any(problem.drift):
+        begins = float(np.interp(first, recording.frames, recording.times))
+        recording = _without_drift(recording, recording.times - begins, problem.drift)
+    return mirrored(recording, first) if problem.mirrored else recording
 
 
 def _without_drift(

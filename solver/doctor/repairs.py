@@ -36,6 +36,11 @@ class Repairs:
     drift: tuple[float, float] = (0.0, 0.0)
     floor: float = 0.0
 
+    @property
+    def places(self) -> bool:
+        """Whether the figure is turned, scaled or lowered, as the scene can show it."""
+        return self.up is not UpAxis.Z or self.scale != 1.0 or self.floor != 0.0
+
     def without(self, other: Repairs) -> Repairs:
         """These, but for what the other changes."""
         usual = Repairs()

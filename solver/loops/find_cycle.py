@@ -38,7 +38,7 @@ def find_cycle(recording: Recording, problem: MotionProblem) -> Cycle:
     within, character = build_figure(recording, problem)
     take = take_of(recording, within)
     take = replace(take, times=take.times - take.times[0])
-    performance = perform(take, character)
+    performance = perform(take, character, problem.skin)
     seams = _Seams(parted(find_contacts(performance, problem.scene)), take.rate)
     asked = float(within.frames[0]), float(within.frames[-1])
     first, count = _nearest(seams, take.frames, asked)

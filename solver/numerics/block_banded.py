@@ -5,6 +5,7 @@ the unknowns are ordered by time in K blocks of n, and a block row holds at most
 left of its diagonal: three, or four where neighbouring spans are compared with each other.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from ..arrays import FloatArray, IntArray
 
 BANDWIDTH = 3
 NEGLIGIBLE = 1e-8  # of a column's length
+SMALL = 20  # unknowns; a triangle of less than twice as many is inverted as it is
 
 
 class BlockBanded:
@@ -54,6 +56,16 @@ class BlockBanded:
                 block = self.lower[row - column][:, part, part]
                 block[first + column] += windows[:, row, :, column, :]
 
+    def add_squares(self, first: IntArray, rows: Iterable[FloatArray]) -> None:
+        """Assembly: adds J'J of each window's rows J (R, w n) at block rows first (S,), w at most
+        band + 1. What is added together lies together."""
+        n = self.lower.shape[2]
+        for k, J in zip(first.tolist(), rows, strict=True):
+            wide = J.shape[1]
+            for j in range(wide // n):
+                column = self._columns[k + j].reshape(-1, n)
+                column[: wide - j * n] += J[:, j * n :].T @ J[:, j * n : (j + 1) * n]
+
     def congruent(self, change: FloatArray) -> "BlockBanded":
         """Congruence T' A T, block by block, with T (n, k), a basis of every block's unknowns."""
         twin = BlockBanded(self.lower.shape[1], change.shape[1], self.band)
@@ -88,29 +100,43 @@ class BlockBanded:
         diagonal = np.diagonal(self.lower[0], axis1=1, axis2=2)
         if not (diagonal > 0.0).all():
             raise np.linalg.LinAlgError("the matrix is not positive definite")
-        size = np.concatenate([np.sqrt(diagonal), np.ones((band, n))])  # (K + band, n)
+        root = np.concatenate([np.sqrt(diagonal), np.ones((band, n))])  # (K + band, n)
+        size, share = root.reshape(-1, 1), 1.0 / root
         columns = self._columns.reshape(count + band, (band + 1) * n, n)
         for k in range(min(band, count)):
-            _to_unit_diagonal(columns[k], size, k)
+            _to_unit_diagonal(columns[k], share, k)
         for k in range(count):
             # What is used together stays in the processor's cache.
             if k + band < count:
-                _to_unit_diagonal(columns[k + band], size, k + band)
-            inverse = np.linalg.inv(np.linalg.cholesky(columns[k, :n]))
+                _to_unit_diagonal(columns[k + band], share, k + band)
+            inverse = triangular_inverse(np.linalg.cholesky(columns[k, :n]))
             panel = columns[k, n:] @ inverse.T
             update = panel @ panel.T
             for j in range(band):
                 columns[k + 1 + j, : (band - j) * n] -= update[j * n :, j * n : (j + 1) * n]
-            columns[k, n:] = panel * size[k + 1 : k + 1 + band].reshape(-1, 1)
-            columns[k, :n] = inverse / size[k]
+            np.multiply(panel, size[(k + 1) * n : (k + 1 + band) * n], out=columns[k, n:])
+            np.multiply(inverse, share[k], out=columns[k, :n])
         return CholeskyFactor(columns[:count])
 
 
-def _to_unit_diagonal(column: FloatArray, size: FloatArray, k: int) -> None:
-    """Scales block column k ((band + 1) n, n) in place. size: (K + band, n), of the unknowns."""
+def _to_unit_diagonal(column: FloatArray, share: FloatArray, k: int) -> None:
+    """Scales block column k ((band + 1) n, n) in place. share: (K + band, n), of the unknowns."""
     n = column.shape[1]
-    column /= size[k : k + len(column) // n].reshape(-1, 1)
-    column /= size[k]
+    column *= share[k : k + len(column) // n].reshape(-1, 1)
+    column *= share[k]
+
+
+def triangular_inverse(lower: FloatArray) -> FloatArray:
+    """Inverse of a lower triangle (n, n) by its halves: numpy's own knows of no triangles, and
+    takes twice as long."""
+    half = len(lower) // 2
+    if half < SMALL:
+        return np.asarray(np.linalg.inv(lower))
+    inverse = np.zeros(lower.shape)
+    inverse[:half, :half] = first = triangular_inverse(lower[:half, :half])
+    inverse[half:, half:] = last = triangular_inverse(lower[half:, half:])
+    np.matmul(last, lower[half:, :half] @ -first, out=inverse[half:, :half])
+    return inverse
 
 
 @dataclass(frozen=True)
@@ -128,7 +154,9 @@ class LocalColumns:
             each.values[first - each.first : max(first, last) - each.first]
             for each in (self, other)
         )
-        return np.asarray(np.tensordot(mine, others, axes=((0, 1), (0, 1))))
+        # Not by tensordot, which copies both: as they lie they are matrices.
+        mine, others = (each.reshape(-1, each.shape[2]) for each in (mine, others))
+        return np.asarray(mine.T @ others)
 
     def add_times(self, weights: FloatArray, total: FloatArray) -> None:
         """Adds the columns' sum by weights (m,) to total (K, n)."""

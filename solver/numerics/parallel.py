@@ -8,12 +8,14 @@ from functools import cache
 
 import numpy as np
 
+from ..one_thread import SOLVER_THREADS
+
 MAX_THREADS = 4
 
 
 def in_threads(work: Callable[[slice], object], count: int, chunk: int) -> None:
     """Calls `work` on slices that partition range(count), at least `chunk` items each."""
-    workers = min(MAX_THREADS, os.cpu_count() or 1, count // chunk)
+    workers = min(_most_threads(), count // chunk)
     if workers < 2:
         work(slice(0, count))
         return
@@ -23,6 +25,19 @@ def in_threads(work: Callable[[slice], object], count: int, chunk: int) -> None:
     work(first)
     for each in pending:
         each.result()
+
+
+def _most_threads() -> int:
+    """As many as the process may have cores, or is told to take."""
+    told = os.environ.get(SOLVER_THREADS, "")
+    return min(MAX_THREADS, int(told) if told.isdecimal() else cores())
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 @cache

@@ -80,8 +80,10 @@ def _corrected_step(
         if whole is not None:
             half = reached(0.5 * length)
         if whole is not None and half is not None:
-            low = length * _lowest(value, half[1], whole[1])
-            found = [each for each in (whole, half, reached(low)) if each and each[1] < value]
+            low = _lowest(value, half[1], whole[1])
+            known = low in (0.0, 0.5, 1.0)
+            tried = (whole, half) if known else (whole, half, reached(low * length))
+            found = [each for each in tried if each and each[1] < value]
             if found:
                 return min(found, key=lambda each: each[1])
         length *= 0.5

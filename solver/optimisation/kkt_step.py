@@ -15,7 +15,6 @@ import numpy as np
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
 from ..numerics.block_banded import BlockBanded, CholeskyFactor, LocalColumns
-from ..numerics.parallel import in_threads
 from ..numerics.splines import ORDER
 from ..numerics.tied_factor import Factor, TiedFactor
 from ..transcription.rows import Rows, by_kind
@@ -27,8 +26,6 @@ ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
 # With ten times as much rounding leaves a step few digits in the directions that cost least, with a
 # tenth of it the sweeps of weak rows do not end in time.
 PENALTY = 3e3
-NORMAL_BATCH = 32  # spans
-MIN_SPANS_PER_THREAD = 8
 MAX_SWEEPS = 8
 SWEEP_REDUCTION = 1e-3  # of the equality residual, at which sweeps end
 RIDGE = 1e-8  # of the diagonal
@@ -75,20 +72,10 @@ class _SpanRows:
         return total
 
     def add_normal(self, system: BlockBanded, weight: float) -> None:
-        """Adds weight * J'J, a few spans at a time so that they stay in the processor's cache."""
-        wide, root = self.J.shape[2], np.sqrt(weight)
-        squares = np.empty((NORMAL_BATCH, wide, wide))
-
-        def square(part: slice) -> None:
-            for i in range(part.start, part.stop):  # numpy knows that a.T @ a is symmetric
-                rows = root * self.J[first + i, : self.counts[first + i]]
-                np.matmul(rows.T, rows, out=squares[i])
-
-        for first in range(0, len(self.J), NORMAL_BATCH):
-            count = min(NORMAL_BATCH, len(self.J) - first)
-            in_threads(square, count, MIN_SPANS_PER_THREAD)
-            shape = (count, ORDER, self.size, ORDER, self.size)
-            system.add_windows(self.first[first : first + count], squares[:count].reshape(shape))
+        """Adds weight * J'J."""
+        root = np.sqrt(weight)
+        spans = zip(self.J, self.counts.tolist(), strict=True)
+        system.add_squares(self.first, (root * J[:count] for J, count in spans))
 
     @property
     def begins(self) -> IntArray:
@@ -202,6 +189,15 @@ class LinearisedProblem:
         working = np.zeros(len(self.rows.value), dtype=bool)
         working[self._free] = self._bounded.working
         return working
+
+    def times(self, d: FloatArray) -> FloatArray:
+        """(R,) first-order change of the rows' values by a change d (K, n_block) of the unknowns,
+        of which only what the basis allows counts."""
+        d = d if self._basis is None else d @ self._basis
+        change = np.empty(len(self.rows.value))
+        change[self._equal] = self._equalities.times(d)[self._equalities.where]
+        change[self._free] = self._bound_values(d)
+        return np.asarray(change * self._scale)
 
     def violation(self, value: FloatArray) -> float:
         """The worst violation by values (R,) over its tolerance; at most 1: all rows hold."""

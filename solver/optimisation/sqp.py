@@ -24,6 +24,7 @@ from ..transcription.transcription import Transcription
 from .kkt_step import LinearisedProblem, Remains
 
 MAX_CHORD_RATIO = 0.03  # of the violation that a step leaves, for the next to keep its Jacobian
+MAX_CHORD_REST = 0.5  # tolerances, which a chord step must be expected to leave to be the last one
 MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
@@ -146,6 +147,7 @@ def restore(
     *,
     stage: str,
     max_steps: int = MAX_STEPS,
+    enough: float = 1.0,
     progress: Progress | None = None,
     wider: Callable[[FeasibleSet, FloatArray], FeasibleSet] | None = None,
 ) -> Outcome:
@@ -153,19 +155,20 @@ def restore(
 
     metric: W, fixed. x: (K, n_block). A line search on the summed squared violation guards the
     steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
-    Jacobian and factor, which costs a third of a new one (chord steps). wider: asked where
-    the rows nearly hold, and where they hold, for a set with more guard rows to go on in, or the
-    same; with more rows the next step has a new Jacobian.
+    Jacobian and factor, which costs a third of a new one (chord steps). enough: the violation at
+    which it ends, of a motion that other steps go on from. wider: asked where the rows nearly hold,
+    and where they hold, for a set with more guard rows to go on in, or the same; with more rows the
+    next step has a new Jacobian.
     """
     iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
         if wider is not None and iterate.violation <= near:
-            before, feasible, near = feasible, wider(feasible, iterate.x), 1.0
+            before, feasible, near = feasible, wider(feasible, iterate.x), enough
             if feasible is not before:
                 iterate.widen(feasible)
-        if iterate.violation <= 1.0:
+        if iterate.violation <= enough:
             status = Status.SOLVED
             break
         if len(steps) >= max_steps:
@@ -176,7 +179,7 @@ def restore(
         steps.append(step)
         if progress is not None:
             progress(step, feasible.motion(iterate.x))
-        if iterate.violation > 1.0 and (step.length == 0.0 or _stagnant(steps)):
+        if iterate.violation > enough and (step.length == 0.0 or _stagnant(steps)):
             status = Status.STALLED
             break
     return feasible.outcome(iterate.x, status, steps, iterate.violation)
@@ -199,7 +202,8 @@ class _ChordIterate:
     def advance(self, stage: str) -> Step | None:
         """Takes a step; None where a chord step was shortened, so that a new Jacobian is due."""
         slow = self._linearised is None or self.violation > MAX_CHORD_RATIO * self._before
-        fresh = slow or self._stale or self._rows is not None
+        known = self._rows is not None and not self._nearly_there()
+        fresh = slow or self._stale or known
         linearised = self._linearise() if fresh or self._linearised is None else self._linearised
         before, worst = self.violation, linearised.worst_owner(self._value)
         d, _ = linearised.step(self._value)
@@ -211,6 +215,11 @@ class _ChordIterate:
             return None
         self._before = before
         return Step(stage, before, trial.length, worst)
+
+    def _nearly_there(self) -> bool:
+        """Whether a chord step will end it: of what is left, its Jacobian leaves twice the share
+        that its own step, Newton's, left."""
+        return 2.0 * self.violation**2 < MAX_CHORD_REST * self._before
 
     def widen(self, feasible: FeasibleSet) -> None:
         """Goes on in a set with other guard rows, and with a new Jacobian: the steps before tell

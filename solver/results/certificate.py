@@ -17,7 +17,7 @@ from ..data.reports.report import FitQuality
 from ..human.strength import ECCENTRIC_FACTOR, LEG_JOINTS, peak_torque
 from ..transcription.compliant_sole import SINKING_TIME
 from ..transcription.contact_pins import PointContact
-from ..transcription.motion import Motion, dynamics_residual, motion_inverse_dynamics
+from ..transcription.motion import DynamicsResidual, Motion, motion_inverse_dynamics
 from .flight_summary import FrameOf
 from .npz_export import instants
 
@@ -62,20 +62,27 @@ TORQUES = {"Hip": Item.HIP_TORQUE, "Knee": Item.KNEE_TORQUE, "Ankle": Item.ANKLE
 class LoadedDrift:
     """Where a contact's point is off its place at instants (T,) s while it carries load, m.
 
-    slide: (T,) along the surface. height: (T,) above it, negative under it.
+    slide: (T,) along the surface. height: (T,) above it, negative under it. furthest: m, of the
+    point from where it is held while it touches, loaded or not; furthest_at: when, s.
     """
 
     times: FloatArray
     slide: FloatArray
     height: FloatArray
+    furthest: float
+    furthest_at: float
 
 
 def certificate(
-    motion: Motion, drifts: Sequence[LoadedDrift], fit: FitQuality, frame: FrameOf
+    motion: Motion,
+    left: DynamicsResidual,
+    drifts: Sequence[LoadedDrift],
+    fit: FitQuality,
+    frame: FrameOf,
 ) -> tuple[CertificateLine, ...]:
-    """Every line of a motion with such drifts of its contacts, and of its fit."""
+    """Every line of a motion with such residuals and drifts of its contacts, and of its fit."""
     return (
-        *_residuals(motion, frame),
+        *_residuals(motion, left, frame),
         *_forces(motion, frame),
         *_torques(motion, frame),
         *_contacts(motion, drifts, frame),
@@ -91,10 +98,8 @@ def _line(
     return CertificateLine(item, value, unit, limit, value <= limit, frame, where)
 
 
-def _residuals(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
-    character = motion.transcription.character
-    times = _grid(motion)
-    left = dynamics_residual(motion, times)
+def _residuals(motion: Motion, left: DynamicsResidual, frame: FrameOf) -> Iterator[CertificateLine]:
+    character, times = motion.transcription.character, left.times
     weight = character.mass * STANDARD_GRAVITY
     force, moment = (weight * np.linalg.norm(part, axis=1) for part in (left.force, left.moment))
     largest = float(np.linalg.norm(motion.forces(times).sum(axis=1), axis=1).max(initial=0.0))
@@ -152,7 +157,7 @@ def friction_used(
 def _torques(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
     """Largest torque components of the legs' joints, both sides."""
     t = motion.transcription
-    times = _grid(motion)
+    times = between_knots(motion)
     dynamics = InverseDynamics(t.character, t.points)
     torques = np.abs(motion_inverse_dynamics(dynamics, motion, times).torques)
     mass = t.character.mass
@@ -176,14 +181,20 @@ def loaded_drifts(motion: Motion) -> list[LoadedDrift]:
     contacts = motion.transcription.contacts
     fine = EDGE + instants(SINKING_TIME, FINE_RATE)
     ends = [t for c in contacts for t in (c.contact.start + fine, c.contact.end - fine)]
-    times = np.unique(np.concatenate([instants(motion.duration, SAMPLE_RATE), *ends]))
+    touches = [np.clip((c.contact.start, c.contact.end), 0.0, motion.duration) for c in contacts]
+    grid = instants(motion.duration, SAMPLE_RATE)
+    times = np.unique(np.concatenate([grid, *touches, *ends]))
     times = times[(times >= 0.0) & (times <= motion.duration)]
     forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
     places = motion.contact_points(times) if contacts else np.zeros((len(times), 0, 3))
     drifts = []
     for i, each in enumerate(contacts):
-        loaded = np.linalg.norm(forces[:, each.point], axis=1) > LOADED
-        loaded &= (times >= each.contact.start) & (times <= each.contact.end)
+        touching = (times >= each.contact.start) & (times <= each.contact.end)
+        held = times[touching]
+        off = each.pin_error(places[touching, each.point], motion.places[i], held)
+        apart = np.linalg.norm(off, axis=1)
+        last = int(apart.argmax())
+        loaded = touching & (np.linalg.norm(forces[:, each.point], axis=1) > LOADED)
         at = times[loaded]
         rigid = replace(each, sole=None)  # what the sole gives counts
         off = rigid.pin_error(places[loaded, each.point], motion.places[i], at)
@@ -191,7 +202,7 @@ def loaded_drifts(motion: Motion) -> list[LoadedDrift]:
         normals = each.normals(at)
         height = (off * normals).sum(axis=1)
         slide = np.linalg.norm(off - height[:, None] * normals, axis=1)
-        drifts.append(LoadedDrift(at, slide, height))
+        drifts.append(LoadedDrift(at, slide, height, float(apart[last]), float(held[last])))
     return drifts
 
 
@@ -213,7 +224,7 @@ def _contacts(
         yield _line(item, 1000.0 * worst[which], at, names[which])
 
 
-def _grid(motion: Motion) -> FloatArray:
+def between_knots(motion: Motion) -> FloatArray:
     """(T,) s, off the knots, where accelerations jump."""
     return (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
 

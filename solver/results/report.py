@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -39,10 +40,10 @@ from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation
 from ..transcription.contact_pins import PointContact
-from ..transcription.motion import Motion, dynamics_residual, pinned_instants
+from ..transcription.motion import DynamicsResidual, Motion, dynamics_residual
 from ..transcription.sampling import Instants, State
 from ..transcription.torque_constraint import TorqueFunction
-from .certificate import LoadedDrift, certificate, friction_used, loaded_drifts
+from .certificate import LoadedDrift, between_knots, certificate, friction_used, loaded_drifts
 from .flight_summary import apex, flights, frames_per_second, jumps, recorded_apex, scene_frame
 from .joint_report import joint_changes, recorded_ranges
 from .moving_ground import moving_ground
@@ -68,26 +69,25 @@ def report(
     transcription = motion.transcription
     pins = pins_of_contacts(fit, problem)
     drifts, quality = loaded_drifts(motion), fit_quality(fit)
+    left = dynamics_residual(motion, between_knots(motion))
+    conditions = condition_violations(adaptation)
     return Report(
         status=adaptation.outcome.status,
-        certificate=certificate(motion, drifts, quality, lambda time: scene_frame(fit, time)),
+        certificate=certificate(motion, left, drifts, quality, partial(scene_frame, fit)),
         recording=_recording(fit, origin),
         figure=_figure(fit, motion, problem),
         pins=tuple(_pin(pin) for pin in problem.pins),
         solves=(*_solves(fit.outcomes, "fit"), *_solves(adaptation.outcomes, "adapt")),
         unknowns=transcription.n_unknowns,
         rows=len(transcription.values(motion.x, motion.places)),
-        equations=tuple(worst_constraints(adaptation, problem, least=0.0)),
-        conditions=tuple(
-            _condition(each, fit, transcription.character)
-            for each in condition_violations(adaptation)
-        ),
+        equations=tuple(worst_constraints(adaptation, problem, conditions, least=0.0)),
+        conditions=tuple(_condition(each, fit, transcription.character) for each in conditions),
         contacts=tuple(
             _contact(adaptation, i, pins.get(each.contact.name), drifts[i])
             for i, each in enumerate(transcription.contacts)
         ),
         moving_ground=tuple(moving_ground(adaptation, problem)),
-        between_nodes=dense_residuals(motion, schedule.phases),
+        between_nodes=dense_residuals(left, schedule.phases),
         forces=_forces(adaptation),
         objective_end_over_start=adaptation.gain,
         reduction=_reduction(adaptation),
@@ -184,8 +184,6 @@ def _contact(adaptation: Adaptation, i: int, pin: str | None, loaded: LoadedDrif
     fit, motion = adaptation.fit, adaptation.motion
     at = motion.transcription.contacts[i]
     contact = at.contact
-    pinned = pinned_instants(at, SAMPLE_RATE)
-    drift = motion.drift(i, pinned)
     return ContactReport(
         name=contact.name,
         pin=pin,
@@ -199,8 +197,8 @@ def _contact(adaptation: Adaptation, i: int, pin: str | None, loaded: LoadedDrif
         end_frame=scene_frame(fit, contact.end),
         fitted_place_m=_vector(adaptation.setup.fitted.places[i]),
         place_m=_vector(motion.places[i]),
-        worst_violation_mm=1000.0 * float(drift.max()),
-        worst_violation_frame=scene_frame(fit, float(pinned[drift.argmax()])),
+        worst_violation_mm=1000.0 * loaded.furthest,
+        worst_violation_frame=scene_frame(fit, loaded.furthest_at),
         loaded_slide_mm=1000.0 * float(loaded.slide.max(initial=0.0)),
         loaded_under_mm=1000.0 * float((-loaded.height).max(initial=0.0)),
         loaded_above_mm=1000.0 * float(loaded.height.max(initial=0.0)),
@@ -219,11 +217,8 @@ def _cone(contact: PointContact) -> str:
     return shape.value
 
 
-def dense_residuals(motion: Motion, phases: Sequence[Phase]) -> DenseResiduals:
+def dense_residuals(left: DynamicsResidual, phases: Sequence[Phase]) -> DenseResiduals:
     """Dynamics residual between the nodes too, by kind of phase."""
-    left = dynamics_residual(
-        motion, (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
-    )
     force, moment = (np.linalg.norm(part, axis=1) for part in (left.force, left.moment))
     found: dict[PhaseKind, PhaseResidual] = {}
     for kind in PhaseKind:

@@ -58,19 +58,24 @@ def _of(guard: Guard, adaptation: Adaptation) -> list[DenseViolation]:
 
 
 def worst_constraints(
-    adaptation: Adaptation, problem: MotionProblem, *, least: float = 1.0
+    adaptation: Adaptation,
+    problem: MotionProblem,
+    conditions: Sequence[DenseViolation] | None = None,
+    *,
+    least: float = 1.0,
 ) -> list[Violation]:
     """The violation of every contact, condition and phase's equations, worst first.
 
     Of a solve that failed: those that conflict where it got stuck, then what the best motion found
-    misses. least: how often its tolerance a violation must reach to be listed.
+    misses. conditions: of the adaptation, where they are known. least: how often its tolerance a
+    violation must reach to be listed.
     """
     stuck, motion = adaptation.stuck, adaptation.motion
     if stuck is not None and stuck is not adaptation.outcome:
         failed = replace(adaptation, outcomes=(stuck,), stuck=None)
         here = replace(adaptation, stuck=None)
         conflicts = worst_constraints(failed, problem, least=least)
-        short = worst_constraints(here, problem, least=least)
+        short = worst_constraints(here, problem, conditions, least=least)
         return conflicts + [each for each in short if each.name not in {c.name for c in conflicts}]
     t = motion.transcription
     rows = t.rows(motion.x, adaptation.outcome.places)
@@ -85,7 +90,7 @@ def worst_constraints(
     ):
         name = owners[owner] if owner >= 0 else _phase_at(phases, time).name
         found[name, kind] = max(found.get((name, kind), 0.0), float(left))
-    for each in condition_violations(adaptation):
+    for each in condition_violations(adaptation) if conditions is None else conditions:
         found[each.name, each.kind] = max(found.get((each.name, each.kind), 0.0), each.amount)
     ranked = sorted(
         ((v / kind.tolerance, name, kind) for (name, kind), v in found.items()),

@@ -11,15 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..analysis.performance import Performance
+from ..analysis.skin import skin_of_bodies
 from ..arrays import FloatArray, IntArray
 from ..body.character import Body, Character
 from ..body.joint_choice import MIN_BONE_LENGTH
 from ..body.mass_tables import BOX_ASPECT
 from ..data.problem import MotionProblem
-from ..data.recording import Bone, Recording, Skin
+from ..data.recording import Recording, Skin
 from ..data.solver_options import ShapeSource
 from ..numerics.rotations import unit
-from ..skeleton.tree import tree_of
 
 MOST = 2.0  # times as thick as mass and length make it: flesh of a quarter of water's density
 FEWEST = 30  # points that tell a body's shape
@@ -28,7 +28,6 @@ LEAST_SEEN = 7  # of the directions, in which there must be points: more than ha
 FURTHEST = 0.98  # share of the points of a last body before which it ends
 LEAST = 1e-4  # m, of a distance
 ROUNDS = 3  # in which the middle of a section settles
-INSIDE = 0.1  # of its length, from a body's axis, within which a bone lies in it
 UNEVEN = 0.1  # of its radius, by which a section must be wider to be more than round
 FLATTEST = 0.8  # second harmonic over the mean: three times as wide as deep
 
@@ -55,14 +54,11 @@ def flesh_of(skin: Skin | None, recording: Recording, character: Character) -> d
     """
     if skin is None:
         return {}
-    carriers = _carriers(recording, character)
-    bodies = np.array([*(carriers.get(bone, -1) for bone in skin.bones), -1])
-    owners = bodies[skin.owners]  # the last is nobody's
+    points = skin_of_bodies(skin, recording, character)
     leaves = set(range(len(character.bodies))) - {joint.parent for joint in character.joints}
     found = {}
     for i, body in enumerate(character.bodies):
-        head = recording.bones[recording.index(body.bone)].head
-        flesh = _fitted(body, skin.points[owners == i] - head, leaf=i in leaves)
+        flesh = _fitted(body, points[i], leaf=i in leaves)
         if flesh is not None:
             found[i] = flesh
     return found
@@ -73,44 +69,6 @@ def shape_flesh(problem: MotionProblem, performance: Performance) -> dict[int, F
     if problem.requests.solution.shapes is ShapeSource.BONES:
         return {}
     return flesh_of(problem.skin, performance.recording, performance.character)
-
-
-def _carriers(recording: Recording, character: Character) -> dict[str, int]:
-    """The body that each bone goes with, by names: its own, or the nearest one above.
-
-    So twist bones, fingers, hair and skirts go with the body that they hang on. What hangs on none,
-    as limbs that deform hang on the root's control in Auto-Rig Pro's rig, goes with the body in
-    which it lies.
-    """
-    tree, joined = tree_of(recording.bones), dict(character.joined)
-    index = {body.bone: i for i, body in enumerate(character.bodies)}
-    names = [bone.name for bone in recording.bones]
-    own = [index.get(joined.get(name, name)) for name in names]
-    found = {}
-    for bone, name in enumerate(names):
-        line = (own[each] for each in tree.ancestors(bone))
-        carrier = next((body for body in line if body is not None), None)
-        if carrier is None:
-            carrier = _within(recording.bones[bone], recording, character)
-        if carrier is not None:
-            found[name] = carrier
-    return found
-
-
-def _within(bone: Bone, recording: Recording, character: Character) -> int | None:
-    """The body along whose axis a bone's middle lies, at rest; None where it lies in none."""
-    middle = 0.5 * (bone.head + bone.tail)
-    nearest, best = None, INSIDE
-    for i, body in enumerate(character.bodies):
-        length = float(np.linalg.norm(body.tip))
-        if length < MIN_BONE_LENGTH:
-            continue
-        from_joint = middle - recording.bones[recording.index(body.bone)].head
-        along = float(np.clip(from_joint @ body.tip / length**2, 0.0, 1.0))
-        aside = float(np.linalg.norm(from_joint - along * body.tip)) / length
-        if aside < best:
-            nearest, best = i, aside
-    return nearest
 
 
 def _fitted(body: Body, points: FloatArray, *, leaf: bool) -> Flesh | None:

@@ -66,6 +66,8 @@ MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further of
 MAX_IMPROVEMENTS = 4  # Gauss-Newton steps on the refined knots
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
+# Tolerances, of the motions on the way to a fit: within a quarter of what tells a span weak.
+ON_THE_WAY = 5.0
 ADAPT_TOLERANCE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
 
 
@@ -160,10 +162,12 @@ def fit(
     metric = tracking_cost.expand(near.x)[1]
     outcomes, last = [near], near
     for _ in range(1 + MAX_PLACE_UPDATES):
-        last = restore(feasible, metric, last.x, stage="fit", progress=progress)
+        last = restore(feasible, metric, last.x, stage="fit", enough=ON_THE_WAY, progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
-            outcomes += refine(last, fit_metric, FIT_TOLERANCE, progress=progress)
+            outcomes += refine(
+                last, fit_metric, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress
+            )
             outcomes += _improved(outcomes[-1], performance, schedule, human, progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
@@ -201,7 +205,7 @@ def _improved(
 ) -> list[Outcome]:
     """Nearer to the recording on the refined knots: the steps that refine go the shortest way.
 
-    And in the ranges of joints, where such a motion is found.
+    And in the ranges of joints, where such a motion is found; else what was refined, all rows met.
     """
     t = outcome.transcription
     cost = TrackingCost(t, recorded_target(t, performance, schedule), FIT_COST_WEIGHTS)
@@ -212,7 +216,8 @@ def _improved(
     metric = cost.expand(nearer.x)[1]
     restored = _restored(feasible, metric, nearer.x, human, performance, progress)
     if not restored.solved:
-        return []
+        metric = fit_metric(feasible.motion(outcome.x))
+        return [restore(feasible, metric, outcome.x, stage="fit", progress=progress)]
     return [nearer, restored, *refine(restored, fit_metric, ADAPT_TOLERANCE, progress=progress)]
 
 
@@ -271,11 +276,12 @@ def refine(
     tolerance: DenseTolerance,
     *,
     basis: FloatArray | None = None,
+    enough: float = 1.0,
     progress: Progress | None = None,
 ) -> list[Outcome]:
     """Knot refinement: splits spans until dynamics and pins hold between the nodes (thesis 6.4).
 
-    basis: the changes of a block that are allowed, see FeasibleSet.
+    basis: the changes of a block that are allowed, see FeasibleSet. enough: see `restore`.
     """
     outcomes: list[Outcome] = []
     for _ in range(MAX_REFINEMENTS):
@@ -286,7 +292,9 @@ def refine(
         finer = on_finer_basis(motion, weak)
         metric = metric_of(finer)
         feasible = FeasibleSet(finer.transcription, outcome.places, basis)
-        finer_outcome = restore(feasible, metric, finer.x, stage="refine", progress=progress)
+        finer_outcome = restore(
+            feasible, metric, finer.x, stage="refine", enough=enough, progress=progress
+        )
         if finer_outcome.status is not Status.SOLVED:
             break  # what was solved for stands; its residual between the nodes is reported
         outcome = finer_outcome

@@ -1,17 +1,20 @@
-"""Interactive drag: a few warm-started SQP steps for each new place of a dragged pin.
+"""Interactive drag: one warm-started SQP step for each new place of a dragged pin.
 
-Moving a pin changes the rows' values, not their Jacobian, so most steps go on with the last factor
-(chord steps); a new one is made where they no longer come near. Each update steps from the last one
-by the smallest change: measured against steps towards the motion nearest to the fit, that is as
-near to what the solve will find and does not jitter. Far moves are made by continuation, one step
-an update; moving ground comes up to its speed likewise. The solve proper, once the pin is let go,
-starts from the fit again. While a pin moves phases last as long as they did; once it rests they
-take the durations that go with its place. What is in something, and joints beyond their ranges, are
-looked for in the motion before every other update, and mended by the update.
+That is the real-time iteration of Diehl et al. (2002): where the pin moves on, the next problem is
+solved a little, not the last one wholly. Moving a pin changes the rows' values, not their Jacobian,
+so most steps go on with the last factor (chord steps), from the values that the last update ended
+with and their first-order change: what an update evaluates is only what it shows. A new factor is
+made where steps no longer come near. Each update steps from the last one by the smallest change:
+measured against steps towards the motion nearest to the fit, that is as near to what the solve will
+find and does not jitter. Far moves are made by continuation, one step an update; moving ground
+comes up to its speed likewise. The solve proper, once the pin is let go, starts from the fit again.
+While a pin moves phases last as long as they did; once it rests they take the durations that go
+with its place. What is in something, and joints beyond their ranges, are looked for every fourth
+update, or after some centimetres, and mended by the updates that follow.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,7 +25,7 @@ from ..data.status import DragStatus
 from ..data.traces import Traces
 from ..optimisation.guards import Guard, guarded
 from ..optimisation.kkt_step import LinearisedProblem
-from ..optimisation.sqp import restore
+from ..optimisation.sqp import FeasibleSet, restore
 from ..transcription.guard_rows import GuardRows
 from ..transcription.motion import Motion
 from .fit import Fit
@@ -31,16 +34,17 @@ from .platforms import find_standing
 from .setup import Setup, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
-CHORD_STEPS = 2  # an update, on the same factor
-NEAR_VIOLATION = 30.0  # times the tolerances (0.3 mm), that suffice while a pin is on its way
 SWEEPS = 2  # a step; the next update goes on with what they leave
-MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a chord step; beyond it the factor is stale
+MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a step at rest; beyond: a stale factor
+MOST_ALIKE = 1.5  # times the last step's way, that a step is compared with it
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
-RESTING_UPDATES = 6  # at one place, after which a pin is no longer on its way
+LOOKING = 4  # updates from one look for guards to the next while a pin is on its way
+LOOKING_WAY = 0.04  # m, that a contact goes meanwhile at most
+RESTING_UPDATES = 12  # at one place, after which a pin is no longer on its way
 RETIMING_STEPS = 8  # at most, to a motion with other durations
 FAR = 20.0  # tolerances within its bound (2 cm, 2 degrees), where a guard needs no row any more
 ASTRAY = 50.0  # tolerances beyond it (5 cm, 5 degrees), from where no linear step leads out
-MAX_BLOCKED_UPDATES = 4  # in which a solid does not come out, after which it is let be
+MAX_BLOCKED_UPDATES = 8  # in which a solid does not come out, after which it is let be
 SAME_DURATION = 1e-3  # s, by which nobody sees that a phase lasts longer
 HELD_VIOLATION = 100.0  # times the tolerances (1 mm): a motion that serves to go back to
 
@@ -65,9 +69,12 @@ class Follower:
             self._standing = Standing.of(self.motion)
         self._rested = 0  # updates at one place
         self._linearised: LinearisedProblem | None = None
+        self._value: FloatArray | None = None  # of the rows, at the motion; None: not known
+        self._secant = Secant.none()
         self._held = self.motion, self._standing
         self._given_up: set[str] = set()  # solids and ranges that are let be
-        self._looked = False  # for guards, in the last update
+        self._unlooked = 0  # updates since the last look for guards
+        self._looked_at = self.motion.places  # then
         self._off = np.zeros(0)  # of the guard rows, over their tolerances
         self._blocked = 0  # updates in which one of them is furthest from where it should be
         self.violation = np.inf
@@ -100,6 +107,7 @@ class Follower:
         if self.violation < HELD_VIOLATION:
             self._held = self.motion, self._standing
         there = steps == 1 and self.violation <= 1.0 and self._timed == problem
+        there &= self._unlooked <= 1  # nor is it in anything
         return DragStatus.CONVERGED if there else DragStatus.CONVERGING
 
     def _target(self, problem: MotionProblem) -> Standing:
@@ -138,25 +146,32 @@ class Follower:
     ) -> None:
         self.setup, self.motion, self._metric = setup, start, setup.metric
         self._standing, self._linearised, self._timed = standing, None, problem
-        self._held = start, standing
+        self._held, self._looked_at = (start, standing), start.places
 
     def _guard(self) -> None:
         """Rows for what is in each other, or beyond its range, now; without those that are far
-        from it by now. To look takes as long as a step, so while a pin moves every other update
-        goes without."""
+        from it by now. To look takes longer than a step, so while a pin moves most updates go
+        without."""
         x = self.motion.x
-        self._looked = not self._looked or self._rested > 0
-        if self.violation > HELD_VIOLATION or not self._looked:
+        self._unlooked += 1
+        there = self._rested > 0 and self.violation <= 1.0
+        far = np.abs(self.motion.places - self._looked_at).max(initial=0.0) > LOOKING_WAY
+        if self.violation > HELD_VIOLATION or not (there or far or self._unlooked >= LOOKING):
             return
+        self._unlooked, self._looked_at = 0, self.motion.places
         t = guarded(self.motion, self.setup.sparse_guards, self._given_up)
-        if not t.guards:
+        if t is self.motion.transcription:
             return
         rows = t.guard_rows(x)
         near = rows.value - rows.lower < FAR * rows.tolerance
         each = zip(t.guards, _by_guard(t.guards, near), strict=True)
         t = t.guarded(tuple(guard.some(which) for guard, which in each if which.any()))
         if self._linearised is not None:
-            self._linearised = self._linearised.widened(t, rows.some(near))
+            kept, rows = ~self._linearised.rows.guards, rows.some(near)
+            self._linearised = self._linearised.widened(t, rows)
+            self._secant = self._secant.widened(kept, len(rows.value))
+            if self._value is not None:
+                self._value = np.concatenate([self._value[kept], rows.value])
         self.motion = replace(self.motion, transcription=t)
 
     def _watch_guards(self) -> None:
@@ -176,32 +191,69 @@ class Follower:
             self._given_up |= {guard.names[item] for item in set(guard.items[mine].tolist())}
 
     def _step(self, x: FloatArray, standing: Standing) -> bool:
-        """A few chord steps from unknowns x; False, having changed nothing, where they diverge."""
+        """One step from unknowns x; False, having changed nothing, where it diverges."""
+        feasible, linearised = self._feasible(standing), self._linearised
+        way = standing.places - self.motion.places
+        if linearised is None:
+            try:
+                rows = feasible.rows(x)
+                linearised, value = feasible.linearise(rows, self._metric), rows.value
+            except np.linalg.LinAlgError:  # too far from any motion
+                return False
+            self._secant = Secant.none()
+        elif self._value is None or feasible.transcription is not self.motion.transcription:
+            value = feasible.values(x)
+        else:
+            value = feasible.transcription.moved(self._value, self.motion.places, standing.places)
+            value += linearised.times(x - self.motion.x)
+        before = linearised.violation(value)
+        d, _ = linearised.step(value + self._secant.along(way), sweeps=SWEEPS)
+        expected, x = value + linearised.times(d), x + d
+        value = feasible.values(x)
+        after = linearised.violation(value)
+        if not after < DIVERGED_VIOLATION:
+            return False
+        if way.any():
+            self._secant = Secant(way, value - expected)
+        stale = self._rested >= RESTING_UPDATES and after > max(1.0, MAX_DRAG_CHORD_RATIO * before)
+        self._linearised = None if stale or after > HELD_VIOLATION else linearised
+        self._off = linearised.violations(value)[linearised.rows.guards]
+        self.violation, self._value = after, value
+        self.motion, self._standing = feasible.motion(x), standing
+        return True
+
+    def _feasible(self, standing: Standing) -> FeasibleSet:
         t = self.motion.transcription
         if Standing.of(self.motion).rides != standing.rides:
             t = t.riding(standing.rides)
-        feasible = self.setup.feasible_set(t, standing.places)
-        value, moving = feasible.values(x), self._rested == 0
-        try:
-            linearised = self._linearised or feasible.linearise(feasible.rows(x), self._metric)
-        except np.linalg.LinAlgError:  # too far from any motion
-            return False
-        for _ in range(CHORD_STEPS):
-            before = linearised.violation(value)
-            x = x + linearised.step(value, sweeps=SWEEPS)[0]
-            value = feasible.values(x)
-            after = linearised.violation(value)
-            stale = after > MAX_DRAG_CHORD_RATIO * before
-            if after <= (NEAR_VIOLATION if moving else 1.0) or stale:
-                break
-        if not after < DIVERGED_VIOLATION:
-            return False
-        self.violation = after
-        renew = stale and after > (HELD_VIOLATION if moving else 1.0)
-        self._linearised = None if renew else linearised
-        self._off = linearised.violations(value)[linearised.rows.guards]
-        self.motion, self._standing = feasible.motion(x), standing
-        return True
+        return self.setup.feasible_set(t, standing.places)
+
+
+@dataclass(frozen=True)
+class Secant:
+    """How the last step's rows ended beside their linear prediction: left (R,), where the places
+    went by `way` (n_contacts, 3) m. Most of it is how far the Jacobian is from today's along that
+    way, and the next step goes on the same way (Broyden's secant condition)."""
+
+    way: FloatArray
+    left: FloatArray | float
+
+    @staticmethod
+    def none() -> "Secant":
+        return Secant(np.zeros((1, 3)), 0.0)
+
+    def along(self, way: FloatArray) -> FloatArray | float:
+        """What a step is likely to leave with places that go `way` (n_contacts, 3) m: as much as
+        the last, as far as it goes along with it."""
+        far = float((self.way**2).sum())
+        share = float((self.way * way).sum()) / far if far > 0.0 else 0.0
+        return float(np.clip(share, -MOST_ALIKE, MOST_ALIKE)) * self.left
+
+    def widened(self, kept: BoolArray, more: int) -> "Secant":
+        """For the rows that are kept, by flags (R,), and others after them."""
+        if isinstance(self.left, float):
+            return self
+        return Secant(self.way, np.concatenate([self.left[kept], np.zeros(more)]))
 
 
 def _astray(motion: Motion, guards: Sequence[Guard]) -> bool:

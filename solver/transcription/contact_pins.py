@@ -240,6 +240,14 @@ class Pins:
         drift = self._drift(window, velocities[back, self._velocity.point], places)
         return np.concatenate([error, drift.ravel()[self._velocity.kept]])
 
+    def moved(self, before: FloatArray, after: FloatArray) -> FloatArray:
+        """Change of `values` where places (n_contacts, 3) m go from before to after."""
+        changes = []
+        for held in (self._position, self._velocity):
+            apart = held.held(before) - held.held(after)
+            changes.append(np.einsum("mij,mj->mi", held.axes, apart).ravel()[held.kept])
+        return np.concatenate(changes)
+
     def rows(
         self, window: FloatArray, posed: Pose, points: Sequence[BodyPoint], places: FloatArray
     ) -> list[Rows]:

@@ -236,6 +236,14 @@ class Transcription:
         parts += [each.value(x) for each in self.discretised]
         return np.concatenate(parts)
 
+    def moved(self, values: FloatArray, before: FloatArray, after: FloatArray) -> FloatArray:
+        """(R,) `values` where the places (n_contacts, 3) m go from before to after, x staying."""
+        moved, first = values.copy(), len(self._balance.value) + 3 * len(self.node_times)
+        if self.contacts:
+            change = self.pins.moved(before, after)
+            moved[first : first + len(change)] += change
+        return moved
+
     def assemble(self, instants: Instants, jacobians: list[ChannelJacobian]) -> FloatArray:
         """(U, m, 4, n_block) Jacobian by the unknowns that exist in each instant's blocks."""
         jacobian = instants.assemble(jacobians, self.layout)

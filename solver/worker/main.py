@@ -1,29 +1,27 @@
 """The worker process: solves what its parent asks until the parent closes the pipe.
 
-Run as a program (`python -I main.py`); bridge/worker_client.py starts it and holds the other end.
+program.py runs it; bridge/worker_client.py starts that and holds the other end.
 """
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 import os
 import sys
-from pathlib import Path
 from queue import SimpleQueue
 from threading import Thread
 from typing import TYPE_CHECKING, BinaryIO
 
+from .program import bounded_loading, private_stdout
+
 if TYPE_CHECKING:
     from .protocol import Ending, Request
 
-NAME = "hangtime"
 FOREIGN, PROTOCOL_FAULT = 3, 4  # exit codes
 
 
 def main() -> int:
     """Exit code: 0 when the parent has gone."""
-    requests, answers = sys.stdin.buffer, _private_stdout()
+    requests, answers = sys.stdin.buffer, private_stdout()
     try:
         return _serve(requests, answers)
     except BrokenPipeError:
@@ -40,7 +38,8 @@ def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
     if not isinstance(hello, Hello) or hello.protocol != PROTOCOL:
         return FOREIGN
     sys.path[:] = hello.path
-    from .service import Service
+    with bounded_loading():
+        from .service import Service
 
     def tell(progress: Progress) -> None:
         send(answers, progress)
@@ -86,28 +85,3 @@ class Inbox:
                 self._requests.put(message)
             else:
                 os._exit(PROTOCOL_FAULT)
-
-
-def _private_stdout() -> BinaryIO:
-    """The pipe to the parent; whatever a library prints goes to the error stream instead."""
-    private = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    return private
-
-
-def _load_package() -> None:
-    """Makes the folder above importable as a package, whatever it is called."""
-    root = Path(__file__).resolve().parents[2]
-    spec = importlib.util.spec_from_file_location(
-        NAME, root / "__init__.py", submodule_search_locations=[str(root)]
-    )
-    assert spec is not None
-    assert spec.loader is not None
-    package = importlib.util.module_from_spec(spec)
-    sys.modules[NAME] = package
-    spec.loader.exec_module(package)
-
-
-if __name__ == "__main__":
-    _load_package()
-    sys.exit(importlib.import_module(f"{NAME}.solver.worker.main").main())

@@ -1,6 +1,6 @@
 """Answers requests, and remembers the last fits, from which adaptations of them start."""
 
-from collections import Counter, OrderedDict
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -28,7 +28,6 @@ from ..stages.interactive import Follower, change, pelvis_range
 from ..transcription.motion import Motion
 from .pipeline import (
     ADAPTING,
-    FITTING,
     StageClock,
     Subject,
     computable,
@@ -54,12 +53,12 @@ from .protocol import (
     Request,
     RequestKind,
 )
+from .recent_fits import RecentFits
 
 MOST_FITS = 3
 
 Tell = Callable[[Progress], None]
 _Key = tuple[str, str, tuple[SceneObject, ...]]  # of an analysis
-_Frames = tuple[float, float]  # first and last of those that are fitted
 
 
 class Cancel(Exception):
@@ -83,7 +82,7 @@ class Service:
 
     def __init__(self, ending: Callable[[int], Ending | None] = lambda _: None) -> None:
         self._ending = ending
-        self._fits: OrderedDict[tuple[_Key, _Frames], Fit] = OrderedDict()
+        self._fits = RecentFits(MOST_FITS)
         self._recording: Recording | None = None
         self._subject: tuple[_Key, Subject] | None = None
         self._last: tuple[Fit, MotionProblem, Adaptation] | None = None
@@ -185,16 +184,7 @@ class Service:
         assert self._subject is not None
         frames = subject.recording.frames
         key = self._subject[0], (float(frames[0]), float(frames[-1]))
-        found = self._fits.pop(key, None)
-        if found is None:
-            found = fitted_by(subject, clock)
-        else:
-            with clock.stage(FITTING):
-                pass  # it takes no time
-        self._fits[key] = found
-        while len(self._fits) > MOST_FITS:
-            self._fits.popitem(last=False)
-        return found
+        return self._fits.of(key, clock, partial(fitted_by, subject, clock))
 
 
 class _Watch(StageClock):

@@ -96,14 +96,14 @@ def _solver(folder: Path) -> Any:
 
 
 if __name__ == "__main__":
-    runpy.run_path(str(ROOT / "batch" / "running" / "worker.py"))["load_package"](ROOT)
+    runpy.run_path(str(ROOT / "solver" / "worker" / "program.py"))["load_package"](ROOT)
     if len(sys.argv) > 1:
         from hangtime.batch.records.locks import batch_lock
 
         with batch_lock(Path(sys.argv[1])):
             run(Path(sys.argv[1]), int(sys.argv[2]))
     else:
-        from hangtime.batch.running.worker import serve
+        from hangtime.batch.running.worker import main
 
         print("Blender 4.5.0 (hash of its build)", flush=True)  # as Blender greets
-        serve(_solver)
+        main(_solver)

@@ -8,7 +8,7 @@ from ...bridge.properties.stances import active_contact, active_stance
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from .lists import ContactList, StanceList, called
-from .sidebar import ArmaturePanel, draw_list, settings_in, split
+from .sidebar import OF_SOLVES, ArmaturePanel, draw_at_work, draw_list, settings_in, split
 
 
 class ContactsPanel(ArmaturePanel):
@@ -47,6 +47,8 @@ class StancePanel(ArmaturePanel):
         column = layout.column(align=True)
         for name in ("forward", "left", "up", "turn"):
             column.prop(stance, name)
+        if draw_at_work(layout, *OF_SOLVES):  # letting go of a pin adapts
+            return
         buttons = layout.row(align=True)
         buttons.operator(OperatorId.DRAG_PIN, text="Drag", icon="VIEW_PAN")
         buttons.operator(OperatorId.PUT_BACK, icon="LOOP_BACK")

@@ -1,10 +1,7 @@
 """What a failed solve is told by: a short line, rows that lead to what is missed, and remedies."""
 
-from textwrap import fill
-
 import bpy
 
-from ...bridge.accessors import present
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.rows.kind import Icon
 from ...operators.lists.choose_named import named_row
@@ -12,21 +9,8 @@ from ...operators.names import OperatorId
 from ...operators.solve.session import session
 from ...operators.words.failure_text import Failure
 from ...solver.data.faults import NoFit, NoSolution, OddHeight, UnseenSupport
-from ..drawing.editor import ui_scale
+from ..drawing.wrapping import wrapped
 from .sidebar import lines
-
-CHARACTER_PX = 6.8  # at an interface scale of 1
-MARGINS_PX = 40  # the panel's
-ICON_PX = 20
-LEAST_LETTERS = 16
-
-
-def wrapped(context: bpy.types.Context, text: str, icons: int = 1) -> str:
-    """Text in lines that the sidebar has room for, beside some icons."""
-    scale = ui_scale(context)
-    room = present(context.region).width / scale - MARGINS_PX - icons * ICON_PX
-    letters = max(LEAST_LETTERS, int(room / CHARACTER_PX))
-    return "\n".join(fill(line, letters) for line in text.splitlines())
 
 
 def draw_failure(

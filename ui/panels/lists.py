@@ -11,7 +11,7 @@ from ...bridge.properties.stances import active_stance, stance_frames
 from ...bridge.properties.surface import HangtimeSurface
 from ...bridge.rows.choices import BodyKind, Met, SurfaceRole
 from ...bridge.rows.kind import Icon, Row
-from ...bridge.rows.phases import roles
+from ...bridge.rows.phases import TAKE_OFF, roles
 from ..drawing.editor import ui_scale
 
 WIDE = 340  # px; a sidebar in which the range finds room beside the name
@@ -186,7 +186,8 @@ class StanceList(bpy.types.UIList):
         line = layout.row(align=True)
         frames = stance_frames(owner, row.name)
         line.active = frames is not None
-        line.label(text=called(owner, row.name), icon="TRIA_DOWN_BAR")
+        role = called(owner, row.name)
+        line.label(text=role, icon="TRIA_UP_BAR" if role == TAKE_OFF else "TRIA_DOWN_BAR")
         if frames is not None:
             _draw_frames(line, frames)
 

@@ -5,7 +5,14 @@ import bpy
 from ...bridge.accessors import present
 from ...bridge.constraints.motion_problem import repaired_since
 from ...bridge.properties.settings import HangtimeSettings, settings_of
-from ...bridge.repairs.stored import applied, finding_of, findings, is_applied, repairs_in
+from ...bridge.repairs.stored import (
+    applied,
+    finding_of,
+    findings,
+    is_applied,
+    rate_unrepaired,
+    repairs_in,
+)
 from ...bridge.rows.finding import HangtimeFinding
 from ...bridge.rows.kind import Icon
 from ...operators.names import OperatorId
@@ -18,9 +25,10 @@ from ...operators.words.doctor_text import (
     remedy_text,
 )
 from ...solver.doctor.repairs import Repairs
-from .failure import draw_failure, wrapped
+from ..drawing.wrapping import wrapped
+from .failure import draw_failure
 from .setup import RecordingPanel
-from .sidebar import ArmaturePanel, lines, settings_in
+from .sidebar import ArmaturePanel, draw_at_work, lines, settings_in
 
 STALE = "The recording has changed since: examine it again"
 REPAIRED_SINCE = "Repaired since the analysis: analyze again"
@@ -42,10 +50,11 @@ class FindingsPanel(ArmaturePanel):
         layout = present(self.layout)
         armature = present(chosen_armature(context))
         settings, rows = settings_of(armature), findings(settings_of(armature))
-        buttons = layout.row(align=True)
-        buttons.operator(OperatorId.EXAMINE, icon="VIEWZOOM")
-        if rows:
-            buttons.operator(OperatorId.REPAIR_ALL, icon="MODIFIER")
+        if not draw_at_work(layout, OperatorId.EXAMINE):
+            buttons = layout.row(align=True)
+            buttons.operator(OperatorId.EXAMINE, icon="VIEWZOOM")
+            if rows:
+                buttons.operator(OperatorId.REPAIR_ALL, icon="MODIFIER")
         draw_failure(layout, context, armature, OperatorId.EXAMINE)
         if settings.examination_stale:
             lines(layout, wrapped(context, STALE), icon="FILE_REFRESH")
@@ -91,6 +100,6 @@ def _draw_finding(
             continue
         used = is_applied(settings, row, other=other)
         tick: Icon = "CHECKBOX_HLT" if used else "CHECKBOX_DEHLT"
-        text = remedy_label(finding, repairs_in(stored), row.mass)
+        text = remedy_label(finding, repairs_in(stored), row.mass, rate_unrepaired(settings))
         button = buttons.operator(OperatorId.REPAIR, text=text, icon=tick, depress=used)
         button.kind, button.other = row.name, other

@@ -14,7 +14,7 @@ from ...operators.solve.common import chosen_armature
 from ...solver.skeleton.mapping import Evidence
 from .failure import draw_failure
 from .menus import BonePresetsMenu
-from .sidebar import ArmaturePanel, SidebarPanel, lines, optional, settings_in, split
+from .sidebar import ArmaturePanel, SidebarPanel, draw_at_work, lines, optional, settings_in, split
 
 FIRST_STEPS = """Import a recorded jump, select it
 Press Analyze here
@@ -115,5 +115,6 @@ class RecordingPanel(ArmaturePanel):
         layout.prop(settings.loop, "use")
         if settings.loop.use:
             layout.prop(settings.loop, "root")
-        layout.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
+        if not draw_at_work(layout, OperatorId.ANALYZE):
+            layout.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
         draw_failure(layout, context, armature, OperatorId.ANALYZE)

@@ -6,9 +6,18 @@ from ...bridge.accessors import present
 from ...bridge.properties.result import HangtimeResultOptions
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.rows.kind import Icon, Row
-from ...operators.names import CATEGORY
+from ...operators.names import CATEGORY, OperatorId
 from ...operators.solve.common import chosen_armature
+from ...operators.solve.session import session
 
+# Operators whose work is told in the panel Solve, and beside a pin that was let go of.
+OF_SOLVES = (
+    OperatorId.ADAPT,
+    OperatorId.UPDATE,
+    OperatorId.REFINE,
+    OperatorId.USE_BEST,
+    OperatorId.FIT,
+)
 EMPTY_ROWS = 2  # as high as the buttons that fill a list
 
 
@@ -80,3 +89,25 @@ def draw_list(
     active = f"active_{name.removesuffix('s')}"
     line.template_list(kind.bl_idname, "", settings, name, settings, active, rows=rows)
     return line.column(align=True)
+
+
+def draw_at_work(layout: bpy.types.UILayout, *of: str) -> bool:
+    """While one of these operators is at work: how far, and a button to cancel; whether one is."""
+    solving = session().solving
+    if solving is None or solving.of not in of:
+        return False
+    row = layout.row(align=True)
+    draw_grey(row, f"{solving.doing.capitalize()}, {100.0 * solving.share:.0f} %")
+    row.operator(OperatorId.CANCEL, text="", icon="X")
+    return True
+
+
+def draw_grey(row: bpy.types.UILayout, text: str) -> None:
+    """A button that does nothing, in the place of the one that was pressed.
+
+    Of the button under the mouse Blender keeps the state while its operator is the same: the
+    pressed one itself would stay grey afterwards. A progress bar would stay a bar.
+    """
+    grey = row.row(align=True)
+    grey.enabled = False
+    grey.operator(OperatorId.CANCEL, text=text)

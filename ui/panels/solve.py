@@ -12,16 +12,9 @@ from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from ...operators.solve.results import performer_of, result_of
 from ...operators.solve.session import session
-from .failure import draw_failure, wrapped
-from .sidebar import ArmaturePanel, lines, optional, settings_in, split
-
-OF_SOLVES = (
-    OperatorId.ADAPT,
-    OperatorId.UPDATE,
-    OperatorId.REFINE,
-    OperatorId.USE_BEST,
-    OperatorId.FIT,
-)
+from ..drawing.wrapping import wrapped
+from .failure import draw_failure
+from .sidebar import OF_SOLVES, ArmaturePanel, draw_grey, lines, optional, settings_in, split
 
 
 class SolvePanel(ArmaturePanel):
@@ -31,16 +24,17 @@ class SolvePanel(ArmaturePanel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
+        self._draw_start(layout, context)
+        row = layout.row(align=True)
+        row.scale_y = 1.5
         solving = session().solving
-        if solving is not None:
-            layout.progress(factor=solving.share, text=solving.doing.capitalize())
+        if solving is not None and solving.of in OF_SOLVES:
+            draw_grey(row, solving.doing.capitalize())
+            layout.progress(factor=solving.share, text=f"{100.0 * solving.share:.0f} %")
             row = layout.row(align=True)
             row.operator(OperatorId.USE_BEST, icon="CHECKMARK")
             row.operator(OperatorId.CANCEL, icon="X")
             return
-        self._draw_start(layout, context)
-        row = layout.row(align=True)
-        row.scale_y = 1.5
         row.operator(OperatorId.ADAPT, icon="PLAY")
         row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
         armature = present(chosen_armature(context))
@@ -126,7 +120,7 @@ class ResultPanel(ArmaturePanel):
         if settings.adapted is None and len(takes) < 2:
             layout.label(text="Nothing has been adapted yet", icon="INFO")
             return
-        self._draw_takes(layout, takes)
+        self._draw_takes(layout, context, takes)
         row = layout.row(align=True)
         row.operator(OperatorId.ACCEPT, icon="CHECKMARK")
         row.operator(OperatorId.DISCARD, icon="TRASH")
@@ -137,7 +131,7 @@ class ResultPanel(ArmaturePanel):
         first = settings.status.partition("\n")[0]
         told = layout.column()
         told.active = current_action(armature) == settings.adapted
-        lines(told, wrapped(context, first))
+        lines(told, wrapped(context, first, icons=0))
 
     @staticmethod
     def _draw_warning(
@@ -163,7 +157,9 @@ class ResultPanel(ArmaturePanel):
             show.action, show.switch = action.name, True
 
     @staticmethod
-    def _draw_takes(layout: bpy.types.UILayout, takes: tuple[ListedTake, ...]) -> None:
+    def _draw_takes(
+        layout: bpy.types.UILayout, context: bpy.types.Context, takes: tuple[ListedTake, ...]
+    ) -> None:
         """A line a take, of which the shown one is marked; why a result is not up to date."""
         column = layout.box().column(align=True)
         for take in takes:
@@ -188,9 +184,8 @@ class ResultPanel(ArmaturePanel):
                 end.label(text="", icon="CHECKMARK")
         for take in takes:
             if take.shown and take.stale:
-                row = column.row()
-                row.label(text=take.stale, icon="FILE_REFRESH")
-                row.operator(OperatorId.UPDATE)
+                lines(column, wrapped(context, take.stale), icon="FILE_REFRESH")
+                column.operator(OperatorId.UPDATE)
 
 
 class DetailsPanel(ArmaturePanel):
@@ -210,7 +205,8 @@ class DetailsPanel(ArmaturePanel):
         told = present(self.layout).column()
         told.active = current_action(armature) == settings.adapted
         for line in settings.status.splitlines()[1:]:
-            lines(told, wrapped(context, line))
+            lines(told, wrapped(context, line, icons=0))
+            told.separator(factor=0.5)
 
 
 class ExportPanel(ArmaturePanel):

@@ -1,7 +1,5 @@
 """World: what is solid around the performer, and whether limbs keep out of it."""
 
-from textwrap import fill
-
 import bpy
 
 from ...bridge.accessors import present
@@ -15,10 +13,10 @@ from ...operators.lists.support_box import offered, sized
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
 from ...solver.data.solver_options import ShapeSource
+from ..drawing.wrapping import wrapped
 from .lists import MET_ICONS, ROLE_ICONS, SurfaceList
 from .sidebar import ArmaturePanel, draw_list, lines, settings_in, split
 
-NARROW = 34  # characters in a line of a sidebar as wide as Blender makes it
 GONE = "Not in the scene any more"
 UNSEEN = "Something unseen carries the body above the floor"
 
@@ -54,7 +52,7 @@ class WorldPanel(ArmaturePanel):
         _draw_offer(layout, context)
         index = RowList.SURFACES.chosen(settings)
         if index >= 0:
-            _draw_surface(layout, settings.surfaces[index], present(context.scene))
+            _draw_surface(layout, context, settings.surfaces[index])
         _draw_switches(layout, settings, context)
 
 
@@ -62,16 +60,18 @@ def _draw_offer(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """What would carry the body where the analysis found nothing that does."""
     boxes = offered(chosen_armature(context))
     if boxes:
-        lines(layout, fill(UNSEEN, NARROW), icon="QUESTION")
+        lines(layout, wrapped(context, UNSEEN), icon="QUESTION")
         text = f"Add Box Here ({', '.join(sized(box) for box in boxes)})"
         layout.operator(OperatorId.ADD_SUPPORT_BOX, text=text, icon="MESH_CUBE")
 
 
-def _draw_surface(layout: bpy.types.UILayout, row: HangtimeSurface, scene: bpy.types.Scene) -> None:
-    if is_gone(row, scene):
+def _draw_surface(
+    layout: bpy.types.UILayout, context: bpy.types.Context, row: HangtimeSurface
+) -> None:
+    if is_gone(row, present(context.scene)):
         layout.label(text=GONE, icon="ERROR")
     elif row.status:
-        lines(layout, fill(row.status, NARROW), icon=MET_ICONS[row.met])
+        lines(layout, wrapped(context, row.status), icon=MET_ICONS[row.met])
     layout.prop(row, "collection" if row.collection is not None else "object")
     layout.row().prop(row, "role", expand=True)
     if row.role == SurfaceRole.CLEAR.name:
@@ -86,5 +86,5 @@ def _draw_switches(
     shapes.active = settings.keep_out
     shapes.prop(settings, "shapes")
     if settings.shapes == ShapeSource.MESH.name and settings.shapes_told:
-        lines(shapes, "\n".join(fill(line, NARROW) for line in settings.shapes_told.split("\n")))
+        lines(shapes, wrapped(context, settings.shapes_told, icons=0))
     layout.prop(scene_settings(context.scene), "snap")

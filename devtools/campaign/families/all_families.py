@@ -3,10 +3,11 @@
 import numpy as np
 
 from ..protocol.case import Family
-from . import clips, outputs, recipes, requests, rigs, sessions, two_blenders, workers
+from . import clips, fbx, outputs, recipes, requests, rigs, sessions, two_blenders, workers
 
 FAMILIES: tuple[Family, ...] = (
     *clips.FAMILIES,
+    *fbx.FAMILIES,
     *recipes.FAMILIES,
     *outputs.FAMILIES,
     *requests.FAMILIES,

@@ -5,16 +5,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ....bridge.recipe.contacts import ADDED, CONTACT, PIN
 from ....bridge.recipe.export import EXPORT
 from ....bridge.recipe.keys import KEYS
 from ....bridge.recipe.loop import LOOP
 from ....bridge.recipe.objects import HEADER
 from ....bridge.recipe.objects import KEYS as OBJECT_KEYS
 from ....bridge.recipe.problem import (
-    ADDED,
-    CONTACT,
     OWN_KEYS,
-    PIN,
     locate,
     parse_recipe,
     read_recipe_text,

@@ -34,7 +34,7 @@ def made_up(case: HostileCase) -> None:
     _keys(case, armature)
     for _ in range(int(case.rng.integers(3))):
         case.pick(CHANGES)(case, armature)
-    _analysed(armature)
+    analysed(armature)
 
 
 def changed(case: HostileCase) -> None:
@@ -47,10 +47,11 @@ def changed(case: HostileCase) -> None:
     settings.first_frame, settings.last_frame = first, first + int(case.rng.integers(0, 150))
     for _ in range(int(case.rng.integers(1, 5))):
         case.pick(CHANGES)(case, armature)
-    _analysed(armature)
+    analysed(armature)
 
 
-def _analysed(armature: bpy.types.Object) -> None:
+def analysed(armature: bpy.types.Object) -> None:
+    """Its bones are found and the recording is analysed, or a refusal says why not."""
     layer = present(bpy.context.view_layer)
     layer.objects.active = armature
     layer.update()

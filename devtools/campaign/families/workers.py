@@ -14,8 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....bridge import worker_client
-from ....bridge.worker_client import PendingRequest, Worker
+from ....bridge.worker_client import Worker
+from ....bridge.worker_requests import PendingRequest
 from ....solver.data.problem import MotionProblem, Pin
+from ....solver.worker.program import LOADING
 from ....solver.worker.protocol import PROTOCOL, Analysed, Failed, Hello, Request, RequestKind, send
 from ...processes import LAUNCHER
 from ...recordings import HELD, JUMP, read
@@ -195,7 +197,7 @@ def _abused(case: HostileCase, abuse: Callable[[int], None]) -> None:
 
 
 FAMILIES = tuple(
-    Family(f"worker {run.__name__.replace('_', ' ')}", share, 60.0, run)
+    Family(f"worker {run.__name__.replace('_', ' ')}", share, LOADING + 60.0, run)
     for run, share in (
         (killed, 0.3),
         (stopped, 0.15),

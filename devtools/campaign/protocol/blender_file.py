@@ -12,7 +12,7 @@ import bpy
 import hangtime
 import numpy as np
 
-from ....bridge.accessors import current_action, current_scene, present
+from ....bridge.accessors import current_action, current_scene, present, source_of
 from ....bridge.armature import fcurves
 from ....bridge.files.import_clip import import_clip
 from ....bridge.properties.settings import settings_of
@@ -47,8 +47,10 @@ def recorded_file(clip: Path, first: int, last: int) -> bpy.types.Object:
 
 
 def marked() -> dict[str, bytes]:
-    """The keys of the marked actions that are there, by their marks."""
-    return {str(a[MARK]): _keys(a) for a in bpy.data.actions if a.get(MARK)}
+    """The keys of the marked actions that are there, by their marks; results bear their
+    recording's."""
+    own = [a for a in bpy.data.actions if a.get(MARK) and source_of(a) is None]
+    return {str(a[MARK]): _keys(a) for a in own}
 
 
 def _keys(action: bpy.types.Action) -> bytes:
@@ -81,6 +83,7 @@ class View:
     @staticmethod
     def now() -> View:
         layer = present(bpy.context.view_layer)
+        layer.update()  # else it may still list what has just been removed
         kinds = (bpy.data.objects, bpy.data.actions, bpy.data.meshes, bpy.data.armatures)
         return View(
             frozenset(f"{type(block).__name__} {block.name}" for kind in kinds for block in kind),

@@ -132,7 +132,7 @@ def worker_pid() -> int | None:
                 words = (folder / "cmdline").read_bytes()
             except OSError:  # it has just ended
                 continue
-            if b"solver/worker/main.py" in words:
+            if b"solver/worker/program.py" in words:
                 return int(folder.name)
     return None
 

@@ -185,9 +185,11 @@ class Screen:
         yield 0.2
         return bool(region.view2d.region_to_view(0, 0)[1] != before)
 
-    def scroll_down(self) -> Waits[None]:
-        """Scroll to the sidebar's foot."""
+    def scroll_down(self, but: int = 0) -> Waits[None]:
+        """Scroll to the sidebar's foot, but for some notches of the wheel."""
         yield from self._scroll(-FOLDS[0])
+        if but:
+            yield from self._scroll(-but)
 
     def _column(self, column: float) -> list[Place]:
         """Places down the sidebar, close enough that no button lies between them."""

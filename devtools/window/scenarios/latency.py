@@ -26,6 +26,7 @@ from ..driving.actions import (
 )
 from ..driving.driver import Actions, Driver, Scenario, Until
 from ..driving.input_device import Place
+from ..driving.manual_pictures import keep
 from ..driving.screen import present
 
 if TYPE_CHECKING:  # as in actions.py
@@ -95,6 +96,8 @@ def drags_landing(driver: Driver) -> Actions:
         took = 1000.0 * (worker_seconds() - taken) / max(1, updates)
         yield from driver.picture("ghost_follows")
         yield driver.input.move(end, 0.5)
+        yield 1.0
+        yield from keep(driver, "drag")
         yield driver.input.let_go()
     finally:
         space.draw_handler_remove(handler, "WINDOW")
@@ -124,6 +127,7 @@ def lands_on_crate(driver: Driver) -> Actions:
 
     yield Until("the ghost on the crate", landed, 60)
     yield from driver.picture("world_panel")
+    yield from keep(driver, "world")
     yield driver.input.key("Escape")
     yield Until("the end of the drag", idle)
     yield driver.input.let_go()  # else the next click is none

@@ -17,6 +17,7 @@ from ..driving.actions import (
     shown_action,
 )
 from ..driving.driver import Actions, Driver, Scenario, Until
+from ..driving.manual_pictures import frame_of, keep
 from ..driving.screen import present
 from .workflow import imports
 
@@ -48,6 +49,7 @@ def examines(driver: Driver) -> Actions:
     found = {row.name for row in settings().findings}
     assert found == FAULTS, f"{found} was found, not {FAULTS}"
     assert not settings().contacts, "the recording was analysed"
+    yield from keep(driver, "examined")
 
 
 def shows_finding(driver: Driver) -> Actions:
@@ -66,7 +68,10 @@ def doubts_in_timeline(driver: Driver) -> Actions:
     usual = window.workspace
     window.workspace = bpy.data.workspaces["Animation"]
     yield 1.0
+    current_scene().frame_set(SPIKED + 20)  # else the playhead hides what is wrong there
+    yield 0.5
     yield from driver.picture("doubts_in_timeline")
+    yield from keep(driver, "doubts", frame_of(driver, driver.screen.area("DOPESHEET_EDITOR")))
     window.workspace = usual
     yield 1.0
     driver.screen.forget()
@@ -87,6 +92,8 @@ def repairs_all(driver: Driver) -> Actions:
     assert abs(rate - RATE / 1.25) < 0.1, f"the scene has {rate:g} frames a second"
     height = armature().matrix_world.translation.z
     assert abs(height) < 0.03, f"the armature is {height:.2f} m up"
+    yield 0.5
+    yield from keep(driver, "repaired")
 
 
 def adapts_repaired(driver: Driver) -> Actions:

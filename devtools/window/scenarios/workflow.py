@@ -38,6 +38,7 @@ from ..driving.actions import (
     solve_stage,
 )
 from ..driving.driver import Actions, Driver, Scenario, Until
+from ..driving.manual_pictures import keep
 from ..driving.screen import present
 from .latency import drags_landing
 
@@ -59,7 +60,7 @@ def imports(driver: Driver) -> Actions:
     yield from dialog(driver, CLIP, **values)
     yield Until("the armature", lambda: CLIP.stem in bpy.data.objects)
     yield from over_viewport(driver, "KP_Decimal")
-    yield driver.input.wheel(driver.screen.middle(), 6)  # until the whole jump is in view
+    yield driver.input.wheel(driver.screen.middle(), 4)  # until the whole jump is in view
     yield 0.3
 
 
@@ -92,6 +93,7 @@ def analyses(driver: Driver) -> Actions:
     driver.profiler.stop()
     phases = [row.phase for row in settings().contacts]
     assert LANDING in phases, f"the landing was not found: {phases}"
+    yield from keep(driver, "analyzed")
 
 
 def chooses_landing(driver: Driver) -> Actions:

@@ -16,6 +16,7 @@ from .recordings import ChangedMeanwhile as ChangedMeanwhile
 from .recordings import ClipNotOpened as ClipNotOpened
 from .recordings import ClipTooShort as ClipTooShort
 from .recordings import FramesReversed as FramesReversed
+from .recordings import MirroredInBlender as MirroredInBlender
 from .recordings import MissingPart as MissingPart
 from .recordings import NoAction as NoAction
 from .recordings import NoArmature as NoArmature
@@ -23,6 +24,7 @@ from .recordings import NoBones as NoBones
 from .recordings import NonFiniteKey as NonFiniteKey
 from .recordings import NoSpine as NoSpine
 from .recordings import NotJoined as NotJoined
+from .recordings import NotMirrored as NotMirrored
 from .recordings import OddHeight as OddHeight
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import Treadmill as Treadmill

@@ -61,6 +61,23 @@ class MissingPart(Fault):
 
 
 @dataclass
+class NotMirrored(Fault):
+    """A bone has no partner on the body's other side.
+
+    partner: the name that is missing; the bone's own where that tells no side. Both are empty where
+    no bone's name tells one.
+    """
+
+    bone: str
+    partner: str
+
+
+@dataclass
+class MirroredInBlender(Fault):
+    """A clip that shall be mirrored, and whose armature is not."""
+
+
+@dataclass
 class BoneTaken(MissingPart):
     """A body part that the physics needs has no bone, as its own was chosen for another part."""
 

@@ -30,8 +30,8 @@ def test_steps_include_both_ends(tmp_path: Path) -> None:
     assert found == [{FORWARD: v} for v in (0.0, 0.2, 0.4, 0.6, 0.8)]
 
 
-def test_mirrored_values_go_both_ways_and_zero_once(tmp_path: Path) -> None:
-    found = values_of(tmp_path, "turn = { values = [0, 90], mirrored = true }")
+def test_values_go_both_ways_and_zero_once(tmp_path: Path) -> None:
+    found = values_of(tmp_path, "turn = { values = [0, 90], both_ways = true }")
     assert [v["pin.Landing.turn"] for v in found] == [0, 90, -90]
 
 
@@ -108,7 +108,7 @@ def test_samples_are_drawn_from_more_combinations_than_could_ever_be_counted(
         ("forward = { from = 0, to = 1, stepz = 3 }", "steps"),
         ("forward = [0.1, nan]", "finite"),
         ("forward = [0.1, [0.2]]", "finite numbers or words"),
-        ('phase = { values = ["a"], mirrored = true }\n', "mirrored"),
+        ('phase = { values = ["a"], both_ways = true }\n', "both ways"),
     ],
 )
 def test_a_range_that_is_none_is_refused_at_its_line(tmp_path: Path, line: str, said: str) -> None:
@@ -144,3 +144,13 @@ def test_a_place_has_one_name_and_the_name_finds_it_whatever_things_are_called(
     for i in range(len(names)):
         place = ("pin", i, "forward")
         assert place_of(values, name_of(values, place), "r.toml") == place
+
+
+def test_all_combinations_of_a_large_product_can_be_drawn(tmp_path: Path) -> None:
+    """Which drawing and throwing away what was drawn before would take half a million draws for."""
+    each = "{ from = 0.0, to = 1.0, steps = 200 }"
+    ranges = f"forward = {each}\nup = {each}"
+    drawn = values_of(tmp_path, ranges, SAMPLE.format(40_000, 1))
+    product = values_of(tmp_path, ranges)
+    assert drawn != product
+    assert {tuple(v.values()) for v in drawn} == {tuple(v.values()) for v in product}

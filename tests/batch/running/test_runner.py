@@ -18,7 +18,6 @@ from hangtime.batch.records.manifest import read_manifest
 from hangtime.batch.records.result import CELLS, State, read_result
 from hangtime.batch.running.memory import MemoryWatch
 from hangtime.batch.running.progress import Progress
-from hangtime.batch.running.queue import CellQueue
 from hangtime.batch.running.runner import LocalRun
 from hangtime.tests.helpers import fake_batches
 from hangtime.tests.helpers.fake_batches import lines, planned, run
@@ -114,19 +113,6 @@ def test_a_folder_that_knows_no_locks_is_told_as_that(
     monkeypatch.setattr("fcntl.flock", flock)
     with pytest.raises(FolderGone, match="not implemented"), batch_lock(tmp_path):
         pass
-
-
-def test_workers_begin_with_clips_that_nobody_fits_and_stay_with_theirs(tmp_path: Path) -> None:
-    recipe = '[[pin]]\nphase = "ground 2"\nforward = [0.1, 0.2, 0.3]\n'
-    cells = planned(tmp_path, {"a.bvh": "1", "b.bvh": "2"}, recipe).manifest.cells
-    queue = CellQueue(cells)
-    clip = {cell.cell: cell.clip[-5] for cell in cells}
-    first, second = queue.take(None), queue.take(None)
-    assert {clip[first], clip[second]} == {"a", "b"}
-    queue.ended(second)
-    assert clip[queue.take(second)] == clip[second]
-    queue.back(first)
-    assert queue.take(None) == first
 
 
 def kill_and_resume(command: list[str], kills: int, longest: float, seed: int) -> int:

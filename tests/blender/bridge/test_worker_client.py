@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import pytest
-from hangtime.bridge.worker_client import DragStream, PendingRequest, RequestKind, Worker
+from hangtime.bridge.worker_client import RequestKind, Worker
+from hangtime.bridge.worker_requests import DragStream, PendingRequest
 from hangtime.solver.data.faults import (
     ClipTooShort,
     FramesReversed,
@@ -32,14 +34,15 @@ from hangtime.solver.worker.protocol import (
     Fitted,
     Followed,
     Progress,
+    Request,
 )
+from hangtime.tests.blender.helpers.scripts import output_of
 from hangtime.tests.helpers.clips import load_recording
 
 JUMP = "forward_jump_116cm.bvh"
 SPAN = (110.0, 260.0)
 UP = MotionProblem(frames=SPAN, pins=(Pin("up", "ground 2", offset=(0.0, 0.0, 0.05)),))
 AHEAD = MotionProblem(frames=SPAN, pins=(Pin("ahead", "ground 2", offset=(0.05, 0.0, 0.0)),))
-LOADER = str(Path(__file__).parents[3] / "devtools" / "package.py")
 
 # Starts a worker, prints its number and dies without ending it.
 ORPHAN = """
@@ -52,32 +55,6 @@ worker = Worker()
 worker.ask(RequestKind.ANALYSE, load_recording(sys.argv[2]), MotionProblem()).wait()
 print(worker.pid, flush=True)
 os._exit(0)
-"""
-
-# As in Blender's own program, where writing to a pipe that nobody reads ends the process.
-PIPES_KILL = """
-import runpy, signal, sys
-from pathlib import Path
-signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-runpy.run_path(sys.argv[1])["load"]()
-from hangtime.bridge import worker_client
-from hangtime.tests.helpers.clips import load_recording
-from hangtime.solver.data.problem import MotionProblem
-worker_client._PROGRAM = Path(sys.argv[3])
-one, recording = worker_client.Worker(), load_recording(sys.argv[2])
-answer = one.ask(worker_client.RequestKind.ANALYSE, recording, MotionProblem()).wait()
-one.close()
-print(answer.fault)
-"""
-
-# Greets and goes without reading what it is asked.
-DEAF = """
-import runpy, sys
-runpy.run_path({loader!r})["load"]()
-from hangtime.solver.worker.protocol import PROTOCOL, Ready, receive, send
-receive(sys.stdin.buffer)
-send(sys.stdout.buffer, Ready(PROTOCOL))
-raise SystemExit("cannot hear you")
 """
 
 
@@ -263,6 +240,22 @@ def test_a_dragged_pin_is_followed_from_what_was_prepared(worker: Worker, jump: 
     assert "fit" not in {progress.stage for progress in told}
 
 
+def test_a_drag_goes_on_once_its_last_answer_is_heard(jump: Recording) -> None:
+    stream = DragStream(jump, count(1))
+    asked = stream.requests()
+    stream.want(raised(0.01))
+    stream.deliver(Failed(next(asked).id, WorkerDied("for one")))
+    stream.want(raised(0.02))
+    later: list[Request] = []
+    talk = Thread(target=lambda: later.append(next(asked)), daemon=True)
+    talk.start()
+    talk.join(0.2)
+    assert not later, "the next was asked for before the last was heard"
+    assert len(list(stream.news())) == 1
+    talk.join(10.0)
+    assert [each.problem for each in later] == [raised(0.02)]
+
+
 def test_a_request_about_another_fit_ends_what_is_prepared(worker: Worker, jump: Recording) -> None:
     prepared = worker.prepare(jump, MotionProblem(frames=SPAN))
     other = MotionProblem(frames=(SPAN[0], SPAN[1] - 20.0))
@@ -314,42 +307,6 @@ def kill(worker: Worker) -> None:
     os.kill(worker.pid, 9)
 
 
-def test_what_a_worker_said_last_is_told(
-    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    program = tmp_path / "broken.py"
-    program.write_text("raise SystemExit('the disk is upside down')")
-    monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
-    answer = worker.ask(RequestKind.ANALYSE, jump, UP).wait()
-    assert isinstance(answer, Failed)
-    assert answer.fault == WorkerDied("the disk is upside down (exit code 1)")
-
-
-def test_a_worker_that_talks_nonsense_is_not_believed(
-    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    program = tmp_path / "babbling.py"
-    program.write_text("print('Hello, this is more than a length', flush=True); input()")
-    monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
-    answer = worker.ask(RequestKind.ANALYSE, jump, UP).wait()
-    assert isinstance(answer, Failed)
-    assert isinstance(answer.fault, WorkerDied)
-    assert "bytes is announced" in answer.fault.detail
-
-
-def test_a_worker_that_closes_its_pipe_and_stays_is_not_waited_for(
-    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    program = tmp_path / "silent.py"
-    program.write_text("import os, time; os.close(1); time.sleep(100)")
-    monkeypatch.setattr("hangtime.bridge.worker_client._PROGRAM", program)
-    monkeypatch.setattr("hangtime.bridge.worker_client._LAST_WORDS_S", 0.1)
-    began = time.monotonic()
-    answer = worker.ask(RequestKind.ANALYSE, jump, UP).wait()
-    assert answer == Failed(answer.id, WorkerDied("exit code -9"))
-    assert time.monotonic() - began < 30.0
-
-
 def test_without_a_python_there_is_a_fault(
     worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -382,21 +339,3 @@ def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recordi
 def test_the_worker_ends_with_its_parent(jump: Recording) -> None:
     assert len(jump.frames) > 0
     assert gone(int(output_of(ORPHAN, JUMP)))
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
-def test_a_worker_that_does_not_listen_does_not_take_blender_along(
-    jump: Recording, tmp_path: Path
-) -> None:
-    assert len(jump.frames) > 0
-    program = tmp_path / "deaf.py"
-    program.write_text(DEAF.format(loader=LOADER))
-    assert output_of(PIPES_KILL, JUMP, str(program)) == "cannot hear you (exit code 1)"
-
-
-def output_of(script: str, *arguments: str) -> str:
-    """What a script says in a Python of its own; its first argument loads the package."""
-    command = [sys.executable, "-c", script, LOADER, *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, (done.returncode, done.stderr)
-    return done.stdout.strip()

@@ -11,12 +11,14 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.exports.export import export_takes
+from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.recipe.export import ExportOptions
 from hangtime.bridge.rows.choices import FileFormat
 from hangtime.devtools.rigs.actor import actor
 from hangtime.devtools.rigs.build import build
 from hangtime.devtools.rigs.files import NATIVE
 from hangtime.devtools.rigs.layout import layouts
+from hangtime.solver.data.faults import UnreadableClip
 from hangtime.solver.skeleton.bind_pose import bind_frames
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import mocap_path
@@ -56,3 +58,23 @@ def test_an_armature_from_a_usd_file_is_analysed(tmp_path: Path) -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert again.hangtime.contacts
     assert {part.name for part in again.hangtime.parts if part.needed and not part.bone} == set()
+
+
+@pytest.mark.parametrize("ending", [".fbx", ".bvh"])
+def test_an_import_that_fails_leaves_scene_and_selection(ending: str, tmp_path: Path) -> None:
+    rigs.reset()
+    mine = bpy.data.objects.new("Mine", bpy.data.armatures.new("Mine"))
+    bpy.context.collection.objects.link(mine)
+    bpy.context.view_layer.objects.active = mine
+    mine.select_set(True)
+    bpy.ops.object.mode_set(mode="POSE")
+    bpy.context.scene.frame_end = 77
+    path = (tmp_path / "broken").with_suffix(ending)
+    nodes = b"Objects", b"Objectz"  # without which Blender's importer stumbles on its way
+    path.write_bytes(mocap_path(T_POSED).read_bytes().replace(*nodes))
+    with pytest.raises(UnreadableClip):
+        import_clip(path)
+    assert bpy.context.mode == "POSE"
+    assert bpy.context.selected_objects == [mine]
+    assert bpy.context.scene.frame_end == 77
+    assert [o.name for o in bpy.data.objects] == ["Mine"]

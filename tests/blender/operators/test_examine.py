@@ -99,6 +99,41 @@ def test_a_remedy_is_left_out_again(examined) -> None:
     assert applied(examined.hangtime) == Repairs()
 
 
+def test_armatures_under_one_parent_are_repaired_each_for_itself(jump) -> None:
+    """The parent moves: the figure's size counts from the world's origin all the same."""
+    scene, parent = bpy.context.scene, bpy.data.objects.new("Set", None)
+    other = bpy.data.objects.new("Other", bpy.data.armatures.new("Other"))
+    for thing in (parent, other):
+        scene.collection.objects.link(thing)
+    jump.parent = other.parent = parent
+    for frame, x in ((1, 0.0), (50, 3.0)):
+        parent.location = x, 0.0, 1.0
+        parent.keyframe_insert("location", frame=frame)
+
+    def places() -> np.ndarray:
+        """(frames, armatures, 4, 4)."""
+        found = []
+        for frame in (1, 30, 50):
+            scene.frame_set(frame)
+            found.append([np.array(each.matrix_world) for each in (jump, other)])
+        return np.array(found)
+
+    before, as_asked_for = places(), np.array((2.0, 0.5))
+    repair(jump, Repairs(scale=2.0))
+    repair(other, Repairs(scale=0.5))
+    after = places()
+    np.testing.assert_allclose(
+        after[..., :3, :], as_asked_for[:, None, None] * before[..., :3, :], atol=1e-5
+    )
+    repair(jump, Repairs())
+    np.testing.assert_allclose(places()[:, 0], before[:, 0], atol=1e-6)
+    np.testing.assert_allclose(places()[:, 1], after[:, 1], atol=1e-6)
+    repair(other, Repairs())
+    np.testing.assert_allclose(places(), before, atol=1e-6)
+    assert jump.parent == other.parent == parent
+    assert not any("repairs" in each.name for each in bpy.data.objects)
+
+
 def test_one_remedy_takes_the_place_of_the_other(examined) -> None:
     bpy.ops.hangtime.repair(kind="time scale")
     bpy.ops.hangtime.repair(kind="time scale", other=True)

@@ -1,7 +1,7 @@
-"""Hermite keys: exact on cubics, fitted to samples, refitted locally."""
+"""Hermite keys: exact on cubics, fitted to samples."""
 
 import numpy as np
-from hangtime.bridge.keys.hermite import HermiteKeys, fitted, refitted
+from hangtime.bridge.keys.hermite import fitted
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -35,14 +35,3 @@ def test_slopes_are_those_of_the_curve_that_is_drawn(seed: int) -> None:
     step = 1e-4
     ahead, back = keys.at(at[1:-1] + step), keys.at(at[1:-1] - step)
     np.testing.assert_allclose((ahead - back) / (2 * step), keys.slopes[1:-1], atol=1e-4)
-
-
-@given(st.integers(0, 10_000), st.integers(1, 8))
-def test_keys_fitted_anew_change_nothing_beyond_their_neighbours(seed: int, first: int) -> None:
-    samples, at = wave(FRAMES, seed), FRAMES[::6]
-    flat = HermiteKeys(at, np.zeros((len(at), 3)), np.zeros((len(at), 3)))
-    keys = refitted(flat, samples, FRAMES, first, first)
-    outside = (at[first - 1] >= FRAMES) | (at[first + 1] <= FRAMES)
-    assert not keys.at(FRAMES)[outside].any()
-    before = ((flat.at(FRAMES) - samples) ** 2).sum()
-    assert ((keys.at(FRAMES) - samples) ** 2).sum() < before

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from hangtime.bridge.keys.bezier import BezierKeys
 from hangtime.bridge.keys.figure import KeyedBone, KeyedFigure
-from hangtime.bridge.keys.hermite import HermiteKeys
 from hangtime.bridge.keys.reduction import errors_of, reduced, shared_columns
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -38,7 +38,7 @@ def chain(seed: int, bones: int = 3, fixed: tuple[float, ...] = ()) -> KeyedFigu
     )
 
 
-def keys_of(figure: KeyedFigure) -> list[HermiteKeys]:
+def keys_of(figure: KeyedFigure) -> list[BezierKeys]:
     slices = reduced(figure)
     while True:
         try:
@@ -47,7 +47,7 @@ def keys_of(figure: KeyedFigure) -> list[HermiteKeys]:
             return end.value
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(st.integers(0, 10_000))
 def test_the_error_is_kept_by_the_whole_chain_at_every_frame(seed: int) -> None:
     figure = chain(seed)
@@ -62,7 +62,7 @@ def test_the_error_is_kept_by_the_whole_chain_at_every_frame(seed: int) -> None:
     assert np.abs(turned - exact).max() <= 1.001 * ANGLE
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(st.integers(0, 10_000))
 def test_keys_are_few_and_no_bone_has_more_than_the_shared_columns(seed: int) -> None:
     figure = chain(seed)

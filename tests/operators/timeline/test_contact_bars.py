@@ -86,6 +86,17 @@ def test_a_low_editor_shows_the_phases_alone_and_a_lower_one_nothing() -> None:
     assert lay_out((), axis, 400.0, 1.0) is None
 
 
+def test_a_low_editor_shows_the_doubts_over_the_phases() -> None:
+    doubt = Bar("Spike", 149.5, 150.5, firm=True, is_doubt=True)
+    low = lay_out((Row("Recording", (doubt,)), *ROWS), Axis(0.0, 400.0, 0.0, 800.0), 48.0, 1.0)
+    assert low is not None
+    (row,) = low.rows
+    assert row.bars == (*ROWS[-1].bars, doubt)  # painted last
+    only = lay_out((Row("Recording", (doubt,)),), Axis(0.0, 400.0, 0.0, 800.0), 36.0, 1.0)
+    assert only is not None
+    assert only.rows[0].bars == (doubt,)
+
+
 def test_markers_keep_their_strip() -> None:
     axis = Axis(0.0, 400.0, 0.0, 800.0)
     with_markers = lay_out(ROWS, axis, 200.0, 2.0, markers=True)

@@ -5,6 +5,7 @@ from hangtime.operators.words.doctor_text import (
     SENTENCES,
     diagnosis_text,
     finding_sentence,
+    remedy_label,
 )
 from hangtime.solver.doctor.diagnose import Diagnosis
 from hangtime.solver.doctor.finding import Finding, FindingKind
@@ -39,3 +40,13 @@ def test_a_clean_recording_is_called_so_though_there_are_notes() -> None:
         HEALTHY,
         "note: The clip ends in the air.",
     ]
+
+
+def test_remedies_are_called_by_what_they_set() -> None:
+    clock = Finding(FindingKind.TIME_SCALE, 15.3, "m/s²")
+    assert remedy_label(clock, Repairs(time_scale=1.25), 0.0, 150.0) == "Set 120 fps"
+    assert remedy_label(clock, Repairs(scale=0.64), 0.0, 150.0) == "Scale × 0.64"
+    giant = Finding(FindingKind.SIZE, 30.1, "m")
+    assert remedy_label(giant, Repairs(scale=0.05644), 0.0, 24.0) == "Scale to 1.70 m"
+    heavy = Finding(FindingKind.MASS, 200.0, "kg")
+    assert remedy_label(heavy, Repairs(), 68.4, 24.0) == "Set 68 kg"

@@ -239,3 +239,11 @@ def test_a_flight_alone_has_equations() -> None:
     rows = t.rows(x, none)
     assert set(rows.kind) == {RowKind.BALANCE, RowKind.MOMENT}
     assert rows.value == pytest.approx(t.values(x, none))
+
+
+def test_values_where_contacts_are_elsewhere_need_no_figure() -> None:
+    t, x, before = standing(), random_state(3), places()
+    after = before + np.linspace(0.1, -0.2, before.size).reshape(before.shape)
+    expected = t.values(x, after)
+    assert np.abs(expected - t.values(x, before)).max() > 0.1
+    np.testing.assert_allclose(t.moved(t.values(x, before), before, after), expected, atol=1e-12)

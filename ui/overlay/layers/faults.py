@@ -20,7 +20,7 @@ WIDE = 2.0  # radii of the ring about a mark
 
 @dataclass(frozen=True)
 class Mark:
-    """A place, world, and what is wrong there."""
+    """A place, world, and what is wrong there; no words where a worse one says it."""
 
     place: tuple[float, float, float]
     words: str
@@ -37,16 +37,21 @@ def _shapes(marks: tuple[Mark, ...], units: float) -> Iterator[Shape | Label]:
     for mark in marks:
         yield solids.balls(mark.place, RADIUS * units, mark.colour)
         yield rings(mark.place, WIDE * RADIUS * units, mark.colour)
-        yield Label(mark.words, mark.place, mark.colour)
+        if mark.words:
+            yield Label(mark.words, mark.place, mark.colour)
 
 
 def _feet(view: ViewContext) -> Iterator[Mark]:
-    for fault in foot_faults(view.settings):
+    """Of each kind the worst alone has words: points of one foot are too near for more."""
+    now = [f for f in foot_faults(view.settings) if holds((f.first, f.last), view.recorded_frame)]
+    worst = {fault.kind: fault for fault in sorted(now, key=lambda fault: fault.amount)}
+    for fault in now:
         matrix = _bone(view, fault.bone)
-        if matrix is not None and holds((fault.first, fault.last), view.recorded_frame):
+        if matrix is not None:
             turned = matrix.to_quaternion() @ Vector(fault.offset)
             place = matrix.translation + turned / view.metres
-            yield Mark(xyz(place), foot_fault_words(fault), palette.FAULT)
+            words = foot_fault_words(fault) if worst[fault.kind] == fault else ""
+            yield Mark(xyz(place), words, palette.FAULT)
 
 
 def _bones(view: ViewContext) -> Iterator[Mark]:

@@ -97,3 +97,11 @@ def test_a_drag_is_among_the_surfaces_as_they_are_now(analysed, asked: Asked) ->
         next(following)
     assert [len(problem.scene) for problem in asked.problems] == [0, 1]
     assert len(session().dragged.scene.objects) == 1
+
+
+@pytest.mark.usefixtures("analysed", "asked")
+def test_another_file_lets_go_of_the_recording() -> None:
+    complete(_prepare_drag(bpy.context))
+    assert session().dragged is not None
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert session().dragged is None

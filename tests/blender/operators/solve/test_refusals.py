@@ -12,7 +12,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge import worker_client
+from hangtime.bridge import worker_client, worker_requests
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.jump_scene import FIRST, SceneState, ask_by_text, landing
@@ -149,13 +149,13 @@ def test_a_worker_killed_in_the_middle_is_told(analysed: bpy.types.Object) -> No
 def test_a_result_for_keys_that_changed_meanwhile_is_thrown_away(
     analysed: bpy.types.Object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def edited_while_waiting(job: worker_client.PendingRequest) -> object:
+    def edited_while_waiting(job: worker_requests.PendingRequest) -> object:
         answer = wait(job)
         snapshot_curve(analysed).keyframe_points[120].co.y += 0.1
         return answer
 
-    wait = worker_client.PendingRequest.wait
-    monkeypatch.setattr(worker_client.PendingRequest, "wait", edited_while_waiting)
+    wait = worker_requests.PendingRequest.wait
+    monkeypatch.setattr(worker_requests.PendingRequest, "wait", edited_while_waiting)
     before = SceneState.of(analysed)
     with pytest.raises(RuntimeError, match="The result was thrown away"):
         bpy.ops.hangtime.adapt()

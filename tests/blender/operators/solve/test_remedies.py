@@ -76,6 +76,11 @@ def test_a_failure_is_a_short_line_with_what_is_furthest_off_first() -> None:
     assert failure.short == "No motion: “Right Hand” stays 42.0 cm from its place"
     assert [row.name for row in failure.rows] == ["Right Hand", "Knee"]
     assert failure.text.endswith("The best found goes 80 % of the way.")
+    heavy = Violation("ground 2", RowKind.BALANCE, 0.115)
+    both = failure_of(NoSolution(Status.STALLED, (heavy, *worst), 0.0), 1, "hangtime.adapt")
+    assert [row.name for row in both.rows] == ["Right Hand", "Knee", "ground 2"]
+    assert both.short == failure.short
+    assert both.rows[-1].text.startswith("In ground 2, 0.115 of the body's weight")
     told = failure_of(UnseenSupport(1.0, 9.0), 1, "hangtime.analyze")
     assert len(told.short) <= 100
     assert not told.rows

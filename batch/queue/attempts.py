@@ -1,7 +1,8 @@
-"""Which cells wait, run and have ended; no word of Dask here, so that it is easily tested.
+"""Which cells wait, run and have ended; no word of processes or Dask here, so that it is easily
+tested.
 
-The first cell of a clip with a recipe goes alone and brings their fit back; the others with these
-wait for it, so that no fit is solved twice.
+The cells of a clip with a recipe share a fit. The first of them goes alone and makes it, so that no
+fit is solved twice; a worker goes on with the clip whose fit it remembers.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ from statistics import median
 
 from ..records.manifest import CellPlan
 
-MOST_TRIES = 4  # of a cell that fails, or whose worker ends meanwhile
 SLOW = 3.0  # times the median; an idle worker then takes the cell as well
 SLOW_LEAST = 30.0  # s
 
@@ -36,31 +36,39 @@ class Attempt:
 
 @dataclass
 class Attempts:
-    """The cells of one run. waiting: in the manifest's order. on: cells that run, by workers and
-    by pairs."""
+    """The cells of one run.
 
+    most_tries: of a cell that fails, or whose worker ends meanwhile. eager: whether a worker that
+    has nothing else begins a cell whose fit is being solved, for which it then waits itself.
+    waiting: in the manifest's order. on: cells that run, by workers and by pairs.
+    """
+
+    most_tries: int
+    eager: bool = False
     waiting: OrderedDict[Pair, deque[CellPlan]] = field(default_factory=OrderedDict)
     running: list[Attempt] = field(default_factory=list)
     on: Counter[str | Pair] = field(default_factory=Counter)
+    last: dict[str, Pair] = field(default_factory=dict)  # of each worker
     ended: set[str] = field(default_factory=set)
     tries: Counter[str] = field(default_factory=Counter)
     failed_on: dict[str, set[str]] = field(default_factory=dict)  # workers, by cells
     fitted: set[Pair] = field(default_factory=set)
     took: list[float] = field(default_factory=list)  # s, of the cells that ended
 
-    @staticmethod
-    def of(plans: Iterable[CellPlan], fitted: Iterable[Pair] = ()) -> Attempts:
-        """fitted: pairs that have a fit already."""
-        attempts = Attempts(fitted=set(fitted))
+    def add(self, plans: Iterable[CellPlan]) -> Attempts:
+        """Cells that wait; the same queue."""
         for plan in plans:
-            attempts.waiting.setdefault(pair_of(plan), deque()).append(plan)
-        return attempts
+            self.waiting.setdefault(pair_of(plan), deque()).append(plan)
+        return self
 
     @property
     def over(self) -> bool:
         """Whether every cell has ended."""
-        open_cells = {each.plan.cell for each in self.running} - self.ended
-        return not self.waiting and not open_cells
+        return not self.waiting and all(each.plan.cell in self.ended for each in self.running)
+
+    @property
+    def n_waiting(self) -> int:
+        return sum(map(len, self.waiting.values()))
 
     def load(self, worker: str) -> int:
         """Cells that run on a worker."""
@@ -78,25 +86,28 @@ class Attempts:
         attempt = Attempt(plan, worker, now)
         self.running.append(attempt)
         self.on.update((worker, pair_of(plan)))
+        self.last[worker] = pair_of(plan)
         return attempt
 
     def _ready(self, worker: str, others: set[str]) -> CellPlan | None:
-        for pair, plans in self.waiting.items():
-            if self.on[pair] and pair not in self.fitted:
-                continue
-            for place, plan in enumerate(plans):
-                failed_on = self.failed_on.get(plan.cell, set())
-                if worker in failed_on and others - failed_on:
-                    continue
+        last = self.last.get(worker)
+        pairs = list(self.waiting)
+        if last is not None and last in self.waiting:
+            pairs.insert(0, last)
+        free = [pair for pair in pairs if pair in self.fitted or not self.on[pair]]
+        found = (self._of_pair(pair, worker, others) for pair in (free or pairs[: self.eager]))
+        return next((plan for plan in found if plan is not None), None)
+
+    def _of_pair(self, pair: Pair, worker: str, others: set[str]) -> CellPlan | None:
+        plans = self.waiting[pair]
+        for place, plan in enumerate(plans):
+            failed_on = self.failed_on.get(plan.cell, set())
+            if worker not in failed_on or not others - failed_on:
                 del plans[place]
                 if not plans:
                     del self.waiting[pair]
                 return plan
         return None
-
-    def _stop(self, attempt: Attempt) -> None:
-        self.running.remove(attempt)
-        self.on.subtract((attempt.worker, pair_of(attempt.plan)))
 
     def _slow(self, worker: str, now: float) -> CellPlan | None:
         if self.waiting or not self.took:
@@ -104,8 +115,10 @@ class Attempts:
         long = max(SLOW_LEAST, SLOW * median(self.took))
         times = Counter(each.plan.cell for each in self.running)
         for each in self.running:
-            alone = times[each.plan.cell] == 1 and each.plan.cell not in self.ended
-            if alone and each.worker != worker and now - each.began > long:
+            cell = each.plan.cell
+            alone = times[cell] == 1 and cell not in self.ended
+            helpful = each.worker != worker and self.tries[cell] < self.most_tries
+            if alone and helpful and now - each.began > long:
                 return each.plan
         return None
 
@@ -120,26 +133,27 @@ class Attempts:
         return True
 
     def again(self, attempt: Attempt, *, blame: bool = True) -> bool:
-        """An attempt came to nothing; the cell waits anew, before all others.
+        """An attempt came to nothing: the cell waits anew, before all others, but where another
+        attempt of it has ended or still runs, which then decides.
 
-        blame: whether it may be the cell's fault. False where it was tried too often.
+        blame: whether it may be the cell's fault. False where it was tried too often, so that it
+        has ended with this.
         """
         self._stop(attempt)
         cell = attempt.plan.cell
-        self.tries[cell] += blame
         if blame:
+            self.tries[cell] += 1
             self.failed_on.setdefault(cell, set()).add(attempt.worker)
-        if self.tries[cell] >= MOST_TRIES:
+        if cell in self.ended or any(each.plan.cell == cell for each in self.running):
+            return True
+        if self.tries[cell] >= self.most_tries:
+            self.ended.add(cell)
             return False
-        elsewhere = any(each.plan.cell == cell for each in self.running)
-        if cell not in self.ended and not elsewhere:
-            pair = pair_of(attempt.plan)
-            self.waiting.setdefault(pair, deque()).appendleft(attempt.plan)
-            self.waiting.move_to_end(pair, last=False)
+        pair = pair_of(attempt.plan)
+        self.waiting.setdefault(pair, deque()).appendleft(attempt.plan)
+        self.waiting.move_to_end(pair, last=False)
         return True
 
-    def give_up(self, plan: CellPlan) -> bool:
-        """A cell that was tried too often has ended as well; False where it had before."""
-        new = plan.cell not in self.ended
-        self.ended.add(plan.cell)
-        return new
+    def _stop(self, attempt: Attempt) -> None:
+        self.running.remove(attempt)
+        self.on.subtract((attempt.worker, pair_of(attempt.plan)))

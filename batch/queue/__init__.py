@@ -1,0 +1,1 @@
+"""The queue of a run: which cells wait, run and have ended."""

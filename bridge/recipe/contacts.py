@@ -1,0 +1,79 @@
+"""Records of contacts in recipes: pins, corrections of what the analysis found, and additions."""
+
+from ...solver.data.problem import AddedContact, ContactEdit, OffsetAxes, Pin
+from ..recipe_syntax.items import (
+    TOUCHING,
+    TRAVEL_KEYS,
+    TRAVEL_WORDS,
+    Item,
+    Kind,
+    Values,
+    angle,
+    number,
+    phase,
+    travelled,
+    vector,
+    word,
+)
+from ..recipe_syntax.table import Table
+
+
+def _read_offset(table: Table) -> Values:
+    table.not_both("offset", TRAVEL_WORDS)
+    offset = table.vector("offset")
+    if offset is not None:
+        return {"offset": offset, "axes": OffsetAxes.WORLD}
+    return {"offset": travelled(table)}
+
+
+def _write_offset(pin: Pin) -> Values:
+    if pin.axes is OffsetAxes.WORLD:
+        return {"offset": pin.offset}
+    return {key: amount or None for key, amount in zip(TRAVEL_KEYS, pin.offset, strict=True)}
+
+
+def _read_correction(table: Table) -> Values:
+    table.not_both("remove", ("start_frame", "end_frame"))
+    start, end = table.number("start_frame"), table.number("end_frame")
+    if start is not None and end is not None and start >= end:
+        table.refuse("end_frame", f"the end, {end:g}, must come after the start, {start:g}")
+    return {"start_frame": start, "end_frame": end, "remove": table.flag("remove")}
+
+
+def _write_correction(edit: ContactEdit) -> Values:
+    if edit.remove:
+        return {"remove": True}
+    return {"start_frame": edit.start_frame, "end_frame": edit.end_frame}
+
+
+PIN = Kind(
+    "pin",
+    Pin,
+    (
+        phase("phase"),
+        TOUCHING,
+        Item((*TRAVEL_WORDS, "offset"), _read_offset, _write_offset),
+        vector("place"),
+        angle("turn"),
+        word("on"),
+    ),
+    needs=(("phase",),),
+)
+CONTACT = Kind(
+    "contact",
+    ContactEdit,
+    (
+        word("name"),
+        Item(("start_frame", "end_frame", "remove"), _read_correction, _write_correction),
+    ),
+    needs=(("name",),),
+    named=False,
+)
+
+ADDED = Kind(
+    "add_contact",
+    AddedContact,
+    (word("point"), number("start_frame"), number("end_frame")),
+    needs=(("point",), ("start_frame",), ("end_frame",)),
+    named=False,
+)

@@ -1,0 +1,56 @@
+"""The program of a worker process: `python -I program.py MODULE`, or by Blender's --python.
+
+MODULE is the package's own that has the worker's `main`, such as solver.worker.main. Whoever
+starts it holds the other end of its standard streams.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import importlib
+import importlib.util
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+NAME = "hangtime"
+LOADING = 60.0  # s, in which libraries load from the slowest disk
+TIMED_OUT = "Timeout ("  # as faulthandler begins to tell
+
+
+def private_stdout() -> BinaryIO:
+    """The pipe to the parent; whatever a library prints goes to the error stream instead."""
+    private = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    return private
+
+
+@contextmanager
+def bounded_loading() -> Iterator[None]:
+    """Ends the process where libraries do not load in time, by a thread that needs no Python:
+    where memory is scarce OpenBLAS asks for it for ever."""
+    faulthandler.dump_traceback_later(LOADING, exit=True)
+    try:
+        yield
+    finally:
+        faulthandler.cancel_dump_traceback_later()
+
+
+def load_package(root: Path) -> None:
+    """Makes a folder importable as the package, whatever it is called."""
+    spec = importlib.util.spec_from_file_location(
+        NAME, root / "__init__.py", submodule_search_locations=[str(root)]
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    package = importlib.util.module_from_spec(spec)
+    sys.modules[NAME] = package
+    spec.loader.exec_module(package)
+
+
+if __name__ == "__main__":
+    load_package(Path(__file__).resolve().parents[2])
+    sys.exit(importlib.import_module(f"{NAME}.{sys.argv[-1]}").main())
