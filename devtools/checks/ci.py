@@ -1,0 +1,180 @@
+"""Everything that must hold before a change lands, from a clean machine: .ci/run.
+
+Standard library only. Each check is a process of its own. Two run at once, one on each core, except
+those that use both or whose figures a neighbour would spoil. The last line adds up all tests.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..environment import pythons
+from ..environment.problem import SetUpError
+from . import summary
+
+ROOT = Path(__file__).resolve().parents[2]
+CORES = 2
+RECALLED = 25  # last lines of a check that failed, told once more at the end
+# Recordings that may not be redistributed; the trial held here is among them.
+TRIALS = ROOT.parent / "shared" / "validation"
+
+
+@dataclass(frozen=True)
+class Check:
+    """Calls of dev.py, one after the other, and all of them even where one fails.
+
+    {reports} and {out} in an argument stand for the folder of reports and a new folder.
+    """
+
+    name: str
+    calls: tuple[str, ...]
+    root: Path = ROOT
+
+
+@dataclass(frozen=True)
+class CheckRun:
+    """What a check said, how long it took (s), and whether all its calls ended with 0."""
+
+    name: str
+    text: str
+    seconds: float
+    passed: bool
+
+
+def tests(blender: str, report: str, chosen: str) -> str:
+    return f"test --blender {blender} --reports {{reports}}/{report} {chosen}"
+
+
+def suite(blender: str) -> Check:
+    return Check(f"Blender {blender}", (tests(blender, blender, "tests/blender tests/installed"),))
+
+
+def shared_checks() -> Iterator[Check]:
+    """Checks that leave a core to another; the longest first, so that both cores end together."""
+    for name, chosen in (("solver", "tests/solver"), ("rest", "tests --ignore=tests/solver")):
+        yield Check(f"slow tests, {name}", (tests("4.5", f"slow-{name}", f"{chosen} -m slow"),))
+    # In two processes: late in one that has done all of it 4.2 ends with a segmentation fault, in
+    # its glTF add-on.
+    operators = "tests/blender/operators"
+    halves = (f"{operators} tests/installed", f"tests/blender --ignore={operators}")
+    calls = tuple(tests("4.2", f"4.2-{k}", half) for k, half in enumerate(halves))
+    yield Check("Blender 4.2", calls)
+    yield suite("5.0")
+    if runs("5.2"):
+        yield suite("5.2")
+    yield measure("the gallery's results, solved and written", "gallery --quick --no-pictures")
+    yield Check(
+        "farms, and batches that are killed",
+        (
+            "farm --blender 4.5 --tests --junitxml={reports}/farm.xml",
+            "farm --blender 4.5 --quick --tell --out {out}",
+        ),
+    )
+    yield measure("force plates", f"validate {plates()} --no-curves")
+    yield measure("skeletons of all conventions", "rigs --quick")
+    yield measure("the benchmark", "benchmark --quick")
+    yield measure("the hostile campaign", "campaign --cases 1000")
+    yield measure("recordings damaged, diagnosed and repaired", "doctor --table --quick")
+    yield measure("reduced keys", "keys")
+    yield measure("nothing goes through anything", "solid --quick")
+    yield measure("seams of loops", "loop")
+    yield measure("build", "build")
+
+
+def measure(name: str, call: str) -> Check:
+    return Check(name, (f"{call} --blender 4.5 --out {{out}}",))
+
+
+def plates() -> str:
+    """The folder of trials; nothing where only the one of the repository is there."""
+    if TRIALS.is_dir():
+        return str(TRIALS)
+    print(f"force plates: only the trial of the repository, for {TRIALS} is not there")
+    return ""
+
+
+def runs(blender: str) -> bool:
+    """Whether a Python for it is on this machine."""
+    try:
+        pythons.choose(blender)
+    except SetUpError as problem:
+        print(f"Blender {blender} is left out: {problem}")
+        return False
+    return True
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        # The first two make the environments in which the others run side by side.
+        first = [standalone(folder / "clone"), Check("lint", ("lint --blender 4.5",))]
+        window = "window --blender 4.5 --tell --reports {reports}/window --out {out}"
+        last = [Check("the window, driven by mouse and keys", (window,))]
+        outcomes = list(run_all(first, list(shared_checks()), last, folder))
+        for failed in (outcome for outcome in outcomes if not outcome.passed):
+            print(f"\nfailed: {failed.name}; it ended so:")
+            print(*failed.text.splitlines()[-RECALLED:], sep="\n")
+        skipped = summary.main(folder / "reports")
+    return int(skipped or not all(outcome.passed for outcome in outcomes))
+
+
+def run_all(
+    first: list[Check], shared: list[Check], last: list[Check], folder: Path
+) -> Iterator[CheckRun]:
+    """Outcomes, each told as it comes: of `first` and `last` one by one, of `shared` side by side."""
+    with ThreadPoolExecutor(CORES) as pool:
+        for check in first:
+            yield told(run(check, folder))
+        for pending in as_completed([pool.submit(run, check, folder) for check in shared]):
+            yield told(pending.result())
+        for check in last:
+            yield told(run(check, folder))
+
+
+def told(outcome: CheckRun) -> CheckRun:
+    print(f"\n{outcome.text}=== {outcome.name}: {outcome.seconds:.0f} s", flush=True)
+    return outcome
+
+
+def standalone(clone: Path) -> Check:
+    """The README's test command in a clone of HEAD that has nothing beside it.
+
+    It makes its own environment: one that is shared would hide what a clone lacks, such as the
+    fetched recording that is kept in it.
+    """
+    status = subprocess.check_output(["git", "status", "--porcelain"], cwd=ROOT, text=True)
+    print(*(f"not committed, so not in the clone: {line}" for line in status.splitlines()), sep="\n")
+    subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
+    return Check("the README's test command in a clone", ("test --reports {reports}/clone",), clone)
+
+
+def run(check: Check, folder: Path) -> CheckRun:
+    """Run a check's calls; what they print is kept."""
+    start = time.perf_counter()
+    text, passed = "", True
+    for call in check.calls:
+        out = tempfile.mkdtemp(dir=folder)
+        words = call.format(reports=folder / "reports", out=out).split()
+        text += f"=== {check.name}: dev.py {' '.join(words)}\n"
+        ended = subprocess.run(
+            [sys.executable, "dev.py", *words],
+            cwd=check.root,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+        )
+        text += ended.stdout
+        passed = passed and ended.returncode == 0
+    return CheckRun(check.name, text, time.perf_counter() - start, passed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
