@@ -71,6 +71,7 @@ def test_a_cell_that_is_solved_is_not_solved_again(batch: Path) -> None:
     assert (cell_folder(batch, cell) / TRAJECTORY).stat().st_mtime_ns == written
 
 
+@pytest.mark.slow
 def test_cells_of_a_clip_share_its_fit_and_find_it_as_it_was_to_the_bit(
     batch: Path, tmp_path: Path
 ) -> None:
@@ -90,6 +91,7 @@ def test_cells_of_a_clip_share_its_fit_and_find_it_as_it_was_to_the_bit(
     assert all(np.array_equal(one[k], two[k], equal_nan=one[k].dtype.kind == "f") for k in one)
 
 
+@pytest.mark.slow
 def test_a_clip_is_analysed_once_wherever_copies_of_it_lie(
     batch: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

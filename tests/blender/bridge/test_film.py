@@ -82,6 +82,7 @@ def middle_of_blue(picture: np.ndarray) -> float:
     return float(np.nonzero(blue)[1].mean()) / picture.shape[1]
 
 
+@pytest.mark.slow
 def test_the_figure_moves_through_the_film_as_the_body_does_and_leaves_no_trace(tmp_path):
     command = [sys.executable, "-c", DRAW, LOADER, str(tmp_path / "film.mp4")]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)

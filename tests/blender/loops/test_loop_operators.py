@@ -29,6 +29,7 @@ def run() -> bpy.types.Object:
     return armature
 
 
+@pytest.mark.slow
 def test_a_run_becomes_a_loop(run: bpy.types.Object) -> None:
     settings, take = run.hangtime, current_action(run)
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}

@@ -32,6 +32,7 @@ from hangtime.tests.blender.helpers.skins import make_skin
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 
+@pytest.mark.slow
 def test_a_rig_as_auto_rig_pros_is_written_to_its_controls() -> None:
     take = performer().part(1.0, 12.0, 1)
     rig = auto_rig_pro(take, ik=False, rate=RATE)

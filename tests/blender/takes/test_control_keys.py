@@ -28,6 +28,7 @@ LAST, DEEPER = 12, 0.06  # frames, m
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 
+@pytest.mark.slow
 def test_reduced_keys_on_controls_keep_the_error_of_the_bones_that_follow() -> None:
     rig = ik_rig()
     hips, stand = rig.pose.bones["hips"], rig.pose.bones["stand.L"]

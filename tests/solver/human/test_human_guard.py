@@ -78,6 +78,7 @@ def test_what_is_off_has_no_rows() -> None:
     assert unguarded().motion.transcription.guard(RowKind.RANGE) is None
 
 
+@pytest.mark.slow
 def test_a_joint_that_the_artist_limits_is_the_artist_s() -> None:
     """A knee is asked to bend further than a person's can."""
     frame = float(fitted_hop().performance.recording.frames[0]) + 60.0

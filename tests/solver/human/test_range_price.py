@@ -124,6 +124,7 @@ def spine_to_hip(adaptation: Adaptation) -> float:
     return turned(adaptation, Part.SPINE) / turned(adaptation, Part.THIGH)
 
 
+@pytest.mark.slow
 def test_a_reach_is_shared_by_the_body_as_people_do() -> None:
     """The arm first (Kaminski et al. 1995), then spine, hips and knees (Thomas et al. 1998)."""
     plain, shared = reach(human=False), reach(human=True)

@@ -81,6 +81,7 @@ def test_a_longer_jump_flies_longer_and_a_shorter_one_shorter() -> None:
         assert 0.15 < share < 2.0, forward
 
 
+@pytest.mark.slow
 def test_a_bigger_jump_is_performed_bigger_and_a_smaller_one_smaller() -> None:
     shorter, same, longer = (adapted(forward) for forward in (-0.15, 0.0, 0.15))
     assert crouch(longer) < crouch(same) - 0.005 < crouch(shorter) - 0.01

@@ -128,6 +128,7 @@ def test_where_nobody_can_jump_the_motion_stays_where_it_last_could_follow() -> 
     settled(follower, moved(0.1), most=60)
 
 
+@pytest.mark.slow
 def test_it_goes_back_to_where_it_began() -> None:
     fit = fitted_hop()
     follower = Follower(fit, moved(0.0))
@@ -149,6 +150,7 @@ def test_it_begins_at_an_adaptation_of_the_same_problem() -> None:
     settled(follower, moved(0.22))
 
 
+@pytest.mark.slow
 def test_other_requests_than_pins_are_taken_in() -> None:
     follower = Follower(fitted_hop(), moved(0.1))
     settled(follower, moved(0.1))

@@ -138,6 +138,7 @@ def test_a_pins_offset_is_the_same_on_a_train() -> None:
 # ---------------------------------------------------------------- take-offs
 
 
+@pytest.mark.slow
 def test_a_stance_that_no_pin_names_is_carried_on_by_the_take_off() -> None:
     target = solved("from a train").setup.target
     fit = fitted_hop()

@@ -108,6 +108,7 @@ def test_the_fit_rides_along(lift: bool) -> None:
     assert np.abs(found.motion.com(times, 1) - velocity - still.motion.com(times, 1)).max() < 0.2
 
 
+@pytest.mark.slow
 def test_an_edit_on_the_train_goes_on_riding() -> None:
     fit = fitted()
     pin = Pin("Landing", "ground 2", offset=(0.15, 0.0, 0.0))

@@ -157,6 +157,7 @@ def test_a_ceiling_under_which_no_leg_fits_is_told_before_the_solve() -> None:
     set_up(fitted_hop(), MotionProblem(scene=(ceiling(0.6),)))  # whoever crouches would do
 
 
+@pytest.mark.slow
 def test_a_body_that_is_all_in_something_gets_no_more_rows_than_a_step_can_bear() -> None:
     setup = set_up(fitted_hop(), MotionProblem(scene=(ceiling(0.9),)))
     assert setup.solid is not None

@@ -69,6 +69,7 @@ def test_a_foot_stays_above_the_floor() -> None:
     assert max(new_depths(adaptation, adaptation).values(), default=0.0) < NEW
 
 
+@pytest.mark.slow
 def test_a_hand_stays_out_of_the_thigh() -> None:
     adaptation = adapt(fitted_hop(), in_thigh())
     before = new_depths(through_thigh(), adaptation)

@@ -95,6 +95,7 @@ def test_a_take_that_a_strip_plays_later_stays_there(clip: Path, tmp_path: Path)
     np.testing.assert_allclose(shown, recorded, atol=0.05)
 
 
+@pytest.mark.slow
 def test_a_recipe_without_a_request_gives_the_plain_fit(clip: Path, tmp_path: Path, capsys) -> None:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     ensure_groups()
