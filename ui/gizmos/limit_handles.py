@@ -18,9 +18,7 @@ from .shown import handled, knob, paint, put
 ENDS = ("lower", "upper", "half_angle")
 
 
-def chosen_places(
-    view: ViewContext, figures: FigureCache, sight: rays.Vector
-) -> LimitHandlePlaces:
+def chosen_places(view: ViewContext, figures: FigureCache, sight: rays.Vector) -> LimitHandlePlaces:
     """Handles of the limit that is chosen. sight: (3,) unit vector towards the viewer, world."""
     limit = chosen_limit(view)
     if limit is None:

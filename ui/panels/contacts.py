@@ -14,7 +14,7 @@ from .sidebar import OF_SOLVES, ArmaturePanel, draw_at_work, draw_list, settings
 class ContactsPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_contacts"
     bl_label = "Contacts"
-    bl_order = 2
+    bl_order = 4
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)

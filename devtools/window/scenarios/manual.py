@@ -37,7 +37,8 @@ REPORT = (860, 640)  # px of its window that are shown
 def shows_result(driver: Driver) -> Actions:
     """After a drag: the panels Solve and Result."""
     current_scene().frame_set(LANDED)
-    yield from driver.screen.scroll_down()
+    driver.screen.forget()
+    yield from driver.screen.find_button("hangtime.accept")
     yield from rests_aside(driver)
     yield from keep(driver, "result")
 
@@ -103,7 +104,7 @@ def tells_failure(driver: Driver) -> Actions:
     yield from press(driver, "hangtime.adapt")
     yield Until("a failure", lambda: idle() and failed().failure is not None, 200)
     driver.screen.forget()
-    yield from driver.screen.scroll_down(but=3)
+    yield from driver.screen.find_button("hangtime.use_best")
     yield from rests_aside(driver)
     yield from keep(driver, "failure")
     settings().constraints.clear()

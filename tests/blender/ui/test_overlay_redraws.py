@@ -233,9 +233,7 @@ CHANGES: dict[str, Callable[[bpy.types.Object], object]] = {
 
 
 @pytest.mark.parametrize("change", CHANGES)
-def test_a_change_of_whatever_is_shown_is_seen(
-    constrained: bpy.types.Object, change: str
-) -> None:
+def test_a_change_of_whatever_is_shown_is_seen(constrained: bpy.types.Object, change: str) -> None:
     empty = bpy.data.objects.new("Target", None)
     bpy.context.scene.collection.objects.link(empty)
     constrained.hangtime.constraints[3].target = empty
