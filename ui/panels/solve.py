@@ -39,7 +39,7 @@ class SolvePanel(ArmaturePanel):
         row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
         armature = present(chosen_armature(context))
         draw_failure(layout, context, armature, *OF_SOLVES)
-        if session().best is not None:
+        if session().best_of(armature) is not None:
             layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
 
     @staticmethod
