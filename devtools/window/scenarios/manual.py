@@ -8,6 +8,7 @@ import bpy
 
 from ..driving.actions import (
     LANDING,
+    VALUE,
     armature,
     current_scene,
     extension_module,
@@ -90,7 +91,7 @@ def holds_constraints(driver: Driver) -> Actions:
     add("CONE", "RightUpLeg")
     yield from adapts_anew(driver)
     driver.screen.forget()
-    yield from driver.screen.find_button("hangtime.remove_constraint", 0.93)
+    yield from driver.screen.find_button("half_angle", VALUE)
     yield from rests_aside(driver)
     yield from keep(driver, "constraints")
     settings().constraints.clear()
