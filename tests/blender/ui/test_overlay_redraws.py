@@ -205,6 +205,12 @@ def selects_bone(armature: bpy.types.Object) -> None:
     (bone if hasattr(bone, "select") else bone.bone).select = True
 
 
+def lengthens_bone(armature: bpy.types.Object) -> None:
+    bpy.ops.object.mode_set(mode="EDIT")
+    armature.data.edit_bones["head"].length *= 2.0
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def shows_result(armature: bpy.types.Object) -> None:
     armature.animation_data.action = armature.hangtime.adapted
 
@@ -226,6 +232,7 @@ CHANGES: dict[str, Callable[[bpy.types.Object], object]] = {
     "fewer constraints": lambda armature: armature.hangtime.constraints.remove(1),
     "target": moves_target,
     "selected bone": selects_bone,
+    "length of a bone": lengthens_bone,
     "shown action": shows_result,
     "stretched time": stretches_time,
     "no result": lambda armature: setattr(armature.hangtime, "adapted", None),

@@ -9,7 +9,7 @@ import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from ....bridge.accessors import current_action, pose_of, present, snapshot
+from ....bridge.accessors import armature_data, current_action, pose_of, present, snapshot
 from ....bridge.armature.poses import frames_per_second, metres_per_unit
 from ....bridge.armature.traces_store import StoredTraces, kept
 from ....bridge.properties.constraint import HangtimeConstraint
@@ -71,7 +71,7 @@ class ViewContext:
             (recorded and recorded.key, adapted and adapted.key, self.performs_adapted),
             [_told(action) for action in (current_action(armature), self.settings.adapted)],
             [target.matrix_world.copy() for target in targets],
-            (pose_of(armature).bones.keys(), posed_bones(armature).tobytes()),
+            (pose_of(armature).bones.keys(), posed_bones(armature).tobytes(), _lengths(armature)),
             [snapshot(owner) for owner in (armature, present(self.options.id_data))],
         )
 
@@ -154,6 +154,14 @@ def posed_bones(armature: bpy.types.Object) -> NDArray[np.float32]:
     flat = np.empty(16 * len(pose_of(armature).bones), np.float32)
     pose_of(armature).bones.foreach_get("matrix", flat)
     return flat
+
+
+def _lengths(armature: bpy.types.Object) -> bytes:
+    """Of all bones, which their matrices do not tell."""
+    bones = armature_data(armature).bones
+    flat = np.empty(len(bones), np.float32)
+    bones.foreach_get("length", flat)
+    return flat.tobytes()
 
 
 def _told(action: bpy.types.Action | None) -> object:
