@@ -33,6 +33,16 @@ def attached(owner: bpy.types.bpy_struct | None) -> Any:
     return getattr(owner, ATTRIBUTE)
 
 
+def snapshot(owner: bpy.types.ID) -> dict[str, Any]:
+    """All that was set of what is attached to a data-block, down to the last row: equal while
+    nothing of it changes, whoever changes it. Some 0.05 ms for 20 constraints."""
+    # From Blender 5.0 on it lies apart from the artist's own properties.
+    apart = getattr(owner, "bl_system_properties_get", None)
+    stored = owner if apart is None else apart()
+    group = stored.get(ATTRIBUTE) if stored is not None else None
+    return group.to_dict() if group is not None else {}
+
+
 def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
     """The take that a result was made from; None of an action that is no result."""
     recording: bpy.types.Action | None = attached(action).recording

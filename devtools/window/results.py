@@ -25,7 +25,7 @@ LIMITS = {
     "worker's processor time per update during a drag": Limit("ms"),
     **{BLOCKED + stage: Limit("ms", 100.0, 30.0) for stage in STAGES},
     "Esc to idle": Limit("s", 0.3, 0.1),
-    OVERLAY: Limit("ms", 4.0, 1.0),
+    OVERLAY: Limit("ms", 2.5, 1.0),
     f"{OVERLAY}, by the clock": Limit("ms"),
     CLICKS: Limit("1", 6.0, 4.0),
     # What is behind the figures of blocking; software draws the window here.

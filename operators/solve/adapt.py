@@ -65,7 +65,7 @@ from ..words.report_text import as_text
 from ..words.summary_text import summary
 from ..words.take_text import pin_lines, polish_lines, take_lines
 from ..words.warning_text import warnings_of
-from .common import hindrance, quick_solution, refined_solution, required_armature
+from .common import chosen_armature, hindrance, quick_solution, refined_solution, required_armature
 from .keys import key_options, mark_contacts, write_keys
 from .live import live
 from .scene import note_surfaces, read_bound, read_surfaces, stale_surfaces
@@ -180,16 +180,16 @@ class UseBestOperator(TaskOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     @classmethod
-    def obstacle(cls, _context: bpy.types.Context) -> str | None:
-        solving = session().solving
-        possible = session().best is not None or (solving is not None and solving.can_stop)
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        solving, best = session().solving, session().best_of(chosen_armature(context))
+        possible = best is not None or (solving is not None and solving.can_stop)
         return None if possible else "No solve is under way, and none has failed"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
         return {"FINISHED"} if take_best() else super().invoke(context, event)
 
-    def task(self, _context: bpy.types.Context) -> Task:
-        done = yield from write_answer(*present(session().best))
+    def task(self, context: bpy.types.Context) -> Task:
+        done = yield from write_answer(*present(session().best_of(chosen_armature(context))))
         session().best = None
         return done
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Protocol
 
+import bpy
 from bpy.app.handlers import persistent
 
 from ...bridge.scene.read import SceneReading
@@ -48,6 +49,12 @@ class Session:
     tried: tuple[int, str, tuple[str, ...]] | None = None
     dragged: Asked | None = None
     running: list[Running] = field(default_factory=list)
+
+    def best_of(self, armature: bpy.types.Object | None) -> tuple[Asked, Adapted] | None:
+        """The best motion that a failed solve of an armature found."""
+        best = self.best
+        mine = best is not None and armature is not None and best[0].uid == armature.session_uid
+        return best if mine else None
 
     def advance(self, to: SolveState) -> None:
         """The solve under way goes on to its next part."""

@@ -301,8 +301,11 @@ def _stages(report: Report) -> Iterator[str]:
 
 
 def higher(centimetres: float) -> str:
-    """A difference of heights, such as "1.3 cm lower"."""
-    return f"{abs(centimetres):.1f} cm {'higher' if centimetres >= 0.0 else 'lower'}"
+    """How much higher than recorded, such as "1.3 cm lower"."""
+    amount = f"{abs(centimetres):.1f}"
+    if not float(amount):
+        return "as high as recorded"
+    return f"{amount} cm {'higher' if centimetres > 0.0 else 'lower'}"
 
 
 def deeper(centimetres: float) -> str:

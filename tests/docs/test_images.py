@@ -14,8 +14,6 @@ SHOWN = re.compile(r"!\[[^]]*\]\(([^)\s]+)\)")
 SCENARIOS = ROOT / "devtools/window/scenarios"
 TAKEN = re.compile(r'keep\(driver, "(\w+)"')
 NAMED = re.compile(r'Scenario\("(\w+)"')
-# The page of a real night's batch, in a browser; solving it takes half an hour.
-BY_HAND = {"batch_page"}
 
 
 def shown(page: Path) -> list[Path]:
@@ -32,7 +30,7 @@ def test_the_windows_scenarios_take_all_pictures_of_the_manual() -> None:
     named = {
         image.stem for page in PAGES for image in shown(page) if image.resolve().parent == folder
     }
-    assert named - BY_HAND == set(manual.SCENARIOS)
+    assert named == set(manual.SCENARIOS)
     assert {image.stem for image in folder.iterdir()} == named
 
 

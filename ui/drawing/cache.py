@@ -9,19 +9,20 @@ CACHED_CONTENTS = 4  # contents of a name: windows may show different scenes and
 
 
 class ContentCache(Generic[T]):
-    """For each name the last few things built, by content."""
+    """For each name the last few things built, by content, which need only be comparable."""
 
     def __init__(self, remembered: int = CACHED_CONTENTS) -> None:
         self._remembered = remembered
-        self._made: dict[Hashable, dict[Hashable, T]] = {}
+        self._made: dict[Hashable, list[tuple[object, T]]] = {}
 
-    def get(self, name: Hashable, content: Hashable, make: Callable[[], T]) -> T:
+    def get(self, name: Hashable, content: object, make: Callable[[], T]) -> T:
         """The thing made for this content; where there is none, `make` makes it."""
-        known = self._made.setdefault(name, {})
-        made = known.pop(content, None)
-        known[content] = made = make() if made is None else made
-        while len(known) > self._remembered:
-            del known[next(iter(known))]
+        known = self._made.setdefault(name, [])
+        at = next((i for i, (before, _) in enumerate(known) if before == content), None)
+        made = known.pop(at)[1] if at is not None else None
+        made = make() if made is None else made
+        known.insert(0, (content, made))
+        del known[self._remembered :]
         return made
 
     def clear(self) -> None:

@@ -7,40 +7,25 @@ from mathutils import Matrix, Vector
 from ...bridge.accessors import present
 from ...operators.drag import rays
 from ...operators.names import OperatorId
-from ..drawing.cache import ContentCache
 from ..overlay.context.figure_cache import FigureCache
 from ..overlay.context.view_context import ViewContext
 from ..overlay.geometry import palette
 from ..overlay.geometry.limit_shapes import limit_frames
-from ..overlay.layers.limits import chosen_limit, chosen_row, limit_pose, posed_bones
+from ..overlay.layers.limits import chosen_limit, limit_pose
 from .places import Knob, LimitHandlePlaces, Tip, handle_places
 from .shown import handled, knob, paint, put
 
 ENDS = ("lower", "upper", "half_angle")
 
 
-class PlaceCache:
-    """Places of handles, worked out again where what they depend on has changed."""
-
-    def __init__(self) -> None:
-        self._figures = FigureCache()
-        self._cache: ContentCache[LimitHandlePlaces] = ContentCache()
-
-    def of(self, view: ViewContext, sight: rays.Vector) -> LimitHandlePlaces:
-        """Of the limit that is chosen. sight: (3,) unit vector towards the viewer, world."""
-        limit = chosen_limit(view)
-        if limit is None:
-            return LimitHandlePlaces()
-        stands, shown = np.array(view.armature.matrix_world, float), view.recorded
-        pose, key = posed_bones(view.armature).tobytes(), shown.key if shown is not None else None
-        content = view.armature.name_full, limit, pose, stands.tobytes(), sight.tobytes(), key
-
-        def places() -> LimitHandlePlaces:
-            figure = self._figures.of(view, shown)
-            placed = limit_frames([limit], figure, limit_pose(view.armature, (limit,)))
-            return handle_places(limit, *placed, stands, sight)
-
-        return self._cache.get("handles", content, places)
+def chosen_places(view: ViewContext, figures: FigureCache, sight: rays.Vector) -> LimitHandlePlaces:
+    """Handles of the limit that is chosen. sight: (3,) unit vector towards the viewer, world."""
+    limit = chosen_limit(view)
+    if limit is None:
+        return LimitHandlePlaces()
+    pose = limit_pose(view.armature, (limit,))
+    placed = limit_frames([limit], figures.of(view, view.recorded), pose)
+    return handle_places(limit, *placed, np.array(view.armature.matrix_world, float), sight)
 
 
 class LimitHandles(bpy.types.GizmoGroup):
@@ -50,28 +35,27 @@ class LimitHandles(bpy.types.GizmoGroup):
     bl_region_type = "WINDOW"
     bl_options = {"3D", "PERSISTENT"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Blender asks several times a redraw: whether there is a limit, not where."""
-        view = handled(context)
-        return view is not None and view.options.limits and chosen_row(view.settings) is not None
-
     def setup(self, _context: bpy.types.Context) -> None:
-        self._places = PlaceCache()
+        self._figures = FigureCache()
+        self._state: object = None  # that they were put by
         self._ends = {end: self._new(OperatorId.DRAG_LIMIT) for end in ENDS}
         for end, (_, drag) in self._ends.items():
             drag.end = end
         self._tip = self._new(OperatorId.AIM_CONE)
 
     def draw_prepare(self, context: bpy.types.Context) -> None:
-        """Blender calls this before each redraw; nothing else is told of undo or of scripts."""
+        """As that of PinHandles."""
+        view = handled(context, "limits")
+        sight = present(context.region_data).view_rotation @ Vector((0.0, 0.0, 1.0))
+        state = (view.state, sight) if view is not None else None
+        if state == self._state:
+            return
+        self._state = state
         for gizmo, _ in (*self._ends.values(), self._tip):
             gizmo.hide = True
-        view = handled(context)
         if view is None:
             return
-        sight = present(context.region_data).view_rotation @ Vector((0.0, 0.0, 1.0))
-        found = self._places.of(view, np.array(sight))
+        found = chosen_places(view, self._figures, np.array(sight))
         chosen = view.settings.active_constraint
         for each in found.knobs:
             _show_knob(*self._ends[each.end], each, chosen)

@@ -53,19 +53,20 @@ class PinHandles(bpy.types.GizmoGroup):
     bl_region_type = "WINDOW"
     bl_options = {"3D", "PERSISTENT"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        view = handled(context)
-        return view is not None and view.options.pins and len(view.settings.contacts) > 0
-
     def setup(self, _context: bpy.types.Context) -> None:
         self._pins: list[tuple[bpy.types.Gizmo, bpy.types.OperatorProperties]] = []
+        self._state: object = None  # that they were put by
         self._ring = self._new_ring()
         self._arrow, self._lift = self._new_arrow()
 
     def draw_prepare(self, context: bpy.types.Context) -> None:
-        """Blender calls this before each redraw; nothing else is told of undo or of scripts."""
-        view = handled(context)
+        """Blender calls this in each redraw; nothing else is told of undo or of scripts. A poll it
+        would call several times more often."""
+        view = handled(context, "pins")
+        state = view.state if view is not None else None
+        if state == self._state:
+            return
+        self._state = state
         shown = handles(view) if view is not None else []
         while len(self._pins) < len(shown):
             self._pins.append(self._new_pin())

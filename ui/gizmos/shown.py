@@ -7,24 +7,27 @@ from ...bridge.accessors import current_action
 from ...operators.solve.session import session
 from ..drawing.editor import view_3d
 from ..drawing.sketch import Colour
-from ..overlay.context.view_context import ViewContext, read_view
+from ..overlay.context.redraw import view_now
+from ..overlay.context.view_context import ViewContext
 from ..overlay.geometry import palette
 
 HIGHLIGHT: Colour = palette.WITHIN
 KNOB = 0.1  # radius of a handle, as a share of the size of gizmos in the preferences
 
 
-def handled(context: bpy.types.Context) -> ViewContext | None:
-    """The context that handles are shown in; None where nothing can be dragged now."""
+def handled(context: bpy.types.Context, switch: str) -> ViewContext | None:
+    """The context that handles are shown in; None where nothing can be dragged now, or the switch
+    of what they sit on is off."""
     space = view_3d(context)
     if space is None or not (space.show_gizmo and space.show_gizmo_context):
         return None
     if session().solving is not None:
         return None
-    view = read_view(context)
+    view = view_now(context)
     if view is None or view.armature.mode == "EDIT" or not view.armature.is_editable:
         return None
-    return view if current_action(view.armature) is not None else None
+    due = getattr(view.options, switch) and current_action(view.armature) is not None
+    return view if due else None
 
 
 def new_gizmo(group: bpy.types.GizmoGroup, kind: str, **own: object) -> bpy.types.Gizmo:

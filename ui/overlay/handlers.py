@@ -7,7 +7,7 @@ import bpy
 from ...operators.solve.live import redraw_viewports
 from ..drawing.editor import ui_scale
 from .context.figure_cache import FigureCache
-from .context.view_context import read_view
+from .context.redraw import redraw
 from .geometry.shapes import Label, Look
 from .gpu_batches import GpuBatches, draw, draw_nothing, upload
 from .layer_selection import layers
@@ -35,10 +35,10 @@ class Overlay:
         self._labels = ()
         context = bpy.context
         self._warm_up()
-        view = read_view(context)
+        view = redraw().begin(context)
         if view is None:
             return
-        batches, named = self._pictures.of(list(layers(view, self._figures)))
+        batches, named = self._pictures.of(view.state, lambda: layers(view, self._figures))
         draw(batches, ui_scale(context))
         self._labels = named if view.options.labels else ()
 
@@ -49,6 +49,7 @@ class Overlay:
 
     def draw_labels(self) -> None:
         """Over the picture (POST_PIXEL), which follows for the same region."""
+        redraw().end()
         if self._labels:
             labels.draw(self._labels, bpy.context)
 
@@ -57,6 +58,7 @@ class Overlay:
         self._figures.clear()
         self._pictures.clear()
         self._labels = ()
+        redraw().end()
 
 
 def add(undo: ExitStack) -> Overlay:

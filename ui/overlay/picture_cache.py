@@ -1,6 +1,6 @@
-"""A cache of the whole picture by its content, and of its layers by theirs."""
+"""A cache of the whole picture by all that it depends on and by its content, and of its layers."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Generic, TypeVar
@@ -16,6 +16,7 @@ T = TypeVar("T")
 
 
 BuiltLayer = tuple[tuple[Shape, ...], tuple[Label, ...]]
+Picture = tuple[T, tuple[Label, ...]]  # the shapes as uploaded, and the labels in the world
 
 
 def build(layer: Layer) -> BuiltLayer:
@@ -31,21 +32,25 @@ class PictureCache(Generic[T]):
     def __init__(self, upload: Callable[[Sequence[Shape]], T]) -> None:
         self._upload = upload
         self._layers: ContentCache[BuiltLayer] = ContentCache()
-        self._pictures: ContentCache[tuple[T, tuple[Label, ...]]] = ContentCache()
+        self._pictures: ContentCache[Picture[T]] = ContentCache()
 
-    def of(self, layers: Sequence[Layer]) -> tuple[T, tuple[Label, ...]]:
-        """Layers in one picture: its shapes as uploaded, and the labels in the world.
+    def of(self, state: object, layers: Callable[[], Iterable[Layer]]) -> Picture[T]:
+        """Layers in one picture. state: equal where the layers would be, which are then not asked
+        for.
 
         Few and large things are drawn sooner than many small ones.
         """
+        return self._pictures.get("state", state, lambda: self._of_layers(tuple(layers())))
+
+    def _of_layers(self, layers: Sequence[Layer]) -> Picture[T]:
         content = tuple((layer.part, layer.content, layer.matrix) for layer in layers)
-        return self._pictures.get("picture", content, lambda: self._picture(layers))
+        return self._pictures.get("layers", content, lambda: self._picture(layers))
 
     def clear(self) -> None:
         self._layers.clear()
         self._pictures.clear()
 
-    def _picture(self, layers: Sequence[Layer]) -> tuple[T, tuple[Label, ...]]:
+    def _picture(self, layers: Sequence[Layer]) -> Picture[T]:
         shapes, labels = [], []
         for layer in layers:
             made, named = self._layers.get(layer.part, layer.content, partial(build, layer))

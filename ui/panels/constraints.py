@@ -19,7 +19,7 @@ from .sidebar import ArmaturePanel, draw_list, optional, settings_in, split
 class ConstraintsPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_constraints"
     bl_label = "Constraints"
-    bl_order = 3
+    bl_order = 5
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = settings_in(context)
@@ -63,7 +63,7 @@ class ConstraintPanel(ArmaturePanel):
 class BodyChangesPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_body_changes"
     bl_label = "Body Changes"
-    bl_order = 4
+    bl_order = 6
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

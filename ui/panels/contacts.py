@@ -10,17 +10,20 @@ from ...operators.solve.common import chosen_armature
 from .lists import ContactList, StanceList, called
 from .sidebar import OF_SOLVES, ArmaturePanel, draw_at_work, draw_list, settings_in, split
 
+NOT_SOUGHT = "Press Analyze to find them"
+NONE_FOUND = "Nothing touches in these frames"
+
 
 class ContactsPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_contacts"
     bl_label = "Contacts"
-    bl_order = 2
+    bl_order = 4
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
         settings = settings_in(context)
         if not settings.contacts:
-            layout.label(text="Press Analyze to find them", icon="INFO")
+            layout.label(text=NONE_FOUND if settings.analysed else NOT_SOUGHT, icon="INFO")
             return
         draw_list(layout, StanceList, settings, "stances", rows=3)
         layout.prop(settings, "whole_stance")

@@ -20,7 +20,7 @@ from .sidebar import OF_SOLVES, ArmaturePanel, draw_grey, lines, optional, setti
 class SolvePanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_solve"
     bl_label = "Solve"
-    bl_order = 6
+    bl_order = 2  # above the lists, which grow
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
@@ -39,7 +39,7 @@ class SolvePanel(ArmaturePanel):
         row.operator(OperatorId.REFINE, icon="SMOOTHCURVE")
         armature = present(chosen_armature(context))
         draw_failure(layout, context, armature, *OF_SOLVES)
-        if session().best is not None:
+        if session().best_of(armature) is not None:
             layout.operator(OperatorId.USE_BEST, icon="CHECKMARK")
 
     @staticmethod
@@ -110,17 +110,20 @@ class TakePanel(ArmaturePanel):
 class ResultPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_result"
     bl_label = "Result"
-    bl_order = 7
+    bl_order = 3
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        armature = chosen_armature(context)
+        if armature is None:
+            return False
+        return settings_of(armature).adapted is not None or len(takes_of(armature)) > 1
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
         settings = settings_in(context)
         armature = present(chosen_armature(context))
-        takes = takes_of(armature)
-        if settings.adapted is None and len(takes) < 2:
-            layout.label(text="Nothing has been adapted yet", icon="INFO")
-            return
-        self._draw_takes(layout, context, takes)
+        self._draw_takes(layout, context, takes_of(armature))
         row = layout.row(align=True)
         row.operator(OperatorId.ACCEPT, icon="CHECKMARK")
         row.operator(OperatorId.DISCARD, icon="TRASH")

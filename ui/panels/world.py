@@ -40,7 +40,7 @@ class AddSurfaceMenu(bpy.types.Menu):
 class WorldPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_world"
     bl_label = "World"
-    bl_order = 5
+    bl_order = 7
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, settings = split(self), settings_in(context)

@@ -8,6 +8,7 @@ import bpy
 
 from ..driving.actions import (
     LANDING,
+    VALUE,
     armature,
     current_scene,
     extension_module,
@@ -37,7 +38,8 @@ REPORT = (860, 640)  # px of its window that are shown
 def shows_result(driver: Driver) -> Actions:
     """After a drag: the panels Solve and Result."""
     current_scene().frame_set(LANDED)
-    yield from driver.screen.scroll_down()
+    driver.screen.forget()
+    yield from driver.screen.find_button("hangtime.accept")
     yield from rests_aside(driver)
     yield from keep(driver, "result")
 
@@ -89,7 +91,7 @@ def holds_constraints(driver: Driver) -> Actions:
     add("CONE", "RightUpLeg")
     yield from adapts_anew(driver)
     driver.screen.forget()
-    yield from driver.screen.find_button("hangtime.remove_constraint", 0.93)
+    yield from driver.screen.find_button("half_angle", VALUE)
     yield from rests_aside(driver)
     yield from keep(driver, "constraints")
     settings().constraints.clear()
@@ -103,7 +105,7 @@ def tells_failure(driver: Driver) -> Actions:
     yield from press(driver, "hangtime.adapt")
     yield Until("a failure", lambda: idle() and failed().failure is not None, 200)
     driver.screen.forget()
-    yield from driver.screen.scroll_down(but=3)
+    yield from driver.screen.find_button("hangtime.use_best")
     yield from rests_aside(driver)
     yield from keep(driver, "failure")
     settings().constraints.clear()

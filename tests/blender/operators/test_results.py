@@ -153,6 +153,11 @@ def test_the_best_of_a_solve_that_failed_can_be_used(analysed: bpy.types.Object)
         bpy.ops.hangtime.adapt()
     assert len(bpy.data.actions) == 1
     assert session().best is not None
+    other = bpy.data.objects.new("Other", bpy.data.armatures.new("Other"))
+    bpy.context.scene.collection.objects.link(other)
+    bpy.context.view_layer.objects.active = other
+    assert not bpy.ops.hangtime.use_best.poll()
+    bpy.context.view_layer.objects.active = analysed
     assert bpy.ops.hangtime.use_best() == {"FINISHED"}
     assert current_action(analysed).hangtime.recording is not None
     assert "not all is met" in analysed.hangtime.status

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from math import degrees, radians
 
 import numpy as np
@@ -24,9 +23,10 @@ from hangtime.tests.blender.helpers.overlays import (
     seen,
     shown,
 )
-from hangtime.ui.gizmos.limit_handles import PlaceCache
+from hangtime.ui.gizmos.limit_handles import chosen_places
 from hangtime.ui.gizmos.pin_handles import handles as pin_handles
 from hangtime.ui.gizmos.places import Knob, LimitHandlePlaces
+from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Part
 from hangtime.ui.overlay.geometry.shapes import Look
 from mathutils import Matrix, Vector
@@ -43,14 +43,8 @@ def armature(request: pytest.FixtureRequest) -> bpy.types.Object:
     return adapted(WHERE[request.param])
 
 
-@cache
-def places() -> PlaceCache:
-    """One for all, so that what it keeps must not be another's."""
-    return PlaceCache()
-
-
 def limit_places(armature: bpy.types.Object) -> LimitHandlePlaces:
-    return places().of(seen(armature), SIGHT)
+    return chosen_places(seen(armature), FigureCache(), SIGHT)
 
 
 def knob(armature: bpy.types.Object, end: str) -> Knob:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from math import radians
@@ -155,8 +155,17 @@ class Counted:
     def draw(self, armature: bpy.types.Object, frame: float = FRAME) -> set[Part]:
         """The layers that had to be made."""
         self.built.clear()
-        self.pictures.of([self._counted(x) for x in layers(seen(armature, frame), self.figures)])
+        self.picture(armature, frame)
         return set(self.built)
+
+    def picture(self, armature: bpy.types.Object, frame: float = FRAME) -> list[bytes | Label]:
+        """What is drawn: arrays and labels."""
+        view = seen(armature, frame)
+        shapes, labels = self.pictures.of(
+            view.state, lambda: map(self._counted, layers(view, self.figures))
+        )
+        arrays = [a.tobytes() for shape in shapes for a in (shape.points, shape.colours)]
+        return [*arrays, *labels]
 
     def _counted(self, layer: Layer) -> Layer:
         def build() -> Iterator[Shape | Label]:
@@ -182,6 +191,68 @@ def test_nothing_is_made_again_while_nothing_changes(constrained: bpy.types.Obje
     assert counted.draw(constrained) == set(shown(constrained))
     assert counted.draw(constrained) == set()
     assert counted.uploads == 1
+
+
+def moves_target(armature: bpy.types.Object) -> None:
+    armature.hangtime.constraints[3].target.location.z += 1.0
+
+
+def selects_bone(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.view.all_limits = False
+    armature.hangtime.active_constraint = -1
+    bpy.ops.object.mode_set(mode="POSE")
+    bone = armature.pose.bones["thigh"]
+    (bone if hasattr(bone, "select") else bone.bone).select = True
+
+
+def lengthens_bone(armature: bpy.types.Object) -> None:
+    bpy.ops.object.mode_set(mode="EDIT")
+    armature.data.edit_bones["head"].length *= 2.0
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def shows_result(armature: bpy.types.Object) -> None:
+    armature.animation_data.action = armature.hangtime.adapted
+
+
+def stretches_time(armature: bpy.types.Object) -> None:
+    armature.animation_data.action.hangtime.times = "[[1.0, 24.0], [1.0, 12.0]]"
+
+
+CHANGES: dict[str, Callable[[bpy.types.Object], object]] = {
+    "contact": lambda armature: setattr(armature.hangtime.contacts[0], "at", (1.0, 2.0, 3.0)),
+    "contact that counts": lambda armature: setattr(armature.hangtime.contacts[0], "used", False),
+    "contact's frames": lambda armature: setattr(armature.hangtime.contacts[0], "end_frame", 5.0),
+    "chosen contact": lambda armature: setattr(armature.hangtime, "active_contact", -1),
+    "size": lambda armature: setattr(armature.hangtime, "measured_height", 0.9),
+    "scene's unit": lambda _: setattr(bpy.context.scene.unit_settings, "scale_length", 1.0),
+    "pose": lambda armature: setattr(armature.pose.bones["thigh"], "rotation_euler", (1, 0, 0)),
+    "place": lambda armature: setattr(armature, "location", (5.0, 0.0, 0.0)),
+    "missing bone": lambda armature: armature.hangtime.constraints[0].bones.clear(),
+    "fewer constraints": lambda armature: armature.hangtime.constraints.remove(1),
+    "target": moves_target,
+    "selected bone": selects_bone,
+    "length of a bone": lengthens_bone,
+    "shown action": shows_result,
+    "stretched time": stretches_time,
+    "no result": lambda armature: setattr(armature.hangtime, "adapted", None),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_change_of_whatever_is_shown_is_seen(constrained: bpy.types.Object, change: str) -> None:
+    empty = bpy.data.objects.new("Target", None)
+    bpy.context.scene.collection.objects.link(empty)
+    constrained.hangtime.constraints[3].target = empty
+    constrained.pose.bones["thigh"].rotation_mode = "XYZ"
+    bpy.context.view_layer.update()
+    counted = Counted()
+    before = counted.picture(constrained)
+    CHANGES[change](constrained)
+    bpy.context.view_layer.update()
+    now = counted.picture(constrained)
+    assert now == Counted().picture(constrained)
+    assert now != before
 
 
 def test_what_is_drawn_moves_along_with_the_armature(constrained: bpy.types.Object) -> None:

@@ -1,6 +1,6 @@
 """A part of the picture: named by its content, built only when that is new."""
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -43,6 +43,6 @@ class Layer:
     """
 
     part: Part
-    content: Hashable
+    content: object
     build: Callable[[], Iterable[Shape | Label]]
     matrix: Matrix

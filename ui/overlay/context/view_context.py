@@ -5,17 +5,25 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import bpy
+import numpy as np
 from mathutils import Matrix
+from numpy.typing import NDArray
 
-from ....bridge.accessors import current_action, present
+from ....bridge.accessors import armature_data, current_action, pose_of, present, snapshot
 from ....bridge.armature.poses import frames_per_second, metres_per_unit
 from ....bridge.armature.traces_store import StoredTraces, kept
 from ....bridge.properties.constraint import HangtimeConstraint
-from ....bridge.properties.settings import HangtimeSettings, scene_settings, settings_of
+from ....bridge.properties.settings import (
+    HangtimeSettings,
+    action_settings,
+    scene_settings,
+    settings_of,
+)
 from ....bridge.properties.shown_times import recorded_frame
 from ....bridge.properties.view import HangtimeView
 from ....bridge.rows.choices import Span
 from ....bridge.rows.times import Frames, Spans, interval_of, named_frames
+from ....operators.lists.row_lists import chosen_bones
 from ....operators.solve.common import chosen_armature
 from ....operators.solve.live import live
 from ....solver.data.traces import Traces
@@ -48,6 +56,24 @@ class ViewContext:
     frame: float
     metres: float  # of a Blender unit
     rate: float = 24.0  # frames a second
+
+    @cached_property
+    def state(self) -> object:
+        """Everything that overlay and handles depend on; equal while they would stay as they are.
+
+        Reading it takes a fraction of what working them out anew does.
+        """
+        armature, recorded, adapted = self.armature, self.recorded, self.adapted
+        targets = (row.target for row in self.settings.constraints if row.target is not None)
+        return (
+            (self.frame, self.metres, self.rate),
+            (armature, armature.mode, armature.matrix_world.copy(), tuple(chosen_bones(armature))),
+            (recorded and recorded.key, adapted and adapted.key, self.performs_adapted),
+            [_told(action) for action in (current_action(armature), self.settings.adapted)],
+            [target.matrix_world.copy() for target in targets],
+            (pose_of(armature).bones.keys(), posed_bones(armature).tobytes(), _lengths(armature)),
+            [snapshot(owner) for owner in (armature, present(self.options.id_data))],
+        )
 
     @cached_property
     def recorded_frame(self) -> float:
@@ -121,6 +147,29 @@ class ViewContext:
 def holds(span: Frames, frame: float) -> bool:
     """Whether a constraint holds at the frame that is shown."""
     return span[0] - NEAR <= frame <= span[1] + NEAR
+
+
+def posed_bones(armature: bpy.types.Object) -> NDArray[np.float32]:
+    """(N * 16,) all bones' matrices, as Blender stores them."""
+    flat = np.empty(16 * len(pose_of(armature).bones), np.float32)
+    pose_of(armature).bones.foreach_get("matrix", flat)
+    return flat
+
+
+def _lengths(armature: bpy.types.Object) -> bytes:
+    """Of all bones, which their matrices do not tell."""
+    bones = armature_data(armature).bones
+    flat = np.empty(len(bones), np.float32)
+    bones.foreach_get("length", flat)
+    return flat.tobytes()
+
+
+def _told(action: bpy.types.Action | None) -> object:
+    """An action, and what is drawn of what was stored with it."""
+    if action is None:
+        return None
+    stored = action_settings(action)
+    return action, stored.times, stored.overlaps
 
 
 def read_view(context: bpy.types.Context) -> ViewContext | None:

@@ -5,16 +5,14 @@ from collections.abc import Iterator
 import bpy
 import numpy as np
 from mathutils import Vector
-from numpy.typing import NDArray
 
 from ....bridge.accessors import pose_of
 from ....bridge.properties.constraint import HangtimeConstraint
-from ....bridge.properties.settings import HangtimeSettings
 from ....bridge.rows.choices import Met
 from ....operators.lists.row_lists import is_selected
 from ..context.figure_cache import FigureCache, parent_of
 from ..context.layer import Layer, Part, xyz
-from ..context.view_context import ViewContext, holds
+from ..context.view_context import ViewContext, holds, posed_bones
 from ..geometry.limit_shapes import ANGLE, CONE, TWIST, Limit, Pose, limit_shapes
 from ..geometry.shapes import Label, Shape, Standing
 
@@ -48,17 +46,10 @@ def _matters(view: ViewContext, row: HangtimeConstraint, chosen: bool) -> bool:
     return bone is not None and is_selected(bone)
 
 
-def chosen_row(settings: HangtimeSettings) -> HangtimeConstraint | None:
-    """The constraint that is chosen in the list, where that is a limit."""
-    rows, chosen = settings.constraints, settings.active_constraint
-    row: HangtimeConstraint | None = rows[chosen] if 0 <= chosen < len(rows) else None
-    return row if row is not None and row.kind in KINDS else None
-
-
 def chosen_limit(view: ViewContext) -> Limit | None:
     """The limit that is chosen in the list; None where it is another kind, or not about a bone."""
-    row = chosen_row(view.settings)
-    return next(_limit(view, row, True), None) if row is not None else None
+    chosen = (row for row, chosen in view.rows(*KINDS) if chosen)
+    return next((limit for row in chosen for limit in _limit(view, row, True)), None)
 
 
 def _limit(view: ViewContext, row: HangtimeConstraint, chosen: bool) -> Iterator[Limit]:
@@ -95,13 +86,6 @@ def _own_axis(view: ViewContext, row: HangtimeConstraint) -> tuple[float, float,
     """In the armature's space."""
     turn = view.armature.matrix_world.to_quaternion().inverted()
     return xyz(turn @ Vector(row.axis))
-
-
-def posed_bones(armature: bpy.types.Object) -> NDArray[np.float32]:
-    """(N * 16,) all bones' matrices, as Blender stores them."""
-    flat = np.empty(16 * len(pose_of(armature).bones), np.float32)
-    pose_of(armature).bones.foreach_get("matrix", flat)
-    return flat
 
 
 def limit_pose(armature: bpy.types.Object, limits: tuple[Limit, ...]) -> Pose:
