@@ -20,8 +20,9 @@ from ...solver.worker.pipeline import (
     StageClock,
     Subject,
     fit_subject,
-    require_possible,
+    unfitted,
 )
+from ...solver.worker.possible import check_requested
 from ...solver.worker.recent_fits import RecentFits
 from ...solver.worker.unpickling import Unreadable, unpickled
 from ..records.aside import written_aside
@@ -37,7 +38,9 @@ IN_MEMORY = 2  # a fit's metrics are ten times as large as the fit
 
 class SharedFits:
     """What the cells of a clip share. In place of `fit_possible`: a fit is solved once, by whoever
-    needs it first; others wait. The last analysis is remembered by who holds this.
+    needs it first; others wait. The last analysis is remembered by who holds this, and what stands
+    for its fit while it is asked whether a request can be: always that, with the fit known or not,
+    so that a cell's end does not hang on which one came first.
 
     Fits are pickles that can name the solver's own classes and numpy's arrays alone.
     """
@@ -46,6 +49,7 @@ class SharedFits:
         self._folder = folder / FITS
         self._recent = RecentFits(IN_MEMORY)
         self._analysed: tuple[str, Analysed] | None = None
+        self._unfitted: tuple[str, Fit] | None = None
 
     def analysed(self, key: str, analyse: Callable[[], Analysed]) -> Analysed:
         """The last analysis where it was of the same, else a new one. Raises as `analyse`."""
@@ -56,12 +60,17 @@ class SharedFits:
 
     def __call__(self, subject: Subject, clock: StageClock) -> Fit:
         """Raises as `fit_possible` does, and OSError."""
-        require_possible(subject)
-        return self.fit(subject, clock)
+        key = fit_key(subject)
+        if self._unfitted is None or self._unfitted[0] != key:
+            self._unfitted = key, unfitted(subject)
+        check_requested(self._unfitted[1], subject.problem)
+        return self._fit(key, subject, clock)
 
     def fit(self, subject: Subject, clock: StageClock) -> Fit:
         """The fit, whatever is asked of it. Raises NotComputable, OSError."""
-        key = fit_key(subject)
+        return self._fit(fit_key(subject), subject, clock)
+
+    def _fit(self, key: str, subject: Subject, clock: StageClock) -> Fit:
         return self._recent.of(key, clock, lambda: self._kept(key, subject, clock))
 
     def _kept(self, key: str, subject: Subject, clock: StageClock) -> Fit:

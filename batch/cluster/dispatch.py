@@ -72,6 +72,7 @@ def run_on_dask(
             "Dask's workers have no Blender, which FBX files and outputs like pictures need; take "
             "BVH or AMC clips and the outputs npz and bvh, or run the batch here or by Flamenco."
         )
+    tidy(str(folder))
     plans = [plan for plan in manifest.cells if lasting_result(folder, plan.cell) is None]
     if not plans:
         return

@@ -126,8 +126,15 @@ class Browser:
         return str(self.request("POST", "/element", asked)[ELEMENT])
 
     def click(self, selector: str) -> None:
-        """Click an element, as one that can be seen and reached."""
-        self.request("POST", f"/element/{self.find(selector)}/click", {})
+        """Click an element, as one that can be seen and reached; the one that has taken its place
+        where the page was drawn anew between finding and clicking it."""
+        for last in (False, False, True):
+            try:
+                self.request("POST", f"/element/{self.find(selector)}/click", {})
+                return
+            except BrowserFault as fault:
+                if last or "stale element" not in str(fault):
+                    raise
 
     def type(self, selector: str, text: str) -> None:
         """Type into an element."""

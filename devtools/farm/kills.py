@@ -10,6 +10,7 @@ from random import Random
 from threading import Timer
 
 from ...batch.cluster.dispatch import run_on_dask
+from ...batch.cluster.worker_side import tidy
 from ...batch.records.manifest import Manifest
 from ...batch.records.result import CellResult
 from .cluster import running_cluster
@@ -56,6 +57,7 @@ def with_workers_killed(
                 Timer(chance.uniform(0.0, 0.6), kill, [victims.pop()]).start()
 
         run_on_dask(folder / "batch", str(cluster.file), lambda _: None, note, share=share)
+    tidy(str(folder / "batch"))  # what ended with the cluster: as each run does at its beginning
     return outcome(folder / "batch", manifest, expected, ended)
 
 

@@ -1,6 +1,7 @@
 """Batches here, on Dask and in OpenJD's sessions: python3 dev.py farm [--quick] [--out DIR].
 
-Ends with 1 where a figure misses what it must reach. `--tests` runs tests/farm instead.
+Ends with 1 where a figure misses what it must reach; with `--tell` figures of time are only told.
+`--tests` runs tests/farm instead.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from ..figures.limits import Figure, figure, table, write
 from .cluster import running_cluster
 from .installed import unpacked_wheel
 from .kills import with_workers_killed
-from .limits import EQUAL, LIMITS, OVERHEAD
+from .limits import EQUAL, LIMITS, OVERHEAD, SPEED_UP, timed
 from .plans import contents, differing, plan_hops
 from .runs import LocalRunTime, killed_and_resumed, run_local
 from .sessions import run_session
@@ -43,6 +44,7 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="dev.py farm", description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
     parser.add_argument("--quick", action="store_true", help="fewer cells, runs and kills")
+    parser.add_argument("--tell", action="store_true", help="fail for no figure of time")
     options = parser.parse_args(argv)
     found: list[Figure] = []
     with tempfile.TemporaryDirectory() as scratch:
@@ -53,7 +55,7 @@ def main(argv: list[str]) -> int:
     write(found, options.out / "figures.json")
     (options.out / "farm.md").write_text(markdown(found), encoding="utf-8")
     print(table(found, LIMITS))
-    return 0 if all(each.ok for each in found) else 1
+    return int(any(not each.ok and not (options.tell and timed(each)) for each in found))
 
 
 def measured(scratch: Path, *, quick: bool) -> Found:
@@ -65,7 +67,7 @@ def measured(scratch: Path, *, quick: bool) -> Found:
     expected = contents(scratch / "one", one.manifest)
     yield EQUAL + "2 workers", apart(scratch / "two", expected)
     if not quick:  # the start of a run would be a great part of it
-        yield "speed-up of 2 local workers over 1", one.seconds / two.seconds
+        yield SPEED_UP, one.seconds / two.seconds
     yield from told_times(scratch / "one", one)
     for share, how in ((True, "shared folder"), (False, "through the scheduler")):
         plan_hops(scratch / how, cells)

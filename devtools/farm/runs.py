@@ -16,7 +16,7 @@ from .installed import program_in
 from .plans import CLIP, contents, differing, half_written, plan_hops, recipe_of
 
 SOON, LATE = 0.3, 7.0  # s after its start, between which a batch is killed
-PATIENCE = 10.0  # s, in which a worker ends whose batch was killed: it notices between cells
+PATIENCE = 60.0  # s, in which a worker ends whose batch was killed, however busy the machine is
 
 
 @dataclass(frozen=True)
@@ -61,16 +61,17 @@ def killed_and_resumed(
             ended = now
             if whole:
                 break
-        left = left_half_written(batch)
+        left = left_half_written(batch, package)
         bad += len({*differing(contents(batch, manifest), expected), *left})
     return bad
 
 
-def left_half_written(batch: Path) -> list[str]:
-    """What is half-written once the workers of a batch that was killed have noticed and ended."""
+def left_half_written(batch: Path, package: Path) -> list[str]:
+    """What is half-written though the same command was given again: it sweeps up what a worker of a
+    killed batch was at, once that has ended."""
     until = time.monotonic() + PATIENCE
     while (left := half_written(batch)) and time.monotonic() < until:
-        time.sleep(0.2)
+        end_at(batch, package, None)
     return left
 
 
@@ -93,5 +94,6 @@ def end_at(batch: Path, package: Path, moment: float | None, jobs: int = 2) -> b
 
 
 def results(batch: Path) -> dict[Path, int]:
-    """When each result was written, ns."""
-    return {path: path.stat().st_mtime_ns for path in batch.glob(f"{CELLS}/*/{RESULT}")}
+    """When each result was written, ns; of cells in their place, not of those that a worker of a
+    killed batch had still aside."""
+    return {path: path.stat().st_mtime_ns for path in batch.glob(f"{CELLS}/[!.]*/{RESULT}")}

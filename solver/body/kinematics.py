@@ -185,15 +185,16 @@ def forward_kinematics(character: Character, angles: FloatArray) -> Pose:
     by_angle = np.ascontiguousarray(angles.T)
     cosines, sines = np.cos(by_angle), np.sin(by_angle)  # of all at once: see rotations.py
     for i, joint in enumerate(character.joints):
-        turn = np.tile(np.eye(3)[..., None], n)
-        if joint.parent >= 0:
-            turn = rotations[joint.parent]
-            centres[i] = centres[joint.parent] + joint.offset @ turn
-        turn = joint.axes.before.T @ turn
+        if joint.parent < 0:
+            turn = np.tile(joint.axes.before[..., None], n)
+        else:
+            held = rotations[joint.parent]
+            centres[i] = centres[joint.parent] + joint.offset @ held
+            turn = joint.axes.before.T @ held
         for k in range(joint.axes.dofs):
             j = joint.first + k
             axes[j] = turn[:, k]
-            turn = _times_axis_rotation(turn, k, cosines[j], sines[j])
+            _turn(turn, k, cosines[j], sines[j])
         rotations[i] = joint.axes.after.T @ turn
     coms = centres + (character.body_coms[:, None, None] @ rotations)[:, :, 0]
     centres -= np.tensordot(character.mass_shares, coms, 1)
@@ -221,11 +222,10 @@ def _instants_first(each: FloatArray) -> FloatArray:
     return np.ascontiguousarray(np.moveaxis(each, -1, 0))
 
 
-def _times_axis_rotation(R: FloatArray, axis: int, c: FloatArray, s: FloatArray) -> FloatArray:
-    """R (3, 3, N) times the rotation about a coordinate axis by the angle with cosine c (N,) and
-    sine s: mixes two columns."""
+def _turn(R: FloatArray, axis: int, c: FloatArray, s: FloatArray) -> None:
+    """R (3, 3, N) becomes its product with the rotation about a coordinate axis by the angle with
+    cosine c (N,) and sine s: mixes two columns."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
-    turned = np.array(R)
-    turned[:, i] = R[:, i] * c + R[:, j] * s
-    turned[:, j] = R[:, j] * c - R[:, i] * s
-    return turned
+    mixed = R[:, i] * c + R[:, j] * s
+    R[:, j] = R[:, j] * c - R[:, i] * s
+    R[:, i] = mixed

@@ -15,7 +15,7 @@ from ..arrays import BoolArray, FloatArray, IntArray
 from ..data.row_kinds import RowKind
 from ..transcription.constraint import DenseViolation
 from ..transcription.guard_rows import GuardRows, chosen, named
-from ..transcription.motion import Motion
+from ..transcription.motion import LastMotion, Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
 from .ranges import JointRange, joint_ranges
 
@@ -107,22 +107,29 @@ class HumanGuard:
         return tuple(each.name for each in self.human)
 
     @cached_property
-    def ranges(self) -> tuple[JointRange, ...]:
-        """As wide as the reference and its rest pose ask for; endless where the artist limits."""
+    def _measured(self) -> list[FloatArray]:
+        """(T + 1,) rad of each range: of the reference on the dense grid, and of its rest pose."""
         turned = self.reference.joint_rotations(_grid(self.reference.duration, SPACING))
         turned = np.concatenate([turned, np.broadcast_to(np.eye(3), (1, *turned.shape[1:]))])
+        return [each.measure.of(turned[:, each.body]) for each in self.human]
+
+    @cached_property
+    def ranges(self) -> tuple[JointRange, ...]:
+        """As wide as the reference and its rest pose ask for; endless where the artist limits."""
         bodies = self.reference.transcription.character.bodies
         return tuple(
             replace(each, lower=-inf, upper=inf)
             if bodies[each.body].bone in self.own
-            else each.holding(turned[:, each.body])
-            for each in self.human
+            else each.reaching(found)
+            for each, found in zip(self.human, self._measured, strict=True)
         )
 
     @cached_property
     def recorded(self) -> list[DenseViolation]:
         """How far the recording itself (its fit) goes beyond human ranges; it may."""
-        return _beyond(self.human, self.reference, SPACING).worst(self.names)
+        found = [each[:-1] for each in self._measured]
+        times = _grid(self.reference.duration, SPACING)
+        return _beyond(self.human, times, found).worst(self.names)
 
     def sparse(self) -> "HumanGuard":
         """The same, for which half as many instants are looked at."""
@@ -130,7 +137,17 @@ class HumanGuard:
 
     def violations(self, motion: Motion) -> list[DenseViolation]:
         """The worst of each joint beyond its range, worst first."""
-        return _beyond(self.ranges, motion, self.spacing).worst(self.names)
+        return self._last.of(motion).worst(self.names)
+
+    @cached_property
+    def _last(self) -> LastMotion[BeyondRange]:
+        return LastMotion(self._look)
+
+    def _look(self, motion: Motion) -> BeyondRange:
+        times = _grid(motion.duration, self.spacing)
+        turned = motion.joint_rotations(times)
+        found = [each.measure.of(turned[:, each.body]) for each in self.ranges]
+        return _beyond(self.ranges, times, found)
 
     def rows(self, motion: Motion, given_up: Set[str]) -> GuardRows | None:
         """A motion's range rows, with more where it goes beyond; the same where it does not.
@@ -138,7 +155,7 @@ class HumanGuard:
         given_up: names of items that have no rows.
         """
         old = motion.transcription.guard(self.kind)
-        found = _beyond(self.ranges, motion, self.spacing)
+        found = self._last.of(motion)
         found = found.some(~named(self.names, found.items, given_up))
         if not len(found.items):
             return old
@@ -160,11 +177,10 @@ def recorded_ranges(reference: Motion) -> tuple[JointRange, ...]:
     return joint_ranges(reference.transcription.character, reference.angles(times))
 
 
-def _beyond(ranges: tuple[JointRange, ...], motion: Motion, spacing: float) -> BeyondRange:
-    """Where a motion's joints are beyond their ranges, by MOST_NEW."""
-    times = _grid(motion.duration, spacing)
-    turned = motion.joint_rotations(times)
-    found = [each.measure.of(turned[:, each.body]) for each in ranges]
+def _beyond(
+    ranges: tuple[JointRange, ...], times: FloatArray, found: list[FloatArray]
+) -> BeyondRange:
+    """Where measures (T,) at instants (T,) s are beyond their ranges, by MOST_NEW."""
     high = np.stack([f - each.upper for f, each in zip(found, ranges, strict=True)], axis=1)
     low = np.stack([each.lower - f for f, each in zip(found, ranges, strict=True)], axis=1)
     over = np.maximum(high, low)

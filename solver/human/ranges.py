@@ -78,7 +78,10 @@ class JointRange:
 
     def holding(self, R: FloatArray) -> "JointRange":
         """The same, or as much wider as rotations (T, 3, 3), child to parent, ask for."""
-        found = self.measure.of(R)
+        return self.reaching(self.measure.of(R))
+
+    def reaching(self, found: FloatArray) -> "JointRange":
+        """The same, or as much wider as measures (T,), rad, ask for."""
         lower, upper = min(self.lower, float(found.min())), max(self.upper, float(found.max()))
         return replace(self, lower=lower, upper=upper)
 

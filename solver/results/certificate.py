@@ -76,15 +76,17 @@ class LoadedDrift:
 def certificate(
     motion: Motion,
     left: DynamicsResidual,
+    torques: FloatArray,
     drifts: Sequence[LoadedDrift],
     fit: FitQuality,
     frame: FrameOf,
 ) -> tuple[CertificateLine, ...]:
-    """Every line of a motion with such residuals and drifts of its contacts, and of its fit."""
+    """Every line of a motion with such residuals, torques (see `between_knots`) and drifts of its
+    contacts, and of its fit."""
     return (
         *_residuals(motion, left, frame),
         *_forces(motion, frame),
-        *_torques(motion, frame),
+        *_torques(motion, left.times, np.abs(torques), frame),
         *_contacts(motion, drifts, frame),
         _line(Item.FIT_RMS, fit.joint_centres_rms_cm),
         _line(Item.FIT_WORST_FRAME, fit.worst_frame_rms_cm, fit.worst_frame),
@@ -154,12 +156,11 @@ def friction_used(
     return np.asarray(np.linalg.norm(along, axis=1) / carried)
 
 
-def _torques(motion: Motion, frame: FrameOf) -> Iterator[CertificateLine]:
-    """Largest torque components of the legs' joints, both sides."""
+def _torques(
+    motion: Motion, times: FloatArray, torques: FloatArray, frame: FrameOf
+) -> Iterator[CertificateLine]:
+    """Largest torque components of the legs' joints, both sides. torques: sizes."""
     t = motion.transcription
-    times = between_knots(motion)
-    dynamics = InverseDynamics(t.character, t.points)
-    torques = np.abs(motion_inverse_dynamics(dynamics, motion, times).torques)
     mass = t.character.mass
     for part, name in LEG_JOINTS.items():
         found = [
@@ -185,6 +186,8 @@ def loaded_drifts(motion: Motion) -> list[LoadedDrift]:
     grid = instants(motion.duration, SAMPLE_RATE)
     times = np.unique(np.concatenate([grid, *touches, *ends]))
     times = times[(times >= 0.0) & (times <= motion.duration)]
+    on = [(times >= c.contact.start) & (times <= c.contact.end) for c in contacts]
+    times = times[np.any(on, axis=0)] if contacts else times[:0]
     forces = motion.forces(times) / (motion.transcription.character.mass * STANDARD_GRAVITY)
     places = motion.contact_points(times) if contacts else np.zeros((len(times), 0, 3))
     drifts = []
@@ -224,9 +227,15 @@ def _contacts(
         yield _line(item, 1000.0 * worst[which], at, names[which])
 
 
-def between_knots(motion: Motion) -> FloatArray:
-    """(T,) s, off the knots, where accelerations jump."""
-    return (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
+def between_knots(motion: Motion) -> tuple[DynamicsResidual, FloatArray]:
+    """What is left of the root's equations of motion off the knots, where accelerations jump, and
+    the torques (T, n_angles - 3), N·m, there: both are ends of one recursive Newton-Euler pass."""
+    t = motion.transcription
+    times = (instants(motion.duration, SAMPLE_RATE) + 0.5 / SAMPLE_RATE)[:-1]
+    found = motion_inverse_dynamics(InverseDynamics(t.character, t.points), motion, times)
+    weight = t.character.mass * STANDARD_GRAVITY
+    left = DynamicsResidual(times, found.root_force / weight, found.root_moment / weight)
+    return left, found.torques
 
 
 def _rms(values: FloatArray) -> float:

@@ -36,11 +36,12 @@ from ..data.reports.report import (
 from ..data.requests import ConeShape, Vector
 from ..data.solver_options import Dynamics, Method
 from ..optimisation.sqp import Outcome
+from ..solid.shape_changes import AS_IS
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation
 from ..transcription.contact_pins import PointContact
-from ..transcription.motion import DynamicsResidual, Motion, dynamics_residual
+from ..transcription.motion import DynamicsResidual, Motion
 from ..transcription.sampling import Instants, State
 from ..transcription.torque_constraint import TorqueFunction
 from .certificate import LoadedDrift, between_knots, certificate, friction_used, loaded_drifts
@@ -69,11 +70,11 @@ def report(
     transcription = motion.transcription
     pins = pins_of_contacts(fit, problem)
     drifts, quality = loaded_drifts(motion), fit_quality(fit)
-    left = dynamics_residual(motion, between_knots(motion))
+    left, torques = between_knots(motion)
     conditions = condition_violations(adaptation)
     return Report(
         status=adaptation.outcome.status,
-        certificate=certificate(motion, left, drifts, quality, partial(scene_frame, fit)),
+        certificate=certificate(motion, left, torques, drifts, quality, partial(scene_frame, fit)),
         recording=_recording(fit, origin),
         figure=_figure(fit, motion, problem),
         pins=tuple(_pin(pin) for pin in problem.pins),
@@ -283,9 +284,11 @@ def fit_quality(fit: Fit) -> FitQuality:
 
 
 def _recorded_overlaps(adaptation: Adaptation) -> Iterator[RecordedOverlap]:
+    fit, changes = adaptation.fit, adaptation.setup.changes
     if adaptation.setup.solid is not None:
-        for each in adaptation.setup.solid.recorded.worst():
-            frame = scene_frame(adaptation.fit, each.time)
+        found = fit.overlaps if changes == AS_IS else fit.overlaps_of(changes)
+        for each in found.worst():
+            frame = scene_frame(fit, each.time)
             yield RecordedOverlap(each.name, 1000.0 * each.amount, frame)
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..data.constants import STANDARD_GRAVITY
-from ..data.contacts import Phase
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
 from ..optimisation.guards import Guard, in_the_way
@@ -84,12 +83,16 @@ def worst_constraints(
     owners = [
         name if pins.get(name, name) == name else f"{pins[name]}: {name}" for name in t.owners
     ]
+    ends = [phase.end for phase in phases[:-1]]
+    names = [*owners, *(phase.name for phase in phases)]
+    named = np.where(rows.owner >= 0, rows.owner, len(owners) + np.searchsorted(ends, rows.time))
     found: dict[tuple[str, RowKind], float] = {}
-    for kind, time, owner, left in zip(
-        rows.kind, rows.time, rows.owner, np.abs(rows.violation()), strict=True
-    ):
-        name = owners[owner] if owner >= 0 else _phase_at(phases, time).name
-        found[name, kind] = max(found.get((name, kind), 0.0), float(left))
+    left = np.abs(rows.violation())
+    for kind in RowKind:
+        mine = rows.kind == kind
+        for i in np.unique(named[mine]):
+            worst = float(left[mine & (named == i)].max())
+            found[names[i], kind] = max(found.get((names[i], kind), 0.0), worst)
     for each in condition_violations(adaptation) if conditions is None else conditions:
         found[each.name, each.kind] = max(found.get((each.name, each.kind), 0.0), each.amount)
     ranked = sorted(
@@ -130,7 +133,3 @@ def _at_hard_ends(adaptation: Adaptation) -> list[Violation]:
     feasible = setup.feasible_set(stuck.transcription, stuck.places)
     pulling = in_the_way(feasible, setup.metric_of(feasible.motion(stuck.x)), stuck.x)
     return [Violation(name, hard[name], 0.0) for name in sorted(pulling & hard.keys())]
-
-
-def _phase_at(phases: Sequence[Phase], time: float) -> Phase:
-    return next((phase for phase in phases if time <= phase.end), phases[-1])

@@ -21,7 +21,7 @@ from ..scene.object_motion import ObjectMotion
 from ..scene.triangle_mesh import mesh_of
 from ..transcription.constraint import DenseViolation
 from ..transcription.guard_rows import GuardRows, chosen
-from ..transcription.motion import Motion
+from ..transcription.motion import LastMotion, Motion
 from ..transcription.sampling import Channel, ChannelJacobian, State
 from .mesh_surface import MeshSurface, scene_shapes
 from .passages import Passable, with_ways
@@ -36,7 +36,7 @@ MOST_ROWS = 600  # at once, which take a program seconds; beyond, rows are furth
 SIDE_REACH = 0.1  # m; how near the fit's solids are to tell on which side they belong
 
 NONE = np.empty(0, dtype=int)
-LIMBS, OWN = 1, 2  # surfaces of a body without a scene: its limbs; these and the floor
+LIMBS = 1  # the first surfaces: those of the body's own limbs
 
 TimeFunction = Callable[[FloatArray], FloatArray]  # of instants (N,) s
 Placement = tuple[SceneObject, ObjectMotion]
@@ -117,20 +117,15 @@ class SolidWorld:
         )
         return replace(self, surfaces=ours, fitted_surfaces=theirs, passables=())
 
-    @cached_property
-    def recorded(self) -> Penetrations:
-        """What the fit itself has in each other; it is allowed."""
-        placed = placed_at(self.fitted, _grid(self.fitted.duration, SPACING))
-        own = Surfaces(self.fitted_surfaces.parts[:OWN])
-        instants, items = own.near(placed)
-        distance = own.closest(placed, instants, items).distance
-        depth, none = np.maximum(-distance, 0.0), np.zeros(len(items))
-        side = np.zeros((len(items), 3))
-        found = Penetrations(self.names, items, placed.times[instants], depth, none, side)
-        return found.some(depth > MOST_NEW)
-
     def penetrations(self, motion: Motion) -> Penetrations:
         """Where a motion's solids are deeper in each other than the fit's, by MOST_NEW."""
+        return self._last.of(motion)
+
+    @cached_property
+    def _last(self) -> LastMotion[Penetrations]:
+        return LastMotion(self._look)
+
+    def _look(self, motion: Motion) -> Penetrations:
         placed = placed_at(motion, _grid(motion.duration, self.spacing))
         instants, items = self.surfaces.near(placed)
         deep = self.surfaces.closest(placed, instants, items).distance < -MOST_NEW
@@ -237,6 +232,19 @@ def solid_world(
             obstacles.append(WayOut.above(moves, Capsules.of(over), by, called))
     surfaces, passables = with_ways(Surfaces((*ours, *grounds, *obstacles)), character)
     return SolidWorld(surfaces, Surfaces((*theirs, *soles)), fitted, to_old, passables)
+
+
+def own_overlaps(motion: Motion, floor: TimeFunction, changes: ShapeChanges) -> Penetrations:
+    """What a motion's own limbs and its floor have in each other, deeper than MOST_NEW."""
+    character = motion.transcription.character
+    pairs = meeting_pairs(character, capsules(character, changes), changes)
+    own = Surfaces(_surfaces(motion, pairs, floor, changes))
+    placed = placed_at(motion, _grid(motion.duration, SPACING))
+    instants, items = own.near(placed)
+    depth = np.maximum(-own.closest(placed, instants, items).distance, 0.0)
+    none, side = np.zeros(len(items)), np.zeros((len(items), 3))
+    found = Penetrations(own.names, items, placed.times[instants], depth, none, side)
+    return found.some(depth > MOST_NEW)
 
 
 def _surfaces(

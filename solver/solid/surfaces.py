@@ -107,8 +107,11 @@ class OwnLimbs:
         middle = 0.5 * (start + end)
         reach = 0.5 * np.linalg.norm(self.shapes.end - self.shapes.start, axis=1)
         reach = (reach + self.shapes.radius)[self.pairs].sum(axis=1)
-        apart = middle[:, self.pairs[:, 0]] - middle[:, self.pairs[:, 1]]
-        instants, items = np.nonzero(np.einsum("npi,npi->np", apart, apart) < reach**2)
+        first, second = self.pairs.T
+        product = middle @ np.swapaxes(middle, 1, 2)  # (N, C, C): no array of vectors a pair
+        square = np.einsum("nii->ni", product)
+        apart = square[:, first] + square[:, second] - 2.0 * product[:, first, second]
+        instants, items = np.nonzero(apart < reach**2)
         return instants, items
 
     def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:

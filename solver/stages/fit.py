@@ -26,6 +26,9 @@ from ..objectives.tracking_cost import CostWeights, TrackingCost, TrackingTarget
 from ..optimisation.gauss_newton import minimise
 from ..optimisation.guards import with_guards
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
+from ..solid.penetrations import Penetrations
+from ..solid.shape_changes import AS_IS, ShapeChanges
+from ..solid.solid_world import floor_heights, own_overlaps
 from ..transcription.contact_pins import tied_places
 from ..transcription.motion import (
     DenseTolerance,
@@ -116,6 +119,15 @@ class Fit(SolvedMotion):
     def metric(self) -> BlockBanded:
         """Metric W of the minimum-norm steps of its adaptations, of a person."""
         return motion_metric(self.motion, ADAPT_COST_WEIGHTS, self.price)
+
+    @cached_property
+    def overlaps(self) -> Penetrations:
+        """What it has through each other as the shapes are; see `overlaps_of`."""
+        return self.overlaps_of(AS_IS)
+
+    def overlaps_of(self, changes: ShapeChanges) -> Penetrations:
+        """What it has of its body and its floor through each other; its adaptations may, too."""
+        return own_overlaps(self.motion, floor_heights(self.schedule, self.places), changes)
 
     @cached_property
     def other_bodies(self) -> dict[BodyChange, Motion]:

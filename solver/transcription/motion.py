@@ -1,7 +1,8 @@
 """A transcribed motion as functions of time, and its dynamics residual between the nodes."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from ..numerics.rotations import cross_matrix
 from .contact_pins import PointContact, touching_spans
 from .transcription import Transcription
 
+Found = TypeVar("Found")
 MIN_SPLIT_SPAN = 0.016  # s; shorter spans are not split further
 
 
@@ -100,6 +102,26 @@ class Motion:
         each = self.transcription.contacts[contact]
         at = self.contact_points(times)[:, each.point]
         return np.asarray(np.linalg.norm(each.pin_error(at, self.places[contact], times), axis=1))
+
+
+class LastMotion(Generic[Found]):
+    """What `find` finds of a motion, kept for the last one: the rounds of a solve, its verdict and
+    its report ask the same of it. find: by place and angles alone, of one figure."""
+
+    def __init__(self, find: Callable[[Motion], Found]) -> None:
+        self._find = find
+        self._last: tuple[Motion, Found] | None = None
+
+    def of(self, motion: Motion) -> Found:
+        """As `find`."""
+        if self._last is not None:
+            last, found = self._last
+            same = last.transcription.basis is motion.transcription.basis
+            if same and np.array_equal(last.x, motion.x):
+                return found
+        found = self._find(motion)
+        self._last = motion, found
+        return found
 
 
 def motion_inverse_dynamics(

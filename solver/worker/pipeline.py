@@ -59,7 +59,7 @@ from ..transcription.motion import Motion
 from .edited_part import edited_part
 from .lasting_fit import lasting_fit
 from .other_phases import on_phases_of
-from .possible import check_requested
+from .possible import check_requested, stand_in
 
 APART, LEAST_SOUND = 0.1, 0.5  # s: about what cannot be held; of a part that is worth keeping
 FITTING, ADAPTING = "Fitting the physics", "Adapting"
@@ -310,13 +310,12 @@ def on_fit(subject: Subject, fitted: Fit) -> Subject:
     return replace(subject, problem=problem)
 
 
-def require_possible(subject: Subject) -> None:
-    """Raises as `check_requested` where what is asked is seen to be impossible."""
+def unfitted(subject: Subject) -> Fit:
+    """What stands for the subject's fit until there is one, and hangs on nothing else."""
     schedule = subject.analysis.schedule
-    check_requested(
+    return stand_in(
         subject.analysis.performance,
         schedule,
-        subject.problem,
         periodic=subject.cycle is not None,
         rides=recorded_rides(schedule, subject.problem.scene, subject.recording),
     )
@@ -324,7 +323,7 @@ def require_possible(subject: Subject) -> None:
 
 def fit_possible(subject: Subject, clock: StageClock) -> Fit:
     """The fit, once nothing that is asked is seen to be impossible. Raises as `check_requested`."""
-    require_possible(subject)
+    check_requested(unfitted(subject), subject.problem)
     return fit_subject(subject, clock)
 
 

@@ -15,24 +15,26 @@ from ..stages.setup import check_places, requested
 from ..transcription.ride import Ride
 
 
-def check_requested(
+def stand_in(
     performance: Performance,
     schedule: ContactSchedule,
-    problem: MotionProblem,
     *,
     periodic: bool = False,
     rides: Sequence[Ride | None] = (),
-) -> None:
-    """Everything that can be wrong with a problem, before the fit takes its seconds.
-
-    The recording's splines stand for the fit. periodic, rides: as of `fit`. Raises as `requested`,
-    `build_constraints` and `check_places` do.
-    """
+) -> Fit:
+    """The recording's splines, which stand for the fit. periodic, rides: as of `fit`."""
     guess = recorded_motion(performance, schedule, periodic=periodic, rides=rides)
     outcome = FeasibleSet(guess.transcription, guess.places).outcome(
         guess.x, Status.STALLED, [], np.inf
     )
-    fit = Fit((outcome,), guess.places, performance, schedule)
+    return Fit((outcome,), guess.places, performance, schedule)
+
+
+def check_requested(fit: Fit, problem: MotionProblem) -> None:
+    """Everything that can be wrong with a problem, before the fit takes its seconds.
+
+    fit: a stand-in. Raises as `requested`, `build_constraints` and `check_places` do.
+    """
     asked = requested(fit, problem)
     build_constraints(problem.requests, asked.context, asked.start.transcription)
     check_places(fit, problem, asked.context, asked.start, asked.fitted, asked.target)

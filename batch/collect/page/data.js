@@ -44,10 +44,23 @@ function compared(a, b) {
 
 const order = batch.cells.map((_, i) => i);
 
+// As figures' names end (batch/cells/figures.py); longer ends first.
+const UNITS = {
+  nm_per_kg: "N·m/kg", bw_per_s: "BW/s", bw_m: "BW·m", percent: "%", deg: "°", bw: "BW", nm: "N·m", mm: "mm", cm: "cm",
+  n: "N", m: "m", s: "s",
+};
+
+/** A figure's name in words, its unit behind. */
+function figureWords(name) {
+  const end = Object.keys(UNITS).find((each) => name.endsWith(`_${each}`));
+  const words = (end ? name.slice(0, -end.length - 1) : name).replaceAll("_", " ");
+  return end ? `${words} (${UNITS[end]})` : words;
+}
+
 function tableColumns(group, table) {
   return table.map(({ name, short, column }) => {
     const number = column.every((x) => x === null || typeof x === "number");
-    const words = group === "figure" ? name.replaceAll("_", " ") : name;
+    const words = group === "figure" ? figureWords(name) : name;
     return new Column(`${group}:${name}`, words, group, (i) => column[i], number, short);
   });
 }

@@ -184,10 +184,10 @@ def test_no_cell_left_is_said(page: Browser) -> None:
 
 def test_a_columns_head_sorts_and_sorts_back(page: Browser) -> None:
     heads = "[...document.querySelectorAll('#heads button')]"
-    head = f"{heads}.find((button) => button.textContent.includes('flight 1 s'))"
+    head = f"{heads}.find((button) => button.textContent.includes('flight 1 (s)'))"
     for direction in (1, -1):
         page.run(f"{head}.click()")
-        column = [float(text) for text in page.run(COLUMN, "flight 1 s") if text != "–"]
+        column = [float(text) for text in page.run(COLUMN, "flight 1 (s)") if text != "–"]
         assert column == sorted(column, reverse=direction < 0)
         assert len(column) > 10
     assert page.run(f"return {head}.parentElement.ariaSort") == "descending"
@@ -212,7 +212,7 @@ def test_a_cell_shows_its_picture_figures_and_files(page: Browser) -> None:
     image = "document.querySelector('#cell-body img')"
     page.wait(f"return {image}.complete && {image}.naturalWidth === 480")
     text = page.run("return document.getElementById('cell-body').textContent")
-    assert "peak force bw" in text
+    assert "peak force (BW)" in text
     assert "body weights" in text
     links = page.run("return [...document.querySelectorAll('#cell-body li a')].map((a) => a.href)")
     assert len(links) == 5

@@ -40,7 +40,7 @@ from hangtime.solver.worker.pipeline import (
     measure,
     solve,
 )
-from hangtime.solver.worker.possible import check_requested
+from hangtime.solver.worker.possible import check_requested, stand_in
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of, hop
 
@@ -93,7 +93,7 @@ def pinned(*pins: Pin, points: tuple[PointRequest, ...] = ()) -> MotionProblem:
 
 
 def checked(problem: MotionProblem) -> None:
-    check_requested(hop().performance, hop().schedule, problem)
+    check_requested(stand_in(hop().performance, hop().schedule), problem)
 
 
 @pytest.mark.parametrize(
@@ -155,7 +155,7 @@ def test_a_pin_is_not_blamed_for_places_that_the_recording_has_apart() -> None:
     contacts = [*(c for c in schedule.contacts if c is not toe), replace(toe, end=turn), away]
     torn = replace(schedule, contacts=tuple(sorted(contacts, key=lambda c: (c.start, c.point))))
     pin = Pin("Stance", "ground 1", offset=(0.1, 0.0, 0.0))
-    check_requested(hop().performance, torn, pinned(pin))
+    check_requested(stand_in(hop().performance, torn), pinned(pin))
 
 
 def test_what_can_be_done_is_not_refused_before_the_fit() -> None:
