@@ -38,7 +38,7 @@ from .warm_start import Standing, continuation_steps, partial_places, stance_mov
 
 SWEEPS = 2  # a step; the next update goes on with what they leave
 MOST_STEPS = 2  # an update; the second where the first leaves more than HELD_VIOLATION
-MAX_DRAG_CHORD_RATIO = 0.2  # of the violation, left by a step at rest; beyond: a stale factor
+MAX_DRAG_CHORD_RATIO = 0.5  # of the violation, left by a step at rest; beyond: a stale factor
 MOST_ALIKE = 1.5  # times the last step's way, that a step is compared with it
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
 LOOKING = 4  # updates from one look for guards to the next while a pin is on its way
