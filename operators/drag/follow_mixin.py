@@ -90,6 +90,7 @@ class FollowedDrag(PolledOperator):
         self._timer = manager.event_timer_add(LOOK_EVERY, window=context.window)
         session().running.append(self)
         manager.modal_handler_add(self)
+        self._look()
         self._show()
         return {"RUNNING_MODAL"}
 
@@ -106,9 +107,8 @@ class FollowedDrag(PolledOperator):
         if keyed or (event.type == "MOUSEMOVE" and self._press.drags(event)):
             self.pull(context, event)
             self._moved = True
-            self._redraw()
-        if self._press.dragging:  # at every event, for a timer's comes after all is drawn
-            self._look()
+            redraw_views()  # the sidebar's numbers go with the ghost, which waits for no drawing
+        self._look()  # at every event, for a timer's comes after all is drawn
         self._show()
         return {"RUNNING_MODAL"}
 
@@ -150,8 +150,9 @@ class FollowedDrag(PolledOperator):
     # -- the motion that follows ---------------------------------------------------------------
 
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
-        """Has the worker follow what is dragged: of recording and scene as they were read last,
-        while they are read again in parts. Raises ChangedMeanwhile where it is another recording.
+        """Has the worker follow what is dragged, from the press on, though a click shows no ghost:
+        of recording and scene as they were read last, while they are read again in parts. Raises
+        ChangedMeanwhile where it is another recording.
         """
         reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
@@ -189,7 +190,7 @@ class FollowedDrag(PolledOperator):
         elif isinstance(message, Failed):
             self._fault = said(message.fault)
             live().clear()
-        elif isinstance(message, Followed):
+        elif isinstance(message, Followed) and self._press.dragging:
             self._fault = LOST if message.status is DragStatus.DIVERGED else ""
             live().show(self._armature.name, message)
 
@@ -202,14 +203,6 @@ class FollowedDrag(PolledOperator):
             live().clear()
         except StopIteration:
             pass  # after such a fault
-
-    def _redraw(self) -> None:
-        """The pin goes with the mouse; the sidebar's numbers, where there is one, with the ghost:
-        what draws the sidebar is not left for the motion."""
-        if live().seen is None:
-            redraw_viewports()
-        else:
-            redraw_views()
 
     def _show(self) -> None:
         text = self.text() + self._found()

@@ -25,9 +25,11 @@ class Live:
 
     def show(self, armature: str, seen: Followed) -> None:
         """The motion has come a little further."""
+        now = time.monotonic()
+        if self.seen is None:  # the first one does not wait for the sidebar's drawing
+            self.told = now
         self.armature, self.seen = armature, seen
         self.version += 1
-        now = time.monotonic()
         if seen.status is DragStatus.CONVERGING and now - self.told < SIDEBAR_EVERY:
             redraw_views()
         else:

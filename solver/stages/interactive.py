@@ -1,10 +1,12 @@
-"""Interactive drag: one warm-started SQP step for each new place of a dragged pin.
+"""Interactive drag: a warm-started SQP step or two for each new place of a dragged pin.
 
 That is the real-time iteration of Diehl et al. (2002): where the pin moves on, the next problem is
 solved a little, not the last one wholly. Moving a pin changes the rows' values, not their Jacobian,
 so most steps go on with the last factor (chord steps), from the values that the last update ended
-with and their first-order change: what an update evaluates is only what it shows. A new factor is
-made where steps no longer come near. Each update steps from the last one by the smallest change:
+with and their first-order change: what an update evaluates is only what it shows. Where the pin
+went so far that the step leaves more than a millimetre, a second one follows on the same factor,
+which costs a fifth of a new one; and as the pin has not moved between the two, what the second
+leaves tells whether a new one is needed. Each update steps from the last one by the smallest change:
 measured against steps towards the motion nearest to the fit, that is as near to what the solve will
 find and does not jitter. Far moves are made by continuation, one step an update; moving ground
 comes up to its speed likewise. The solve proper, once the pin is let go, starts from the fit again.
@@ -35,7 +37,8 @@ from .setup import Setup, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 SWEEPS = 2  # a step; the next update goes on with what they leave
-MAX_DRAG_CHORD_RATIO = 0.3  # of the violation, left by a step at rest; beyond: a stale factor
+MOST_STEPS = 2  # an update; the second where the first leaves more than HELD_VIOLATION
+MAX_DRAG_CHORD_RATIO = 0.5  # of the violation, left by a step at rest; beyond: a stale factor
 MOST_ALIKE = 1.5  # times the last step's way, that a step is compared with it
 DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
 LOOKING = 4  # updates from one look for guards to the next while a pin is on its way
@@ -191,36 +194,46 @@ class Follower:
             self._given_up |= {guard.names[item] for item in set(guard.items[mine].tolist())}
 
     def _step(self, x: FloatArray, standing: Standing) -> bool:
-        """One step from unknowns x; False, having changed nothing, where it diverges."""
-        feasible, linearised = self._feasible(standing), self._linearised
-        way = standing.places - self.motion.places
-        if linearised is None:
-            try:
-                rows = feasible.rows(x)
-                linearised, value = feasible.linearise(rows, self._metric), rows.value
-            except np.linalg.LinAlgError:  # too far from any motion
-                return False
-            self._secant = Secant.none()
-        elif self._value is None or feasible.transcription is not self.motion.transcription:
-            value = feasible.values(x)
-        else:
-            value = feasible.transcription.moved(self._value, self.motion.places, standing.places)
-            value += linearised.times(x - self.motion.x)
-        before = linearised.violation(value)
-        d, _ = linearised.step(value + self._secant.along(way), sweeps=SWEEPS)
-        expected, x = value + linearised.times(d), x + d
-        value = feasible.values(x)
-        after = linearised.violation(value)
-        if not after < DIVERGED_VIOLATION:
+        """A step or two from unknowns x; False, with the motion as it was, where they diverge."""
+        feasible, way = self._feasible(standing), standing.places - self.motion.places
+        try:
+            linearised, value = self._at(x, feasible)
+        except np.linalg.LinAlgError:  # too far from any motion
             return False
-        if way.any():
-            self._secant = Secant(way, value - expected)
-        stale = self._rested >= RESTING_UPDATES and after > max(1.0, MAX_DRAG_CHORD_RATIO * before)
-        self._linearised = None if stale or after > HELD_VIOLATION else linearised
+        enough = 1.0 if self._rested >= RESTING_UPDATES else HELD_VIOLATION
+        stale = False
+        for _ in range(MOST_STEPS):
+            before = linearised.violation(value)
+            d, _ = linearised.step(value + self._secant.along(way), sweeps=SWEEPS)
+            expected, x = value + linearised.times(d), x + d
+            value = feasible.values(x)
+            after = linearised.violation(value)
+            if not after < DIVERGED_VIOLATION:
+                return False
+            if way.any():
+                self._secant, way = Secant(way, value - expected), np.zeros(way.shape)
+            elif before > enough:  # nothing has moved since: what is left is the factor's
+                stale = after > max(1.0, MAX_DRAG_CHORD_RATIO * before)
+            if after <= HELD_VIOLATION:
+                break
+        self._linearised = None if stale else linearised
         self._off = linearised.violations(value)[linearised.rows.guards]
         self.violation, self._value = after, value
         self.motion, self._standing = feasible.motion(x), standing
         return True
+
+    def _at(self, x: FloatArray, feasible: FeasibleSet) -> tuple[LinearisedProblem, FloatArray]:
+        """The linearised problem, a new one where the last does not serve, and the rows' values at
+        unknowns x: to first order where they are known at the motion. Raises LinAlgError."""
+        linearised, t = self._linearised, feasible.transcription
+        if linearised is None:
+            rows = feasible.rows(x)
+            self._secant = Secant.none()
+            return feasible.linearise(rows, self._metric), rows.value
+        if self._value is None or t is not self.motion.transcription:
+            return linearised, feasible.values(x)
+        value = t.moved(self._value, self.motion.places, feasible.places)
+        return linearised, value + linearised.times(x - self.motion.x)
 
     def _feasible(self, standing: Standing) -> FeasibleSet:
         t = self.motion.transcription
