@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 
-from ..analysis.analyse import MIN_CLIP_DURATION
+from ..analysis.analyse import MIN_CLIP_DURATION, require_dense
 from ..analysis.performance import perform
 from ..body.character import build_character
 from ..data.faults import ClipTooShort
@@ -47,7 +47,7 @@ def diagnose(
 ) -> Diagnosis:
     """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist.
 
-    Raises ClipTooShort, MissingPart, ZeroLengthBone.
+    Raises ClipTooShort, FramesFarApart, MissingPart, ZeroLengthBone.
     """
     _require_length(recording)
     found: list[Finding] = []
@@ -93,9 +93,10 @@ def diagnose(
 
 
 def _require_length(recording: Recording) -> None:
-    """What is shorter tells nothing. Raises ClipTooShort."""
+    """What is shorter tells nothing. Raises ClipTooShort, FramesFarApart."""
     if len(recording.frames) < FEWEST_FRAMES:
         raise ClipTooShort(float(recording.times[-1]), MIN_CLIP_DURATION)
+    require_dense(recording)
 
 
 def _find_bind_pose(recording: Recording) -> Finding | None:
