@@ -83,7 +83,8 @@ class Child:
         """Ends it; its last words."""
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)  # with the workers that it has started
-        code = self._process.wait()
+        with self._process:  # which closes its pipes
+            code = self._process.wait()
         said = self._errors.read_text(errors="replace")[-KEPT:]
         self._errors.unlink()
         return f"{said}\nexit code {code}"

@@ -26,6 +26,7 @@ LEFT_AT_MOST = {
     PhaseKind.FLIGHT: 0.001,
     PhaseKind.GROUND: 0.02,
 }  # BW·m, rms; what the project promises
+LEAST_HIGHER = 0.05  # cm; less is told as 0.0
 LEAST_RETIMED = 0.0005  # s
 LEAST_TURN = 1.0  # degrees of a joint, to be told
 SAME_SPEED = 0.05  # m/s
@@ -191,10 +192,8 @@ def durations_lines(report: Report) -> list[str]:
 
 def _quality(report: Report) -> Iterator[str]:
     fit = report.fit_to_recording
-    yield (
-        f"Fit         joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms), "
-        f"apex {higher(fit.pelvis_apex_difference_cm)}"
-    )
+    joints = f"joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms)"
+    yield f"{'Fit':<12}{joints}{apex_words(fit.pelvis_apex_difference_cm)}"
     for i, each in enumerate(report.recorded_overlaps[:MOST_NAMED]):
         name = "" if i else "Recording"
         yield (
@@ -302,7 +301,14 @@ def _stages(report: Report) -> Iterator[str]:
 
 def higher(centimetres: float) -> str:
     """A difference of heights, such as "1.3 cm lower"."""
+    if abs(centimetres) < LEAST_HIGHER:
+        return "at the same height"
     return f"{abs(centimetres):.1f} cm {'higher' if centimetres >= 0.0 else 'lower'}"
+
+
+def apex_words(centimetres: float | None) -> str:
+    """The end of a sentence on how near a fit is; empty where no flight is whole in the clip."""
+    return "" if centimetres is None else f", apex {higher(centimetres)}"
 
 
 def deeper(centimetres: float) -> str:

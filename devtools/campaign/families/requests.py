@@ -11,6 +11,7 @@ import numpy as np
 
 from ....bridge.recipe.objects import placed_objects
 from ....bridge.recipe.problem import parse_recipe
+from ....solver.data.faults import NotComputable
 from ....solver.data.problem import MotionProblem
 from ....solver.data.recording import digest
 from ....solver.data.reports.recording import Origin
@@ -87,7 +88,10 @@ def _check(result: AdaptationResult) -> None:
 def _fitted(name: str, first: float, last: float) -> tuple[Subject, Fit]:
     problem = MotionProblem(frames=(first, last))
     subject = measure(read(HELD / name), problem)
-    return subject, fit_subject(subject, StageClock())
+    try:
+        return subject, fit_subject(subject, StageClock())
+    except NotComputable as fault:  # which only what is asked for may be
+        raise ArithmeticError(f"{name} itself is not computable") from fault
 
 
 # ---------------------------------------------------------------- recipes
