@@ -103,11 +103,11 @@ def _written(case: HostileCase, lines: list[str]) -> Path:
 
 def as_json(case: HostileCase) -> None:
     """JSON, which starts with a brace, damaged."""
-    up = case.pick((0.1, -1e300, 0, float("nan"), True, "0.1", None))
+    up = case.pick((0.1, -0.2, 0, 1e300, -1e300, float("nan"), True, None))
     values = {"frames": [1, 9], "pin": [{"phase": "ground 2", "up": up, "points": ["Left heel"]}]}
     path = case.folder / "recipe.json"
     text = json.dumps(values, indent=1)
-    text = damaged_text(case, text) if case.chance(0.5) else text
+    text = damaged_text(case, text) if case.chance(0.3) else text
     path.write_text(text, encoding="utf-8", newline="")
     _read(case, path)
 
@@ -148,7 +148,7 @@ def _examples() -> list[str]:
 
 FAMILIES = (
     Family("recipes, damaged", 15.0, 10.0, damaged),
-    Family("recipes, made up", 25.0, 10.0, made_up),
-    Family("recipes, mixed", 15.0, 10.0, mixed),
+    Family("recipes, made up", 5.0, 10.0, made_up),
+    Family("recipes, mixed", 25.0, 10.0, mixed),
     Family("recipes in JSON", 3.0, 10.0, as_json),
 )

@@ -215,7 +215,7 @@ CHANGES: tuple[Callable[[HostileCase, bpy.types.Object], None], ...] = (
 )
 
 FAMILIES = (
-    Family("rigs, made up", 1.5, 40.0, made_up),
+    Family("rigs, made up", 0.5, 40.0, made_up),
     Family("rigs, bipeds that hop", 3.0, 60.0, bipeds),
     Family("rigs, changed", 3.0, 40.0, changed),
 )

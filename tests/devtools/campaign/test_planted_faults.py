@@ -14,7 +14,7 @@ from hangtime.devtools.campaign.protocol.case import Ending, Family
 
 SEED = 3
 SHORT = 5.0  # s; the bound of a case that is to hang
-PLANTED = "tests.devtools.planted_fault"
+PLANTED = "tests.devtools.campaign.planted_fault"
 
 pytestmark = pytest.mark.slow
 
