@@ -4,7 +4,7 @@ import argparse
 import json
 import os
 import sys
-import time
+from dataclasses import asdict
 from pathlib import Path
 
 from .families.all_families import family_of
@@ -20,9 +20,7 @@ def main(argv: list[str]) -> int:
     os.dup2(2, 1)  # whatever Blender prints goes to the error stream
     for line in sys.stdin:
         number = int(line)
-        began = time.monotonic()
         family = family_of(number, options.seed)
-        ending, detail = run_case(family, number, options.seed, options.folder / str(number))
-        answer = [ending.value, detail, time.monotonic() - began]
-        print(json.dumps(answer), file=answers, flush=True)
+        outcome = run_case(family, number, options.seed, options.folder / str(number))
+        print(json.dumps(asdict(outcome)), file=answers, flush=True)
     return 0

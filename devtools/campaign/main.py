@@ -29,7 +29,7 @@ def main(argv: list[str]) -> int:
     every = [n for n in numbers if options.family in (None, family_of(n, options.seed).name)]
     outcomes = run_cases(every, options.seed, folder / "cases", options.jobs, tell)
     text = table(outcomes, FAMILIES, options.seed)
-    lines = [f"{o.number} {o.family}: {o.ending.value}: {o.detail}" for o in outcomes]
+    lines = [f"{o.number} {o.family}, {o.seconds:.1f} s: {o.ending}: {o.detail}" for o in outcomes]
     (folder / "cases.txt").write_text("\n".join([*lines, ""]), encoding="utf-8")
     (folder / "campaign.md").write_text(text, encoding="utf-8")
     print(text)
@@ -39,5 +39,5 @@ def main(argv: list[str]) -> int:
 def tell(outcome: CaseOutcome) -> None:
     """Prints a case that ended as it should not."""
     if not outcome.ending.good:
-        print(f"case {outcome.number}, {outcome.family}: {outcome.ending.value}")
+        print(f"case {outcome.number}, {outcome.family}: {outcome.ending}")
         print(outcome.detail, flush=True)

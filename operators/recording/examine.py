@@ -13,6 +13,7 @@ from ..names import OperatorId
 from ..solve.adapt import read_wanted
 from ..solve.common import required_armature
 from ..solve.live import redraw
+from ..solve.scene import read_bound
 from ..solve.session import session
 from ..solve.solving import SolveState
 from ..solve.task import Task, TaskOperator, answered
@@ -38,6 +39,9 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         yield None
         for missing in missing_parts(settings):
             raise MissingPart(missing)
+        skin = (
+            yield from read_bound(armature, recording.frames)
+        ).skin  # with whose soles it stands
         session().advance(SolveState.SOLVING)
         repairs = applied(settings)
         problem = MotionProblem(
@@ -46,6 +50,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
             bones=chosen_parts(settings),
             mend=repairs.mend,
             drift=repairs.drift,
+            skin=skin,
         )
         job = shared().ask(RequestKind.EXAMINE, recording, problem, repairs)
         answer = yield from answered(job, Examined)

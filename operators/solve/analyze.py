@@ -42,7 +42,7 @@ from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.headline import accepted_lines
-from ..words.report_text import higher
+from ..words.report_text import apex_words
 from ..words.shape_text import shapes_told
 from .adapt import Adapting, ask_for, read_wanted, require_writable
 from .common import (
@@ -297,8 +297,8 @@ def quality(fit: FitQuality, needs: FitNeeds) -> str:
     return "\n".join(
         [
             f"{words[0].upper()}{words[1:]}",
-            f"Joints {fit.joint_centres_rms_cm:.1f} cm apart, "
-            f"apex {higher(fit.pelvis_apex_difference_cm)}",
+            f"Joints {fit.joint_centres_rms_cm:.1f} cm apart"
+            f"{apex_words(fit.pelvis_apex_difference_cm)}",
             f"At worst {fit.worst_frame_rms_cm:.1f} cm (frame {fit.worst_frame:.0f})",
             *accepted_lines(needs),
         ]

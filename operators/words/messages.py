@@ -40,6 +40,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",
+    faults.FramesFarApart: "The recording's frames lie {seconds:.3g} s apart, and a motion needs "
+    "one every {maximum_s:g} s at least; set the frame rate at which it was recorded.",
     faults.FramesReversed: "The chosen frames end at {last:g}, before they begin at {first:g}; "
     "swap them.",
     faults.NothingRecurs: "Nothing repeats from frame {first:g} to {last:g}: no heel or toe lands "

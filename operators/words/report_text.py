@@ -191,10 +191,8 @@ def durations_lines(report: Report) -> list[str]:
 
 def _quality(report: Report) -> Iterator[str]:
     fit = report.fit_to_recording
-    yield (
-        f"Fit         joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms), "
-        f"apex {higher(fit.pelvis_apex_difference_cm)}"
-    )
+    joints = f"joints {fit.joint_centres_rms_cm:.1f} cm from the recording (rms)"
+    yield f"{'Fit':<12}{joints}{apex_words(fit.pelvis_apex_difference_cm)}"
     for i, each in enumerate(report.recorded_overlaps[:MOST_NAMED]):
         name = "" if i else "Recording"
         yield (
@@ -306,6 +304,11 @@ def higher(centimetres: float) -> str:
     if not float(amount):
         return "as high as recorded"
     return f"{amount} cm {'higher' if centimetres > 0.0 else 'lower'}"
+
+
+def apex_words(centimetres: float | None) -> str:
+    """The end of a sentence on how near a fit is; empty where no flight is whole in the clip."""
+    return "" if centimetres is None else f", apex {higher(centimetres)}"
 
 
 def deeper(centimetres: float) -> str:

@@ -18,6 +18,7 @@ from ..data.contacts import Contact, ContactSchedule, Interval, snap
 from ..data.faults import (
     BadTiming,
     ClipTooShort,
+    FramesFarApart,
     FramesReversed,
     Treadmill,
     UnknownContactName,
@@ -34,6 +35,7 @@ from .performance import Performance, contact_points, find_contacts, perform, sn
 from .take import take_of
 
 MIN_CLIP_DURATION = 0.3  # s
+MAX_FRAME_TIME = 1.0  # s; Blender's slowest rate
 
 
 @dataclass(frozen=True)
@@ -54,8 +56,8 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
 
     Frames beyond these tell of contacts that they cut off, and of accelerations near their ends.
 
-    Raises ClipTooShort, MissingPart, ZeroLengthBone, UnknownContactName, BadTiming; UnseenSupport
-    and Treadmill where the problem refuses what they tell.
+    Raises as `build_figure` does, and UnknownContactName, BadTiming; UnseenSupport and Treadmill
+    where the problem refuses what they tell.
     """
     within, character = build_figure(recording, problem)
     performance = _performed(recording, within, character, problem.skin)
@@ -124,7 +126,7 @@ def _fitting_rate(performance: Performance, gap: Interval) -> int | None:
 def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recording, Character]:
     """The problem's frames of a recording, and the character built from them.
 
-    Raises FramesReversed, ClipTooShort, MissingPart, ZeroLengthBone.
+    Raises FramesReversed, ClipTooShort, FramesFarApart, MissingPart, ZeroLengthBone.
     """
     if problem.frames is not None:
         first, last = problem.frames
@@ -134,10 +136,18 @@ def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recordin
     seconds = float(recording.times[-1]) if len(recording.times) else 0.0
     if seconds < MIN_CLIP_DURATION:
         raise ClipTooShort(seconds, MIN_CLIP_DURATION)
+    require_dense(recording)
     character = build_character(
         recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
     )
     return recording, character
+
+
+def require_dense(recording: Recording) -> None:
+    """Work grows with a clip's seconds, and frames so rare tell nothing. Raises FramesFarApart."""
+    apart = 1.0 / recording.rate
+    if apart > MAX_FRAME_TIME:
+        raise FramesFarApart(apart, MAX_FRAME_TIME)
 
 
 def _frame(recording: Recording, time: float) -> float:

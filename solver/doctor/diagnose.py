@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 
-from ..analysis.analyse import MIN_CLIP_DURATION
-from ..analysis.performance import perform
+from ..analysis.analyse import MIN_CLIP_DURATION, require_dense
+from ..analysis.performance import Performance, perform
 from ..body.character import build_character
 from ..data.faults import ClipTooShort
-from ..data.recording import Recording
+from ..data.recording import Recording, Skin
 from ..skeleton.bind_pose import bind_frames
 from .falls import find_leaps, find_scale, refined
 from .figure import figure_of
@@ -18,7 +18,7 @@ from .finding import Finding, FindingKind
 from .footing import find_footing
 from .lengths import find_lengths
 from .noise import find_noise
-from .repair import repaired
+from .repair import placed_skin, repaired
 from .repairs import Repairs
 from .single_frames import find_dropped, find_flips, find_held, find_spikes
 from .upright import find_up
@@ -43,11 +43,15 @@ class Diagnosis:
 
 
 def diagnose(
-    recording: Recording, chosen: Mapping[str, str] | None = None, mass: float | None = None
+    recording: Recording,
+    chosen: Mapping[str, str] | None = None,
+    mass: float | None = None,
+    skin: Skin | None = None,
 ) -> Diagnosis:
-    """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist.
+    """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist. skin:
+    of the figure, with whose soles it stands.
 
-    Raises ClipTooShort, MissingPart, ZeroLengthBone.
+    Raises ClipTooShort, FramesFarApart, MissingPart, ZeroLengthBone.
     """
     _require_length(recording)
     found: list[Finding] = []
@@ -58,9 +62,10 @@ def diagnose(
         if finding is None:
             return recording
         found.append(finding)
-        return repaired(recording, finding.remedy or Repairs(), chosen)
+        return repaired(recording, _remedy(finding), chosen)
 
-    recording = cured(recording, find_up(recording, figure_of(recording, chosen)))
+    up = find_up(recording, figure_of(recording, chosen))
+    recording, skin = cured(recording, up), placed_skin(skin, _remedy(up))
     recording = cured(recording, _find_bind_pose(recording))
     _require_length(recording)
     figure = figure_of(recording, chosen)
@@ -70,16 +75,20 @@ def diagnose(
         recording = cured(recording, look(recording))
     for find in (find_lengths, find_noise):
         recording = cured(recording, find(recording, figure))
-    performance = perform(recording, build_character(recording, chosen=chosen))
+
+    def performed(repairs: Repairs) -> Performance:
+        placed = repaired(recording, repairs)
+        character = build_character(placed, chosen=chosen)
+        return perform(placed, character, placed_skin(skin, repairs))
+
+    performance = performed(Repairs())
     scale = find_scale(performance)
     if scale is not None:
-        resized = repaired(recording, scale.remedy or Repairs())
-        performance = perform(resized, build_character(resized, chosen=chosen))
+        performance = performed(_remedy(scale))
         if scale.kind is FindingKind.SIZE:
             # Where soles begin and how high feet are lifted is told best at the right size.
             scale = refined(scale, performance)
-            resized = repaired(recording, scale.remedy or Repairs())
-            performance = perform(resized, build_character(resized, chosen=chosen))
+            performance = performed(_remedy(scale))
         found.append(scale)
     height = performance.character.height
     leaps = find_leaps(performance, count - len(recording.frames))
@@ -92,10 +101,15 @@ def diagnose(
     return Diagnosis(tuple(found), fitting)
 
 
+def _remedy(finding: Finding | None) -> Repairs:
+    return (finding and finding.remedy) or Repairs()
+
+
 def _require_length(recording: Recording) -> None:
-    """What is shorter tells nothing. Raises ClipTooShort."""
+    """What is shorter tells nothing. Raises ClipTooShort, FramesFarApart."""
     if len(recording.frames) < FEWEST_FRAMES:
         raise ClipTooShort(float(recording.times[-1]), MIN_CLIP_DURATION)
+    require_dense(recording)
 
 
 def _find_bind_pose(recording: Recording) -> Finding | None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.problem import Mend, MotionProblem
-from ..data.recording import Recording
+from ..data.recording import Recording, Skin
 from ..data.scaling import scaled_recording
 from ..skeleton.bind_pose import bind_frames
 from ..skeleton.mirror import mirrored
@@ -109,6 +109,22 @@ def _with(mend: Mend, recording: Recording, figure: Figure) -> Recording:
         case Mend.NOISE:
             return smoothed(recording, figure)
     return LocalPoses.of(recording).filled(unsound).posed(recording)
+
+
+def placed_skin(skin: Skin | None, repairs: Repairs) -> Skin | None:
+    """A skin where `repaired` has the rest pose."""
+    if skin is None:
+        return None
+    points = repairs.scale * (skin.points @ turn_upright(repairs.up).T)
+    return replace(skin, points=points - np.array([0.0, 0.0, repairs.floor]))
+
+
+def unplaced_skin(skin: Skin | None, repairs: Repairs) -> Skin | None:
+    """A skin where `unplaced` has the rest pose."""
+    if skin is None:
+        return None
+    raised = skin.points + np.array([0.0, 0.0, repairs.floor])
+    return replace(skin, points=raised @ turn_upright(repairs.up) / repairs.scale)
 
 
 def placed(recording: Recording, repairs: Repairs) -> Recording:

@@ -76,6 +76,9 @@ class BoundedStep:
             elif len(self._rows) == 0 or reached is not z:
                 break
             u = self._solve(z)
+            if u is None:  # more rows make it no easier; the line search judges
+                self.multipliers[:] = 0.0
+                return np.zeros(self._factor.shape)
             change = -self._factor.backward(self._pull(u))
             reached = z + times(change)
         return change
@@ -100,7 +103,8 @@ class BoundedStep:
             half.add_times(mine, total)
         return total
 
-    def _solve(self, z: FloatArray) -> FloatArray:
+    def _solve(self, z: FloatArray) -> FloatArray | None:
+        """Multipliers (m,) of the program's rows; None where no solver finds them."""
         rows = self._rows
         # The rows give a little (SOFT); their last multipliers make up for it.
         base = z[rows] + self._soft * self.multipliers[rows]
@@ -109,8 +113,8 @@ class BoundedStep:
         u = multipliers_by_active_set(stiffness, lower, upper, self.multipliers[rows])
         if u is None:
             u = solve_dual_qp(np.linalg.cholesky(stiffness), lower, upper)
-        if not np.isfinite(u).all():  # DAQP lost its way; the line search judges the step without
-            u = np.zeros(len(rows))
+            if not np.isfinite(u).all():
+                return None
         self.multipliers[rows] = u
         return u
 
@@ -118,7 +122,8 @@ class BoundedStep:
 def solve_dual_qp(root: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
     """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper, root (m, m).
 
-    Raises LinAlgError where these are not finite.
+    NaN where DAQP does not find them, as after its limit of iterations. Raises LinAlgError where
+    rows or bounds are not finite.
     """
     m = len(root)
     # DAQP's tolerances are absolute: rows of length 1, and a violation of 1 to begin with.
@@ -136,4 +141,6 @@ def solve_dual_qp(root: FloatArray, lower: FloatArray, upper: FloatArray) -> Flo
         {"error_on_fail": False},
     )
     found = solver(h=ca.DM.eye(m), a=row[:, None] * root, lba=lower / size, uba=upper / size)
+    if not solver.stats()["success"]:
+        return np.full(m, np.nan)
     return np.asarray(np.asarray(found["lam_a"]).ravel() * row * size)

@@ -271,10 +271,11 @@ def fit_quality(fit: Fit) -> FitQuality:
     apart = fit.motion.joint_centres(performance.times) - performance.centres
     each = np.sqrt((apart**2).sum(axis=2).mean(axis=1))  # frame by frame
     name, furthest, frame = worst_joint(fit, apart)
-    lost = [apex(fit.motion, f) - recorded_apex(fit, f) for f in flights(fit)]
+    whole = (f for f in flights(fit) if f.start > 0.0 and f.end < fit.schedule.duration)
+    lost = [100.0 * (apex(fit.motion, f) - recorded_apex(fit, f)) for f in whole]
     return FitQuality(
         joint_centres_rms_cm=100.0 * _rms(each),
-        pelvis_apex_difference_cm=100.0 * max(lost, key=abs, default=0.0),
+        pelvis_apex_difference_cm=max(lost, key=abs, default=None),
         worst_frame_rms_cm=100.0 * float(each.max()),
         worst_frame=float(performance.recording.frames[each.argmax()]),
         worst_joint=name,

@@ -17,7 +17,7 @@ from ..data.reports.recording import Origin
 from ..data.scene import SceneObject
 from ..doctor.diagnose import diagnose
 from ..doctor.feet import find_feet
-from ..doctor.repair import as_asked, unplaced
+from ..doctor.repair import as_asked, unplaced, unplaced_skin
 from ..doctor.repairs import Repairs
 from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality
@@ -244,9 +244,10 @@ def _examined(request: Request) -> Examined:
     problem, placed = request.problem, request.placed or Repairs()
     with computable():
         as_made = unplaced(request.recording, placed)
-        diagnosis = diagnose(as_made, problem.bones, problem.mass)
+        skin = unplaced_skin(problem.skin, placed)
+        diagnosis = diagnose(as_made, problem.bones, problem.mass, skin)
         now = as_asked(request.recording, problem)
-        performance = perform(now, build_character(now, chosen=problem.bones))
+        performance = perform(now, build_character(now, chosen=problem.bones), problem.skin)
     return Examined(request.id, diagnosis, find_feet(performance))
 
 

@@ -1,4 +1,4 @@
-"""Motion files and meshes, damaged: a reader reads them, or names the fault."""
+"""Motion files and meshes, damaged: read, analysed, mended and fitted, or the fault is named."""
 
 from functools import cache
 from pathlib import Path
@@ -11,22 +11,27 @@ from ....bridge.formats.guess import guess_unit, guess_up
 from ....bridge.formats.motion_clip import MotionClip, to_recording
 from ....bridge.formats.obj import UnreadableMesh, read_obj
 from ....solver.data.problem import MotionProblem
-from ....solver.data.recording import Recording
-from ....solver.worker.pipeline import measure
+from ....solver.data.recording import Recording, digest
+from ....solver.doctor.diagnose import diagnose
+from ....solver.doctor.repair import repaired
+from ....solver.worker.pipeline import fit_possible, measure
 from ...environment.virtual_environment import ROOT
 from ...recordings import HELD, HOPS, JUMP, find
-from ..protocol.case import Family, HostileCase
-from ..protocol.damage import damaged_bytes, damaged_text
+from ..protocol.case import Changed, Family, HostileCase, Said
+from ..protocol.damage import damaged_bytes, damaged_text, damaged_values
+from ..protocol.patience import at_most
 
 FRAMES = 5  # of a file that is only read
 ANALYSED = 60  # of one that is also analysed
+EXAMINED = 120  # of one that the doctor looks at
+ENOUGH = 1.5  # s of this process that a fit may take
 
 
 def bvh(case: HostileCase) -> None:
     """A few frames of the jump's BVH."""
     path = case.folder / "clip.bvh"
     _write_damaged(case, path, short_bvh(FRAMES))
-    _check(_recording(read_bvh(path)))
+    _check(case, _recording(read_bvh(path)))
 
 
 def acclaim(case: HostileCase) -> None:
@@ -39,7 +44,7 @@ def acclaim(case: HostileCase) -> None:
             _write_damaged(case, path, texts[i])
         else:
             path.write_text(texts[i], encoding="utf-8")
-    _check(_recording(read_acclaim(find_asf(amc), amc)))
+    _check(case, _recording(read_acclaim(find_asf(amc), amc)))
 
 
 def obj(case: HostileCase) -> None:
@@ -49,19 +54,42 @@ def obj(case: HostileCase) -> None:
     _write_damaged(case, path, _text(case.pick(meshes)))
     try:
         vertices, triangles = read_obj(path)
-    except (UnreadableMesh, UnicodeDecodeError):  # as the recipe's reader expects
-        return
+    except (UnreadableMesh, UnicodeDecodeError) as fault:  # as the recipe's reader expects
+        raise Said(type(fault).__name__) from fault
     if not np.isfinite(vertices).all():
         raise ValueError("a vertex is not finite")
     assert triangles.min(initial=0) >= 0
     assert triangles.max(initial=-1) < len(vertices)
+    case.taken_on = True
 
 
 def analysed(case: HostileCase) -> None:
-    """A damaged piece of the jump that is still a clip, analysed."""
+    """A damaged piece of the jump, analysed, and now and then fitted."""
+    subject = measure(_damaged_jump(case, ANALYSED), MotionProblem())
+    case.taken_on = True
+    if case.chance(0.3):
+        with at_most(ENOUGH) as clock:
+            fit_possible(subject, clock)
+
+
+def examined(case: HostileCase) -> None:
+    """The doctor looks at it, and again once all remedies are taken."""
+    recording = _damaged_jump(case, EXAMINED)
+    before = digest(recording)
+    diagnosis = diagnose(recording, mass=case.pick((None, 70.0, 1e-6, 1e9)))
+    mended = repaired(recording, diagnosis.repairs)
+    _check(case, mended)
+    if any(not np.isfinite(finding.amount) for finding in diagnosis.findings):
+        raise ValueError(f"a finding is no number: {diagnosis.findings}")
+    diagnose(mended)
+    if digest(recording) != before:
+        raise Changed("the recording")
+
+
+def _damaged_jump(case: HostileCase, frames: int) -> Recording:
     path = case.folder / "clip.bvh"
-    path.write_text(damaged_text(case, short_bvh(ANALYSED)), encoding="utf-8", newline="")
-    measure(_recording(read_bvh(path)), MotionProblem())
+    _write_damaged(case, path, short_bvh(frames))
+    return _recording(read_bvh(path))
 
 
 @cache
@@ -86,10 +114,13 @@ def _text(path: Path) -> str:
 
 
 def _write_damaged(case: HostileCase, path: Path, text: str) -> None:
-    if case.chance(0.4):
-        path.write_bytes(damaged_bytes(case, text.encode()))
-    else:
-        path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
+    match case.pick(("bytes", "text", "values", "values")):
+        case "bytes":
+            path.write_bytes(damaged_bytes(case, text.encode()))
+        case "text":
+            path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
+        case _:
+            path.write_text(damaged_values(case, text), encoding="utf-8")
 
 
 def _recording(clip: MotionClip) -> Recording:
@@ -97,15 +128,17 @@ def _recording(clip: MotionClip) -> Recording:
     return to_recording(clip, clip.unit or guess_unit(clip, up), up)
 
 
-def _check(recording: Recording) -> None:
+def _check(case: HostileCase, recording: Recording) -> None:
     for part in (recording.times, recording.heads, recording.rotations):
         if not np.isfinite(part).all():
             raise ValueError("a pose is not finite")
+    case.taken_on = True
 
 
 FAMILIES = (
     Family("BVH files", 20.0, 10.0, bvh),
     Family("ASF/AMC files", 10.0, 10.0, acclaim),
     Family("OBJ files", 5.0, 10.0, obj),
-    Family("damaged clips, analysed", 4.0, 30.0, analysed),
+    Family("damaged clips, analysed", 3.0, 30.0, analysed),
+    Family("damaged clips, examined", 3.0, 30.0, examined),
 )

@@ -47,7 +47,7 @@ def _imported(case: HostileCase, data: bytes) -> None:
     _artists_object()
     before, view = marked(), View.now()
     if bpy.app.version >= NATIVE and case.chance(0.3):
-        _by_the_artist(path)
+        _by_the_artist(case, path)
         must_be_same(before, marked())
         return
     try:
@@ -58,22 +58,22 @@ def _imported(case: HostileCase, data: bytes) -> None:
         raise
     finally:
         must_be_same(before, marked())
-    _analysed(armature)
+    _analysed(case, armature)
 
 
-def _by_the_artist(path: Path) -> None:
+def _by_the_artist(case: HostileCase, path: Path) -> None:
     """By Blender's other importer, whose own refusals are no matter of ours."""
     with suppress(RuntimeError):
         OPERATORS.wm.fbx_import(filepath=str(path))
     armature = next((o for o in bpy.data.objects if o.type == "ARMATURE"), None)
     if armature is not None:
-        _analysed(armature)
+        _analysed(case, armature)
 
 
-def _analysed(armature: bpy.types.Object) -> None:
+def _analysed(case: HostileCase, armature: bpy.types.Object) -> None:
     settings = settings_of(armature)
     settings.use_range, (settings.first_frame, settings.last_frame) = True, FRAMES
-    analysed(armature)
+    analysed(case, armature)
 
 
 def _artists_object() -> None:

@@ -54,6 +54,7 @@ def _write(case: HostileCase, folder: Path) -> None:
             if hostile is not None and case.chance(0.4):
                 hostile(folder)
             box.write_text(NAMES[i], "x" * int(case.rng.integers(0, 4000)))
+            case.taken_on = True
         if hostile is not None and case.chance(0.4):
             hostile(folder)
         box.deliver()
@@ -66,7 +67,7 @@ def _gone(folder: Path) -> None:
 def _file_instead(folder: Path) -> None:
     if folder.is_dir():
         shutil.rmtree(folder)
-        folder.write_text("a file", encoding="utf-8")
+        folder.touch()
 
 
 def _taken(folder: Path) -> None:

@@ -1,11 +1,9 @@
 """Random but legal requests, of every kind and in every combination, extremes among them.
 
-The solver runs in this process. A case's steps end after a while, as when the artist presses Esc;
-what never comes to a step hangs.
+The solver runs in this process. A case's steps end after a while; what never comes to a step hangs.
 """
 
 import json
-import time
 from collections.abc import Callable
 from functools import cache, partial
 
@@ -13,14 +11,13 @@ import numpy as np
 
 from ....bridge.recipe.objects import placed_objects
 from ....bridge.recipe.problem import parse_recipe
+from ....solver.data.faults import NotComputable
 from ....solver.data.problem import MotionProblem
 from ....solver.data.recording import digest
 from ....solver.data.reports.recording import Origin
 from ....solver.data.reports.report import as_json
 from ....solver.data.solver_options import ObjectiveKind, ReductionKind
-from ....solver.optimisation.sqp import Step
 from ....solver.stages.fit import Fit
-from ....solver.transcription.motion import Motion
 from ....solver.worker.pipeline import (
     AdaptationResult,
     StageClock,
@@ -31,30 +28,13 @@ from ....solver.worker.pipeline import (
 )
 from ...recordings import HELD, read
 from ..protocol.case import Changed, Family, HostileCase
+from ..protocol.patience import at_most
 
 CLIPS = (("forward_jump_116cm.bvh", 150.0, 260.0), ("run_3.bvh", 40.0, 120.0))
 ENOUGH = 3.0  # s of this process, in steps
 EXTREME = (1e-9, 1e-3, 0.2, 1.0, 3.0, 30.0, 1e3, 1e6, 1e12)
 PARTS = ("Hips", "Spine", "Head", "LeftHand", "RightHand", "LeftFoot", "RightLeg", "LeftUpLeg")
 Table = dict[str, object]
-
-
-class Enough(Exception):
-    """Ends a solve that has had its time."""
-
-
-class _Clock(StageClock):
-    """Ends the solve after a while. Raises ValueError for a step that is no number."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._until = time.process_time() + ENOUGH
-
-    def step(self, step: Step, motion: Motion) -> None:
-        if not (np.isfinite(step.violation) and np.isfinite(motion.x).all()):
-            raise ValueError(f"not finite after a step of {step.stage}")
-        if time.process_time() > self._until:
-            raise Enough
 
 
 def requests(case: HostileCase) -> None:
@@ -81,12 +61,14 @@ def _solve(case: HostileCase, count: int, amount: Callable[[float], float]) -> N
     parsed = parse_recipe(text)
     before = digest(subject.recording)
     asked = subject.asked(parsed.problem)
-    try:
-        placed = placed_objects(parsed.under, asked.problem, asked.analysis)
-        result = solve(asked.with_objects(placed), _Clock(), lambda *_: fitted)
-        _check(result)
-    except Enough:
-        pass
+    placed = placed_objects(parsed.under, asked.problem, asked.analysis)
+
+    def fit(*_: object) -> Fit:
+        case.taken_on = True  # what can be known before the fit has been asked
+        return fitted
+
+    with at_most(ENOUGH) as clock:
+        _check(solve(asked.with_objects(placed), clock, fit))
     if digest(subject.recording) != before:
         raise Changed("the recording")
 
@@ -106,7 +88,10 @@ def _check(result: AdaptationResult) -> None:
 def _fitted(name: str, first: float, last: float) -> tuple[Subject, Fit]:
     problem = MotionProblem(frames=(first, last))
     subject = measure(read(HELD / name), problem)
-    return subject, fit_subject(subject, StageClock())
+    try:
+        return subject, fit_subject(subject, StageClock())
+    except NotComputable as fault:  # which only what is asked for may be
+        raise ArithmeticError(f"{name} itself is not computable") from fault
 
 
 # ---------------------------------------------------------------- recipes
@@ -129,14 +114,15 @@ def recipe(
 
 
 def _lines(table: Table) -> list[str]:
-    return [f"{key} = {_toml(value)}" for key, value in table.items()]
+    return [f"{key} = {toml(value)}" for key, value in table.items()]
 
 
-def _toml(value: object) -> str:
+def toml(value: object) -> str:
+    """A value as TOML writes it."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {_toml(v)}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{k} = {toml(v)}" for k, v in value.items()) + " }"
     if isinstance(value, list):
-        return "[" + ", ".join(map(_toml, value)) + "]"
+        return "[" + ", ".join(map(toml, value)) + "]"
     return json.dumps(value)
 
 

@@ -14,6 +14,7 @@ from ....bridge.properties.settings import settings_of
 from ...recordings import HELD
 from ..protocol.blender_file import MARK, empty_file, marked, must_be_same, refusals
 from ..protocol.case import Family, HostileCase
+from .bipeds import hopping_biped
 
 OPERATORS: Any = bpy.ops  # of which the stubs do not know all
 NAMES = (
@@ -22,6 +23,7 @@ NAMES = (
     *("foot.R", "upper_arm.L", "upper_arm.R", "hand.L", "hand.R", "Bone", "骨", "Ћуфта", "a" * 63),
     *('q"uote', "back\\slash", "bra[ck]et", "dot.", ".", " ", "\t", "DEF-spine", "MCH-x", "nan"),
 )
+FITTED = 0.15  # of the rigs that could be analysed
 MODES: tuple[Any, ...] = ("QUATERNION", "XYZ", "ZYX", "AXIS_ANGLE")
 FACTORS = (0.0, 1e-9, 1e-3, 0.01, 1.0, -1.0, 100.0, 1e6)
 SOURCES = ("forward_jump_116cm.bvh", "131_03_hop.bvh", "hop_01_01.bvh")
@@ -34,7 +36,16 @@ def made_up(case: HostileCase) -> None:
     _keys(case, armature)
     for _ in range(int(case.rng.integers(3))):
         case.pick(CHANGES)(case, armature)
-    analysed(armature)
+    analysed(case, armature)
+
+
+def bipeds(case: HostileCase) -> None:
+    """Figures with arms and legs of any proportions and names that hop, and may be changed."""
+    empty_file()
+    armature = hopping_biped(case)
+    for _ in range(int(case.rng.integers(3))):
+        case.pick(CHANGES)(case, armature)
+    analysed(case, armature)
 
 
 def changed(case: HostileCase) -> None:
@@ -45,13 +56,13 @@ def changed(case: HostileCase) -> None:
     settings = settings_of(armature)
     settings.use_range = True
     settings.first_frame, settings.last_frame = first, first + int(case.rng.integers(0, 150))
-    for _ in range(int(case.rng.integers(1, 5))):
+    for _ in range(int(case.rng.integers(1, 3))):
         case.pick(CHANGES)(case, armature)
-    analysed(armature)
+    analysed(case, armature)
 
 
-def analysed(armature: bpy.types.Object) -> None:
-    """Its bones are found and the recording is analysed, or a refusal says why not."""
+def analysed(case: HostileCase, armature: bpy.types.Object) -> None:
+    """Its bones are found, the recording analysed and some fitted, or a refusal says why not."""
     layer = present(bpy.context.view_layer)
     layer.objects.active = armature
     layer.update()
@@ -63,6 +74,10 @@ def analysed(armature: bpy.types.Object) -> None:
             OPERATORS.hangtime.find_bones()
         with refusals():
             OPERATORS.hangtime.analyze()
+        case.taken_on = True
+        if case.chance(FITTED):
+            with refusals():
+                OPERATORS.hangtime.fit()
     finally:
         must_be_same(before, marked())
 
@@ -200,6 +215,7 @@ CHANGES: tuple[Callable[[HostileCase, bpy.types.Object], None], ...] = (
 )
 
 FAMILIES = (
-    Family("rigs, made up", 3.0, 40.0, made_up),
+    Family("rigs, made up", 0.5, 40.0, made_up),
+    Family("rigs, bipeds that hop", 3.0, 60.0, bipeds),
     Family("rigs, changed", 3.0, 40.0, changed),
 )

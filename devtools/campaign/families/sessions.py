@@ -4,48 +4,67 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from shutil import copyfile
 from typing import Any
 
 import bpy
 
-from ....bridge.accessors import armature_data, current_scene, present
+from ....bridge.accessors import armature_data, current_scene, present, source_of
 from ....bridge.properties.settings import settings_of
 from ....operators.names import OperatorId
+from ...environment.virtual_environment import ROOT
 from ...recordings import HELD, JUMP
-from ..protocol.blender_file import marked, must_be_same, recorded_file, refusals
-from ..protocol.case import Family, HostileCase, Said
+from ..protocol.blender_file import MARK, enable, marked, must_be_same, recorded_file, refusals
+from ..protocol.case import Changed, Family, HostileCase, Said
 
 OPERATORS: Any = bpy.ops  # of which the stubs do not know all
 FRAMES = 150, 260
 MODES = ("OBJECT", "POSE", "EDIT")
+LANDED = sorted((ROOT / "tests" / "data").glob("*.blend"))
 SOLVING = (OperatorId.ADAPT, OperatorId.FIT, OperatorId.REFINE, OperatorId.UPDATE)
 OTHERS = tuple(name for name in OperatorId if name not in SOLVING)
 
 
 def quick(case: HostileCase) -> None:
     """Operators that only analyse, list, show and write."""
+    recorded_file(HELD / JUMP, *FRAMES)
     _session(case, 0.0)
 
 
 def solving(case: HostileCase) -> None:
     """Solves among them."""
+    recorded_file(HELD / JUMP, *FRAMES)
     _session(case, 0.25)
 
 
+def landed(case: HostileCase) -> None:
+    """On a file that an earlier state of the extension saved, results and settings in it."""
+    enable()
+    path = case.folder / "old.blend"
+    copyfile(case.pick(LANDED), path)
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    for action in bpy.data.actions:
+        if source_of(action) is None:
+            action[MARK] = action.name
+    if not marked():
+        raise Changed("no recording is in the file")
+    case.taken_on = True
+    _session(case, 0.1)
+
+
 def _session(case: HostileCase, solves: float) -> None:
-    armature = recorded_file(HELD / JUMP, *FRAMES)
     before = marked()
     if case.chance(0.7):
         _tried(lambda: OPERATORS.hangtime.analyze())
     for _ in range(int(case.rng.integers(3, 12))):
         if case.chance(solves):
-            operator(case, case.pick(SOLVING))
+            case.taken_on |= operator(case, case.pick(SOLVING))
         elif case.chance(0.55):
-            operator(case, case.pick(OTHERS))
+            finished = operator(case, case.pick(OTHERS))
+            case.taken_on |= finished and not solves
         else:
             case.pick(STEPS)(case)
         must_be_same(before, marked())
-    del armature
 
 
 def _tried(act: Callable[[], object]) -> None:
@@ -56,15 +75,17 @@ def _tried(act: Callable[[], object]) -> None:
         pass  # in words, as it should be
 
 
-def operator(case: HostileCase, name: str) -> None:
-    """One operator, with random properties, as a script calls it."""
+def operator(case: HostileCase, name: str) -> bool:
+    """One operator, with random properties, as a script calls it; whether it did its work."""
     package, _, own = name.partition(".")
     call = getattr(getattr(bpy.ops, package), own)
     values: dict[str, object] = {}
     for prop in call.get_rna_type().properties:
         if prop.identifier != "rna_type" and not prop.is_readonly and case.chance(0.6):
             values |= _value(case, prop)
-    _tried(lambda: call(**values))
+    done: set[str] = set()
+    _tried(lambda: done.update(call(**values)))
+    return "FINISHED" in done
 
 
 def _value(case: HostileCase, prop: Any) -> dict[str, object]:
@@ -190,5 +211,6 @@ STEPS: tuple[Callable[[HostileCase], None], ...] = (
 
 FAMILIES = (
     Family("sessions, quick", 3.0, 60.0, quick),
-    Family("sessions with solves", 0.4, 120.0, solving),
+    Family("sessions with solves", 0.6, 120.0, solving),
+    Family("files of landed versions", 0.8, 120.0, landed),
 )

@@ -34,7 +34,7 @@ def shared_file(case: HostileCase) -> None:
     other = subprocess.Popen(command, env=os.environ | ONE_THREAD, stdout=2)
     try:
         while other.poll() is None:
-            operator(case, "hangtime.analyze")
+            case.taken_on |= operator(case, "hangtime.analyze")
             with _turn(path):
                 bpy.ops.wm.save_as_mainfile(filepath=path)
             time.sleep(case.rng.uniform(0.0, 1.0))

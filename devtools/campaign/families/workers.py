@@ -120,6 +120,7 @@ def fed_garbage(case: HostileCase) -> None:
         if case.chance(0.4):
             del data[at:]
         worker.stdin.write(data)
+        case.taken_on = True
         time.sleep(case.rng.uniform(0.0, 0.5))
         worker.stdin.close()
         worker.wait()
@@ -175,6 +176,7 @@ class _Asked:
 
 
 def _ask(worker: Worker, case: HostileCase) -> PendingRequest:
+    case.taken_on = True
     kind = case.pick((RequestKind.ANALYSE, RequestKind.FIT, RequestKind.ADAPT))
     return worker.ask(kind, read(HELD / JUMP), PROBLEM)
 

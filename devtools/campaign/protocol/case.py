@@ -1,15 +1,17 @@
 """The protocol of cases: from seed and number to how a case ended.
 
 A family's `run` does one case. It returns where all went well, and raises the product's own Fault
-(or Said) where that refused with words. Changed and LeftBehind tell what else is wrong. Any other
-exception is a crash: it ends the process, as a fault of the memory would.
+(or Said) where that refused with words. It sets `taken_on` once the first gate is passed. Changed
+and LeftBehind tell what else is wrong. Any other exception is a crash: it ends the process, as a
+fault of the memory would.
 """
 
 import shutil
 import tempfile
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
@@ -21,7 +23,7 @@ from ....solver.data.faults import Fault
 T = TypeVar("T")
 
 
-class Ending(Enum):
+class Ending(StrEnum):
     """How a case ended; the first two are as they should be."""
 
     SUCCESS = "success"
@@ -48,12 +50,17 @@ class LeftBehind(Exception):
     """Something that a case made is still there: a file, a data-block, a process."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class HostileCase:
-    """One case while it runs. folder: empty, its own; what it leaves there is no leftover."""
+    """One case while it runs.
+
+    folder: empty, its own; what it leaves there is no leftover. taken_on: whether what it made was
+    read, analysed or solved; what is refused at the first gate tries the gate alone.
+    """
 
     rng: np.random.Generator
     folder: Path
+    taken_on: bool = False
 
     def chance(self, share: float) -> bool:
         """True in this share of cases."""
@@ -83,21 +90,25 @@ class CaseOutcome:
     ending: Ending
     detail: str = ""
     seconds: float = 0.0
+    taken_on: bool = False
 
 
-def run_case(family: Family, number: int, seed: int, folder: Path) -> tuple[Ending, str]:
+def run_case(family: Family, number: int, seed: int, folder: Path) -> CaseOutcome:
     """Does one case; its folder is removed where it ended well. A crash is the process's own."""
     shutil.rmtree(folder, ignore_errors=True)
     scratch = folder / "scratch"  # for what the product keeps while it works
     scratch.mkdir(parents=True)
     tempfile.tempdir = str(scratch)
-    ending, detail = _ended(family, HostileCase(np.random.default_rng([seed, number]), folder))
+    case = HostileCase(np.random.default_rng([seed, number]), folder)
+    began = time.monotonic()
+    ending, detail = _ended(family, case)
+    seconds = time.monotonic() - began
     left = [path.name for path in scratch.iterdir()]
     if ending.good and left:
         ending, detail = Ending.LEFTOVER, f"temporary files: {', '.join(left)}"
     if ending.good:
         shutil.rmtree(folder, ignore_errors=True)
-    return ending, detail
+    return CaseOutcome(number, family.name, ending, detail, seconds, case.taken_on)
 
 
 def _ended(family: Family, case: HostileCase) -> tuple[Ending, str]:

@@ -12,6 +12,10 @@ NASTY = (
 )
 
 
+FACTORS = (-1.0, 0.0, 1e-6, 0.1, 1.0, 1.0, 2.54, 10.0, 1e3, 1e6)
+SHIFTS = (0.0, 0.0, 0.0, 0.01, 1.0, -90.0, 180.0, 1e4)
+
+
 def damaged_bytes(case: HostileCase, data: bytes) -> bytes:
     """One to three bytes flipped, taken out, put in or moved; or the file cut off."""
     for _ in range(int(case.rng.integers(1, 4))):
@@ -37,6 +41,33 @@ def damaged_text(case: HostileCase, text: str) -> str:
         case.pick(LINE_CHANGES)(case, lines, at)
         lines = lines or [""]
     return case.pick(("\n", "\n", "\n", "\n", "\r\n", "\r")).join(lines)
+
+
+def damaged_values(case: HostileCase, text: str) -> str:
+    """Decimal numbers of one to four lines scaled, moved, or another line's: the form stays."""
+    lines = text.split("\n")
+    numbers = [i for i, line in enumerate(lines) if any(map(_decimal, line.split()))]
+    for _ in range(int(case.rng.integers(1, 5)) if numbers else 0):
+        at, share = case.pick(numbers), case.pick((0.02, 0.3, 1.0))
+        factor, more = case.pick(FACTORS), case.pick(SHIFTS)
+        if case.chance(0.2):
+            lines[at] = _like(lines[at], lines[case.pick(numbers)])
+        words = lines[at].split(" ")
+        lines[at] = " ".join(
+            f"{factor * float(word) + more:.7f}" if _decimal(word) and case.chance(share) else word
+            for word in words
+        )
+    return "\n".join(lines)
+
+
+def _like(line: str, other: str) -> str:
+    """The other line where it has as many words."""
+    return other if len(other.split()) == len(line.split()) else line
+
+
+def _decimal(word: str) -> bool:
+    """Whether it is written as a number that need not be whole."""
+    return "." in word and word.lstrip("-").replace(".", "", 1).isdecimal()
 
 
 def _word(case: HostileCase, lines: list[str], at: int) -> None:

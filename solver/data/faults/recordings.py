@@ -46,6 +46,14 @@ class ClipTooShort(Fault):
 
 
 @dataclass
+class FramesFarApart(Fault):
+    """Frames too rare to tell a motion, as of a file with a wrong frame time."""
+
+    seconds: float
+    maximum_s: float
+
+
+@dataclass
 class ZeroLengthBone(Fault):
     """A bone that must carry mass has no length."""
 

@@ -59,12 +59,14 @@ class ReductionReport:
 class FitQuality:
     """Distance of the fit from the recording, at the recording's frames.
 
-    worst_frame: the one whose joint centres are furthest off, worst_frame_rms_cm of rms.
-    worst_joint: the body whose joint is furthest off in any frame, "" where it is not told.
+    pelvis_apex_difference_cm: of the flight where it is most; None where the clip holds none from
+    take-off to landing, whose apex may be beyond its ends. worst_frame: the one whose joint centres
+    are furthest off, worst_frame_rms_cm of rms. worst_joint: the body whose joint is furthest off
+    in any frame, "" where it is not told.
     """
 
     joint_centres_rms_cm: float
-    pelvis_apex_difference_cm: float
+    pelvis_apex_difference_cm: float | None
     worst_frame_rms_cm: float
     worst_frame: float
     worst_joint: str = ""

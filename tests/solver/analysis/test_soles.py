@@ -11,6 +11,10 @@ from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording, Skin
+from hangtime.solver.doctor.diagnose import diagnose
+from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.repair import placed_skin, unplaced, unplaced_skin
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
 BACK, FRONT = 0.06, 0.22  # m along the floor, from the ankle to the ends of a shoe
@@ -100,6 +104,21 @@ def test_floor_under_the_soles() -> None:
     assert floor == pytest.approx(-0.3, abs=0.01)
     standing = points["Left heel"].track[0, 2]
     assert standing == pytest.approx(floor, abs=0.01)
+
+
+def test_the_doctor_has_a_figure_stand_on_its_soles() -> None:
+    """Also one that was read in inches, with another axis up."""
+    stands = shod(without_toes())
+    read = Repairs(up=UpAxis.Y, scale=0.0254, floor=-0.3)
+    skin = unplaced_skin(stands.skin, read)
+    back = placed_skin(skin, read)
+    assert stands.skin is not None
+    assert back is not None
+    assert back.points == pytest.approx(stands.skin.points)
+    found = diagnose(unplaced(stands.recording, read), skin=skin)
+    told = {finding.kind: finding.amount for finding in found.findings}
+    assert {FindingKind.UP_AXIS, FindingKind.SIZE} <= set(told)
+    assert told[FindingKind.FLOOR] == pytest.approx(-0.3, abs=0.02)
 
 
 def test_other_skin_is_another_fit() -> None:

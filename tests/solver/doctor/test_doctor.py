@@ -21,9 +21,10 @@ from hangtime.devtools.doctor.damages import (
     stretched,
 )
 from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.character import Character, build_character
-from hangtime.solver.data.faults import ClipTooShort
+from hangtime.solver.data.faults import ClipTooShort, FramesFarApart
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.diagnose import diagnose
@@ -249,3 +250,13 @@ def test_repairs_are_left_out_one_by_one() -> None:
 def test_a_clip_of_a_few_frames_is_refused_in_words(count: int) -> None:
     with pytest.raises(ClipTooShort):
         diagnose(jump().part(slice(0, count)))
+
+
+def test_frames_of_hours_are_refused_in_words() -> None:
+    """A file's frame time of hours would be searched for contacts every hundredth of a second."""
+    clip = jump().part(slice(0, 20))
+    slow = replace(clip, times=1e6 * clip.times)
+    with pytest.raises(FramesFarApart):
+        diagnose(slow)
+    with pytest.raises(FramesFarApart):
+        analyse(slow, MotionProblem())

@@ -221,13 +221,20 @@ def test_a_step_within_its_bounds_is_left_alone() -> None:
 def test_a_program_without_an_answer_leaves_the_step_as_it_is(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """DAQP, at programs of thousands of rows, may end with multipliers that are no numbers."""
+    """DAQP may end without, at a thousand rows; then it is asked once, not six times."""
     problem = Problem(3, 6, 5)
     bounded = problem.step()
+    asked: list[int] = []
+
+    def no_answer(root: FloatArray, *_: FloatArray) -> FloatArray:
+        asked.append(len(root))
+        return np.full(len(root), np.nan)
+
     with monkeypatch.context() as lost:
         lost.setattr(bounded_qp, "multipliers_by_active_set", lambda *_: None)
-        lost.setattr(bounded_qp, "solve_dual_qp", lambda root, *_: np.full(len(root), np.nan))
+        lost.setattr(bounded_qp, "solve_dual_qp", no_answer)
         assert not bounded.correct(problem.z, problem.times).any()
+        assert len(asked) == 1
         assert not bounded.working.any()
     best = problem.reference()
     assert settled(problem, bounded) == pytest.approx(best, abs=1e-4 * (1.0 + np.abs(best).max()))

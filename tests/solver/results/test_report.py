@@ -7,14 +7,15 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hangtime.operators.words.report_text import as_text
+from hangtime.operators.words.report_text import apex_words, as_text
+from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import Report, StageReport, as_json
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.status import Durations, Status
 from hangtime.solver.results.npz_export import instants, sample, save
-from hangtime.solver.results.report import report
+from hangtime.solver.results.report import fit_quality, report
 from hangtime.solver.results.violations import worst_constraints
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.tests.helpers.fitted_hop import fitted_hop
@@ -45,6 +46,18 @@ def trajectory() -> dict[str, np.ndarray]:
 
 def phases(kind: str) -> list:
     return [p for p in further().setup.schedule.phases if p.kind.value == kind]
+
+
+def test_no_apex_is_told_of_a_clip_that_ends_in_the_air() -> None:
+    """It would be the height at the clip's end, and no apex."""
+    fit = fitted_hop()
+    (flight,) = (p for p in fit.schedule.phases if p.kind is PhaseKind.FLIGHT)
+    assert fit_quality(fit).pelvis_apex_difference_cm is not None
+    in_the_air = replace(fit, schedule=replace(fit.schedule, duration=flight.end))
+    told = fit_quality(in_the_air).pelvis_apex_difference_cm
+    assert told is None
+    assert apex_words(told) == ""
+    assert apex_words(-0.01) == ", apex as high as recorded"
 
 
 def test_the_hop_is_solved() -> None:

@@ -56,7 +56,7 @@ def test_how_a_case_ended(
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", None)  # and back, whatever a case sets
     folder = tmp_path / "7"
-    assert run_case(Family("one", 1.0, 1.0, run), 7, 0, folder)[0] is ending
+    assert run_case(Family("one", 1.0, 1.0, run), 7, 0, folder).ending is ending
     assert folder.exists() != ending.good  # what ended badly can be looked at
 
 
@@ -72,10 +72,13 @@ def test_a_case_is_the_same_every_time(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_the_table_adds_up() -> None:
     families = [Family(name, 1.0, 1.0, refused) for name in ("one", "other")]
-    outcomes = [CaseOutcome(0, "one", Ending.SUCCESS), CaseOutcome(1, "other", Ending.CRASH)]
+    outcomes = [
+        CaseOutcome(0, "one", Ending.SUCCESS, taken_on=True),
+        CaseOutcome(1, "other", Ending.CRASH),
+    ]
     rows = table(outcomes, families, 5).splitlines()[-3:]
-    assert [row.split(" | ")[1:4] for row in rows] == [
-        ["1", "1", "0"],
-        ["1", "0", "0"],
-        ["2", "1", "0"],
+    assert [row.split(" | ")[1:5] for row in rows] == [
+        ["1", "1", "1", "0"],
+        ["1", "0", "0", "0"],
+        ["2", "1", "1", "0"],
     ]
