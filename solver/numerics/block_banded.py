@@ -80,10 +80,10 @@ class BlockBanded:
     def times(self, x: FloatArray) -> FloatArray:
         """Matrix-vector product (K, n) with x (K, n)."""
         lower = self.lower
-        y = np.einsum("kij,kj->ki", lower[0], x)
+        y = (lower[0] @ x[..., None])[..., 0]
         for j in range(1, self.band + 1):
-            y[j:] += np.einsum("kij,kj->ki", lower[j][:-j], x[:-j])
-            y[:-j] += np.einsum("kij,ki->kj", lower[j][:-j], x[j:])
+            y[j:] += (lower[j][:-j] @ x[:-j, :, None])[..., 0]
+            y[:-j] += (x[j:, None] @ lower[j][:-j])[:, 0]
         return np.asarray(y)
 
     def factor(self, *, overwrite: bool = False) -> "CholeskyFactor":
@@ -161,6 +161,11 @@ class LocalColumns:
     def add_times(self, weights: FloatArray, total: FloatArray) -> None:
         """Adds the columns' sum by weights (m,) to total (K, n)."""
         total[self.first : self.first + len(self.values)] += self.values @ weights
+
+    def transposed_times(self, x: FloatArray) -> FloatArray:
+        """(m,) scalar products with x (K, n)."""
+        count, n, m = self.values.shape
+        return np.asarray(x[self.first : self.first + count].ravel() @ self.values.reshape(-1, m))
 
 
 @dataclass(frozen=True)
