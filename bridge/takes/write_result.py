@@ -7,6 +7,7 @@ from functools import partial
 import bpy
 
 from ..accessors import ATTRIBUTE, current_action, present, source_of
+from ..action_slots import all_curves
 from ..armature import fcurves
 from ..armature.actions import recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
@@ -88,7 +89,7 @@ def _write(
     try:
         written = yield from write_take(armature, action, slot, motion)
         if cut_off:
-            for curve in fcurves.all_curves(action):
+            for curve in all_curves(action):
                 fcurves.crop(curve, float(motion.track.frames[0]), float(motion.track.frames[-1]))
         whole = True
     finally:

@@ -6,6 +6,7 @@ from ...bridge.accessors import current_action, present, source_of
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.takes.new_slot import remove_slot
 from ...bridge.takes.takes import bake_shown, results_from
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
@@ -189,6 +190,7 @@ class DiscardOperator(_OfResult, bpy.types.Operator):
             if current_action(each) == result:
                 show(each, recorded)
             remove_strips(each, result)
+        remove_slot(result)
         bpy.data.actions.remove(result)
         settings.adapted = None  # the edit at work is no other result's
         settings.status = ""

@@ -50,6 +50,7 @@ from .requests import NoPhaseChosen as NoPhaseChosen
 from .requests import NotAboveZero as NotAboveZero
 from .requests import NothingTouches as NothingTouches
 from .requests import OutOfReach as OutOfReach
+from .requests import NoNewSlot as NoNewSlot
 from .requests import ReturnTooEarly as ReturnTooEarly
 from .requests import RootHasNoJoint as RootHasNoJoint
 from .requests import SameUsdNames as SameUsdNames
