@@ -61,9 +61,10 @@ def span_of(action: bpy.types.Action) -> tuple[float, float]:
     home = home_of(action)
     shares = any(result_in(action, slot) is not None for slot in getattr(action, "slots", ()))
     if action.use_frame_range or (home is None and not shares):
-        return action.frame_range.to_tuple()
-    ranges = [curve.range() for curve in all_curves(action)]
-    return min(first for first, _ in ranges), max(last for _, last in ranges)
+        first, last = action.frame_range.to_tuple()
+        return first, last
+    ranges = [curve.range().to_tuple() for curve in all_curves(action)]
+    return min(each[0] for each in ranges), max(each[1] for each in ranges)
 
 
 def alone(action: bpy.types.Action) -> bpy.types.Action:

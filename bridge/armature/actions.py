@@ -80,7 +80,7 @@ def show(
     if action is not None and strips_of(armature, action):
         fcurves.assign(armature, None)
         show_strip(armature, action)
-    elif action is None or action != current_action(armature):
+    elif action == assigned_action(armature) or action != current_action(armature):
         fcurves.assign(armature, action, slot)
     _evaluate()
 

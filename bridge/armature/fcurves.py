@@ -83,7 +83,7 @@ def slot_identifier(owner: bpy.types.Object) -> str | None:
     without one and before Blender 4.4."""
     data = owner.animation_data
     slot = getattr(data, "action_slot", None)
-    if slot is not None:
+    if data is not None and data.action is not None and slot is not None:
         slot = recorded_slot(data.action, slot)
     if slot is None:
         strips = [*(strip for _, strip in take_strips(owner)), played_strip(owner)]

@@ -121,7 +121,8 @@ class LocalFits:
         cross = normal.products[..., :size, size:] * free[..., None] * moves[:, None, None]
         solved = np.linalg.solve(bend, np.concatenate([(slope * free)[..., None], cross], axis=3))
         less = (np.swapaxes(cross, 2, 3) @ solved).sum(axis=1)
-        inner = normal.products[..., size:, size:].sum(axis=1) * (moves[:, :, None] & moves[:, None])
+        inner = normal.products[..., size:, size:].sum(axis=1)
+        inner *= moves[:, :, None] & moves[:, None]
         own = np.einsum("cii->ci", inner)
         np.copyto(own, np.where(moves, own * (1.0 + damping[:, None]) + _TINY, 1.0))
         right = normal.slopes[..., size:].sum(axis=1) * moves - less[..., 0]
@@ -170,8 +171,8 @@ class _Unknowns(NamedTuple):
 
 
 class _Normal(NamedTuple):
-    """Products (C, n, P + Q, P + Q) of the errors' Jacobian by the unknowns, and slopes (C, n, P + Q)
-    with the errors."""
+    """Products (C, n, P + Q, P + Q) of the errors' Jacobian by the unknowns, and with the errors,
+    slopes (C, n, P + Q)."""
 
     products: FloatArray
     slopes: FloatArray

@@ -179,7 +179,8 @@ class _Thinning:
         )
         free = np.repeat(inside[:, :, None], 4, axis=2)
         free[:, 0, :AFTER] = free[:, -1, :BEFORE] = free[:, -1, AFTER:] = False
-        first, stop = np.array([(each.within.start, each.within.stop) for each in trials]).T[..., None]
+        ends = [(trial.within.start, trial.within.stop) for trial in trials]
+        first, stop = np.array(ends).T[..., None]
         rows = first + np.arange((stop - first).max())
         counted, rows = rows < stop, np.minimum(rows, stop - 1)
         samples, weights = (

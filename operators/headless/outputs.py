@@ -49,7 +49,7 @@ def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> N
 
 def require_place(clip: LoadedClip, wanted: ResultOptions) -> None:
     """Before a solve takes its seconds. Raises NoNewSlot."""
-    from ...bridge.takes.new_slot import require_slot
+    from ...bridge.takes.write_result import require_slot
 
     if wanted.written_as is WrittenAs.SLOT:
         require_slot(clip.armature)
@@ -226,7 +226,7 @@ class Outputs:
         from ...bridge.armature.played import in_scene_time
         from ...bridge.armature.strips import lay_strips
         from ...bridge.takes.difference import difference_of
-        from ...bridge.takes.new_slot import lay_in_slot
+        from ...bridge.takes.write_result import lay_in_slot
 
         if written_as is WrittenAs.SLOT:
             lay_in_slot(performer, take, adapted)

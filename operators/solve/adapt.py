@@ -39,7 +39,6 @@ from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
 from ...bridge.rows.choices import After, ContactMarkers, LoopRoot, WrittenAs
 from ...bridge.rows.phases import roles
-from ...bridge.takes.new_slot import lay_in_slot, require_slot
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
 from ...bridge.takes.take_time import TakeTime
@@ -50,7 +49,12 @@ from ...bridge.takes.takes import (
     note_made,
     root_of,
 )
-from ...bridge.takes.write_result import combine, write_adapted_incrementally
+from ...bridge.takes.write_result import (
+    combine,
+    lay_in_slot,
+    require_slot,
+    write_adapted_incrementally,
+)
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
 from ...solver.body.proportions import changed_recording

@@ -6,8 +6,8 @@ from ...bridge.accessors import current_action, present, source_of
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
-from ...bridge.takes.new_slot import remove_slot
 from ...bridge.takes.takes import bake_shown, results_from
+from ...bridge.takes.write_result import remove_slot
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import TWEAK_MODE, chosen_armature, required_armature, tweaked

@@ -21,10 +21,13 @@ from hangtime.bridge.exports.export import export_takes
 from hangtime.bridge.files.reimport import reimport
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import WrittenAs
-from hangtime.bridge.takes.new_slot import lay_in_slot, require_slot
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.takes import look_again, note_made, start_from_result, takes_of
-from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.bridge.takes.write_result import (
+    lay_in_slot,
+    require_slot,
+    write_adapted_incrementally,
+)
 from hangtime.solver.data.faults import NoNewSlot
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap

@@ -17,10 +17,9 @@ from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import After, WrittenAs
-from hangtime.bridge.takes.new_slot import lay_in_slot
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.takes import look_again, note_made
-from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
+from hangtime.bridge.takes.write_result import combine, lay_in_slot, write_adapted_incrementally
 from hangtime.solver.data.faults import UnreadStrips
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
