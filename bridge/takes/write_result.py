@@ -99,7 +99,9 @@ def lay_in_slot(
     beside = next(s for s in action.slots if s.identifier == name)
     made = old.duplicate()
     made.name_display = result.name
-    _become(present(bag_of(action, made)), present(fcurves.holder_in(result, name)))
+    curves = fcurves.holder_in(result, name)
+    assert curves is not None
+    _become(present(bag_of(action, made)), curves)
     for slot in list(result.slots):
         result.slots.remove(slot)
     for marker in list(result.pose_markers):
