@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 import bpy
 
+from .action_slots import result_in, span_of
 from .played_strips import played_strip, time_of
 
 SHOWS = "hangtime_shows"  # of the action that holds a result's difference: the result, and
@@ -61,11 +62,11 @@ def pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
 
 
 def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
-    """The action that animates the armature now: assigned, in a strip that Hangtime made, or in the
+    """The take that animates the armature now: assigned, in a strip that Hangtime made, or in the
     only one of the artist's."""
-    data = armature.animation_data
-    if data is None or data.action is not None:
-        return data.action if data is not None else None
+    assigned = assigned_action(armature)
+    if assigned is not None or armature.animation_data is None:
+        return assigned
     seen = [strip for track, strip in take_strips(armature) if not (track.mute or strip.mute)]
     if seen:
         return shown_by(seen[-1])
@@ -73,9 +74,17 @@ def current_action(armature: bpy.types.Object) -> bpy.types.Action | None:
     return strip.action if strip is not None else None
 
 
+def assigned_action(owner: bpy.types.Object) -> bpy.types.Action | None:
+    """The action that is assigned to an object, or the result that its slot is."""
+    data = owner.animation_data
+    if data is None or data.action is None:
+        return None
+    return result_in(data.action, getattr(data, "action_slot", None)) or data.action
+
+
 def shown_range(armature: bpy.types.Object, action: bpy.types.Action) -> tuple[float, float]:
     """First and last scene frame on which an armature shows a take."""
-    first, last = action.frame_range.to_tuple()
+    first, last = span_of(action)
     strip = mapped_strip(armature, action)
     return (first, last) if strip is None else time_of(strip).clipped(first, last)
 
@@ -90,8 +99,7 @@ def play_to_end(scene: bpy.types.Scene, before: float, last: float) -> None:
 def mapped_strip(armature: bpy.types.Object, action: bpy.types.Action) -> bpy.types.NlaStrip | None:
     """The strip that plays an action for an armature elsewhere than each frame at that frame; None
     where it is assigned."""
-    data = armature.animation_data
-    if data is not None and data.action == action:
+    if assigned_action(armature) == action:
         return None
     strips = [strip for _, strip in take_strips(armature) if strip.action == action]
     alone = played_strip(armature)

@@ -12,6 +12,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .action_slots import span_of
+
 _SAME = 1e-4  # frames
 
 SEVERAL = "are several, and what they make together has no keys of its own"
@@ -47,7 +49,7 @@ class StripTime:
 def time_of(strip: bpy.types.NlaStrip) -> StripTime:
     """When a strip plays its action, as long as it does so once, forwards and evenly."""
     assert strip.action is not None
-    first, last = strip.action.frame_range.to_tuple()
+    first, last = span_of(strip.action)
     scale = abs(strip.scale) or 1.0
     moved = abs(strip.frame_start - strip.action_frame_start) > _SAME or abs(scale - 1.0) > 1e-6
     cut = strip.action_frame_start > first + _SAME or strip.action_frame_end < last - _SAME

@@ -16,7 +16,7 @@ from ...bridge.rows.choices import FileFormat
 from ...operators.headless.clip import Clip, LoadedClip, load
 from ...operators.headless.commands import explained
 from ...operators.headless.outbox import Outbox
-from ...operators.headless.outputs import Outputs, require_exported
+from ...operators.headless.outputs import Outputs, require_exported, require_place
 from ...operators.headless.stages import Stages
 from ...operators.words.doctor_text import diagnosis_text, finding_sentence
 from ...operators.words.doubt_text import doubts_of
@@ -78,6 +78,7 @@ def adapt_cell(
     require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
     forms = [form for output, form in FORMS.items() if output in settings.outputs]
     if loaded.scene is not None:
+        require_place(loaded.scene, wanted)
         for form in forms:
             require_exported(loaded.scene, outbox.folder, replace(export, format=form))
     for line in _doubts(recipe.problem, loaded.subject):

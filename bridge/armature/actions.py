@@ -10,7 +10,7 @@ import bpy
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
-from ..accessors import current_action, current_scene, mapped_strip, source_of
+from ..accessors import assigned_action, current_action, current_scene, mapped_strip, source_of
 from ..properties.settings import settings_of
 from . import fcurves
 from .incremental import Incremental, complete, sample_incrementally
@@ -80,7 +80,7 @@ def show(
     if action is not None and strips_of(armature, action):
         fcurves.assign(armature, None)
         show_strip(armature, action)
-    elif action is None or action != current_action(armature):
+    elif action == assigned_action(armature) or action != current_action(armature):
         fcurves.assign(armature, action, slot)
     _evaluate()
 
@@ -94,8 +94,7 @@ def _evaluate() -> None:
 def showing_action(armature: bpy.types.Object, action: bpy.types.Action | None) -> Iterator[None]:
     """Context in which the armature performs `action`, where a strip plays it elsewhere than at its
     own frames in that strip; afterwards what it performed before."""
-    data = armature.animation_data
-    assigned = data.action if data is not None else None
+    assigned = assigned_action(armature)
     if action == assigned and assigned is not None:
         yield
         return

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...solver.arrays import FloatArray
 from ..accessors import current_action, take_strips
+from ..action_slots import bag_of, home_of, keyframe_strip, recorded_slot
 from ..played_strips import played_strip
 
 CurveHolder: TypeAlias = "bpy.types.Action | bpy.types.ActionChannelbag"  # 4.2 has no channelbags
@@ -46,32 +47,14 @@ def curves_of(owner: bpy.types.Object) -> list[bpy.types.FCurve]:
 
 
 def holder_in(action: bpy.types.Action, slot: str | None) -> CurveHolder | None:
-    """Container of the F-curves of an action's slot of that identifier, whomever it animates."""
+    """Container of the F-curves of an action's slot of that identifier, whomever it animates; of a
+    result that is a slot, that one's."""
     if not hasattr(action, "slots"):
         return action
-    return _bag(action, next((s for s in action.slots if s.identifier == slot), None))
-
-
-def all_curves(action: bpy.types.Action) -> list[bpy.types.FCurve]:
-    """F-curves of an action, of all of its slots where it has slots."""
-    if not hasattr(action, "slots"):
-        return list(action.fcurves)
-    bags = (_bag(action, slot) for slot in action.slots)
-    return [curve for bag in bags if bag is not None for curve in bag.fcurves]
-
-
-def _bag(action: bpy.types.Action, slot: bpy.types.ActionSlot | None) -> CurveHolder | None:
-    if slot is None:
-        return None
-    strips = (strip for layer in action.layers for strip in layer.strips)
-    bags = (_keyframe_strip(strip).channelbag(slot) for strip in strips)
-    return next((bag for bag in bags if bag is not None), None)
-
-
-def _keyframe_strip(strip: bpy.types.ActionStrip) -> bpy.types.ActionKeyframeStrip:
-    """The only type of strip that there is."""
-    assert isinstance(strip, bpy.types.ActionKeyframeStrip)
-    return strip
+    home = home_of(action)
+    if home is not None:
+        return bag_of(*home)
+    return bag_of(action, next((s for s in action.slots if s.identifier == slot), None))
 
 
 def new_holder(owner: bpy.types.Object, name: str) -> CurveHolder:
@@ -91,13 +74,17 @@ def new_action(
     if not hasattr(action, "slots"):
         return action, action
     made = action.slots.new(owner.id_type, slot)
-    strip = _keyframe_strip(action.layers.new("Layer").strips.new(type="KEYFRAME"))
+    strip = keyframe_strip(action.layers.new("Layer").strips.new(type="KEYFRAME"))
     return action, strip.channelbag(made, ensure=True)
 
 
 def slot_identifier(owner: bpy.types.Object) -> str | None:
-    """Identifier of the slot that `owner` uses; None without one and before Blender 4.4."""
-    slot = getattr(owner.animation_data, "action_slot", None)
+    """Identifier of the slot that `owner` uses, of one that is a result the recording's; None
+    without one and before Blender 4.4."""
+    data = owner.animation_data
+    slot = getattr(data, "action_slot", None)
+    if data is not None and data.action is not None and slot is not None:
+        slot = recorded_slot(data.action, slot)
     if slot is None:
         strips = [*(strip for _, strip in take_strips(owner)), played_strip(owner)]
         slots = (getattr(strip, "action_slot", None) for strip in strips)
@@ -110,9 +97,14 @@ def assign(
 ) -> None:
     """Let `action` animate `owner`, through the slot of that identifier where there are slots.
 
-    Without such a slot the first that fits the kind of `owner` is taken.
+    Without such a slot the first that fits the kind of `owner` is taken. A result that is a slot is
+    shown by this.
     """
     data = owner.animation_data or owner.animation_data_create()
+    home = home_of(action) if action is not None else None
+    if home is not None:
+        data.action, data.action_slot = home
+        return
     data.action = action
     if action is None or not hasattr(action, "slots"):
         return

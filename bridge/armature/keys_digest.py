@@ -7,7 +7,8 @@ from zlib import crc32
 import bpy
 import numpy as np
 
-from .fcurves import KeyTable, all_curves, table
+from ..action_slots import all_curves
+from .fcurves import KeyTable, table
 
 _BEZIER = 2  # of Blender's enum; what is above are named easings, such as Elastic
 _HANDLES = ("handle_left", "handle_right")

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 
 from ...solver.data.faults import Fault, NoAction, UnreadStrips
-from ..accessors import IN_STRIP, mapped_strip, take_strips
+from ..accessors import IN_STRIP, assigned_action, mapped_strip, take_strips
+from ..action_slots import all_curves, alone
 from ..played_strips import (
     STARRED,
     StripTime,
@@ -65,7 +66,7 @@ def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterato
     """Context in which of the assigned action and the takes' strips only this one is seen."""
     data = owner.animation_data
     assert data is not None
-    assigned, slot = data.action, fcurves.slot_identifier(owner)
+    assigned, slot = assigned_action(owner), fcurves.slot_identifier(owner)
     tracks = [(track, track.mute) for track, _ in take_strips(owner)]
     own = next(track for track in data.nla_tracks if strip in list(track.strips))
     fcurves.assign(owner, None)
@@ -82,13 +83,13 @@ def playing_strip(owner: bpy.types.Object, strip: bpy.types.NlaStrip) -> Iterato
 def scene_copy(owner: bpy.types.Object, action: bpy.types.Action, name: str) -> bpy.types.Action:
     """A copy of a recording with its keys where the scene shows them: elsewhere only where a strip
     plays it sooner or later, slower or faster, or in part."""
-    copy = action.copy()
+    copy = alone(action)
     copy.name = name
     copy.use_fake_user = False
     time = strip_time(owner, action)
     if time is None:
         return copy
-    for curve in fcurves.all_curves(copy):
+    for curve in all_curves(copy):
         _move(curve, time)
     for marker in copy.pose_markers:
         marker.frame = round(float(time.to_scene(np.array([float(marker.frame)]))[0]))

@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 
 from ..accessors import BESIDE, IN_STRIP, SHOWS, shown_by, take_strips
+from ..action_slots import span_of
 
 Strips = list[tuple[bpy.types.NlaTrack, bpy.types.NlaStrip]]
 
@@ -53,7 +54,7 @@ def _lay(
 ) -> bpy.types.NlaStrip:
     """A new strip above all others, which shows each frame of an action at that frame."""
     action[IN_STRIP] = True
-    first, last = action.frame_range.to_tuple()
+    first, last = span_of(action)
     start, end = float(np.floor(first)), float(np.ceil(last))
     track = data.nla_tracks.new()
     track.name = action.name

@@ -10,7 +10,8 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import FloatArray
-from ..accessors import armature_data, current_scene, present
+from ..accessors import armature_data, assigned_action, current_scene, present
+from ..action_slots import span_of
 from ..armature import fcurves
 from ..armature.poses import Poses, sample
 from ..recipe.export import ExportOptions
@@ -136,7 +137,7 @@ def _performed(armature: bpy.types.Object, take: bpy.types.Action) -> Poses:
 
 def frames_of(take: bpy.types.Action) -> tuple[int, int]:
     """First and last whole frame of a take."""
-    first, last = take.frame_range.to_tuple()
+    first, last = span_of(take)
     return round(first), round(last)
 
 
@@ -144,7 +145,7 @@ def frames_of(take: bpy.types.Action) -> tuple[int, int]:
 def _performing(armature: bpy.types.Object, action: bpy.types.Action) -> Iterator[None]:
     """Context in which the armature performs an action alone."""
     data = present(armature.animation_data or armature.animation_data_create())
-    was, slot, nla = data.action, fcurves.slot_identifier(armature), data.use_nla
+    was, slot, nla = assigned_action(armature), fcurves.slot_identifier(armature), data.use_nla
     try:
         fcurves.assign(armature, action, slot)
         data.use_nla = False

@@ -8,11 +8,11 @@ faster at one end, so that fewer keys are as near to a motion.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray, IntArray
+from ...solver.arrays import FloatArray, IntArray
 
 EVEN = 1.0 / 3.0  # share of the gap at which time runs evenly
 VALUE, SLOPE, BEFORE, AFTER = range(4)  # parameters of a key of a channel
@@ -57,31 +57,62 @@ class BezierKeys:
         return np.asarray(curves(self.frames[None], parameters, frames[None]).values[0].T)
 
 
-class Curves(NamedTuple):
+@dataclass(frozen=True)
+class Curves:
     """C groups of n curves at T frames each, and their derivatives.
 
-    values: (C, n, T). spans: (C, T), the key before each frame. by_keys: (C, n, T, 8) by the
-    parameters of the keys before and after it. by_frames: (C, n, T, 2) by their frames.
+    spans: (C, T), the key before each frame. x: (C, 1, T) share of the gap there; gap: (C, 1, T)
+    frames. before, after: value, rise and reach of the handle, (3, C, n, T), of the key before and
+    after; a rise is the slope times the gap. u: (C, n, T) where along the curve.
     """
 
-    values: FloatArray
     spans: IntArray
-    by_keys: FloatArray
-    by_frames: FloatArray
+    x: FloatArray
+    gap: FloatArray
+    before: FloatArray
+    after: FloatArray
+    u: FloatArray
 
-    def where(self, groups: BoolArray, other: Curves) -> Curves:
-        """These of groups (C,) that are true, else the other's."""
-        return Curves(
-            chosen(groups, self.values, other.values),
-            np.where(groups[:, None], self.spans, other.spans),
-            chosen(groups, self.by_keys, other.by_keys),
-            chosen(groups, self.by_frames, other.by_frames),
-        )
+    @cached_property
+    def _handles(self) -> tuple[FloatArray, FloatArray]:
+        """Bernstein's polynomials of both (C, n, T)."""
+        u, w = self.u, 1.0 - self.u
+        both = 3.0 * u * w
+        return both * w, both * u
 
+    @cached_property
+    def _reach(self) -> FloatArray:
+        """(C, n, T) what slopes add to the values."""
+        (_, rise, a), (_, fall, b), (first, second) = self.before, self.after, self._handles
+        return np.asarray(first * a * rise - second * b * fall)
 
-def chosen(rows: BoolArray, one: FloatArray, other: FloatArray) -> FloatArray:
-    """One's rows where (C,) is true, else the other's."""
-    return np.asarray(np.where(rows.reshape(-1, *(1,) * (one.ndim - 1)), one, other))
+    @cached_property
+    def _start(self) -> FloatArray:
+        """(C, n, T) share of the value before; the rest is that of the one after."""
+        w = 1.0 - self.u
+        return np.asarray(w * w * w + self._handles[0])
+
+    @property
+    def values(self) -> FloatArray:
+        """(C, n, T)."""
+        value, later = self.before[0], self.after[0]
+        return np.asarray(later + (value - later) * self._start + self._reach)
+
+    def derivatives(self) -> tuple[FloatArray, FloatArray]:
+        """(8, C, n, T) by the parameters of the keys before and after, and (2, C, n, T) by their
+        frames."""
+        (value, rise, a), (later, fall, b), (first, second) = self.before, self.after, self._handles
+        u, w, gap = self.u, 1.0 - self.u, self.gap
+        climb = later - value - b * fall - a * rise
+        w2, middle, u2 = w * w, 2.0 * u * w, u * u
+        speed = w2 * (a * rise) + middle * climb + u2 * (b * fall)
+        steep = speed / (w2 * a + middle * (1.0 - b - a) + u2 * b)  # by x
+        by_keys = np.zeros((8, *u.shape))
+        by_keys[VALUE], by_keys[4 + VALUE] = self._start, 1.0 - self._start
+        by_keys[SLOPE], by_keys[4 + SLOPE] = first * a * gap, -second * b * gap
+        by_keys[AFTER], by_keys[4 + BEFORE] = first * (rise - steep), second * (steep - fall)
+        by_frames = np.stack([-self._reach - steep * (1.0 - self.x), self._reach - steep * self.x])
+        return by_keys, by_frames / gap
 
 
 def curves(at: FloatArray, parameters: FloatArray, frames: FloatArray) -> Curves:
@@ -91,34 +122,22 @@ def curves(at: FloatArray, parameters: FloatArray, frames: FloatArray) -> Curves
     group = np.arange(len(at))[:, None]
     gap = at[group, spans + 1] - at[group, spans]
     x, gap = ((frames - at[group, spans]) / gap)[:, None], gap[:, None]
-    each = np.arange(len(at))[:, None, None], np.arange(parameters.shape[1])[None, :, None]
-    one, two = (parameters[(*each, spans[:, None] + i)] for i in (0, 1))
-    a, b = one[..., AFTER], two[..., BEFORE]
-    u = _along(x, a, b)
-    w = 1.0 - u
-    first, second = 3.0 * u * w**2, 3.0 * u**2 * w  # Bernstein's polynomials of the handles
-    start, end = w**3 + first, u**3 + second
-    rise, fall = a * gap * one[..., SLOPE], b * gap * two[..., SLOPE]
-    reach = first * rise - second * fall
-    climb = two[..., VALUE] - one[..., VALUE] - fall - rise
-    speed = w**2 * rise + 2.0 * u * w * climb + u**2 * fall
-    steep = speed / (w**2 * a + 2.0 * u * w * (1.0 - b - a) + u**2 * b)  # by x
-    by_keys = np.zeros((*u.shape, 8))
-    by_keys[..., VALUE], by_keys[..., SLOPE] = start, first * a * gap
-    by_keys[..., AFTER] = first * (gap * one[..., SLOPE] - steep)
-    by_keys[..., 4 + VALUE], by_keys[..., 4 + SLOPE] = end, -second * b * gap
-    by_keys[..., 4 + BEFORE] = second * (steep - gap * two[..., SLOPE])
-    by_frames = np.stack([-reach - steep * (1.0 - x), reach - steep * x], axis=3) / gap[..., None]
-    values = one[..., VALUE] * start + two[..., VALUE] * end + reach
-    return Curves(values, spans, by_keys, by_frames)
+    planes, key = np.moveaxis(parameters, 3, 0), spans[None, :, None]
+    before = np.take_along_axis(planes[[VALUE, SLOPE, AFTER]], key, axis=3)
+    after = np.take_along_axis(planes[[VALUE, SLOPE, BEFORE]], key + 1, axis=3)
+    u = _along(x, before[2], after[2])
+    before[1] *= gap
+    after[1] *= gap
+    return Curves(spans, x, gap, before, after, u)
 
 
 def _along(x: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
     """Where along curves time is at a share x of the gap, with handles that reach over shares a of
     it at its start and b at its end."""
     cubic, square, line = 3.0 * (a + b) - 2.0, 3.0 - 3.0 * b - 6.0 * a, 3.0 * a
+    cubic_rate, square_rate = 3.0 * cubic, 2.0 * square
     u = np.array(np.broadcast_to(x, a.shape))
     for _ in range(NEWTON_STEPS):
         behind = ((cubic * u + square) * u + line) * u - x
-        u -= behind / ((3.0 * cubic * u + 2.0 * square) * u + line)
+        u -= behind / ((cubic_rate * u + square_rate) * u + line)
     return u

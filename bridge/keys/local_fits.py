@@ -8,17 +8,18 @@ each is eliminated by itself, and what is left is a small system in the frames (
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray
-from .bezier import AFTER, BEFORE, EVEN, Curves, chosen, curves
+from ...solver.arrays import BoolArray, FloatArray, IntArray
+from .bezier import AFTER, BEFORE, EVEN, Curves, curves
 
 NEAREST, FARTHEST = 0.1, 0.7  # shares of a gap that a handle may reach over
 # Weight of a handle's difference from a third, in errors that are allowed: it decides what samples
 # do not, as where nothing moves, and moves nothing else.
 EVENNESS = 1e-3
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-4, 1e-9, 1.0
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 0.03, 1e-9, 1.0
 DAMPING_STEP = 8.0
 GAIN = 0.02  # share of the sum below which a step was the last
 CLOSER = 0.4  # share of a gap by which a key may come nearer in one step
@@ -69,26 +70,34 @@ class LocalFits:
 
     def improved(self, steps: int) -> LocalFits:
         """After some steps of the method, or until none helps."""
-        fits, shown = self, self.shown
-        left = fits._cost(shown)
+        fits, unknowns, shown = self, self._unknowns, self.shown
+        left, normal = fits._cost(shown), fits._normal(shown, unknowns)
         damping = np.full(len(self.at), FIRST_DAMPING)
         for _ in range(steps):
-            tried = fits._stepped(shown, damping)
-            seen = tried.shown
-            cost = tried._cost(seen)
+            tried = fits._stepped(normal, unknowns, damping)
+            shown = tried.shown
+            cost = tried._cost(shown)
             better, gained = cost < left, left - cost > GAIN * left
             fits = replace(
                 fits,
-                at=chosen(better, tried.at, fits.at),
-                parameters=chosen(better, tried.parameters, fits.parameters),
+                at=_chosen(better, tried.at, fits.at),
+                parameters=_chosen(better, tried.parameters, fits.parameters),
             )
-            shown = seen.where(better, shown)
             left = np.where(better, cost, left)
             if not ((better & gained) | (~better & (damping < MOST_DAMPING))).any():
                 break
+            now = tried._normal(shown, unknowns)
+            normal = _Normal(*(_chosen(better, *each) for each in zip(now, normal, strict=True)))
             scale = np.where(better, 1.0 / DAMPING_STEP, DAMPING_STEP)
             damping = np.maximum(damping * scale, LEAST_DAMPING)
         return fits
+
+    @property
+    def _unknowns(self) -> _Unknowns:
+        free = self.free.reshape(len(self.free), -1)
+        columns = np.flatnonzero(free.any(axis=0))
+        is_handle = np.isin(columns % 4, [BEFORE, AFTER])
+        return _Unknowns(columns, np.flatnonzero(self.moves.any(axis=0)), is_handle)
 
     def _cost(self, shown: Curves) -> FloatArray:
         """(C,)."""
@@ -96,54 +105,82 @@ class LocalFits:
         errors = (shown.values - self.samples) * self.weights
         return np.asarray((errors**2).sum((1, 2)) + EVENNESS * (uneven**2).sum((1, 2, 3)))
 
-    def _stepped(self, shown: Curves, damping: FloatArray) -> LocalFits:
+    def _stepped(self, normal: _Normal, unknowns: _Unknowns, damping: FloatArray) -> LocalFits:
         """One damped step on. damping: (C,)."""
-        (groups, channels, keys), size = self.parameters.shape[:3], 4 * self.parameters.shape[2]
-        is_handle = np.tile(np.isin(np.arange(4), [BEFORE, AFTER]), keys)
-        products, slopes = self._normal(shown)
-        was = self.parameters.reshape(groups, channels, size)
-        slope = slopes[..., :size] + is_handle * EVENNESS * (was - EVEN)
+        columns, keys, is_handle = unknowns
+        size = len(columns)
+        every = self.parameters.reshape(*self.parameters.shape[:2], -1)
+        was, moves = every[..., columns], self.moves[:, keys]
+        slope = normal.slopes[..., :size] + is_handle * EVENNESS * (was - EVEN)
         pushed = ((was <= NEAREST) & (slope > 0.0)) | ((was >= FARTHEST) & (slope < 0.0))
-        free = self.free.reshape(groups, 1, size) & ~(is_handle & pushed)
-        bend = products[..., :size, :size] * (free[..., None] & free[..., None, :])
+        free = self.free.reshape(len(was), 1, -1)[..., columns] & ~(is_handle & pushed)
+        bend = normal.products[..., :size, :size] * (free[..., None] & free[..., None, :])
         diagonal = np.einsum("cnii->cni", bend)
         grown = diagonal * (1.0 + damping[:, None, None]) + EVENNESS * is_handle + _TINY
         np.copyto(diagonal, np.where(free, grown, 1.0))
-        cross = products[..., :size, size:] * free[..., None] * self.moves[:, None, None]
+        cross = normal.products[..., :size, size:] * free[..., None] * moves[:, None, None]
         solved = np.linalg.solve(bend, np.concatenate([(slope * free)[..., None], cross], axis=3))
-        along = np.zeros((groups, keys))
-        if self.moves.any():
-            both = self.moves[:, :, None] & self.moves[:, None]
-            inner = products[..., size:, size:].sum(axis=1) * both
-            own = np.einsum("cii->ci", inner)
-            np.copyto(own, np.where(self.moves, own * (1.0 + damping[:, None]) + _TINY, 1.0))
-            less = (np.swapaxes(cross, 2, 3) @ solved).sum(axis=1)
-            right = slopes[..., size:].sum(axis=1) * self.moves - less[..., 0]
-            along = np.linalg.solve(inner - less[..., 1:], right[..., None])[..., 0]
-            along = _apart(self.at, along)
-        now = was - solved[..., 0] + (solved[..., 1:] @ along[:, None, :, None])[..., 0]
+        less = (np.swapaxes(cross, 2, 3) @ solved).sum(axis=1)
+        inner = normal.products[..., size:, size:].sum(axis=1)
+        inner *= moves[:, :, None] & moves[:, None]
+        own = np.einsum("cii->ci", inner)
+        np.copyto(own, np.where(moves, own * (1.0 + damping[:, None]) + _TINY, 1.0))
+        right = normal.slopes[..., size:].sum(axis=1) * moves - less[..., 0]
+        along = np.zeros_like(self.at)
+        along[:, keys] = np.linalg.solve(inner - less[..., 1:], right[..., None])[..., 0]
+        along = _apart(self.at, along)
+        now = was - solved[..., 0] + (solved[..., 1:] @ along[:, None, keys, None])[..., 0]
         now = np.where(is_handle & free, np.clip(now, NEAREST, FARTHEST), now)
-        return replace(self, at=self.at - along, parameters=now.reshape(self.parameters.shape))
+        parameters = every.copy()
+        parameters[..., columns] = now
+        return replace(
+            self, at=self.at - along, parameters=parameters.reshape(self.parameters.shape)
+        )
 
-    def _normal(self, shown: Curves) -> tuple[FloatArray, FloatArray]:
-        """Products (C, n, 5 M, 5 M) of the errors' Jacobian by parameters and by frames of keys,
-        and (C, n, 5 M) with the errors."""
-        groups, channels, keys = self.parameters.shape[:3]
-        products = np.zeros((groups, channels, 5 * keys, 5 * keys))
-        slopes = np.zeros((groups, channels, 5 * keys))
-        jacobian = np.concatenate([shown.by_keys, shown.by_frames], axis=3)
-        jacobian *= self.weights[..., None]
+    def _normal(self, shown: Curves, unknowns: _Unknowns) -> _Normal:
+        """The normal equations of the unknowns."""
+        within = [(shown.spans == span)[:, None] for span in range(self.at.shape[1] - 1)]
+
+        def effect(key: int, before: FloatArray | None, after: FloatArray | None) -> FloatArray:
+            """Of what changes the spans before and after a key."""
+            found = np.zeros(shown.u.shape)
+            if before is not None and key > 0:
+                found += within[key - 1] * before
+            if after is not None and key < len(within):
+                found += within[key] * after
+            return found
+
+        by_keys, by_frames = shown.derivatives()
+        rows = []
+        for key, part in zip(*divmod(unknowns.columns, 4), strict=True):
+            before = by_keys[4 + part] if part != AFTER else None
+            rows.append(effect(key, before, by_keys[part] if part != BEFORE else None))
+        rows += [effect(key, by_frames[1], by_frames[0]) for key in unknowns.keys]
+        jacobian = np.stack(rows, axis=2) * self.weights[:, :, None]
         errors = ((shown.values - self.samples) * self.weights)[..., None]
-        for span in range(keys - 1):
-            within = jacobian * (shown.spans == span)[:, None, :, None]
-            turned = np.swapaxes(within, 2, 3)
-            square, slope = turned @ jacobian, (turned @ errors)[..., 0]
-            own, at = slice(4 * span, 4 * span + 8), slice(4 * keys + span, 4 * keys + span + 2)
-            for to, part in ((own, slice(8)), (at, slice(8, 10))):
-                slopes[..., to] += slope[..., part]
-                for other, rest in ((own, slice(8)), (at, slice(8, 10))):
-                    products[..., to, other] += square[..., part, rest]
-        return products, slopes
+        return _Normal(jacobian @ np.swapaxes(jacobian, 2, 3), (jacobian @ errors)[..., 0])
+
+
+class _Unknowns(NamedTuple):
+    """What any window may change. columns: (P,) parameters, counted over the keys. keys: (Q,) those
+    that may go along time. is_handle: (P,)."""
+
+    columns: IntArray
+    keys: IntArray
+    is_handle: BoolArray
+
+
+class _Normal(NamedTuple):
+    """Products (C, n, P + Q, P + Q) of the errors' Jacobian by the unknowns, and with the errors,
+    slopes (C, n, P + Q)."""
+
+    products: FloatArray
+    slopes: FloatArray
+
+
+def _chosen(rows: BoolArray, one: FloatArray, other: FloatArray) -> FloatArray:
+    """One's rows where (C,) is true, else the other's."""
+    return np.asarray(np.where(rows.reshape(-1, *(1,) * (one.ndim - 1)), one, other))
 
 
 def _apart(at: FloatArray, back: FloatArray) -> FloatArray:

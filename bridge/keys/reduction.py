@@ -10,11 +10,12 @@ bone in turn, so that what an error may be is shared out evenly.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 
-from ...solver.arrays import BoolArray, FloatArray, IntArray
+from ...solver.arrays import BoolArray, FloatArray
 from .bezier import AFTER, BEFORE, EVEN, BezierKeys
 from .figure import Errors, KeyableFigure
 from .hermite import fitted
@@ -22,8 +23,8 @@ from .local_fits import LocalFits
 
 # Keys in a window: the two beside a dropped one are fitted anew, and those beyond them stay.
 WINDOW = 4
-MOVING_STEPS, STANDING_STEPS = 10, 6  # of the fits at most, before and after keys are on frames
-BATCH = 8  # windows that are fitted at once, some 20 ms
+MOVING_STEPS, STANDING_STEPS = 8, 3  # of the fits at most, before and after keys are on frames
+BATCH = 32  # windows that are fitted at once, some 20 ms
 
 
 def reduced(figure: KeyableFigure) -> Generator[None, None, list[BezierKeys]]:
@@ -33,9 +34,7 @@ def reduced(figure: KeyableFigure) -> Generator[None, None, list[BezierKeys]]:
     thinning = _Thinning(figure, columns)
     quiet = turn = 0
     while quiet < WINDOW:
-        dropped = False
-        for bone in range(len(figure.bones)):
-            dropped |= yield from thinning.thin(bone, turn)
+        dropped = yield from thinning.thin(turn)
         quiet, turn = 0 if dropped else quiet + 1, turn + 1
     return thinning.keys
 
@@ -85,17 +84,20 @@ def halved(at: FloatArray, frames: FloatArray, bad: BoolArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class _Trial:
-    """Keys around one that is dropped, fitted anew.
+    """Keys of a bone around one that is dropped.
 
-    key: its index. at: (WINDOW,) frames and parameters (WINDOW, n, 4) of the keys around it.
-    inside: (WINDOW,), which of them there are. within: the figure's frames that this changes.
-    values: (T', n) there.
+    key: its index. at: (WINDOW,) frames and parameters (n, WINDOW, 4) of the keys around it.
+    inside: (WINDOW,), which of them there are. moves: (WINDOW,), which may go along time. within:
+    the figure's frames that this changes. values: (T', n) there, as they should be, and are once
+    the keys are fitted.
     """
 
+    bone: int
     key: int
     at: FloatArray
     parameters: FloatArray
     inside: BoolArray
+    moves: BoolArray
     within: slice
     values: FloatArray
 
@@ -108,71 +110,98 @@ class _Thinning:
         self.keys = keys_at(figure, [columns] * len(figure.bones))
         self._values = [own.at(figure.frames) for own in self.keys]
         self._errors = errors_of(figure, self.keys)
-        self._weights: dict[int, FloatArray] = {}  # by bone, when it is first asked for
+        self._weights = [_sensitivities(figure, bone) for bone in range(len(figure.bones))]
         # By bone the frames of keys without which errors are too large, as keys around them are.
         self._needed: list[set[float]] = [set(bone.fixed) for bone in figure.bones]
 
-    def thin(self, bone: int, turn: int) -> Generator[None, None, bool]:
-        """Drop keys of a bone without which no error is beyond what it may be, of those whose turn
-        it is, one in each window; whether there were such."""
-        frames, needed = self.keys[bone].frames, self._needed[bone]
-        turns = range(1 + turn % WINDOW, len(frames) - 1, WINDOW)
-        wanted = np.array([k for k in turns if frames[k] not in needed], dtype=int)
-        dropped: list[_Trial] = []
-        for first in range(0, len(wanted), BATCH):
-            for trial in self._trials(bone, wanted[first : first + BATCH]):
-                if self._take(bone, trial):
-                    dropped.append(trial)
-                else:
-                    needed.add(float(frames[trial.key]))
-            yield
-        self._drop(bone, dropped)
-        return bool(dropped)
+    def thin(self, turn: int) -> Generator[None, None, bool]:
+        """Drop keys without which no error is beyond what it may be, of those whose turn it is, one
+        in each window of each bone; whether there were such."""
+        trials = [
+            self._without(bone, key)
+            for bone, own in enumerate(self.keys)
+            for key in range(1 + turn % WINDOW, len(own.frames) - 1, WINDOW)
+            if own.frames[key] not in self._needed[bone]
+        ]
+        fits = yield from self._fitted(trials)
+        dropped: list[list[_Trial]] = [[] for _ in self.keys]
+        for count, trial in enumerate(fits):
+            if self._take(trial):
+                dropped[trial.bone].append(trial)
+            else:
+                self._needed[trial.bone].add(float(self.keys[trial.bone].frames[trial.key]))
+            if count % BATCH == 0:
+                yield
+        for bone, found in enumerate(dropped):
+            self._drop(bone, found)
+        return any(dropped)
 
-    def _trials(self, bone: int, dropped: IntArray) -> Iterator[_Trial]:
-        """A bone's keys without one, fitted anew around it, for each of some (C,)."""
-        frames, keys = self.figure.frames, self.keys[bone]
-        if bone not in self._weights:
-            self._weights[bone] = _sensitivities(self.figure, bone)
-        index = dropped[:, None] - WINDOW // 2 + np.arange(WINDOW)
+    def _without(self, bone: int, key: int) -> _Trial:
+        """A bone's keys without one."""
+        keys = self.keys[bone]
+        index = key - WINDOW // 2 + np.arange(WINDOW)
         inside = (index >= 0) & (index < len(keys.frames) - 1)
         nearest = np.clip(index, 0, len(keys.frames) - 2)
-        old = nearest + (nearest >= dropped[:, None])
-        at = keys.frames[old] + (index - nearest)  # beyond the ends: anywhere, but in order
-        parameters = np.swapaxes(keys.parameters[old], 1, 2).copy()
-        parameters[:, :, WINDOW // 2 - 1, AFTER] = EVEN
-        parameters[:, :, WINDOW // 2, BEFORE] = EVEN
+        old = nearest + (nearest >= key)
+        parameters = np.swapaxes(keys.parameters[old], 0, 1).copy()
+        parameters[:, WINDOW // 2 - 1, AFTER] = EVEN
+        parameters[:, WINDOW // 2, BEFORE] = EVEN
+        at = keys.frames[old]
+        stay = {float(at[0]), float(at[-1]), *self.figure.bones[bone].fixed}
+        moves = inside & [frame not in stay for frame in at.tolist()]
+        first, last = np.searchsorted(self.figure.frames, at[[0, -1]]).tolist()
+        within = slice(first, last + 1)
+        at = at + (index - nearest)  # beyond the ends: anywhere, but in order
+        samples = self.figure.bones[bone].samples[within]
+        return _Trial(bone, key, at, parameters, inside, moves, within, samples)
+
+    def _fitted(self, trials: list[_Trial]) -> Generator[None, None, list[_Trial]]:
+        """With keys fitted anew, many windows at once: those with as many channels, and of about
+        the same length."""
+        found = list(trials)
+        size = [(trial.values.shape[1], len(trial.values)) for trial in trials]
+        order = sorted(range(len(trials)), key=size.__getitem__)
+        for _, alike in groupby(order, key=lambda i: size[i][0]):
+            rest = list(alike)
+            for first in range(0, len(rest), BATCH):
+                batch = rest[first : first + BATCH]
+                for i, fit in zip(batch, self._fits([trials[i] for i in batch]), strict=True):
+                    found[i] = fit
+                yield
+        return found
+
+    def _fits(self, trials: list[_Trial]) -> Iterator[_Trial]:
+        """Of windows with as many channels."""
+        frames = self.figure.frames
+        at, parameters, inside, moves = (
+            np.stack([getattr(trial, name) for trial in trials])
+            for name in ("at", "parameters", "inside", "moves")
+        )
         free = np.repeat(inside[:, :, None], 4, axis=2)
         free[:, 0, :AFTER] = free[:, -1, :BEFORE] = free[:, -1, AFTER:] = False
-        stays = np.isin(at, [*keys.frames[[0, -1]], *self.figure.bones[bone].fixed])
-        moves = inside & ~stays
-        moves[:, [0, -1]] = False
-        first, last = (np.searchsorted(frames, keys.frames[old[:, end]]) for end in (0, -1))
-        span = np.arange((last - first).max() + 1)
-        rows = np.minimum(first[:, None] + span, last[:, None])
-        counted = (first[:, None] + span <= last[:, None])[:, None]
+        ends = [(trial.within.start, trial.within.stop) for trial in trials]
+        first, stop = np.array(ends).T[..., None]
+        rows = first + np.arange((stop - first).max())
+        counted, rows = rows < stop, np.minimum(rows, stop - 1)
         samples, weights = (
-            np.swapaxes(each[rows], 1, 2)
-            for each in (self.figure.bones[bone].samples, self._weights[bone])
+            np.stack([of[trial.bone][row].T for trial, row in zip(trials, rows, strict=True)])
+            for of in ([bone.samples for bone in self.figure.bones], self._weights)
         )
-        fits = LocalFits(at, parameters, free, moves, frames[rows], samples, weights * counted)
+        weights *= counted[:, None]
+        fits = LocalFits(at, parameters, free, moves, frames[rows], samples, weights)
         fits = fits.held(handles=True).improved(1).freed(free, moves).improved(MOVING_STEPS)
         fits = fits.on(frames, at).held(handles=False).improved(STANDING_STEPS)
-        for c, values in enumerate(fits.shown.values):
-            within = slice(int(first[c]), int(last[c]) + 1)
-            yield _Trial(
-                int(dropped[c]),
-                fits.at[c],
-                np.swapaxes(fits.parameters[c], 0, 1),
-                inside[c],
-                within,
-                values.T[: within.stop - within.start],
-            )
+        for trial, own, found, values in zip(
+            trials, fits.at, fits.parameters, fits.shown.values, strict=True
+        ):
+            shown = values.T[: len(trial.values)]
+            yield replace(trial, at=own, parameters=found, values=shown)
 
-    def _take(self, bone: int, trial: _Trial) -> bool:
+    def _take(self, trial: _Trial) -> bool:
         """Let a trial's errors be those of the figure, where none is beyond what it may be, or is
         larger than it was."""
-        figure, limb, within = self.figure, self.figure.carried[bone], trial.within
+        figure, bone, within = self.figure, trial.bone, trial.within
+        limb = figure.carried[bone]
         before = self._errors.of(limb, within)
         off = trial.values - self._values[bone][within]
         after = before + figure.errors_by(bone, off, within)
@@ -198,10 +227,10 @@ class _Thinning:
             inner = trial.inside.copy()
             inner[[0, -1]] = False
             frames[index[inner]] = trial.at[inner]
-            parameters[index[inner]] = trial.parameters[inner]
+            parameters[index[inner]] = np.swapaxes(trial.parameters[:, inner], 0, 1)
             for end, handle in ((0, AFTER), (-1, BEFORE)):
                 if trial.inside[end]:
-                    parameters[index[end], :, handle] = trial.parameters[end, :, handle]
+                    parameters[index[end], :, handle] = trial.parameters[:, end, handle]
         gone = [trial.key for trial in trials]
         self.keys[bone] = BezierKeys(np.delete(frames, gone), np.delete(parameters, gone, axis=0))
 

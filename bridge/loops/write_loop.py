@@ -13,6 +13,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.faults import NoRootBone
 from ...solver.data.recording import PoseTrack
 from ..accessors import armature_data, current_scene, pose_of, present
+from ..action_slots import all_curves
 from ..armature import fcurves
 from ..armature.actions import recorded_action, show, showing_action
 from ..armature.channels import channels, proper
@@ -119,7 +120,7 @@ def write_loop(
             yield from _write_controls(rig, action, curves, loop)
         if loop.root is not None and (rig is None or loop.root.name not in rig.carriers):
             _write_root(armature, curves, loop.root, loop, first)
-        for curve in fcurves.all_curves(action):
+        for curve in all_curves(action):
             _repeat(curve)
         action.use_frame_range = action.use_cyclic = True
         action.frame_start, action.frame_end = frames[[0, -1]].tolist()

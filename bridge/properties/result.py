@@ -77,6 +77,12 @@ class HangtimeResultOptions(bpy.types.PropertyGroup):
                 "The strip above holds only the difference, so that the take below can still be "
                 "edited. Channels that physics does not own keep their times",
             ),
+            (
+                WrittenAs.SLOT.name,
+                "New Slot",
+                "A new slot of the take's own action, whose other slots stay as they are "
+                "(Blender 4.5 and later)",
+            ),
         ],
         override=OVERRIDABLE,
     )

@@ -33,7 +33,7 @@ blend_in = 30                   # frames before the adapted ones, and
 blend_out = 30                  # after them, that are blended; default: a quarter of a second
 lock_others = true              # channels that physics does not own keep their times
 written_as = "strip"            # on top of the take, in the NLA; "combine": as the difference from
-                                # the take; default: "action"
+                                # the take; "slot": of the take's action; default: "action"
 markers = "action"              # where limbs come down and go up; or "timeline"; default: "none"
 contact_channels = true         # a property of the armature for each limb, 1 while it touches
 [loop]                          # the motion repeats: its end meets its start, solved so

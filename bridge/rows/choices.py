@@ -89,6 +89,7 @@ class WrittenAs(Enum):
     ACTION = "action"
     STRIP = "strip"  # on top of the take
     COMBINE = "combine"  # only the difference, on top of the take
+    SLOT = "slot"  # of the take's own action
 
 
 class ContactMarkers(Enum):

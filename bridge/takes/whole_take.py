@@ -13,6 +13,7 @@ from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.data.stance_move import StanceMove
 from ..accessors import current_scene
+from ..action_slots import all_curves
 from ..armature import fcurves
 from ..armature.actions import showing_action
 from ..armature.channels import proper
@@ -84,7 +85,7 @@ def write_take(
         _write_channel(armature, curves, channel, bases[channel.bone], plan)
         yield
     if motion.ends:
-        for curve in fcurves.all_curves(action):
+        for curve in all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
     kept = None
@@ -118,7 +119,7 @@ def _retime(
     if time.unchanged:
         return
     mine = {channel.path for channel in owned}
-    every = list(curves.fcurves) if alone else fcurves.all_curves(action)
+    every = list(curves.fcurves) if alone else all_curves(action)
     for count, curve in enumerate(every):
         if not alone or curve.data_path in mine:
             retime(curve, time)

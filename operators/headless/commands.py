@@ -24,7 +24,7 @@ from ..words.messages import recipe_place, sentence
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .outbox import Outbox, not_writable
-from .outputs import Outputs, require_exported
+from .outputs import Outputs, require_exported, require_place
 from .stages import WIDTH, Stages
 
 WRONG_INPUT = 2
@@ -164,6 +164,7 @@ def adapt(options: argparse.Namespace) -> None:
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages, recipe.repairs)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
+        require_place(loaded, wanted)
         require_exported(loaded, options.out, export)
         _ask_about(problem, loaded)
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)

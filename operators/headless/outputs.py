@@ -47,6 +47,14 @@ def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> N
     require_exportable(clip.armature, path, export)
 
 
+def require_place(clip: LoadedClip, wanted: ResultOptions) -> None:
+    """Before a solve takes its seconds. Raises NoNewSlot."""
+    from ...bridge.takes.write_result import require_slot
+
+    if wanted.written_as is WrittenAs.SLOT:
+        require_slot(clip.armature)
+
+
 @dataclass(frozen=True)
 class Outputs:
     """Writes the files of one result; every method raises OutputNotWritable.
@@ -89,7 +97,7 @@ class Outputs:
             keys = self._choose_keys(performer, adapted, recorded, rig)
             self._mark_contacts(performer, adapted)
             if self.loop is None:  # which is an action of its own
-                self._lay_strips(performer, recorded, adapted)
+                self._lay(performer, recorded, adapted)
             self._build_scene()
             if blend:
                 _save_blend(self.outbox.path("adapted.blend"))
@@ -206,10 +214,11 @@ class Outputs:
         if self.options.contact_channels and curves is not None:
             write_contact_channels(performer, curves, found, between)
 
-    def _lay_strips(
+    def _lay(
         self, performer: bpy.types.Object, take: bpy.types.Action, adapted: bpy.types.Action
     ) -> None:
-        """Result and take as strips, where that is asked for and one armature performs both."""
+        """Result and take as strips, or slots, where that is asked for and one armature performs
+        both."""
         written_as = self.options.written_as
         if written_as is WrittenAs.ACTION or performer != self.clip.armature:
             return
@@ -217,7 +226,11 @@ class Outputs:
         from ...bridge.armature.played import in_scene_time
         from ...bridge.armature.strips import lay_strips
         from ...bridge.takes.difference import difference_of
+        from ...bridge.takes.write_result import lay_in_slot
 
+        if written_as is WrittenAs.SLOT:
+            lay_in_slot(performer, take, adapted)
+            return
         slot, combined = slot_identifier(performer), written_as is WrittenAs.COMBINE
         with in_scene_time(performer, take) as played:
             more = difference_of(performer, played, adapted, slot) if combined else None

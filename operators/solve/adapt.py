@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...bridge.accessors import current_scene, play_to_end, present, shown_range
+from ...bridge.accessors import current_scene, play_to_end, present, shown_range, source_of
 from ...bridge.armature.actions import (
     read_recorded_incrementally,
     recorded_action,
@@ -37,7 +37,7 @@ from ...bridge.properties.shown_overlaps import store_overlaps
 from ...bridge.properties.shown_times import store_times
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
-from ...bridge.rows.choices import After, LoopRoot, WrittenAs
+from ...bridge.rows.choices import After, ContactMarkers, LoopRoot, WrittenAs
 from ...bridge.rows.phases import roles
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.plan import AdaptedMotion
@@ -49,7 +49,12 @@ from ...bridge.takes.takes import (
     note_made,
     root_of,
 )
-from ...bridge.takes.write_result import combine, write_adapted_incrementally
+from ...bridge.takes.write_result import (
+    combine,
+    lay_in_slot,
+    require_slot,
+    write_adapted_incrementally,
+)
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
 from ...solver.body.proportions import changed_recording
@@ -76,6 +81,10 @@ from .task import Task, TaskOperator, answered, take_best
 
 ALONE = (
     "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
+)
+MARKERS_LEFT_OUT = (
+    "Contact markers are left out: an action's are those of all of its slots, the take's included; "
+    "choose Timeline"
 )
 NOT_ANALYSED = "Press Analyze first: there are no contacts to hold or move"
 
@@ -205,7 +214,10 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     recording = yield from read_wanted(armature)
     if analysis_key(settings, recording) != settings.analysed:
         raise ChangedMeanwhile(armature.name, while_solving=False)
-    require_return_after(result_options(settings), span_of(settings, recording)[1])
+    options = result_options(settings)
+    require_return_after(options, span_of(settings, recording)[1])
+    if options.written_as is WrittenAs.SLOT:
+        require_slot(armature)
     _require_loopable(armature)
     yield from require_writable(armature, recording, span_of(settings, recording))
     scene = yield from read_surfaces(armature, recording.frames)
@@ -302,7 +314,10 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     )
     action, written = yield from write_adapted_incrementally(armature, motion)
     keep(action, answer.traces, stood)
-    _note(armature, armature, action, answer, take_lines(written))
+    told = take_lines(written)
+    if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
+        told = [*told, MARKERS_LEFT_OUT]
+    _note(armature, armature, action, answer, told)
     times = answer.report.times
     time = written.time if written is not None else TakeTime.of(times, 1.0)
     span = written.span if written is not None else None
@@ -314,8 +329,11 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         yield from write_keys(armature, armature, action, answer, rig)
     finally:  # cancelled it has a key on every frame
         mark_contacts(armature, action, answer, options)
-        if options.written_as is WrittenAs.COMBINE:
-            combine(armature, action, options.after)
+        match options.written_as:
+            case WrittenAs.COMBINE:
+                combine(armature, action, options.after)
+            case WrittenAs.SLOT:
+                lay_in_slot(armature, present(source_of(action)), action)
         note_made(armature, action, span, time.later)
         renewal.note(action, time, (times.recorded_frame[0], times.recorded_frame[-1]))
     return f"Wrote the action {action.name}"

@@ -7,6 +7,7 @@ from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.takes.takes import bake_shown, results_from
+from ...bridge.takes.write_result import remove_slot
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
 from .common import TWEAK_MODE, chosen_armature, required_armature, tweaked
@@ -189,6 +190,7 @@ class DiscardOperator(_OfResult, bpy.types.Operator):
             if current_action(each) == result:
                 show(each, recorded)
             remove_strips(each, result)
+        remove_slot(result)
         bpy.data.actions.remove(result)
         settings.adapted = None  # the edit at work is no other result's
         settings.status = ""

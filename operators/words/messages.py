@@ -188,6 +188,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "swap them.",
     faults.ReturnTooEarly: "The take is to be back by frame {frame:g}, but is adapted until frame "
     "{last:g}; choose a later frame.",
+    faults.NoNewSlot: "The result cannot be a new slot of “{action}”: {why}. Choose New "
+    "Action under Written As.",
     faults.SameUsdNames: "“{first_bone}” and “{second_bone}” would be one name in a USD file, "
     "which has letters, digits and underscores alone; rename one, or export as FBX or glTF.",
     faults.SeveralTakes: "A USD file holds one take, and several are chosen ({takes:names}); "

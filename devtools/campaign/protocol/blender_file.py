@@ -13,7 +13,7 @@ import hangtime
 import numpy as np
 
 from ....bridge.accessors import current_action, current_scene, present, source_of
-from ....bridge.armature import fcurves
+from ....bridge.action_slots import all_curves
 from ....bridge.files.import_clip import import_clip
 from ....bridge.properties.settings import settings_of
 from .case import Changed, Said
@@ -56,7 +56,7 @@ def marked() -> dict[str, bytes]:
 def _keys(action: bpy.types.Action) -> bytes:
     """Every key's place, curve by curve."""
     rows = []
-    for curve in fcurves.all_curves(action):
+    for curve in all_curves(action):
         places = np.empty(2 * len(curve.keyframe_points))
         curve.keyframe_points.foreach_get("co", places)
         rows.append(places.tobytes())

@@ -47,6 +47,7 @@ from .requests import NamedTwice as NamedTwice
 from .requests import NeedsTorques as NeedsTorques
 from .requests import NoBoneChosen as NoBoneChosen
 from .requests import NoDirection as NoDirection
+from .requests import NoNewSlot as NoNewSlot
 from .requests import NoPhaseChosen as NoPhaseChosen
 from .requests import NotAboveZero as NotAboveZero
 from .requests import NothingTouches as NothingTouches

@@ -37,6 +37,14 @@ class ReturnTooEarly(Fault):
 
 
 @dataclass
+class NoNewSlot(Fault):
+    """A result is to be a new slot of an action that can have none. why: to be said after that."""
+
+    action: str
+    why: str
+
+
+@dataclass
 class SeveralTakes(Fault):
     """Several takes are to go into a file that can hold one."""
 

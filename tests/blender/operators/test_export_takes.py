@@ -11,6 +11,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
+from hangtime.bridge.action_slots import all_curves
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import record
 from hangtime.bridge.files.reimport import reimport
@@ -94,7 +95,7 @@ def test_a_take_that_begins_below_frame_0_is_whole_and_begins_at_0_s(
     accepted: bpy.types.Object, tmp_path: Path
 ) -> None:
     result = current_action(accepted)
-    for curve in fcurves.all_curves(result):
+    for curve in all_curves(result):
         keys = fcurves.table(curve)
         for each in ("co", "handle_left", "handle_right"):
             keys[each][:, 0] -= 40.0

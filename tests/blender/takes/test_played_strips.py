@@ -9,7 +9,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from hangtime.bridge.accessors import current_action, shown_range
+from hangtime.bridge.accessors import current_action, shown_range, source_of
 from hangtime.bridge.armature.actions import read_recorded, recorded_action, show
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.keys_digest import keys_digest
@@ -19,7 +19,7 @@ from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import After, WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.takes import look_again, note_made
-from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
+from hangtime.bridge.takes.write_result import combine, lay_in_slot, write_adapted_incrementally
 from hangtime.solver.data.faults import UnreadStrips
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
@@ -29,6 +29,7 @@ pytestmark = pytest.mark.usefixtures("_enabled")
 
 SCENE = np.arange(40.0, 88.0)  # where the strip plays
 START, SCALE = 40.0, 1.5
+FORMS = [form for form in WrittenAs if form is not WrittenAs.SLOT or bpy.app.version >= (4, 5)]
 
 
 def played(scale: float = SCALE, first: float = 1.0, last: float = 60.0) -> bpy.types.Object:
@@ -58,6 +59,8 @@ def adapt(
     action, written = complete(write_adapted_incrementally(armature, motion))
     if chosen.written_as is WrittenAs.COMBINE:
         combine(armature, action, chosen.after)
+    elif chosen.written_as is WrittenAs.SLOT:
+        lay_in_slot(armature, source_of(action), action)
     span = written.span if written is not None else None
     note_made(armature, action, span, 0)
     return action
@@ -77,7 +80,7 @@ def test_the_recording_is_where_the_scene_shows_it() -> None:
         np.testing.assert_allclose(found, np.array(seen.translation), atol=1e-6)
 
 
-@pytest.mark.parametrize("written_as", list(WrittenAs))
+@pytest.mark.parametrize("written_as", FORMS)
 @pytest.mark.parametrize("scale", [1.0, 1.5, 0.5])
 def test_a_result_is_the_take_there_and_changed_only_in_its_frames(
     written_as: WrittenAs, scale: float

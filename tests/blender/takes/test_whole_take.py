@@ -10,6 +10,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.bridge.action_slots import all_curves
 from hangtime.bridge.armature import fcurves
 from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.recipe.result import ResultOptions
@@ -241,7 +242,7 @@ def test_markers_and_other_slots_go_along_in_time() -> None:
     assert [marker.frame for marker in result.pose_markers] == [20, 83]
     assert [marker.frame for marker in action.pose_markers] == [20, 80]
     if bpy.app.version >= (4, 4):
-        curves = [c for c in fcurves.all_curves(result) if "smile" in c.data_path]
+        curves = [c for c in all_curves(result) if "smile" in c.data_path]
         assert fcurves.keys(curves[0]).tolist() == [[20.0, 0.0], [83.0, 1.0]]
 
 

@@ -41,6 +41,7 @@ def test_derivatives_are_those_of_the_curves(seed: int) -> None:
     between = np.setdiff1d(FRAMES, AT)[None]
     parameters = np.swapaxes(own.parameters, 0, 1)[None]
     shown = curves(AT[None], parameters, between)
+    by_keys, by_frames = shown.derivatives()
     for key in range(4):
         column = 4 * (key - shown.spans[0])
         near = (column == 0) | (column == 4)
@@ -49,13 +50,13 @@ def test_derivatives_are_those_of_the_curves(seed: int) -> None:
             ahead[:, :, key, each] += step
             back[:, :, key, each] -= step
             change = [curves(AT[None], p, between).values for p in (ahead, back)]
-            told = shown.by_keys[0][:, np.flatnonzero(near), column[near] + each]
+            told = by_keys[column[near] + each, 0, :, np.flatnonzero(near)].T
             found = (change[0] - change[1])[0][:, near] / (2.0 * step)
             np.testing.assert_allclose(told, found, atol=1e-6)
         moved = [
             curves((AT + s * step * np.eye(4)[key])[None], parameters, between) for s in (1, -1)
         ]
-        told = shown.by_frames[0][:, np.flatnonzero(near), column[near] // 4]
+        told = by_frames[column[near] // 4, 0, :, np.flatnonzero(near)].T
         found = (moved[0].values - moved[1].values)[0][:, near] / (2.0 * step)
         np.testing.assert_allclose(told, found, atol=1e-6)
 

@@ -9,7 +9,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
-from hangtime.bridge.armature import fcurves
+from hangtime.bridge.action_slots import all_curves
 from hangtime.bridge.armature.incremental import complete
 from hangtime.operators.solve import adapt
 
@@ -36,6 +36,6 @@ def test_controls_are_tried_again_only_for_another_recording(
     ask()
     ask()
     assert len(tried) == 1
-    fcurves.all_curves(current_action(analysed))[0].keyframe_points[100].co.y += 0.1
+    all_curves(current_action(analysed))[0].keyframe_points[100].co.y += 0.1
     ask()
     assert len(tried) == 2
