@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -81,16 +81,20 @@ def _within(
     posed: PosedChannels, error: KeyOptions, events: KeyEvents
 ) -> Generator[None, None, list[BezierKeys] | None]:
     """The fewest keys that keep an error."""
-    figure, shares = posed.keyed_figure(events, error), np.full(len(posed.frames), SAFETY)
+    asked = _times(error, SAFETY)
     for _ in range(TIGHTENINGS):
-        keys = yield from reduced(figure.tightened(shares))
+        keys = yield from reduced(posed.keyed_figure(events, asked))
         apart, turned = yield from posed.errors([own.at(posed.frames) for own in keys])
         yield
-        beyond = np.maximum(apart.max(axis=1) / error.distance, turned.max(axis=1) / error.angle)
-        if beyond.max() <= 1.0:
+        beyond = max(apart.max() / error.distance, turned.max() / error.angle)
+        if beyond <= 1.0:
             return keys
-        shares = np.where(beyond > 1.0, shares * SAFETY / beyond, shares)
+        asked = _times(asked, SAFETY / beyond)
     return None
+
+
+def _times(error: KeyOptions, share: float) -> KeyOptions:
+    return replace(error, distance=share * error.distance, angle=share * error.angle)
 
 
 def _as_taken(posed: PosedChannels, taken: dict[str, FloatArray]) -> list[BezierKeys]:

@@ -8,7 +8,7 @@ channels that are off by d turn all that it carries by `turns` d about its head 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
@@ -52,9 +52,6 @@ class KeyableFigure(Protocol):
         """Largest error (T',) at each of some frames, over what it may be. points: those that the
         errors are of."""
 
-    def tightened(self, shares: FloatArray) -> KeyableFigure:
-        """Where errors may be these shares (T,) of what they may be."""
-
 
 @dataclass(frozen=True)
 class KeyedBone:
@@ -79,7 +76,7 @@ class KeyedFigure:
 
     frames: (T,). carries: (B, B); whether the first carries the second, as it does itself.
     points: (T, P, 3) m, world. owners: (P,) the bones that move them. distances: (T, P) m and
-    angle: (T,) rad, by which points and bones may be off.
+    angle: rad, by which points and bones may be off.
     """
 
     frames: FloatArray
@@ -88,7 +85,7 @@ class KeyedFigure:
     points: FloatArray
     owners: IntArray
     distances: FloatArray
-    angle: FloatArray
+    angle: float
 
     @cached_property
     def carried(self) -> tuple[CarriedParts, ...]:
@@ -117,12 +114,7 @@ class KeyedFigure:
         self, errors: Errors, frames: slice = slice(None), points: IntArray | slice = slice(None)
     ) -> FloatArray:
         """As of KeyableFigure."""
-        return errors.worst(self.distances[frames][:, points], self.angle[frames])
-
-    def tightened(self, shares: FloatArray) -> KeyedFigure:
-        """As of KeyableFigure."""
-        distances, angle = self.distances * shares[:, None], self.angle * shares
-        return replace(self, distances=distances, angle=angle)
+        return errors.worst(self.distances[frames][:, points], self.angle)
 
 
 @dataclass(frozen=True)
@@ -144,8 +136,8 @@ class Errors:
     def __add__(self, other: Errors) -> Errors:
         return Errors(self.turns + other.turns, self.places + other.places)
 
-    def worst(self, distances: FloatArray, angle: FloatArray) -> FloatArray:
-        """(T',) the largest over what it may be: m (T', P), and rad (T',)."""
+    def worst(self, distances: FloatArray, angle: float) -> FloatArray:
+        """(T',) the largest over what it may be: m (T', P), and rad."""
         turned = (self.turns**2).sum(axis=2).max(axis=1) / angle**2
         moved = (self.places**2).sum(axis=2) / distances**2
         return np.asarray(np.sqrt(np.maximum(turned, moved.max(axis=1))))

@@ -109,7 +109,7 @@ class PosedBones:
             np.stack(points, axis=1),
             np.array([names.index(owner) for owner in owners]),
             distances,
-            np.full(len(self.frames), error.angle),
+            error.angle,
         )
 
     def _carries(self, names: list[str]) -> BoolArray:

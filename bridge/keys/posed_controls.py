@@ -7,7 +7,7 @@ What a rig does between controls and bodies nobody tells, so it is measured at e
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -104,9 +104,9 @@ class PosedControls:
             moved = np.flatnonzero(np.abs(turns).max((0, 1, 3)) > 0.0)
             leads = bool(bodies & set(moved.tolist())) and len(moved) < len(self.bones) // 2
             controls.append(KeyedControl(own.values, feet if leads else fixed, turns, places))
-        angle = np.full(len(self.frames), error.angle)
-        points = heads[:, owners] + turned
-        return ControlFigure(self.frames, tuple(controls), points, distances, angle)
+        return ControlFigure(
+            self.frames, tuple(controls), heads[:, owners] + turned, distances, error.angle
+        )
 
     def _effects(
         self, own: BoneChannels, arms: FloatArray, owners: list[int]
@@ -139,14 +139,14 @@ class KeyedControl:
 class ControlFigure:
     """Controls with keys, and the points (T, P, 3) m of the bodies that must stay where they are.
 
-    distances: (T, P) m and angle: (T,) rad, by which points and bodies may be off.
+    distances: (T, P) m and angle: rad, by which points and bodies may be off.
     """
 
     frames: FloatArray
     bones: tuple[KeyedControl, ...]
     points: FloatArray
     distances: FloatArray
-    angle: FloatArray
+    angle: float
 
     @cached_property
     def carried(self) -> tuple[CarriedParts, ...]:
@@ -170,12 +170,7 @@ class ControlFigure:
         self, errors: Errors, frames: slice = slice(None), points: IntArray | slice = slice(None)
     ) -> FloatArray:
         """As of KeyableFigure."""
-        return errors.worst(self.distances[frames][:, points], self.angle[frames])
-
-    def tightened(self, shares: FloatArray) -> ControlFigure:
-        """As of KeyableFigure."""
-        distances, angle = self.distances * shares[:, None], self.angle * shares
-        return replace(self, distances=distances, angle=angle)
+        return errors.worst(self.distances[frames][:, points], self.angle)
 
 
 def posed_controls(

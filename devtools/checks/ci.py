@@ -128,7 +128,7 @@ def main() -> int:
 def run_all(
     first: list[Check], shared: list[Check], last: list[Check], folder: Path
 ) -> Iterator[CheckRun]:
-    """Outcomes, each told as it comes: of `first` and `last` one by one, of `shared` side by side."""
+    """Outcomes, told as they come: `first` and `last` one by one, `shared` side by side."""
     with ThreadPoolExecutor(CORES) as pool:
         for check in first:
             yield told(run(check, folder))
@@ -150,7 +150,8 @@ def standalone(clone: Path) -> Check:
     fetched recording that is kept in it.
     """
     status = subprocess.check_output(["git", "status", "--porcelain"], cwd=ROOT, text=True)
-    print(*(f"not committed, so not in the clone: {line}" for line in status.splitlines()), sep="\n")
+    for line in status.splitlines():
+        print(f"not committed, so not in the clone: {line}")
     subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
     return Check("the README's test command in a clone", ("test --reports {reports}/clone",), clone)
 

@@ -164,7 +164,7 @@ class LocalColumns:
 
     def transposed_times(self, x: FloatArray) -> FloatArray:
         """(m,) scalar products with x (K, n)."""
-        count, n, m = self.values.shape
+        count, _, m = self.values.shape
         return np.asarray(x[self.first : self.first + count].ravel() @ self.values.reshape(-1, m))
 
 

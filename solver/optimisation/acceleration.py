@@ -6,7 +6,7 @@ from ..arrays import FloatArray
 
 
 class Anderson:
-    """Proposes the next point of y <- y + f(y) from all points so far, as GMRES would for linear f."""
+    """Proposes the next point of y <- y + f(y) from all so far, as GMRES would for linear f."""
 
     def __init__(self) -> None:
         self._points: list[FloatArray] = []

@@ -6,7 +6,7 @@ so most steps go on with the last factor (chord steps), from the values that the
 with and their first-order change: what an update evaluates is only what it shows. Where the pin
 went so far that the step leaves more than a millimetre, a second one follows on the same factor,
 which costs a fifth of a new one; and as the pin has not moved between the two, what the second
-leaves tells whether a new one is needed. Each update steps from the last one by the smallest change:
+leaves tells whether a new one is needed. Each update steps from the last by the smallest change:
 measured against steps towards the motion nearest to the fit, that is as near to what the solve will
 find and does not jitter. Far moves are made by continuation, one step an update; moving ground
 comes up to its speed likewise. The solve proper, once the pin is let go, starts from the fit again.

@@ -34,7 +34,7 @@ def chain(seed: int, bones: int = 3, fixed: tuple[float, ...] = ()) -> KeyedFigu
         np.concatenate([heads, ends[:, -1:]], axis=1),
         np.array([*range(bones), bones - 1]),
         np.full((len(FRAMES), bones + 1), DISTANCE),
-        np.full(len(FRAMES), ANGLE),
+        ANGLE,
     )
 
 
@@ -82,7 +82,7 @@ def test_what_stands_still_has_two_keys() -> None:
         figure.points[:, :1],
         np.zeros(1, int),
         figure.distances[:, :1],
-        np.full(len(FRAMES), ANGLE),
+        ANGLE,
     )
     assert keys_of(figure)[0].frames.tolist() == [0.0, 99.0]
 

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-
 from hangtime.devtools.checks import ci
 
 FAKE = """
