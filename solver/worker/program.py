@@ -31,10 +31,13 @@ def private_stdout() -> BinaryIO:
 @contextmanager
 def bounded_loading() -> Iterator[None]:
     """Ends the process where libraries do not load in time, by a thread that needs no Python:
-    where memory is scarce OpenBLAS asks for it for ever."""
+    where memory is scarce OpenBLAS asks for it for ever, as it loads and at its first use."""
     faulthandler.dump_traceback_later(LOADING, exit=True)
     try:
         yield
+        import numpy as np
+
+        np.linalg.cholesky(np.eye(64))
     finally:
         faulthandler.cancel_dump_traceback_later()
 

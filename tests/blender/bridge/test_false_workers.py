@@ -35,6 +35,20 @@ with program.bounded_loading():
     time.sleep(100)
 """
 
+STARVED = """
+import resource, runpy
+from pathlib import Path
+import numpy
+runpy.run_path({loader!r})["load"]()
+from hangtime.solver.worker import program
+program.LOADING = 0.2
+pages = int(Path("/proc/self/statm").read_text().split()[0])
+size = pages * resource.getpagesize() + 20_000_000  # OpenBLAS's buffer is 32 MiB
+resource.setrlimit(resource.RLIMIT_AS, (size, size))
+with program.bounded_loading():
+    pass
+"""
+
 # As in Blender's own program, where writing to a pipe that nobody reads ends the process.
 PIPES_KILL = """
 import runpy, signal, sys
@@ -87,9 +101,11 @@ def test_what_it_said_last_is_told(told: Told) -> None:
     assert said == "the disk is upside down (exit code 1)"
 
 
-def test_one_that_does_not_load_says_why(told: Told) -> None:
+@pytest.mark.parametrize("program", [DOES_NOT_LOAD, STARVED])
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
+def test_one_that_does_not_load_says_why(told: Told, program: str) -> None:
     """As numpy's OpenBLAS does not where memory is scarce."""
-    said = told(DOES_NOT_LOAD.format(loader=LOADER))
+    said = told(program.format(loader=LOADER))
     assert said == "it could not load in 60 s; there may be too little memory"
 
 
