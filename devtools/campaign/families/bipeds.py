@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
 import bpy
 import numpy as np
 
@@ -18,9 +21,28 @@ LIMBS = (
     ),
     ("upperarm_{1}", "lowerarm_{1}", "hand_{1}", "thigh_{1}", "calf_{1}", "foot_{1}"),
 )
+# Names by the first convention and by the figure's own, the first one's parent, and the joints.
+Chain = tuple[tuple[str, ...], tuple[str, ...], str, list[tuple[float, float, float]]]
 GRAVITY = 9.8
 CROUCH = 0.9  # rad, of the thighs at the deepest
 STEP = 2  # frames between keys
+
+
+@dataclass(frozen=True)
+class Proportions:
+    """Lengths, m: of thigh and shank each, of the ankle's height, of foot, trunk, and upper arm,
+    forearm and hand each."""
+
+    leg: float
+    ankle: float
+    foot: float
+    trunk: float
+    arm: float
+
+    @staticmethod
+    def drawn(rng: np.random.Generator) -> Proportions:
+        ranges = ((0.3, 0.55), (0.04, 0.1), (0.12, 0.25), (0.4, 0.7), (0.2, 0.35))
+        return Proportions(*(float(rng.uniform(*each)) for each in ranges))
 
 
 def hopping_biped(case: HostileCase) -> bpy.types.Object:
@@ -28,54 +50,42 @@ def hopping_biped(case: HostileCase) -> bpy.types.Object:
     armature = bpy.data.objects.new("Biped", bpy.data.armatures.new("Biped"))
     present(bpy.context.collection).objects.link(armature)
     present(bpy.context.view_layer).objects.active = armature
-    convention = int(case.rng.integers(len(TRUNK)))
-    leg = float(case.rng.uniform(0.3, 0.55))  # m, thigh and shank each
-    names = _built(case, armature, convention, leg)
-    _hop(case, armature, names, leg)
+    size = Proportions.drawn(case.rng)
+    names = _built(case, armature, _chains(size, int(case.rng.integers(len(TRUNK)))))
+    _hop(case, armature, names, size.leg)
     return armature
 
 
+def _chains(size: Proportions, convention: int) -> Iterator[Chain]:
+    hips = size.ankle + 2.0 * size.leg
+    top = hips + size.trunk
+    heights = (hips, hips + 0.12, top, top + 0.22)
+    yield TRUNK[0], TRUNK[convention], "", [(0.0, 0.0, height) for height in heights]
+    for side, x in (("Left", 1.0), ("Right", -1.0)):
+        keys, names = (
+            tuple(name.format(side, side[0].lower()) for name in LIMBS[which])
+            for which in (0, convention)
+        )
+        arm = [(x * (0.18 + size.arm * i), 0.0, top - 0.05) for i in range(4)]
+        yield keys[:3], names[:3], "Spine", arm
+        leg = [(0.1 * x, 0.0, size.ankle + size.leg * i) for i in (2, 1, 0)]
+        yield keys[3:], names[3:], "Hips", [*leg, (0.1 * x, -size.foot, 0.02)]
+
+
 def _built(
-    case: HostileCase, armature: bpy.types.Object, convention: int, leg: float
+    case: HostileCase, armature: bpy.types.Object, chains: Iterable[Chain]
 ) -> dict[str, str]:
     """Makes the bones; their names by the first convention's."""
-    ankle, foot = float(case.rng.uniform(0.04, 0.1)), float(case.rng.uniform(0.12, 0.25))
-    hips = ankle + 2.0 * leg
-    top, arm = hips + float(case.rng.uniform(0.4, 0.7)), float(case.rng.uniform(0.2, 0.35))
     bpy.ops.object.mode_set(mode="EDIT")
     bones = armature_data(armature).edit_bones
     names: dict[str, str] = {}
-
-    def bone(
-        key: str, name: str, head: tuple[float, ...], tail: tuple[float, ...], on: str
-    ) -> None:
-        made = bones.new(name)
-        made.head, made.tail = head, tail
-        made.roll = float(case.rng.uniform(-0.5, 0.5)) if case.chance(0.3) else 0.0
-        made.parent = bones[names[on]] if on else None
-        names[key] = made.name
-
-    usual, own = TRUNK[0], TRUNK[convention]
-    bone(usual[0], own[0], (0.0, 0.0, hips), (0.0, 0.0, hips + 0.12), "")
-    bone(usual[1], own[1], (0.0, 0.0, hips + 0.12), (0.0, 0.0, top), usual[0])
-    bone(usual[2], own[2], (0.0, 0.0, top), (0.0, 0.0, top + 0.22), usual[1])
-    for side, x in (("Left", 1.0), ("Right", -1.0)):
-        keys = [key.format(side) for key in LIMBS[0]]
-        called = [key.format(side, side[0].lower()) for key in LIMBS[convention]]
-        wide, hip = 0.18 * x, 0.1 * x
-        places: list[tuple[float, float, float]]
-        places = [(wide + arm * i * x, 0.0, top - 0.05) for i in range(3)]
-        places.append((places[-1][0] + 0.15 * x, 0.0, top - 0.05))
-        on = usual[1]
-        for i in range(3):
-            bone(keys[i], called[i], places[i], places[i + 1], on)
-            on = keys[i]
-        places = [(hip, 0.0, hips), (hip, 0.0, ankle + leg), (hip, 0.0, ankle)]
-        places.append((hip, -foot, 0.02))
-        on = usual[0]
-        for i in range(3):
-            bone(keys[3 + i], called[3 + i], places[i], places[i + 1], on)
-            on = keys[3 + i]
+    for keys, called, on, points in chains:
+        for key, name, head, tail in zip(keys, called, points, points[1:], strict=False):
+            made = bones.new(name)
+            made.head, made.tail = head, tail
+            made.roll = float(case.rng.uniform(-0.5, 0.5)) if case.chance(0.3) else 0.0
+            made.parent = bones[names[on]] if on else None
+            names[key], on = made.name, key
     bpy.ops.object.mode_set(mode="OBJECT")
     return names
 
