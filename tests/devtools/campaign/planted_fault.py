@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 from hangtime.bridge import worker_client
+from hangtime.bridge.action_slots import all_curves
 from hangtime.devtools.campaign import child
 from hangtime.devtools.campaign.families import clips, recipes, sessions
-from hangtime.devtools.campaign.protocol import blender_file
 from hangtime.operators.headless.outbox import Outbox
 from hangtime.solver.data.faults import UnreadableClip
 from hangtime.solver.optimisation import sqp
@@ -71,7 +71,7 @@ def key_changed() -> None:
 
     def operator(case: Any, name: str) -> bool:
         for action in sessions.bpy.data.actions:
-            for curve in blender_file.fcurves.all_curves(action):
+            for curve in all_curves(action):
                 curve.keyframe_points[0].co[1] += 1.0
         return usual(case, name)
 
