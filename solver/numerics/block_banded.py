@@ -1,4 +1,4 @@
-"""Cholesky factorisation of block-banded SPD matrices, with numpy alone.
+"""Cholesky factorisation of block-banded SPD matrices, by numpy or OpenBLAS.
 
 Splines make every matrix of the method banded in time: coefficients four apart do not meet. So
 the unknowns are ordered by time in K blocks of n, and a block row holds at most `band` blocks
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
+from .openblas import openblas, product
 
 BANDWIDTH = 3
 NEGLIGIBLE = 1e-8  # of a column's length
@@ -64,7 +65,7 @@ class BlockBanded:
             wide = J.shape[1]
             for j in range(wide // n):
                 column = self._columns[k + j].reshape(-1, n)
-                column[: wide - j * n] += J[:, j * n :].T @ J[:, j * n : (j + 1) * n]
+                column[: wide - j * n] += product(J[:, j * n :].T, J[:, j * n : (j + 1) * n])
 
     def congruent(self, change: FloatArray) -> "BlockBanded":
         """Congruence T' A T, block by block, with T (n, k), a basis of every block's unknowns."""
@@ -103,19 +104,17 @@ class BlockBanded:
         root = np.concatenate([np.sqrt(diagonal), np.ones((band, n))])  # (K + band, n)
         size, share = root.reshape(-1, 1), 1.0 / root
         columns = self._columns.reshape(count + band, (band + 1) * n, n)
+        blas = openblas()
+        eliminate = _eliminate if blas is None else blas.eliminate
         for k in range(min(band, count)):
             _to_unit_diagonal(columns[k], share, k)
         for k in range(count):
             # What is used together stays in the processor's cache.
             if k + band < count:
                 _to_unit_diagonal(columns[k + band], share, k + band)
-            inverse = triangular_inverse(np.linalg.cholesky(columns[k, :n]))
-            panel = columns[k, n:] @ inverse.T
-            update = panel @ panel.T
-            for j in range(band):
-                columns[k + 1 + j, : (band - j) * n] -= update[j * n :, j * n : (j + 1) * n]
-            np.multiply(panel, size[(k + 1) * n : (k + 1 + band) * n], out=columns[k, n:])
-            np.multiply(inverse, share[k], out=columns[k, :n])
+            eliminate(columns, k)
+            columns[k, n:] *= size[(k + 1) * n : (k + 1 + band) * n]
+            columns[k, :n] *= share[k]
         return CholeskyFactor(columns[:count])
 
 
@@ -124,6 +123,16 @@ def _to_unit_diagonal(column: FloatArray, share: FloatArray, k: int) -> None:
     n = column.shape[1]
     column *= share[k : k + len(column) // n].reshape(-1, 1)
     column *= share[k]
+
+
+def _eliminate(columns: FloatArray, k: int) -> None:
+    """What `OpenBlas.eliminate` does, by numpy."""
+    n = columns.shape[2]
+    inverse = triangular_inverse(np.linalg.cholesky(columns[k, :n]))
+    columns[k, :n], panel = inverse, columns[k, n:] @ inverse.T
+    columns[k, n:], update = panel, panel @ panel.T
+    for j in range(len(panel) // n):
+        columns[k + 1 + j, : len(panel) - j * n] -= update[j * n :, j * n : (j + 1) * n]
 
 
 def triangular_inverse(lower: FloatArray) -> FloatArray:
@@ -156,7 +165,7 @@ class LocalColumns:
         )
         # Not by tensordot, which copies both: as they lie they are matrices.
         mine, others = (each.reshape(-1, each.shape[2]) for each in (mine, others))
-        return np.asarray(mine.T @ others)
+        return product(mine.T, others)
 
     def add_times(self, weights: FloatArray, total: FloatArray) -> None:
         """Adds the columns' sum by weights (m,) to total (K, n)."""
@@ -210,9 +219,9 @@ class CholeskyFactor:
         found: list[FloatArray] = []
         squared, quiet = np.zeros(b.values.shape[2]), 0
         for k, column in enumerate(self.columns[b.first :]):
-            found.append(column[:n] @ (ahead[:n] + b.values[k] if k < given else ahead[:n]))
+            found.append(product(column[:n], ahead[:n] + b.values[k] if k < given else ahead[:n]))
             ahead[:-n], ahead[-n:] = ahead[n:], 0.0
-            ahead -= column[n:] @ found[-1]
+            ahead -= product(column[n:], found[-1])
             added = (found[-1] ** 2).sum(axis=0)
             squared += added
             quiet = quiet + 1 if (added <= NEGLIGIBLE**2 * squared).all() else 0

@@ -38,9 +38,10 @@ with program.bounded_loading():
 STARVED = """
 import resource, runpy
 from pathlib import Path
-import numpy
 runpy.run_path({loader!r})["load"]()
+from hangtime.solver.numerics.openblas import openblas
 from hangtime.solver.worker import program
+openblas()
 program.LOADING = 0.2
 pages = int(Path("/proc/self/statm").read_text().split()[0])
 size = pages * resource.getpagesize() + 20_000_000  # OpenBLAS's buffer is 32 MiB
@@ -104,7 +105,7 @@ def test_what_it_said_last_is_told(told: Told) -> None:
 @pytest.mark.parametrize("program", [DOES_NOT_LOAD, STARVED])
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
 def test_one_that_does_not_load_says_why(told: Told, program: str) -> None:
-    """As numpy's OpenBLAS does not where memory is scarce."""
+    """As OpenBLAS does not where memory is scarce."""
     said = told(program.format(loader=LOADER))
     assert said == "it could not load in 60 s; there may be too little memory"
 
