@@ -104,9 +104,15 @@ def _layout(matrix: FloatArray) -> tuple[Blas, int, int]:
 
 
 def bundled() -> OpenBlas | None:
-    """That of CasADi, None where CasADi was built without."""
+    """That of CasADi; None where CasADi was built without, or with another than we know."""
     files = (Path(ca.__file__).with_name(name) for name in FILES)
-    return next((OpenBlas(file) for file in files if file.is_file()), None)
+    file = next((file for file in files if file.is_file()), None)
+    if file is None:
+        return None
+    try:
+        return OpenBlas(file)
+    except (OSError, AttributeError):  # does not load, or lacks a function: numpy is only slower
+        return None
 
 
 @cache

@@ -81,3 +81,8 @@ def test_numpy_computes_where_it_has_a_tuned_blas_itself(
     assert (openblas.openblas.__wrapped__() is not None) is serves
     monkeypatch.setattr(openblas, "FILES", ())
     assert openblas.openblas.__wrapped__() is None
+
+
+def test_a_library_that_does_not_load_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(openblas, "FILES", ("__init__.py",))
+    assert openblas.bundled() is None
