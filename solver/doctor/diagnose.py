@@ -9,7 +9,7 @@ from functools import reduce
 from ..analysis.analyse import MIN_CLIP_DURATION, require_dense
 from ..analysis.performance import Performance, perform
 from ..body.character import build_character
-from ..data.faults import ClipTooShort
+from ..data.faults import ClipTooShort, computable
 from ..data.recording import Recording, Skin
 from ..skeleton.bind_pose import bind_frames
 from .falls import find_leaps, find_scale, refined
@@ -42,6 +42,7 @@ class Diagnosis:
         return reduce(Repairs.joined, (f.remedy for f in self.findings if f.remedy), Repairs())
 
 
+@computable()
 def diagnose(
     recording: Recording,
     chosen: Mapping[str, str] | None = None,
@@ -51,7 +52,7 @@ def diagnose(
     """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist. skin:
     of the figure, with whose soles it stands.
 
-    Raises ClipTooShort, FramesFarApart, MissingPart, ZeroLengthBone.
+    Raises ClipTooShort, FramesFarApart, MissingPart, NotComputable, ZeroLengthBone.
     """
     _require_length(recording)
     found: list[Finding] = []

@@ -23,7 +23,7 @@ from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule, gaps
-from ..data.faults import NoFit, NoSolution, NotComputable, Treadmill, UnseenSupport
+from ..data.faults import NoFit, NoSolution, Treadmill, UnseenSupport, computable
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
@@ -263,15 +263,6 @@ def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, C
     check_loop(problem)
     cycle = find_cycle(recording, problem)
     return analyse(recording, replace(problem, frames=cycle.frames)), cycle
-
-
-@contextmanager
-def computable() -> Iterator[None]:
-    """Context of a solve. Raises NotComputable where its equations cannot be solved in numbers."""
-    try:
-        yield
-    except np.linalg.LinAlgError as error:
-        raise NotComputable from error
 
 
 def fit_subject(subject: Subject, clock: StageClock) -> Fit:

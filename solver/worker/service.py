@@ -10,7 +10,7 @@ from ..analysis.performance import perform
 from ..analysis.pinned_places import travel_axes
 from ..body.character import build_character
 from ..data.contacts import PhaseKind
-from ..data.faults import Fault
+from ..data.faults import Fault, computable
 from ..data.problem import MotionProblem
 from ..data.recording import Recording, digest
 from ..data.reports.recording import Origin
@@ -30,7 +30,6 @@ from .pipeline import (
     ADAPTING,
     StageClock,
     Subject,
-    computable,
     fit_possible,
     fit_subject,
     measure,

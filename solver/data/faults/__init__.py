@@ -93,3 +93,4 @@ from .solving import NotComputable as NotComputable
 from .solving import OutputNotWritable as OutputNotWritable
 from .solving import PinLetGo as PinLetGo
 from .solving import WorkerDied as WorkerDied
+from .solving import computable as computable

@@ -1,6 +1,10 @@
 """Faults of a run: its recipe, its output, its pins together, and solves that failed."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+
+import numpy as np
 
 from ..row_kinds import Violation
 from ..status import Status
@@ -75,3 +79,13 @@ class WorkerDied(Fault):
 class NotComputable(Fault):
     """Masses, forces and weights so far apart that the solver's equations have no solution in
     floating-point numbers."""
+
+
+@contextmanager
+def computable() -> Iterator[None]:
+    """Context, or decorator, of what solves equations. Raises NotComputable where they cannot be
+    solved in numbers."""
+    try:
+        yield
+    except np.linalg.LinAlgError as error:
+        raise NotComputable from error

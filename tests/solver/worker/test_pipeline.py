@@ -14,6 +14,7 @@ from hangtime.solver.data.faults import (
     UnknownBone,
     UnknownPhase,
     UnknownPhaseIn,
+    computable,
 )
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
@@ -36,7 +37,6 @@ from hangtime.solver.worker.pipeline import (
     StageClock,
     Subject,
     adapt_fit,
-    computable,
     measure,
     solve,
 )
