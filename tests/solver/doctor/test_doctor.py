@@ -24,7 +24,7 @@ from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.character import Character, build_character
-from hangtime.solver.data.faults import ClipTooShort, FramesFarApart
+from hangtime.solver.data.faults import ClipTooShort, FramesFarApart, NotComputable
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.diagnose import diagnose
@@ -260,3 +260,12 @@ def test_frames_of_hours_are_refused_in_words() -> None:
         diagnose(slow)
     with pytest.raises(FramesFarApart):
         analyse(slow, MotionProblem())
+
+
+def test_lengths_beyond_all_numbers_are_said_not_to_be_computable() -> None:
+    """As one damaged byte of a file may make them."""
+    clip = jump().part(slice(0, 20))
+    heads = clip.heads.copy()
+    heads[:, [bone.name for bone in clip.bones].index("Head")] *= 1e200
+    with np.errstate(all="ignore"), pytest.raises(NotComputable):
+        diagnose(replace(clip, heads=heads))
