@@ -19,9 +19,9 @@ OVERLAY = "overlay per redraw with 20 constraints"
 FIRST_GHOST = "first ghost after the mouse moves"
 CLICKS = "clicks from an imported BVH to an adapted landing"
 LIMITS = {
-    "ghost updates per second during a drag": Limit("1/s", 5.0, 15.0, at_least=True),
+    "ghost updates per second during a drag": Limit("1/s", 10.0, 15.0, at_least=True),
     "ghost updates per second during a drag, drawn or not": Limit("1/s"),
-    FIRST_GHOST: Limit("ms"),
+    FIRST_GHOST: Limit("ms", 150.0, 100.0),
     "worker's processor time per update during a drag": Limit("ms"),
     **{BLOCKED + stage: Limit("ms", 100.0, 30.0) for stage in STAGES},
     "Esc to idle": Limit("s", 0.3, 0.1),
