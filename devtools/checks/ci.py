@@ -53,11 +53,6 @@ def tests(blender: str, report: str, chosen: str) -> str:
     return f"test --blender {blender} --reports {{reports}}/{report} {chosen}"
 
 
-def suite(blender: str, chosen: str = "") -> Check:
-    paths = f"tests/blender tests/installed {chosen}"
-    return Check(f"Blender {blender}", (tests(blender, blender, paths),))
-
-
 def shared_checks() -> Iterator[Check]:
     """Checks that leave a core to another; the longest first, so that both cores end together."""
     for name, chosen in (("solver", "tests/solver"), ("rest", "tests --ignore=tests/solver")):
@@ -69,8 +64,11 @@ def shared_checks() -> Iterator[Check]:
     calls = tuple(tests("4.2", f"4.2-{k}", half) for k, half in enumerate(halves))
     yield Check("Blender 4.2", calls)
     if runs("5.2"):
-        yield suite("5.2")
-    yield suite("5.0", "-m 'not slow'")  # between two that run them all
+        yield Check("Blender 5.2", (tests("5.2", "5.2", "tests/blender tests/installed"),))
+    # Between two that run the slow ones, too.
+    chosen = ("tests/blender -m 'not slow'", "tests/installed")
+    calls = tuple(tests("5.0", f"5.0-{k}", half) for k, half in enumerate(chosen))
+    yield Check("Blender 5.0", calls)
     yield measure("the gallery's results, solved and written", "gallery --quick --no-pictures")
     yield Check(
         "farms, and batches that are killed",
