@@ -53,6 +53,12 @@ def tests(blender: str, report: str, chosen: str) -> str:
     return f"test --blender {blender} --reports {{reports}}/{report} {chosen}"
 
 
+def suite(blender: str, *parts: str) -> Check:
+    """The tests in Blender, each part in a process of its own."""
+    calls = tuple(tests(blender, f"{blender}-{k}", part) for k, part in enumerate(parts))
+    return Check(f"Blender {blender}", calls)
+
+
 def shared_checks() -> Iterator[Check]:
     """Checks that leave a core to another; the longest first, so that both cores end together."""
     for name, chosen in (("solver", "tests/solver"), ("rest", "tests --ignore=tests/solver")):
@@ -60,15 +66,11 @@ def shared_checks() -> Iterator[Check]:
     # In two processes: late in one that has done all of it 4.2 ends with a segmentation fault, in
     # its glTF add-on.
     operators = "tests/blender/operators"
-    halves = (f"{operators} tests/installed", f"tests/blender --ignore={operators}")
-    calls = tuple(tests("4.2", f"4.2-{k}", half) for k, half in enumerate(halves))
-    yield Check("Blender 4.2", calls)
+    yield suite("4.2", f"{operators} tests/installed", f"tests/blender --ignore={operators}")
     if runs("5.2"):
-        yield Check("Blender 5.2", (tests("5.2", "5.2", "tests/blender tests/installed"),))
+        yield suite("5.2", "tests/blender tests/installed")
     # Between two that run the slow ones, too.
-    chosen = ("tests/blender -m 'not slow'", "tests/installed")
-    calls = tuple(tests("5.0", f"5.0-{k}", half) for k, half in enumerate(chosen))
-    yield Check("Blender 5.0", calls)
+    yield suite("5.0", "tests/blender -m 'not slow'", "tests/installed")
     yield measure("the gallery's results, solved and written", "gallery --quick --no-pictures")
     yield Check(
         "farms, and batches that are killed",
