@@ -18,7 +18,7 @@ from ....solver.worker.pipeline import fit_possible, measure
 from ...environment.virtual_environment import ROOT
 from ...recordings import HELD, HOPS, JUMP, find
 from ..protocol.case import Changed, Family, HostileCase, Said
-from ..protocol.damage import damaged_bytes, damaged_text, damaged_values
+from ..protocol.damage import write_damaged
 from ..protocol.patience import at_most
 
 FRAMES = 5  # of a file that is only read
@@ -30,7 +30,7 @@ ENOUGH = 1.5  # s of this process that a fit may take
 def bvh(case: HostileCase) -> None:
     """A few frames of the jump's BVH."""
     path = case.folder / "clip.bvh"
-    _write_damaged(case, path, short_bvh(FRAMES))
+    write_damaged(case, path, short_bvh(FRAMES))
     _check(case, _recording(read_bvh(path)))
 
 
@@ -41,7 +41,7 @@ def acclaim(case: HostileCase) -> None:
     hurt = int(case.rng.integers(2))
     for i, path in enumerate((asf, amc)):
         if i == hurt:
-            _write_damaged(case, path, texts[i])
+            write_damaged(case, path, texts[i])
         else:
             path.write_text(texts[i], encoding="utf-8")
     _check(case, _recording(read_acclaim(find_asf(amc), amc)))
@@ -51,7 +51,7 @@ def obj(case: HostileCase) -> None:
     """The examples' meshes."""
     path = case.folder / "mesh.obj"
     meshes = sorted((ROOT / "examples" / "world").glob("*.obj"))
-    _write_damaged(case, path, _text(case.pick(meshes)))
+    write_damaged(case, path, _text(case.pick(meshes)))
     try:
         vertices, triangles = read_obj(path)
     except (UnreadableMesh, UnicodeDecodeError) as fault:  # as the recipe's reader expects
@@ -88,7 +88,7 @@ def examined(case: HostileCase) -> None:
 
 def _damaged_jump(case: HostileCase, frames: int) -> Recording:
     path = case.folder / "clip.bvh"
-    _write_damaged(case, path, short_bvh(frames))
+    write_damaged(case, path, short_bvh(frames))
     return _recording(read_bvh(path))
 
 
@@ -111,16 +111,6 @@ def short_amc(frames: int) -> str:
 @cache
 def _text(path: Path) -> str:
     return path.read_text(encoding="utf-8")
-
-
-def _write_damaged(case: HostileCase, path: Path, text: str) -> None:
-    match case.pick(("bytes", "text", "values", "values")):
-        case "bytes":
-            path.write_bytes(damaged_bytes(case, text.encode()))
-        case "text":
-            path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
-        case _:
-            path.write_text(damaged_values(case, text), encoding="utf-8")
 
 
 def _recording(clip: MotionClip) -> Recording:

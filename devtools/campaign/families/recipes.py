@@ -26,7 +26,7 @@ from ....bridge.recipe_syntax.items import Kind
 from ....solver.data.faults import UnknownBone, UnknownPhase
 from ...environment.virtual_environment import ROOT
 from ..protocol.case import Family, HostileCase
-from ..protocol.damage import damaged_bytes, damaged_text, damaged_values
+from ..protocol.damage import damaged_text, write_damaged
 from .requests import toml
 
 ARRAYS: tuple[Kind[Any], ...] = (PIN, CONTACT, ADDED, *NAMED)
@@ -53,13 +53,7 @@ def damaged(case: HostileCase) -> None:
     """An example's recipe."""
     text = _examples()[int(case.rng.integers(len(_examples())))]
     path = case.folder / "recipe.toml"
-    match case.pick(("bytes", "text", "values")):
-        case "bytes":
-            path.write_bytes(damaged_bytes(case, text.encode()))
-        case "text":
-            path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
-        case _:
-            path.write_text(damaged_values(case, text), encoding="utf-8")
+    write_damaged(case, path, text)
     _read(case, path)
 
 

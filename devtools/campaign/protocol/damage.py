@@ -1,6 +1,7 @@
 """Damage to files: of their bytes, and of the words of a text."""
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 from .case import HostileCase
 
@@ -58,6 +59,17 @@ def damaged_values(case: HostileCase, text: str) -> str:
             for word in words
         )
     return "\n".join(lines)
+
+
+def write_damaged(case: HostileCase, path: Path, text: str) -> None:
+    """A file with a damaged text, half of them in values alone, which are read and go further."""
+    match case.pick(("bytes", "text", "values", "values")):
+        case "bytes":
+            path.write_bytes(damaged_bytes(case, text.encode()))
+        case "text":
+            path.write_text(damaged_text(case, text), encoding="utf-8", newline="")
+        case _:
+            path.write_text(damaged_values(case, text), encoding="utf-8")
 
 
 def _like(line: str, other: str) -> str:

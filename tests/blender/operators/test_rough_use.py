@@ -13,12 +13,12 @@ from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.files.import_clip import import_clip
-from hangtime.operators.solve.adapt import write_answer
 from hangtime.operators.solve.analyze import AnalyzeOperator, FitOperator
 from hangtime.operators.solve.common import said
 from hangtime.operators.solve.session import Asked, session
 from hangtime.operators.solve.solving import SolveState, Solving
 from hangtime.operators.solve.task import Task, TaskOperator
+from hangtime.operators.solve.write_answer import write_answer
 from hangtime.solver.data.faults import ChangedMeanwhile, NoArmature
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import digest

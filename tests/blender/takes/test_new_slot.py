@@ -43,14 +43,6 @@ with_slots = pytest.mark.skipif(
 )
 
 
-@pytest.fixture
-def armature() -> bpy.types.Object:
-    rigs.reset()
-    made = rigs.make_armature()
-    rigs.animate(made)
-    return made
-
-
 def lifted(armature: bpy.types.Object, by: float, *, later: int = 0) -> bpy.types.Action:
     """Write the middle of the take anew, so much higher, and longer by some frames, into a slot."""
     with showing_action(armature, recorded_action(armature)):

@@ -32,14 +32,6 @@ OPTIONS = ResultOptions(blend_in=4.0, blend_out=4.0, written_as=WrittenAs.STRIP)
 pytestmark = pytest.mark.usefixtures("_enabled")
 
 
-@pytest.fixture
-def armature() -> bpy.types.Object:
-    rigs.reset()
-    made = rigs.make_armature()
-    rigs.animate(made)
-    return made
-
-
 COMBINED = replace(OPTIONS, written_as=WrittenAs.COMBINE)
 
 

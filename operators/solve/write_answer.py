@@ -1,0 +1,205 @@
+"""Writes an answer of the solver as a result: an action, its strip or slot, marks and report."""
+
+from collections.abc import Generator, Sequence
+
+import bpy
+
+from ...bridge.accessors import current_scene, play_to_end, present, shown_range, source_of
+from ...bridge.armature.actions import (
+    read_recorded_incrementally,
+    recorded_action,
+)
+from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.traces_store import keep
+from ...bridge.armature.write import write_action
+from ...bridge.constraints.status import write_status
+from ...bridge.files.reproportioned import build_reproportioned
+from ...bridge.loops.write_loop import (
+    Loop,
+    write_loop_incrementally,
+)
+from ...bridge.polish.pins import MovedPin
+from ...bridge.polish.renewal import Renewal
+from ...bridge.properties.settings import action_settings, settings_of
+from ...bridge.properties.shown_overlaps import store_overlaps
+from ...bridge.properties.shown_times import store_times
+from ...bridge.rows.choices import After, ContactMarkers, WrittenAs
+from ...bridge.rows.phases import roles
+from ...bridge.takes.options import loop_options, result_options
+from ...bridge.takes.plan import AdaptedMotion
+from ...bridge.takes.take_time import TakeTime
+from ...bridge.takes.takes import (
+    adapted_spans,
+    derive,
+    free_name,
+    note_made,
+    root_of,
+)
+from ...bridge.takes.write_result import (
+    combine,
+    lay_in_slot,
+    write_adapted_incrementally,
+)
+from ...solver.body.proportions import changed_recording
+from ...solver.data.faults import ChangedMeanwhile, Fault
+from ...solver.data.recording import Recording, same_motion
+from ...solver.data.solver_options import Method
+from ...solver.worker.protocol import Adapted
+from ..words.report_text import as_text
+from ..words.summary_text import summary
+from ..words.take_text import pin_lines, polish_lines, take_lines
+from ..words.warning_text import warnings_of
+from .keys import mark_contacts, write_keys
+from .scene import note_surfaces, stale_surfaces
+from .session import Asked, session
+from .solving import SolveState
+
+ALONE = (
+    "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
+)
+MARKERS_LEFT_OUT = (
+    "Contact markers are left out: an action's are those of all of its slots, the take's included; "
+    "choose Timeline"
+)
+
+
+def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
+    """Writes an answer as a new action; returns how it went. Raises ChangedMeanwhile.
+
+    Surfaces that changed meanwhile do not void it: it says that it is not about them any more.
+    """
+    session().advance(SolveState.CHECKING)
+    armature = yield from _unchanged(asked)
+    stale = yield from stale_surfaces(asked, armature)
+    session().advance(SolveState.WRITING)
+    limbs = asked.problem.requests.body.limbs
+    if limbs:
+        within = asked.recording.window(*present(asked.problem.frames))
+        done = yield from _write_other(changed_recording(within, limbs), answer, armature)
+    else:
+        done = yield from _write_own(asked, answer, armature)
+    remarks = note_surfaces(armature, asked, answer.report, stale)
+    settings = settings_of(armature)
+    ends = (present(each) for each in (recorded_action(armature), settings.adapted))
+    play_to_end(current_scene(), *(shown_range(armature, each)[1] for each in ends))
+    refined = asked.problem.requests.solution.method is Method.EXPLICIT
+    action_settings(present(settings.adapted)).refined = refined
+    settings.status = "\n".join([settings.status, *remarks])
+    return "; ".join([done, *remarks])
+
+
+def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Incremental[str]:
+    """The answer as a new action of the armature."""
+    stood = armature.matrix_world.copy()
+    looped, options = loop_options(settings_of(armature)), result_options(settings_of(armature))
+    if looped is not None:
+        loop = Loop.of(armature, answer.track, looped.root)
+        action, controls = yield from write_loop_incrementally(armature, loop)
+        keep(action, answer.traces, stood)
+        _note(armature, armature, action, answer, take_lines(controls))
+        mark_contacts(armature, action, answer, options)
+        note_made(armature, action, None, 0)
+        return f"Wrote the loop {action.name}"
+    renewal = Renewal.of(armature)
+    motion = AdaptedMotion(
+        answer.track,
+        answer.report.times,
+        answer.moved,
+        options,
+        ends=any(hold.ends for hold in asked.problem.requests.holds),
+        kept=adapted_spans(present(recorded_action(armature))),
+    )
+    action, written = yield from write_adapted_incrementally(armature, motion)
+    keep(action, answer.traces, stood)
+    told = take_lines(written)
+    if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
+        told = [*told, MARKERS_LEFT_OUT]
+    _note(armature, armature, action, answer, told)
+    times = answer.report.times
+    time = written.time if written is not None else TakeTime.of(times, 1.0)
+    span = written.span if written is not None else None
+    try:
+        rate = answer.report.recording.frames_per_second
+        moved = yield from renewal.put_on(action, answer.track.bones, time, answer.schedule, rate)
+        _tell_polish(armature, action, renewal, moved)
+        rig = written.rig if written is not None else None
+        yield from write_keys(armature, armature, action, answer, rig)
+    finally:  # cancelled it has a key on every frame
+        mark_contacts(armature, action, answer, options)
+        match options.written_as:
+            case WrittenAs.COMBINE:
+                combine(armature, action, options.after)
+            case WrittenAs.SLOT:
+                lay_in_slot(armature, present(source_of(action)), action)
+        note_made(armature, action, span, time.later)
+        renewal.note(action, time, (times.recorded_frame[0], times.recorded_frame[-1]))
+    return f"Wrote the action {action.name}"
+
+
+def _tell_polish(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    renewal: Renewal,
+    moved: Sequence[MovedPin],
+) -> None:
+    """What became of hand polish: in the sidebar, the report, and among the warnings."""
+    settings, made = settings_of(armature), action_settings(action)
+    told, warned = polish_lines(renewal.put), pin_lines(moved)
+    settings.status = "\n".join([settings.status, *told, *warned])
+    made.report = "\n".join([made.report, *told, *warned])
+    made.warning = "\n".join([line for line in (made.warning, *warned) if line])
+
+
+def _write_other(
+    recording: Recording, answer: Adapted, armature: bpy.types.Object
+) -> Incremental[str]:
+    """The answer on an armature of its own, for the artist's keeps its proportions."""
+    other, track, _ = build_reproportioned(recording, answer.track)
+    other.name = f"{armature.name} changed"
+    source = present(recorded_action(armature))
+    action = write_action(other, track, name=free_name(root_of(source).name, "adapted"))
+    derive(action, source, armature)
+    settings_of(armature).adapted = action
+    keep(action, answer.traces, armature.matrix_world)
+    options = result_options(settings_of(armature))
+    left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]
+    _note(armature, other, action, answer, left_out)
+    yield from write_keys(armature, other, action, answer)
+    mark_contacts(other, action, answer, options)
+    return f"Made the armature {other.name}, which performs the adapted motion"
+
+
+def _note(
+    armature: bpy.types.Object,
+    performer: bpy.types.Object,
+    action: bpy.types.Action,
+    answer: Adapted,
+    told: Sequence[str] = (),
+) -> None:
+    """Keeps what was found beside the action, and how each constraint came out.
+
+    told: lines about the rest of the take.
+    """
+    settings = settings_of(armature)
+    settings.status = "\n".join([summary(answer, roles(settings)), *told])
+    write_status(settings, answer.report)
+    action_settings(action).report = "\n".join([as_text(answer.report), *told])
+    store_times(action, answer.report.times)
+    store_overlaps(action, answer.report)
+    action_settings(action).warning = "\n".join(warnings_of(answer.report))
+    if performer != armature:
+        action_settings(action).performer = performer
+
+
+def _unchanged(asked: Asked) -> Generator[None, None, bpy.types.Object]:
+    """The armature, if it and its recording are what they were. Raises ChangedMeanwhile."""
+    armature = next((o for o in bpy.data.objects if o.session_uid == asked.uid), None)
+    if armature is not None and armature.mode != "EDIT" and recorded_action(armature) is not None:
+        frames = asked.recording.frames
+        try:
+            now = yield from read_recorded_incrementally(armature, frames[0], frames[-1])
+        except Fault as fault:  # another action, a scale: whatever it is, it is new
+            raise ChangedMeanwhile(asked.armature, while_solving=True) from fault
+        if same_motion(now, asked.recording):
+            return armature
+    raise ChangedMeanwhile(asked.armature, while_solving=True)
