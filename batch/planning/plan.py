@@ -63,6 +63,10 @@ def plan(asked: Asked, folder: Path) -> Planned:
     _refuse_another(folder, found)
     cells, strays = _named(unique, folder)
     manifest = Manifest(asked.settings, refreshed(folder, cells))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise gone(folder, error) from error
     write_manifest(folder, manifest)
     return Planned(manifest, len(found) - len(unique), strays)
 

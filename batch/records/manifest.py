@@ -20,6 +20,7 @@ from .result import State
 
 MANIFEST = "manifest.jsonl"
 FORMAT = 1
+SUM = "sum"  # of a line: a digest of all else in it, by which it knows an edit
 KEY_SHOWN = 16  # hexadecimal digits of a cell's key in its name; two of 250,000 never share them
 Value = float | int | str | bool
 AGAIN = "give the batch's command again, which writes it anew and keeps what is solved"
@@ -140,13 +141,14 @@ def read_plan(folder: Path, cell: str) -> tuple[BatchSettings, CellPlan]:
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
-    """Writes it aside, and gives it its name once it is whole. Raises FolderGone."""
+    """Writes it aside, and gives it its name once it is whole; into a folder that is there, for one
+    that is gone may come back. Raises FolderGone."""
     records = [manifest.settings.as_record()]
     records += [{**asdict(cell), "state": cell.state.value} for cell in manifest.cells]
-    text = "".join(f"{json.dumps(record, ensure_ascii=False)}\n" for record in records)
+    summed = ({**record, SUM: _sum(record)} for record in records)
+    text = "".join(f"{json.dumps(record, ensure_ascii=False)}\n" for record in summed)
     aside = folder / f".{MANIFEST}.{os.getpid()}"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         aside.write_text(text, encoding="utf-8")
         os.replace(aside, folder / MANIFEST)
     except OSError as error:
@@ -174,34 +176,49 @@ def _text(folder: Path) -> str:
 def _settings(folder: Path, line: str) -> BatchSettings:
     path = folder / MANIFEST
     try:
-        settings = BatchSettings.of_record(json.loads(line))
+        record = json.loads(line)
+        its = record["version"]
+        if its == version():  # of another version the rest may be another as well
+            _require_sum(path, 1, record)
+            return BatchSettings.of_record(record)
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise WrongManifest(f"{path}, line 1: that is no batch's first line; {AGAIN}.") from error
-    if settings.version != version():
-        raise OtherVersion(
-            f"{path} is of Hangtime {settings.version}, and this is {version()}: results of the "
-            "two would be mixed. Go on with that version, or take another folder."
-        )
-    return settings
+    raise OtherVersion(
+        f"{path} is of Hangtime {its}, and this is {version()}: results of the two would be mixed. "
+        "Go on with that version, or take another folder."
+    )
 
 
 def _cell(folder: Path, number: int, line: str) -> CellPlan:
+    path = folder / MANIFEST
     try:
         record = json.loads(line)
+        _require_sum(path, number, record)
         return CellPlan(**{**record, "state": State(record["state"])})
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        problem = f"{folder / MANIFEST}, line {number}: that is no cell; {AGAIN}."
-        raise WrongManifest(problem) from error
+        raise WrongManifest(f"{path}, line {number}: that is no cell; {AGAIN}.") from error
+
+
+def _sum(record: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(record).encode()).hexdigest()[:KEY_SHOWN]
+
+
+def _require_sum(path: Path, number: int, record: dict[str, Any]) -> None:
+    """Takes the sum out of a line's record. Raises WrongManifest where it is not the line's."""
+    if record.pop(SUM) != _sum(record):
+        raise WrongManifest(
+            f"{path}, line {number} was changed after it was written; change clips and recipes "
+            f"instead, and {AGAIN}."
+        )
 
 
 def _require_true(folder: Path, manifest: Manifest) -> None:
-    """A line that was edited by hand is no longer what its name says."""
+    """A line of another manifest is not what its name says beside this one's first line."""
     for cell in manifest.cells:
         number, _, key = cell.cell.partition("-")
         if not number.isdecimal() or key != cell.key(manifest.settings)[:KEY_SHOWN]:
             raise WrongManifest(
-                f"{folder / MANIFEST}: the line of cell “{cell.cell}” was changed after it was "
-                f"written; change clips and recipes instead, and {AGAIN}."
+                f"{folder / MANIFEST}: the line of cell “{cell.cell}” is of another batch; {AGAIN}."
             )
     twice = [name for name, n in Counter(c.cell for c in manifest.cells).items() if n > 1]
     if twice:

@@ -65,6 +65,7 @@ def make_batch(
     settings = BatchSettings(outputs=outputs)
     plans = tuple(_plans(settings, cells, [*names, *_names(clips - len(names))][:clips], chance))
     manifest = Manifest(settings, plans)
+    folder.mkdir(parents=True, exist_ok=True)
     write_manifest(folder, manifest)
     drawn = _pictures(folder) if pictures else []
     for k, plan in enumerate(plans[: cells - unfinished]):

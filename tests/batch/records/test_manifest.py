@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hangtime.batch.records.faults import OtherVersion, WrongManifest
+from hangtime.batch.records.faults import FolderGone, OtherVersion, WrongManifest
 from hangtime.batch.records.manifest import (
     MANIFEST,
     BatchSettings,
@@ -50,9 +50,12 @@ def test_a_manifest_is_read_as_it_was_written_whole_or_cell_by_cell(
     [
         (1, lambda text: text.replace("/clips/a.bvh", "/clips/c.bvh"), "was changed after"),
         (1, lambda text: text.replace('"cell": "', '"cell": "../../'), "was changed after"),
+        (1, lambda text: text.replace('"pin.L.up": 0.0', '"pin.L.up": 0.5'), "line 2 was changed"),
+        (1, lambda text: text.replace('"planned"', '"done"'), "line 2 was changed"),
         (1, lambda text: text[:-9], "line 2: that is no cell"),
-        (0, lambda text: text.replace("npz", "xyz"), "no batch's first line"),
-        (0, lambda text: text.replace('"format": 1', '"format": 2'), "no batch's first line"),
+        (0, lambda text: text.replace("npz", "fbx"), "line 1 was changed"),
+        (0, lambda text: text.replace('"format": 1', '"format": 2'), "line 1 was changed"),
+        (0, lambda text: text[1:], "no batch's first line"),
         (2, str, "is empty"),
     ],
 )
@@ -77,6 +80,26 @@ def test_a_manifest_of_another_version_is_refused(tmp_path: Path) -> None:
     write_manifest(tmp_path, Manifest(settings, ()))
     with pytest.raises(OtherVersion, match=r"Hangtime 9\.9"):
         read_manifest(tmp_path)
+    (tmp_path / MANIFEST).write_text('{"version": "9.9", "told": "otherwise"}\n')
+    with pytest.raises(OtherVersion, match=r"Hangtime 9\.9"):
+        read_manifest(tmp_path)
+
+
+def test_lines_of_two_manifests_are_not_mixed(tmp_path: Path) -> None:
+    write_manifest(tmp_path, Manifest(replace(SETTINGS, check=True), ()))
+    first = (tmp_path / MANIFEST).read_text(encoding="utf-8")
+    write_manifest(tmp_path, manifest_of(["a"]))
+    line = (tmp_path / MANIFEST).read_text(encoding="utf-8").partition("\n")[2]
+    (tmp_path / MANIFEST).write_text(first + line, encoding="utf-8")
+    with pytest.raises(WrongManifest, match="of another batch"):
+        read_manifest(tmp_path)
+
+
+def test_a_folder_that_is_gone_is_not_made_anew(tmp_path: Path) -> None:
+    """It may come back, such as a shared one, and would then find another in its place."""
+    with pytest.raises(FolderGone, match="gone cannot be used"):
+        write_manifest(tmp_path / "gone", manifest_of(["a"]))
+    assert not (tmp_path / "gone").exists()
 
 
 def test_a_cell_that_is_not_there_is_told_and_so_is_a_folder_without_a_manifest(
