@@ -128,8 +128,11 @@ def check_cell(
 
 
 def cell_files(plan: CellPlan) -> tuple[Path, ...]:
-    """Every file that a cell reads beside the manifest. Raises BadRecipe, WrongPlan."""
-    return (*clip_files(plan.clip), *VariedRecipe.read(plan.recipe, plan.values).files)
+    """Every file that a cell reads beside the manifest. Raises InputChanged."""
+    try:
+        return (*clip_files(plan.clip), *VariedRecipe.read(plan.recipe, plan.values).files)
+    except (WrongPlan, BadRecipe, OSError) as fault:
+        raise InputChanged(changed(plan.recipe)) from fault
 
 
 def _recipe(plan: CellPlan) -> Recipe:
@@ -138,9 +141,9 @@ def _recipe(plan: CellPlan) -> Recipe:
         resolved = varied.resolved(plan.values)
         recipe, sha256 = varied.recipe(resolved), varied.sha256(resolved)
     except (WrongPlan, BadRecipe, OSError) as fault:  # when it was planned it could be read
-        raise InputChanged(_changed(plan.recipe)) from fault
+        raise InputChanged(changed(plan.recipe)) from fault
     if sha256 != plan.recipe_sha256:
-        raise InputChanged(_changed(plan.recipe))
+        raise InputChanged(changed(plan.recipe))
     return recipe
 
 
@@ -159,9 +162,9 @@ def _require_unchanged(plan: CellPlan) -> None:
     try:
         same = clip_sha256(plan.clip) == plan.clip_sha256
     except OSError as error:
-        raise InputChanged(_changed(plan.clip)) from error
+        raise InputChanged(changed(plan.clip)) from error
     if not same:
-        raise InputChanged(_changed(plan.clip))
+        raise InputChanged(changed(plan.clip))
 
 
 def _loaded(
@@ -200,7 +203,8 @@ def _analysed(settings: BatchSettings, plan: CellPlan, recipe: Recipe) -> tuple[
     return measure(read.recording, read.problem), read
 
 
-def _changed(path: str) -> str:
+def changed(path: str) -> str:
+    """The sentence of an `InputChanged`."""
     return (
         f"{path} has changed since the batch was planned, or is gone; give the batch's command "
         "again, which plans it as it is then."

@@ -21,6 +21,7 @@ from distributed import Client, Future, wait
 from ..cells.cell import write_failure
 from ..cells.fits import FITS
 from ..cells.outputs import needs_blender
+from ..cells.work import InputChanged
 from ..queue.attempts import Attempt, Attempts, pair_of
 from ..records.faults import BatchFault, FolderGone, WrongPlan, gone
 from ..records.manifest import CellPlan, Manifest, read_manifest
@@ -192,7 +193,13 @@ class Dispatch:
     # ------------------------------------------------------------ cells
 
     def _begin(self, attempt: Attempt) -> None:
-        parcel, cell = parcel_of(attempt.plan), attempt.plan.cell
+        cell = attempt.plan.cell
+        try:
+            parcel = parcel_of(attempt.plan)
+        except InputChanged as changed:  # this cell's fault, and no other's
+            if self.attempts.end(attempt, attempt.began):
+                self.ended(write_failure(self.folder, cell, str(changed)))
+            return
         if self.crew.reach[attempt.worker] is Reach.SHARED:
             paths = [str(path) for path in parcel.files.values()]
             task: tuple[object, ...] = (solve_in, str(self.folder.resolve()), cell, paths)
@@ -242,6 +249,8 @@ class Dispatch:
                 with suppress(TimeoutError):  # its worker ended before it was fetched: see _lose
                     delivery = future.result(timeout=FETCHING)
                     self._take_in(self.futures.pop(future), delivery)
+            elif isinstance(fault, NotShared) and not Path(fault.path).is_file():
+                self._retry(future, str(fault), blame=False)  # nor is it here: see _begin
             elif isinstance(fault, NotShared | FolderGone):
                 where = f"Worker {attempt.worker} does not share the batch's folder"
                 self.tell(f"{where} ({fault}); its results come through the scheduler.")

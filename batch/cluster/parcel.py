@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
 from ..cells.fits import FITS
-from ..cells.work import cell_files
+from ..cells.work import InputChanged, cell_files, changed
 from ..records.aside import written_aside
 from ..records.faults import FolderGone, gone
 from ..records.manifest import CellPlan
@@ -27,11 +27,14 @@ class Parcel:
 
 
 def parcel_of(plan: CellPlan) -> Parcel:
-    """The files that a cell reads, laid out to each other as they are here. Raises FolderGone."""
+    """The files that a cell reads, laid out to each other as they are here. Raises InputChanged
+    where one is not there, FolderGone."""
+    paths = [Path(os.path.abspath(path)) for path in cell_files(plan)]
+    if missing := [path for path in paths if not path.is_file()]:
+        raise InputChanged(changed(str(missing[0])))
     try:
-        paths = [Path(os.path.abspath(path)) for path in cell_files(plan)]
         root = Path(os.path.commonpath([path.parent for path in paths]))
-    except (OSError, ValueError) as error:  # gone, or on drives without a common root
+    except ValueError as error:  # on drives without a common root
         raise FolderGone(f"The files of cell {plan.cell} cannot be sent: {error}.") from error
     names = {path.relative_to(root).as_posix(): path for path in paths}
     clip, recipe = (os.path.abspath(path) if path else "" for path in (plan.clip, plan.recipe))

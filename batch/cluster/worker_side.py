@@ -103,6 +103,13 @@ def _reach(folder: str, token: str) -> Reach:
 class NotShared(Exception):
     """A worker that sees the batch's folder does not see a file that a cell reads."""
 
+    def __init__(self, path: str) -> None:
+        super().__init__(path)
+        self.path = path
+
+    def __str__(self) -> str:
+        return f"{self.path} is not there"
+
 
 def solve_in(folder: str, cell: str, paths: list[str]) -> Delivery:
     """A cell of a batch whose folder this worker shares. paths: of the files that it reads.
@@ -110,7 +117,7 @@ def solve_in(folder: str, cell: str, paths: list[str]) -> Delivery:
     Raises NotShared, BatchFault.
     """
     if unseen := [path for path in paths if not os.path.isfile(path)]:
-        raise NotShared(f"{unseen[0]} is not there")
+        raise NotShared(unseen[0])
     return Delivery(run_cell(Path(folder), cell, fits_of(folder)), {}, {})
 
 

@@ -7,12 +7,13 @@ from random import Random
 import pytest
 from hangtime.batch.cluster.dispatch import FarmGone, run_on_dask
 from hangtime.batch.cluster.worker_side import Reach, look_around
+from hangtime.batch.planning.plan import Asked, plan
 from hangtime.batch.records.faults import FolderGone, WrongPlan
 from hangtime.batch.records.manifest import BatchSettings, Manifest, Output, write_manifest
 from hangtime.batch.records.result import CELLS, RESULT, CellResult, State
 from hangtime.devtools.farm.cluster import running_cluster
 from hangtime.devtools.farm.kills import with_workers_killed
-from hangtime.devtools.farm.plans import contents, plan_hops
+from hangtime.devtools.farm.plans import CLIP, contents, plan_hops
 
 
 @pytest.mark.parametrize("share", [True, False], ids=["shared folder", "through the scheduler"])
@@ -76,6 +77,31 @@ def test_a_scheduler_that_goes_is_told_and_the_same_command_goes_on(
     assert len(contents(folder, manifest)) == 4
     assert len(ended) == 4 - len(kept)
     assert {path: path.stat().st_mtime_ns for path in kept} == kept
+
+
+def test_a_clip_that_goes_meanwhile_fails_its_own_cells_alone(
+    tmp_path: Path, package: Path
+) -> None:
+    clips = [tmp_path / f"{name}.bvh" for name in "ab"]
+    for clip in clips:
+        shutil.copy(CLIP, clip)
+    asked = Asked(BatchSettings(check=True), [str(clip) for clip in clips])
+    plan(asked, tmp_path / "batch")
+    ended: list[CellResult] = []
+    told: list[str] = []
+
+    def note(result: CellResult) -> None:
+        ended.append(result)
+        clips[1].unlink(missing_ok=True)
+
+    with running_cluster(tmp_path / "cluster", package, 1) as cluster:
+        run_on_dask(tmp_path / "batch", str(cluster.file), told.append, note)
+    assert {result.clip: result.state for result in ended} == {
+        "a.bvh": State.DONE,
+        "b.bvh": State.FAILED,
+    }
+    assert "b.bvh has changed since the batch was planned, or is gone" in ended[1].sentence
+    assert not any("share" in words for words in told)
 
 
 def test_no_scheduler_is_told_in_a_sentence(tmp_path: Path) -> None:
