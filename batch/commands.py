@@ -16,7 +16,7 @@ from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
 from ..solver.numerics.parallel import cores
 from .cells.cell import run_cell
-from .cells.outputs import needs_blender
+from .cells.outputs import needs_blender, require_blender
 from .collect.collecting import collect
 from .farm.commands import FARM_ACTS, add_farm_commands
 from .planning.plan import Asked, Planned, plan, refreshed
@@ -133,7 +133,10 @@ def _outputs(text: str) -> tuple[Output, ...]:
 
 
 def _positive(text: str) -> float:
-    number = float(text)
+    try:
+        number = float(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number") from error
     if not 0.0 < number < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
     return number
@@ -169,8 +172,11 @@ def _solve(options: argparse.Namespace, manifest: Manifest, progress: Progress) 
     """What is not solved yet, by Dask's workers or by processes of this machine."""
     folder: Path = options.out
     if options.dask is None:
-        blender = any(needs_blender(c.clip, manifest.settings.outputs) for c in manifest.cells)
-        command = worker_command(blender=blender)
+        outputs = manifest.settings.outputs
+        in_blender = [c.clip for c in manifest.cells if needs_blender(c.clip, outputs)]
+        if in_blender:
+            require_blender(in_blender[0])  # told before anything is solved
+        command = worker_command(blender=bool(in_blender))
         LocalRun(folder, manifest, options.jobs, command, progress, MemoryWatch()).run()
         return
     try:

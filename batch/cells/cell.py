@@ -14,7 +14,7 @@ from ...operators.headless.outbox import Outbox
 from ...operators.headless.stages import Stages
 from ...solver.data.faults import Fault, NoSolution, OutputNotWritable
 from ...solver.worker.pipeline import ADAPTING, FITTING
-from ..records.faults import BatchFault, FolderGone
+from ..records.faults import BatchFault, unusable
 from ..records.manifest import BatchSettings, CellPlan, read_plan
 from ..records.result import RESULT, CellResult, State, lasting_result, written_cell
 from .fits import SharedFits
@@ -96,8 +96,7 @@ def _ended(
     try:
         done = act(settings, plan, fits, outbox, stages)
     except OutputNotWritable as fault:
-        said = f"{explained(fault, None)} Then give the same command again."
-        raise FolderGone(said) from fault  # it is the folder's, not the cell's
+        raise unusable(fault.path, fault.problem) from fault  # the folder's fault, not the cell's
     except NoSolution as fault:
         return _Ended(State.NO_SOLUTION, explained(fault, recipe))
     except InputChanged as fault:  # no end of what was planned: it may come back

@@ -13,6 +13,7 @@ from ...solver.data.reports.recording import Origin
 from ...solver.data.reports.report import Report
 from ...solver.results.posed_recording import posed_recording
 from ...solver.worker.pipeline import AdaptationResult
+from ..records.faults import WrongPlan
 from ..records.manifest import Output
 from .reading import WITHOUT_BLENDER
 
@@ -27,9 +28,14 @@ def needs_blender(clip: str, outputs: Collection[Output]) -> bool:
     )
 
 
-def blender_is_here() -> bool:
-    """Whether this process can load Blender's module."""
-    return find_spec("bpy") is not None
+def require_blender(clip: str) -> None:
+    """Of a clip that `needs_blender`. Raises WrongPlan where this process cannot load it."""
+    if find_spec("bpy") is None:
+        raise WrongPlan(
+            f"{clip} or an output that was asked for needs Blender, which is not here; run the "
+            "batch by `blender --command hangtime batch`, or take BVH or AMC clips and the outputs "
+            "npz and bvh."
+        )
 
 
 def write_plain(

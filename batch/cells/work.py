@@ -34,7 +34,7 @@ from ..records.faults import WrongPlan
 from ..records.manifest import BatchSettings, CellPlan, Output
 from .figures import figures, fit_figures
 from .fits import SharedFits, digest_of
-from .outputs import blender_is_here, needs_blender, write_motion, write_plain
+from .outputs import needs_blender, require_blender, write_motion, write_plain
 from .reading import ReadClip, read_clip
 
 DIAGNOSIS = "doctor.txt"
@@ -172,12 +172,7 @@ def _loaded(
 ) -> _Loaded:
     problem = recipe.problem
     if needs_blender(plan.clip, settings.outputs):
-        if not blender_is_here():
-            raise WrongPlan(
-                f"{plan.clip} or an output that was asked for needs Blender, which is not here; "
-                "run the batch by `blender --command hangtime batch`, or take BVH or AMC clips and "
-                "the outputs npz and bvh."
-            )
+        require_blender(plan.clip)
         clip = Clip(Path(plan.clip), settings.unit, settings.up, settings.rate)
         scene = load(clip, problem, stages, recipe.repairs)
         return _Loaded(scene.subject, scene.origin, scene.problem, scene)

@@ -29,7 +29,11 @@ class FolderGone(BatchFault):
 
 def gone(path: Path, error: OSError) -> FolderGone:
     """The fault of a folder that cannot be used; what is in it stays."""
-    why = error.strerror or type(error).__name__
+    return unusable(str(path), error.strerror or type(error).__name__)
+
+
+def unusable(path: str, why: str) -> FolderGone:
+    """The same, of a fault that was told in words."""
     return FolderGone(
         f"{path} cannot be used ({why}); make room or mend that, then give the same command again, "
         "which goes on where this ended."
