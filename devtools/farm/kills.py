@@ -11,7 +11,6 @@ from threading import Timer
 
 from ...batch.cluster.dispatch import run_on_dask
 from ...batch.cluster.worker_side import tidy
-from ...batch.records.manifest import Manifest
 from ...batch.records.result import CellResult
 from .cluster import running_cluster
 from .plans import contents, differing, half_written, plan_hops
@@ -19,8 +18,10 @@ from .plans import contents, differing, half_written, plan_hops
 
 @dataclass(frozen=True)
 class KilledBatch:
-    """What became of a batch's cells. differing: from another run's. doubled: that ended twice."""
+    """What became of a batch's cells. killed: workers, before it ended. differing: from another
+    run's. doubled: that ended twice."""
 
+    killed: int
     cells: int
     lost: list[str]
     doubled: list[str]
@@ -46,6 +47,7 @@ def with_workers_killed(
     somewhat later; the scheduler stays. expected: contents of the same batch, run in peace."""
     manifest = plan_hops(folder / "batch", cells)
     ended: Counter[str] = Counter()
+    killed: list[subprocess.Popen[bytes]] = []
     with running_cluster(folder / "cluster", package, 4) as cluster:
         moments = sorted(chance.randint(0, cells // 2) for _ in range(2))
         victims = chance.sample(cluster.workers, 2)
@@ -54,28 +56,25 @@ def with_workers_killed(
             ended[result.cell] += 1
             while moments and sum(ended.values()) > moments[0]:
                 moments.pop(0)
-                Timer(chance.uniform(0.0, 0.6), kill, [victims.pop()]).start()
+                Timer(chance.uniform(0.0, 0.6), kill, [victims.pop(), killed]).start()
 
         run_on_dask(folder / "batch", str(cluster.file), lambda _: None, note, share=share)
+        in_time = len(killed)
     tidy(str(folder / "batch"))  # what ended with the cluster: as each run does at its beginning
-    return outcome(folder / "batch", manifest, expected, ended)
-
-
-def kill(process: subprocess.Popen[bytes]) -> None:
-    """SIGKILL, and no zombie, which would count as alive."""
-    process.kill()
-    process.wait()
-
-
-def outcome(
-    folder: Path, manifest: Manifest, expected: dict[str, str], ended: Counter[str]
-) -> KilledBatch:
-    found = contents(folder, manifest)
+    found = contents(folder / "batch", manifest)
     names = [plan.cell for plan in manifest.cells]
     return KilledBatch(
+        in_time,
         len(names),
         [name for name in names if name not in found],
         [name for name, count in ended.items() if count > 1],
         differing(found, expected),
-        half_written(folder),
+        half_written(folder / "batch"),
     )
+
+
+def kill(process: subprocess.Popen[bytes], killed: list[subprocess.Popen[bytes]]) -> None:
+    """SIGKILL, and no zombie, which would count as alive."""
+    process.kill()
+    process.wait()
+    killed.append(process)

@@ -4,6 +4,7 @@ from ..figures.limits import Figure, Limit
 
 OVERHEAD = "overhead a cell beside fit and solve"
 SPEED_UP = "speed-up of 2 local workers over 1"
+DASK_KILLED = "Dask: workers killed before a batch's end"
 EQUAL = "cells that differ from one core's: "
 LIMITS = {
     EQUAL + "2 workers": Limit("1", 0.0, 0.0),
@@ -17,6 +18,7 @@ LIMITS = {
     "seconds a fit": Limit("s"),
     "megabytes a cell": Limit("MB"),
     "megabytes a fit": Limit("MB"),
+    DASK_KILLED: Limit("1"),
     "Dask, 2 of 4 workers killed: cells lost, doubled or different": Limit("1", 0.0, 0.0),
     "batch killed and resumed: cells lost, half-written or solved again": Limit("1", 0.0, 0.0),
     "10,000 cells planned": Limit("s", 20.0, 5.0),

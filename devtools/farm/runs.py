@@ -16,6 +16,7 @@ from .installed import program_in
 from .plans import CLIP, contents, differing, half_written, plan_hops, recipe_of
 
 SOON, LATE = 0.3, 7.0  # s after its start, between which a batch is killed
+LOOK = 0.02  # s between looks at a run, of whose cells each takes much longer
 PATIENCE = 60.0  # s, in which a worker ends whose batch was killed, however busy the machine is
 
 
@@ -45,7 +46,8 @@ def killed_and_resumed(
     folder: Path, package: Path, expected: dict[str, str], chance: Random, kills: int
 ) -> int:
     """Kill batches at random moments, each resumed by the same command until it ends; how many
-    cells were lost, half-written, different or solved again. expected: contents of such a batch."""
+    cells were lost, half-written, different or solved again: begun, though a run before had ended
+    them. expected: contents of such a batch."""
     bad, killed, batches = 0, 0, 0
     while killed < kills:
         batch = folder / f"killed {batches}"
@@ -54,10 +56,12 @@ def killed_and_resumed(
         ended: dict[Path, int] = {}
         while True:
             moment = chance.uniform(SOON, LATE) if killed < kills else None
-            whole = end_at(batch, package, moment)
+            begun: set[str] = set()
+            whole = end_at(batch, package, moment, begun=begun)
             killed += not whole
             now = results(batch)
-            bad += sum(now.get(path) != written for path, written in ended.items())
+            again = {path for path, written in ended.items() if now.get(path) != written}
+            bad += len(again | {path for path in ended if path.parent.name in begun})
             ended = now
             if whole:
                 break
@@ -75,22 +79,37 @@ def left_half_written(batch: Path, package: Path) -> list[str]:
     return left
 
 
-def end_at(batch: Path, package: Path, moment: float | None, jobs: int = 2) -> bool:
+def end_at(
+    batch: Path,
+    package: Path,
+    moment: float | None,
+    jobs: int = 2,
+    begun: set[str] | None = None,
+) -> bool:
     """Run a batch for so many seconds, or until it ends; whether it ended by itself.
 
-    Raises CalledProcessError where it ended badly.
+    begun: takes the cells that are seen to be begun. Raises CalledProcessError where it ended
+    badly.
     """
     words = command(batch, package, jobs)
     variables = {**os.environ, **ONE_THREAD}
+    until = float("inf") if moment is None else time.monotonic() + moment
     with subprocess.Popen(words, stdout=subprocess.DEVNULL, env=variables) as process:
-        try:
-            code = process.wait(moment)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            return False
+        while (code := process.poll()) is None:
+            if time.monotonic() > until:
+                process.kill()
+                return False
+            if begun is not None:
+                begun |= at_work(batch)
+            time.sleep(LOOK)
     if code:
         raise subprocess.CalledProcessError(code, words)
     return True
+
+
+def at_work(batch: Path) -> set[str]:
+    """Cells whose folders are still aside: some worker is, or was when it was killed, at them."""
+    return {path.name.split(".")[1] for path in batch.glob(f"{CELLS}/.*")}
 
 
 def results(batch: Path) -> dict[Path, int]:

@@ -23,6 +23,7 @@ def test_two_of_four_workers_are_killed_and_no_cell_is_lost_doubled_or_different
     found = with_workers_killed(tmp_path, package, solved, Random(7 + share), share=share)
     assert (found.lost, found.doubled, found.differing, found.half_written) == ([], [], [], [])
     assert found.cells == len(solved) == 12
+    assert found.killed == 2
 
 
 def test_another_version_is_left_out_and_workers_join_in_the_middle(
