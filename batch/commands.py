@@ -80,7 +80,7 @@ def parser() -> argparse.ArgumentParser:
     cell.set_defaults(act=ACTS["cell"])
     cell.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     cell.add_argument("cell", metavar="CELL", help="its name in the manifest")
-    add_farm_commands(commands)
+    add_farm_commands(commands, _count)
     collecting = commands.add_parser("collect", help="make table, contact sheet and page anew")
     collecting.set_defaults(act=ACTS["collect"])
     collecting.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
@@ -144,7 +144,7 @@ def _positive(text: str) -> float:
 
 def _count(text: str) -> int:
     if not text.isdecimal() or int(text) == 0:
-        raise argparse.ArgumentTypeError(f"{text} is no number of workers; write 1 or more")
+        raise argparse.ArgumentTypeError(f"“{text}” is no such number; write 1 or more")
     return int(text)
 
 

@@ -16,8 +16,10 @@ TASK, JOB = "task", "job"
 DEFAULT_CELLS = 20  # that a task solves: the program then starts once for half a minute's work
 
 
-def add_farm_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add them to a batch's commands."""
+def add_farm_commands(
+    commands: argparse._SubParsersAction[argparse.ArgumentParser], count: Callable[[str], int]
+) -> None:
+    """Add them to a batch's commands. count: reads a number above zero."""
     task = commands.add_parser(TASK, help="solve some cells, as a task of a farm's job")
     task.set_defaults(act=FARM_ACTS[TASK])
     task.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
@@ -28,7 +30,7 @@ def add_farm_commands(commands: argparse._SubParsersAction[argparse.ArgumentPars
     job.add_argument("folder", type=Path, metavar="DIR", help="the batch's folder")
     job.add_argument(
         "--cells-per-task",
-        type=int,
+        type=count,
         default=DEFAULT_CELLS,
         metavar="N",
         help=f"default: {DEFAULT_CELLS}",
@@ -42,7 +44,7 @@ def task_of_farm(options: argparse.Namespace) -> int:
 
 def job_for_farm(options: argparse.Namespace) -> int:
     """Prints a job. Raises BatchFault."""
-    job = JOBS[options.farm](options.folder, max(1, options.cells_per_task))
+    job = JOBS[options.farm](options.folder, options.cells_per_task)
     print(json.dumps(job, ensure_ascii=False, indent=1))
     return 0
 

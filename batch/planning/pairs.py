@@ -124,8 +124,8 @@ def _csv_rows(text: str, path: Path) -> Iterator[tuple[str, dict[str, Any]]]:
     head = [name.strip() for name in reader.fieldnames or ()]
     if "clip" not in head or len(set(head)) < len(head):
         raise WrongPlan(
-            f"Table {path} must begin with a line of column names, each once: “clip”, "
-            "“recipe” and places in the recipe."
+            f"Table {path} must begin with a line of column names, each once and with commas "
+            "between: “clip”, “recipe” and places in the recipe."
         )
     reader.fieldnames = head
     for row in _read(reader, path):

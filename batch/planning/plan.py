@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
+from ...solver.data.faults import BadRecipe
 from ..records.faults import FolderTaken, OtherVersion, WrongManifest, WrongPlan, gone
 from ..records.manifest import (
     KEY_SHOWN,
@@ -92,9 +94,23 @@ class _Variants:
         found = _Variants()
         for values in recipe.variants():
             resolved = recipe.resolved(values)
-            recipe.recipe(resolved)
+            _require_right(recipe, resolved)
             found.made.append((values, recipe.sha256(resolved)))
         return found
+
+
+def _require_right(recipe: VariedRecipe, resolved: dict[str, Any]) -> None:
+    """Raises BadRecipe; WrongPlan where it may be a table's value that is wrong, not the file."""
+    try:
+        recipe.recipe(resolved)
+    except BadRecipe as fault:
+        if not recipe.fixed:
+            raise
+        given = ", ".join(f"{name} = {value}" for name, value in recipe.fixed.items())
+        raise WrongPlan(
+            f"Recipe {recipe.path} with the table's {given}: {fault.problem}; correct the table, "
+            "or the recipe."
+        ) from fault
 
 
 def _cells(pairs: Sequence[Pair]) -> Iterator[CellPlan]:

@@ -251,6 +251,7 @@ def test_the_command_line_runs_a_batch_and_goes_on_with_it(
         (["cell", "nowhere", "00001-ab"], "There is no"),
         (["a.bvh", "--out", "o", "--outputs", "xyz"], "unknown output"),
         (["a.bvh", "--out", "o", "--jobs", "0"], "1 or more"),
+        (["job", "flamenco", "o", "--cells-per-task", "0"], "1 or more"),
         (["a.bvh", "--out", "o", "--unit", "cm"], "'cm' is no number"),
         (["a.bvh"], "--out"),
     ],

@@ -127,11 +127,17 @@ def test_a_table_names_the_pairs_and_gives_values_in_place_of_the_ranges(library
     ("name", "text", "said"),
     [
         ("t.csv", "", "begin with a line of column names"),
+        ("t.csv", "clip;recipe\nclips/a.bvh;recipe.toml\n", "commas between"),
         ("t.csv", "clip,recipe\n", "no rows"),
         ("t.csv", "clip,recipe\nclips/a.bvh\n", "number of columns"),
         ("t.csv", "clip,recipe\nclips/none.bvh,recipe.toml\n", "line 2: there is no clip"),
         ("t.csv", "clip,recipe\nclips/a.bvh,\n", "line 2 has no recipe"),
         ("t.csv", "clip,recipe,pin.Take.up\nclips/a.bvh,recipe.toml,1\n", "no “pin.Take.up”"),
+        (
+            "t.csv",
+            "clip,recipe,pin.Landing.up\nclips/a.bvh,recipe.toml,high\n",
+            'table\'s pin.Landing.up = high: "up" must be a number, not "high"; correct the table',
+        ),
         ("t.csv", f"clip\n{'x' * 200_000}\n", "line 2 cannot be read"),
         ("t.toml", "pair = 1", "must hold"),
         ("t.toml", "[[pair", "not TOML"),
