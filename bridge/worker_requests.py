@@ -60,13 +60,15 @@ class DragStream:
         self._ids = ids
         self._changed = Condition()
         self._problem: MotionProblem | None = None
+        self._ahead = self._asked_ahead = False  # of `_problem`, and of what was asked last
         self._ended = self._answered = False  # answered: by what has not been polled yet
         self._arrived: SimpleQueue[Progress | Answer] = SimpleQueue()
 
-    def want(self, problem: MotionProblem) -> None:
-        """Sets the problem to follow from now on."""
+    def want(self, problem: MotionProblem, *, ahead: bool = False) -> None:
+        """Sets the problem to follow from now on. ahead: nothing has moved yet; the worker makes
+        ready, once, and the motion that it answers is no news."""
         with self._changed:
-            self._problem = problem
+            self._problem, self._ahead = problem, ahead
             self._changed.notify()
 
     def end(self) -> None:
@@ -82,12 +84,14 @@ class DragStream:
                 message = self._arrived.get_nowait()
             except Empty:
                 return
+            unseen = self._asked_ahead and isinstance(message, Followed)
             if not isinstance(message, Progress):
-                self._go_on(message)
-            yield message
+                self._go_on(None if unseen else message)
+            if not unseen:
+                yield message
 
-    def _go_on(self, seen: Answer) -> None:
-        """A motion that is still on its way is asked again."""
+    def _go_on(self, seen: Answer | None) -> None:
+        """The next may leave: a motion that is seen, and still on its way, is asked again."""
         with self._changed:
             self._answered = False
             if isinstance(seen, Followed) and seen.status is DragStatus.CONVERGING:
@@ -104,6 +108,7 @@ class DragStream:
                 if self._ended:
                     return
                 problem, self._problem = self._problem, None
+                self._asked_ahead, self._ahead = self._ahead, False
             assert problem is not None
             self._last = problem
             yield Request(next(self._ids), RequestKind.FOLLOW, self._recording, problem)

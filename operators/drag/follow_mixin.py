@@ -18,12 +18,12 @@ from ..solve.adapt import ask_for, unanalysed
 from ..solve.common import required_armature, said
 from ..solve.live import live, redraw_viewports, redraw_views
 from ..solve.session import Asked, session
-from ..solve.task import LOOK_EVERY
 from ..words.report_text import deeper, higher
 from .mouse import BACK, CONFIRM, GIVEN, Press
 
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
+LOOK_EVERY = 0.01  # s; a look costs little, and the ghost waits for the next one
 
 
 class FollowedDrag(PolledOperator):
@@ -83,6 +83,7 @@ class FollowedDrag(PolledOperator):
         if why is not None:
             return self.refuse(why)
         self._moved, self._share = True, 0.0
+        self._idle = self._told = False  # Blender; anything by the worker
         self._fault = self._shown = ""
         self._task = self._follow(context)
         self._area = present(context.area)
@@ -108,6 +109,7 @@ class FollowedDrag(PolledOperator):
             self.pull(context, event)
             self._moved = True
             redraw_views()  # the sidebar's numbers go with the ghost, which waits for no drawing
+        self._idle = event.type == "TIMER"
         self._look()  # at every event, for a timer's comes after all is drawn
         self._show()
         return {"RUNNING_MODAL"}
@@ -151,8 +153,9 @@ class FollowedDrag(PolledOperator):
 
     def _follow(self, context: bpy.types.Context) -> Incremental[None]:
         """Has the worker follow what is dragged, from the press on, though a click shows no ghost:
-        of recording and scene as they were read last, while they are read again in parts. Raises
-        ChangedMeanwhile where it is another recording.
+        of recording and scene as they were read last. They are read again, in parts, once it has
+        told anything, for the first ghost waits for no reading. Raises ChangedMeanwhile where it is
+        another recording.
         """
         reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
@@ -160,7 +163,8 @@ class FollowedDrag(PolledOperator):
         stream = shared().follow(asked.recording)
         while True:
             try:
-                next(reading)
+                if self._idle and self._told:  # not at each of the mouse's moves, which would lag
+                    next(reading)
             except StopIteration as end:
                 if end.value is not None:  # surfaces may be elsewhere than they were
                     asked, self._moved = end.value, True
@@ -169,7 +173,7 @@ class FollowedDrag(PolledOperator):
                 self._moved = False
                 settings, skin = settings_of(self._armature), asked.problem.skin
                 problem = partial(problem_of, settings, asked.recording, asked.scene.objects)
-                stream.want(problem(skin=skin, held=self.held))
+                stream.want(problem(skin=skin, held=self.held), ahead=not self._press.dragging)
             for message in stream.news():
                 self._hear(message)
             yield
@@ -185,12 +189,13 @@ class FollowedDrag(PolledOperator):
         return asked if same and analysed else None
 
     def _hear(self, message: Progress | Answer) -> None:
+        self._told = True
         if isinstance(message, Progress):
             self._share = message.share
         elif isinstance(message, Failed):
             self._fault = said(message.fault)
             live().clear()
-        elif isinstance(message, Followed) and self._press.dragging:
+        elif isinstance(message, Followed):
             self._fault = LOST if message.status is DragStatus.DIVERGED else ""
             live().show(self._armature.name, message)
 

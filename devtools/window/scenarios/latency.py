@@ -34,6 +34,8 @@ if TYPE_CHECKING:  # as in actions.py
 
 DRAG = 4.0  # s that the pin is dragged about while the ghost's updates are counted
 LEGS = 4
+JERK = 8.0  # px, by which the mouse goes at once as it moves off: more than a click may tremble
+MOVED = 0.1  # cm, by which the pin has moved in a ghost that counts
 CRATE = (0.8, 0.8, 0.25)  # m
 CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
@@ -59,7 +61,9 @@ class GhostCounter:
     def look(self) -> None:
         """Called at each redraw of a viewport."""
         drag = live()
-        if drag.seen is not None and (not self.seen or self.seen[-1][1] != drag.version):
+        if drag.seen is None or drag.seen.summary.moved_cm < MOVED:
+            return
+        if not self.seen or self.seen[-1][1] != drag.version:
             self.seen.append((time.monotonic(), drag.version))
 
     def rate(self, since: float, until: float) -> float:
@@ -80,11 +84,14 @@ def drags_landing(driver: Driver) -> Actions:
     handler = space.draw_handler_add(ghosts.look, (), "WINDOW", "POST_PIXEL")
     try:
         yield driver.input.press(start, "the landing's pin")
-        gripped = time.monotonic()
+        moved_off = time.monotonic()
+        driver.input.move(towards(end, start, JERK), 0.0)
         yield driver.input.move(end, 0.5)
         assert (Vector(row.at) - pin).length > 0.01, "the pin does not follow the mouse"
         yield Until("the ghost", lambda: len(ghosts.seen) > 0, 40)
-        driver.figures["first ghost after the mouse moves"] = 1000.0 * (ghosts.seen[0][0] - gripped)
+        driver.figures["first ghost after the mouse moves"] = 1000.0 * (
+            ghosts.seen[0][0] - moved_off
+        )
         begun, first, taken = time.monotonic(), live().version, worker_seconds()
         driver.profiler.start(lambda: "drag")
         for place in islice(cycle(about(end)), LEGS):
@@ -155,6 +162,12 @@ def ghost_height(point: str) -> float:
     """How high, m, a point of the ghost is at its last frame."""
     traces = present(live().seen).traces
     return float(traces.points[-1, traces.contacts.index(point), 2])
+
+
+def towards(end: Place, start: Place, far: float) -> Place:
+    """The place so far, pixels, from a start on the way to an end."""
+    share = far / math.dist(start, end)
+    return start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
 
 
 def about(place: Place) -> list[Place]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from threading import Thread
+from typing import Any
 
 import numpy as np
 import pytest
@@ -254,6 +255,32 @@ def test_a_drag_goes_on_once_its_last_answer_is_heard(jump: Recording) -> None:
     assert len(list(stream.news())) == 1
     talk.join(10.0)
     assert [each.problem for each in later] == [raised(0.02)]
+
+
+def test_what_is_made_ready_before_a_drag_is_no_ghost_and_is_asked_for_once(
+    jump: Recording,
+) -> None:
+    stream = DragStream(jump, count(1))
+    asked = stream.requests()
+    stream.want(raised(0.0), ahead=True)
+    stream.deliver(on_its_way(next(asked)))
+    assert not list(stream.news())
+    later: list[Request] = []
+    talk = Thread(target=lambda: later.append(next(asked)), daemon=True)
+    talk.start()
+    talk.join(0.2)
+    assert not later, "what has not moved was asked for again"
+    stream.want(raised(0.01))
+    talk.join(10.0)
+    stream.deliver(on_its_way(later[0]))
+    assert [message.id for message in stream.news()] == [later[0].id]
+    assert next(asked).problem == raised(0.01)
+
+
+def on_its_way(request: Request) -> Followed:
+    """An answer, of which the stream looks at nothing else."""
+    unread: Any = None
+    return Followed(request.id, unread, DragStatus.CONVERGING, unread)
 
 
 def test_a_request_about_another_fit_ends_what_is_prepared(worker: Worker, jump: Recording) -> None:

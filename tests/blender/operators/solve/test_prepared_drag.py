@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import count
+
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
@@ -10,7 +12,9 @@ from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.constraints.motion_problem import problem_of
 from hangtime.bridge.worker_client import shared
+from hangtime.operators.drag import follow_mixin
 from hangtime.operators.drag.follow_mixin import FollowedDrag
+from hangtime.operators.drag.mouse import Press
 from hangtime.operators.solve.analyze import _prepare_drag
 from hangtime.operators.solve.session import session
 from hangtime.solver.data.problem import MotionProblem
@@ -24,6 +28,7 @@ class Asked:
 
     def __init__(self) -> None:
         self.problems: list[MotionProblem] = []
+        self.ahead: list[bool] = []
 
     def prepare(self, _recording, problem: MotionProblem) -> None:
         self.problems.append(problem)
@@ -31,14 +36,16 @@ class Asked:
     def follow(self, _recording) -> Asked:
         return self
 
-    want = staticmethod(lambda _: None)
+    def want(self, problem: MotionProblem, *, ahead: bool) -> None:
+        self.problems.append(problem)
+        self.ahead.append(ahead)
+
     news = staticmethod(lambda: ())
 
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> Asked:
     worker = Asked()
-    worker.want = worker.problems.append
     monkeypatch.setattr(shared(), "prepare", worker.prepare)
     monkeypatch.setattr(shared(), "follow", worker.follow)
     return worker
@@ -48,10 +55,11 @@ class Drag(FollowedDrag):
     """Of the chosen contact, without a mouse."""
 
     held = "Left toe 2"
-    _moved = True
+    _moved = _idle = _told = True
 
     def __init__(self, armature: bpy.types.Object) -> None:
         self._armature = armature
+        self._press = Press((0.0, 0.0), slack=3.0, dragging=False)
 
 
 def test_a_contact_that_is_held_is_pinned_where_it_was_found(analysed) -> None:
@@ -74,6 +82,28 @@ def test_the_drag_of_the_chosen_contact_is_prepared_as_it_will_be_asked_for(
     drag.held = chosen.name
     next(drag._follow(bpy.context))
     assert asked.problems[1:] == [prepared]
+
+
+def test_the_first_ghost_waits_for_no_reading(
+    analysed, asked: Asked, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    complete(_prepare_drag(bpy.context))
+    read: list[int] = []
+    monkeypatch.setattr(follow_mixin, "ask_for", lambda _: (read.append(part) for part in count()))
+    drag = Drag(analysed)
+    drag._told = False
+    following = drag._follow(bpy.context)
+    next(following)
+    drag._press.dragging = drag._moved = True
+    next(following)
+    assert not read
+    assert asked.ahead == [True, False]
+    drag._told, drag._idle = True, False
+    next(following)  # one of the mouse's many moves
+    assert not read
+    drag._idle = True
+    next(following)
+    assert read == [0]
 
 
 def test_what_adapt_will_refuse_is_no_fault_of_the_analysis(analysed, asked: Asked) -> None:
