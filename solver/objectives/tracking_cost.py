@@ -34,7 +34,7 @@ class CostWeights:
     com_acceleration: (m/g)², of the centre of mass's acceleration: one of g weighs as much as so
     many metres. force: (m/BW)², of force errors. force_rate_time: s, its square weighs their rate
     of change. support: (m/BW)², of what carries the body unseen.
-    by_range: how much of `shape` is measured by what a change takes of the joints'
+    by_range: how much of `shape` and `position` is measured by what a change takes of the joints'
     ranges instead of by what it moves, where joints have a price. friction: (m/BW)², of each
     point's force across the target's direction. goes_on: whether the target goes on beyond both
     ends, so that markers must come back to it there.
@@ -122,7 +122,11 @@ class TrackingCost:
         self.transcription = transcription
         self.target = target
         share = 0.0 if price is None else weights.by_range
-        self.weights = replace(weights, shape=(1.0 - share) * weights.shape)
+        self.weights = replace(
+            weights,
+            shape=(1.0 - share) * weights.shape,
+            position=(1.0 - share) * weights.position,
+        )
         self.points = marker_points(transcription.character)
         basis = transcription.basis
         times, spans = transcription.node_times, transcription.node_spans
@@ -134,7 +138,7 @@ class TrackingCost:
         self._turning = np.broadcast_to(0.0, (len(times), n, n))
         if price is not None:
             posed = forward_kinematics(transcription.character, target.angles)
-            self._turning = share * weights.shape * price.metric(posed)
+            self._turning = share * (weights.shape + weights.position) * price.metric(posed)
         time = weights.acceleration_time
         to_go = CostToGo(transcription, target.ends, self.points, time, weights.position)
         goes_on = weights.goes_on and not transcription.periodic  # a loop goes on in itself

@@ -56,6 +56,10 @@ FIT_COST_WEIGHTS = CostWeights(
     support=1e-3,
     goes_on=True,
 )
+# What brings a motion back to the rows is priced a little by the joints' ranges as well. By metres
+# alone it turns the bones of a neck against each other by degrees for half a millimetre of a pin,
+# which bends the rows so much that whole steps lead nowhere.
+RESTORATION_WEIGHTS = replace(FIT_COST_WEIGHTS, by_range=0.1)
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces
 # weigh too: what a person does to jump further is push longer, not only harder.
 # What carries unseen is for the recording to say.
@@ -64,14 +68,18 @@ ADAPT_COST_WEIGHTS = CostWeights(
 )
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
-MAX_PROJECTION_STEPS = 6
+MAX_PROJECTION_STEPS = 3  # Gauss-Newton steps on the refined knots go on from there
 MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
-MAX_IMPROVEMENTS = 4  # Gauss-Newton steps on the refined knots
+MAX_IMPROVEMENTS = 8  # Gauss-Newton steps on the refined knots
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
 # Tolerances, of the motions on the way to a fit: within a quarter of what tells a span weak.
 ON_THE_WAY = 5.0
 ADAPT_TOLERANCE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
+
+
+MetricOf = Callable[[Motion], BlockBanded]
+"""Metric W of the minimum-norm steps at a motion."""
 
 
 @dataclass(frozen=True)
@@ -171,16 +179,19 @@ def fit(
     near = project(
         feasible, tracking_cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
     )
-    metric = tracking_cost.expand(near.x)[1]
+    metric_of = partial(motion_metric, weights=RESTORATION_WEIGHTS, price=range_price(recorded))
+    metric = metric_of(feasible.motion(near.x))
     outcomes, last = [near], near
     for _ in range(1 + MAX_PLACE_UPDATES):
         last = restore(feasible, metric, last.x, stage="fit", enough=ON_THE_WAY, progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
             outcomes += refine(
-                last, fit_metric, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress
+                last, metric_of, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress
             )
-            outcomes += _improved(outcomes[-1], performance, schedule, human, progress)
+            outcomes += _improved(
+                outcomes[-1], performance, schedule, human, metric_of, progress
+            )
             break
         places = reached_places(Motion(last.transcription, last.x, places))
         feasible = replace(feasible, places=places)
@@ -213,6 +224,7 @@ def _improved(
     performance: Performance,
     schedule: ContactSchedule,
     human: HumanGuard,
+    metric_of: MetricOf,
     progress: Progress | None,
 ) -> list[Outcome]:
     """Nearer to the recording on the refined knots: the steps that refine go the shortest way.
@@ -225,12 +237,12 @@ def _improved(
     nearer = minimise(
         feasible, cost, outcome.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
     )
-    metric = cost.expand(nearer.x)[1]
+    metric = metric_of(feasible.motion(nearer.x))
     restored = _restored(feasible, metric, nearer.x, human, performance, progress)
     if not restored.solved:
-        metric = fit_metric(feasible.motion(outcome.x))
+        metric = metric_of(feasible.motion(outcome.x))
         return [restore(feasible, metric, outcome.x, stage="fit", progress=progress)]
-    return [nearer, restored, *refine(restored, fit_metric, ADAPT_TOLERANCE, progress=progress)]
+    return [nearer, restored, *refine(restored, metric_of, ADAPT_TOLERANCE, progress=progress)]
 
 
 def _restored(
@@ -284,7 +296,7 @@ def settled_places(transcription: Transcription, places: FloatArray) -> FloatArr
 
 def refine(
     outcome: Outcome,
-    metric_of: Callable[[Motion], BlockBanded],
+    metric_of: MetricOf,
     tolerance: DenseTolerance,
     *,
     basis: FloatArray | None = None,
@@ -335,11 +347,6 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
         )
     x[~new.active] = 0.0
     return Motion(new, x, motion.places)
-
-
-def fit_metric(motion: Motion) -> BlockBanded:
-    """Metric W of the minimum-norm steps of a fit."""
-    return motion_metric(motion, FIT_COST_WEIGHTS)
 
 
 def motion_metric(
