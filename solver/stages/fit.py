@@ -45,7 +45,9 @@ from .transcribe import initial_guess, recorded_target, transcribe
 # One g of the centre of mass's acceleration weighs like a decimetre: recordings are off by a tenth
 # of g and by a centimetre. One g of a limb's acceleration weighs like 1.6 cm, and a body weight of
 # force across the recorded direction like 3 cm.
-# Set beside force plates (docs/validation.md).
+# Set beside force plates (docs/validation.md). By metres alone a step turns the bones of a neck
+# against each other by degrees for half a millimetre of a pin, and bends the rows so much that it
+# leads nowhere; damped a little it does. Chosen on the five clips of `dev.py figures`.
 FIT_COST_WEIGHTS = CostWeights(
     position=1.0,
     acceleration_time=0.04,
@@ -55,11 +57,8 @@ FIT_COST_WEIGHTS = CostWeights(
     friction=1e-3,
     support=1e-3,
     goes_on=True,
+    damping=0.02,
 )
-# What brings a motion back to the rows is priced a little by the joints' ranges as well. By metres
-# alone it turns the bones of a neck against each other by degrees for half a millimetre of a pin,
-# which bends the rows so much that whole steps lead nowhere.
-RESTORATION_WEIGHTS = replace(FIT_COST_WEIGHTS, by_range=0.1)
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces
 # weigh too: what a person does to jump further is push longer, not only harder.
 # What carries unseen is for the recording to say.
@@ -68,7 +67,7 @@ ADAPT_COST_WEIGHTS = CostWeights(
 )
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
-MAX_PROJECTION_STEPS = 3  # Gauss-Newton steps on the refined knots go on from there
+MAX_PROJECTION_STEPS = 3  # undamped, from afar; on the refined knots Gauss-Newton steps go on
 MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
 MAX_IMPROVEMENTS = 8  # Gauss-Newton steps on the refined knots
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
@@ -170,28 +169,24 @@ def fit(
     recorded = recorded_motion(performance, schedule, periodic=periodic, rides=rides)
     transcription, x, places = recorded.transcription, recorded.x, recorded.places
     human = HumanGuard(recorded_ranges(recorded), recorded)
-    tracking_cost = TrackingCost(
-        transcription, recorded_target(transcription, performance, schedule), FIT_COST_WEIGHTS
-    )
+    tracking_cost = _distance(transcription, performance, schedule)
     if transcription.seam is not None:
         x = transcription.seam.closed(x, tracking_cost.expand(x)[1])
     feasible = FeasibleSet(transcription, places)
     near = project(
         feasible, tracking_cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
     )
-    metric_of = partial(motion_metric, weights=RESTORATION_WEIGHTS, price=range_price(recorded))
+    price = range_price(recorded)
+    metric_of = partial(motion_metric, weights=FIT_COST_WEIGHTS, price=price)
     metric = metric_of(feasible.motion(near.x))
     outcomes, last = [near], near
     for _ in range(1 + MAX_PLACE_UPDATES):
         last = restore(feasible, metric, last.x, stage="fit", enough=ON_THE_WAY, progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
-            outcomes += refine(
-                last, metric_of, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress
-            )
-            outcomes += _improved(
-                outcomes[-1], performance, schedule, human, metric_of, progress
-            )
+            outcomes += refine(last, metric_of, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress)
+            cost = _distance(outcomes[-1].transcription, performance, schedule, price)
+            outcomes += _improved(outcomes[-1], cost, metric_of, performance, human, progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
         feasible = replace(feasible, places=places)
@@ -219,25 +214,34 @@ def recorded_motion(
     return Motion(transcription, x, settled_places(transcription, places))
 
 
-def _improved(
-    outcome: Outcome,
+def _distance(
+    transcription: Transcription,
     performance: Performance,
     schedule: ContactSchedule,
-    human: HumanGuard,
+    price: JointPrice | None = None,
+) -> TrackingCost:
+    """The distance to the recording on a transcription."""
+    target = recorded_target(transcription, performance, schedule)
+    return TrackingCost(transcription, target, FIT_COST_WEIGHTS, price)
+
+
+def _improved(
+    outcome: Outcome,
+    cost: TrackingCost,
     metric_of: MetricOf,
+    performance: Performance,
+    human: HumanGuard,
     progress: Progress | None,
 ) -> list[Outcome]:
     """Nearer to the recording on the refined knots: the steps that refine go the shortest way.
 
     And in the ranges of joints, where such a motion is found; else what was refined, all rows met.
     """
-    t = outcome.transcription
-    cost = TrackingCost(t, recorded_target(t, performance, schedule), FIT_COST_WEIGHTS)
-    feasible = FeasibleSet(t, outcome.places)
+    feasible = FeasibleSet(outcome.transcription, outcome.places)
     nearer = minimise(
         feasible, cost, outcome.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
     )
-    metric = metric_of(feasible.motion(nearer.x))
+    metric = cost.expand(nearer.x)[1]
     restored = _restored(feasible, metric, nearer.x, human, performance, progress)
     if not restored.solved:
         metric = metric_of(feasible.motion(outcome.x))
