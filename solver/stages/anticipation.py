@@ -19,6 +19,7 @@ from ..body.anatomy import Part
 from ..data.contacts import ContactSchedule, Interval
 from ..inverse_kinematics.reseat import com_shift
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, dense_instants, greville_abscissae
+from ..objectives.joint_price import JointPrice
 from ..transcription.motion import Motion
 from .durations import TimedMotion, find_durations
 from .warm_start import Standing, continuation_steps, stance_moves, warm_start
@@ -87,10 +88,12 @@ def anticipate(
     target: FloatArray,
     kept: tuple[Interval, ...],
     jumps: tuple[Jump, ...],
+    price: JointPrice | None,
 ) -> TimedMotion | None:
     """The motion as a performer would begin to change it for contacts at target (n_contacts, 3) m.
 
-    jumps: those that change; at least one. None where no such motion is found.
+    jumps: those that change; at least one. price: of turning joints. None where no such motion is
+    found.
     """
     standings = Standing.still(start.places), Standing.still(target)
     moves = tuple(move.straight for move in stance_moves(schedule, *standings))
@@ -102,7 +105,7 @@ def anticipate(
                 places[i] = start.places[i] + move.shift
     steps = continuation_steps(moves)
     for parts in (1, 2 * steps) if steps <= MAX_STEPS else (1,):  # most need no more than one
-        found = _timed(start, schedule, places, jumps, parts)
+        found = _timed(start, schedule, places, jumps, parts, price)
         if found is not None:
             return _resized(start, jumps, found, kept)
     return None
@@ -114,6 +117,7 @@ def _timed(
     places: FloatArray,
     jumps: tuple[Jump, ...],
     parts: int,
+    price: JointPrice | None,
 ) -> TimedMotion | None:
     """The motion with contacts at places (n_contacts, 3) m and the flights' own durations.
 
@@ -127,7 +131,7 @@ def _timed(
         moves = stance_moves(warp.schedule(schedule), *standings)
         carried = warm_start(motion, tuple(move.straight for move in moves))
         flights = [Interval(float(warp(j.take_off)), float(warp(j.landing))) for j in jumps]
-        found = find_durations(motion, carried, to, flights)
+        found = find_durations(motion, carried, to, flights, price)
         if found is None:
             return None
         motion = found.motion

@@ -242,12 +242,12 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     """
     asked, requests = requested(fit, problem), problem.requests
     context, start, target, reference = asked.context, asked.start, asked.target, asked.reference
-    durations = Durations.MOVING_GROUND
+    durations, price = Durations.MOVING_GROUND, _price(fit, reference, requests)
     if not target.moves:  # the ground's clock is no jumper's to stretch
-        context, start, durations = _anticipated(fit, problem, context, start, target.places)
+        context, start, durations = _anticipated(fit, problem, context, start, target.places, price)
     start = _with_constraints(_riding(start, asked.fitted, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
-    weights, price = _cost_weights(requests), _price(fit, reference, requests)
+    weights = _cost_weights(requests)
     kept = same and weights is ADAPT_COST_WEIGHTS and price is not None
     metric = fit.metric if kept else motion_metric(start, weights, price)
     if _weighs_torques(requests):
@@ -283,6 +283,7 @@ def _anticipated(
     context: EvaluationContext,
     start: Motion,
     target: FloatArray,
+    price: JointPrice | None,
 ) -> tuple[EvaluationContext, Motion, Durations]:
     """Context and initial guess with the durations that go with where the contacts shall be."""
     requests = problem.requests
@@ -294,7 +295,7 @@ def _anticipated(
     jumps = changed_jumps(start, context.schedule, target, kept)
     if not jumps:
         return context, start, Durations.RECORDED
-    found = anticipate(start, context.schedule, target, kept, jumps)
+    found = anticipate(start, context.schedule, target, kept, jumps, price)
     if found is None:
         return context, start, Durations.NONE_FOUND
     warp = TimeWarp.of(found.stretches, start.duration)
