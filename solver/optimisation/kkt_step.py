@@ -160,6 +160,13 @@ class LinearisedProblem:
         twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), working)
         return twin
 
+    def renewed(self) -> "LinearisedProblem":
+        """The same as if no step had been taken yet: the bounds' program begins where the last one
+        ended, and what is kept for other problems must not tell of earlier ones."""
+        twin = copy(self)
+        twin._bound(self._transcription, self.rows, None)
+        return twin
+
     def _bound(self, transcription: Transcription, rows: Rows, working: BoolArray | None) -> None:
         """Sets the rows, all equalities being those of the factor, and the bounds' program."""
         self._transcription, self.rows = transcription, rows

@@ -11,7 +11,6 @@ import numpy as np
 
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
-from ..body.kinematics import forward_kinematics
 from ..data.contacts import Contact, ContactSchedule
 from ..data.requests import BodyChange
 from ..data.status import Status
@@ -19,12 +18,13 @@ from ..human.human_guard import HumanGuard, recorded_ranges
 from ..human.range_price import range_price
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis
-from ..objectives.cost_to_go import EndTarget
 from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
-from ..objectives.tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_points
+from ..objectives.motion_metric import motion_metric
+from ..objectives.tracking_cost import CostWeights, TrackingCost
 from ..optimisation.gauss_newton import minimise
 from ..optimisation.guards import with_guards
+from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
 from ..solid.penetrations import Penetrations
 from ..solid.shape_changes import AS_IS, ShapeChanges
@@ -65,6 +65,10 @@ FIT_COST_WEIGHTS = CostWeights(
 ADAPT_COST_WEIGHTS = CostWeights(
     shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3, support=1.0
 )
+# Durations are found by poses (durations.py): as in an adaptation, but forces and the centre of
+# mass only settle what no pose shows. The weight of accelerations was chosen on two broad jumps,
+# where a third tells how much longer the performer flies; the hops of docs/pairs.md had no say.
+POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, force=1e-5)
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
 MAX_PROJECTION_STEPS = 3  # undamped, from afar; on the refined knots Gauss-Newton steps go on
@@ -102,6 +106,41 @@ class SolvedMotion:
 
 
 @dataclass(frozen=True)
+class LinearisedPoses:
+    """A motion's rows, linearised by how far poses are apart. price: of turning joints, or None."""
+
+    motion: Motion
+    price: JointPrice | None
+
+    @cached_property
+    def metric(self) -> BlockBanded:
+        """W of the distance in metres, without the price."""
+        return motion_metric(self.motion, POSE_COST_WEIGHTS)
+
+    @property
+    def unpriced(self) -> LinearisedProblem:
+        """With that metric."""
+        return self._by_metres.renewed()
+
+    @property
+    def priced(self) -> LinearisedProblem:
+        """With a metric that counts what a change takes of the joints' ranges, where known."""
+        return (self._by_metres if self.price is None else self._by_ranges).renewed()
+
+    @cached_property
+    def _by_metres(self) -> LinearisedProblem:
+        return self._linearised(self.metric)
+
+    @cached_property
+    def _by_ranges(self) -> LinearisedProblem:
+        return self._linearised(motion_metric(self.motion, POSE_COST_WEIGHTS, self.price))
+
+    def _linearised(self, metric: BlockBanded) -> LinearisedProblem:
+        feasible = FeasibleSet(self.motion.transcription, self.motion.places)
+        return feasible.linearise(feasible.rows(self.motion.x), metric)
+
+
+@dataclass(frozen=True)
 class LetGo:
     """A contact that a fit could not hold. off: m, by how much its point missed its place."""
 
@@ -126,6 +165,11 @@ class Fit(SolvedMotion):
     def metric(self) -> BlockBanded:
         """Metric W of the minimum-norm steps of its adaptations, of a person."""
         return motion_metric(self.motion, ADAPT_COST_WEIGHTS, self.price)
+
+    @cached_property
+    def poses(self) -> LinearisedPoses:
+        """Its rows, as durations of its adaptations are sought with."""
+        return LinearisedPoses(self.motion, self.price)
 
     @cached_property
     def overlaps(self) -> Penetrations:
@@ -351,33 +395,3 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
         )
     x[~new.active] = 0.0
     return Motion(new, x, motion.places)
-
-
-def motion_metric(
-    motion: Motion, weights: CostWeights, price: JointPrice | None = None
-) -> BlockBanded:
-    """Metric W at a motion: Gauss-Newton Hessian of the tracking cost to itself."""
-    cost = TrackingCost(motion.transcription, motion_target(motion), weights, price)
-    return cost.expand(motion.x)[1]
-
-
-def motion_target(motion: Motion) -> TrackingTarget:
-    """A motion as a tracking target."""
-    t = motion.transcription
-    com = t.basis.combine(motion.x[:, t.layout.com], t.node_times)
-    q, a = (t.angles_at_nodes(motion.x, k) for k in (0, 2))
-    markers = forward_kinematics(t.character, q).points(marker_points(t.character)) + com[:, None]
-    com_acceleration = t.basis.combine(motion.x[:, t.layout.com], t.node_times, 2)
-    level = np.zeros((t.basis.n_coefficients, 2))
-    forces = motion.x[:, t.layout.forces]
-    return TrackingTarget(markers, com, q, a, com_acceleration, forces, level, _ends(motion))
-
-
-def _ends(motion: Motion) -> EndTarget:
-    """A motion's first and last instant as a target."""
-    t = motion.transcription
-    times, points = t.basis.breaks[[0, -1]], marker_points(t.character)
-    value, rate = (t.basis.combine(motion.x[:, t.layout.motion], times, k) for k in (0, 1))
-    relative = forward_kinematics(t.character, value[:, t.layout.angles]).points(points)
-    com = t.layout.com
-    return EndTarget(relative + value[:, None, com], rate[:, com], rate[:, t.layout.angles])

@@ -35,6 +35,7 @@ from ..inverse_kinematics.reseat import reseat
 from ..numerics.block_banded import BlockBanded
 from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
+from ..objectives.motion_metric import motion_metric
 from ..objectives.tracking_cost import CostWeights
 from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
@@ -47,7 +48,7 @@ from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
 from .anticipation import anticipate, changed_jumps
-from .fit import ADAPT_COST_WEIGHTS, Fit, motion_metric
+from .fit import ADAPT_COST_WEIGHTS, Fit, LinearisedPoses
 from .footing import check_sunk, on_faces, pin_turns
 from .initial_guess import resampled_fit
 from .platforms import find_standing, recorded_in
@@ -295,7 +296,9 @@ def _anticipated(
     jumps = changed_jumps(start, context.schedule, target, kept)
     if not jumps:
         return context, start, Durations.RECORDED
-    found = anticipate(start, context.schedule, target, kept, jumps, price)
+    own = start is fit.motion and price is fit.price
+    poses = fit.poses if own else LinearisedPoses(start, price)
+    found = anticipate(poses, context.schedule, target, kept, jumps)
     if found is None:
         return context, start, Durations.NONE_FOUND
     warp = TimeWarp.of(found.stretches, start.duration)
