@@ -30,6 +30,7 @@ MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
 NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
+GUARDS_JOIN = 1e2  # times the tolerances; from further off steps that keep guards may lead astray
 MIN_PROJECTION_DECREASE = 0.05  # of the objective: what a further step must gain
 
 
@@ -160,7 +161,7 @@ def restore(
     and where they hold, for a set with more guard rows to go on in, or the same; with more rows the
     next step has a new Jacobian.
     """
-    iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
+    iterate, near = _ChordIterate(feasible, metric, x), GUARDS_JOIN
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
