@@ -70,6 +70,7 @@ def detailed_contact(
 ) -> PointContact:
     """A contact with its friction; with held directions, path and grip of an environment point.
 
+    The very same where nothing of it is asked for.
     Raises UnknownPhaseIn, BadTiming.
     """
     friction, pyramid = contact.friction, False
@@ -80,7 +81,8 @@ def detailed_contact(
             if contact.contact.start < end and contact.contact.end > start:
                 friction = friction if force.friction is None else force.friction
                 pyramid = force.shape is ConeShape.PYRAMID
-    contact = replace(contact, friction=friction, pyramid=pyramid)
+    if (friction, pyramid) != (contact.friction, contact.pyramid):
+        contact = replace(contact, friction=friction, pyramid=pyramid)
     if request is None:
         return contact
     span = (contact.contact.start, contact.contact.end)

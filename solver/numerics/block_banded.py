@@ -171,6 +171,11 @@ class LocalColumns:
         """Adds the columns' sum by weights (m,) to total (K, n)."""
         total[self.first : self.first + len(self.values)] += self.values @ weights
 
+    def transposed_times(self, x: FloatArray) -> FloatArray:
+        """(m,) scalar products with x (K, n)."""
+        count, _, m = self.values.shape
+        return np.asarray(x[self.first : self.first + count].ravel() @ self.values.reshape(-1, m))
+
 
 @dataclass(frozen=True)
 class CholeskyFactor:

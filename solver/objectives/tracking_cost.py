@@ -37,7 +37,8 @@ class CostWeights:
     by_range: how much of `shape` is measured by what a change takes of the joints'
     ranges instead of by what it moves, where joints have a price. friction: (m/BW)², of each
     point's force across the target's direction. goes_on: whether the target goes on beyond both
-    ends, so that markers must come back to it there.
+    ends, so that markers must come back to it there. damping: m², of what a step takes of the
+    joints' ranges, in the Hessian alone (Levenberg 1944), where joints have a price.
     """
 
     position: float = 0.0
@@ -51,6 +52,7 @@ class CostWeights:
     by_range: float = 0.5
     friction: float = 0.0
     goes_on: bool = False
+    damping: float = 0.0
 
 
 def marker_points(character: Character) -> tuple[BodyPoint, ...]:
@@ -110,6 +112,7 @@ class TrackingCost:
     """Half the squared distance to a target, with gradient and Gauss-Newton Hessian.
 
     price: what turning joints costs beside, None nothing; that of the target's poses throughout.
+    Turns are counted as `by_range` and `damping` tell.
     """
 
     def __init__(
@@ -131,10 +134,11 @@ class TrackingCost:
         self._load = weights.com_acceleration / STANDARD_GRAVITY**2
         self._force_metric = self._made_force_metric()
         n = transcription.character.n_angles
-        self._turning = np.broadcast_to(0.0, (len(times), n, n))
+        self._turning = self._damping = np.broadcast_to(0.0, (len(times), n, n))
         if price is not None:
-            posed = forward_kinematics(transcription.character, target.angles)
-            self._turning = share * weights.shape * price.metric(posed)
+            metric = price.metric(forward_kinematics(transcription.character, target.angles))
+            self._turning = share * weights.shape * metric
+            self._damping = weights.damping * metric
         time = weights.acceleration_time
         to_go = CostToGo(transcription, target.ends, self.points, time, weights.position)
         goes_on = weights.goes_on and not transcription.periodic  # a loop goes on in itself
@@ -230,7 +234,9 @@ class TrackingCost:
         slope[:, com] = p.position * at.world.mean(axis=1) + p.com * at.com
         curvature = self._smooth * np.einsum("njk,nk->nj", angle, at.acceleration)
         first = self.transcription.basis.first_coefficient[spans]
-        self._add_windows(at, metric, angle, first, matrix)
+        damping = self._damping[GAUSS_NODES * spans.start : GAUSS_NODES * spans.stop]
+        metric[:, angles, angles] += damping
+        self._add_windows(at, metric, angle + damping, first, matrix)
         value, second = at.values
         local = (at.weight[:, None] * value)[..., None] * slope[:, None]
         load = self._load * at.com_acceleration

@@ -59,29 +59,33 @@ class BoundedStep:
         """(R,) working set: the rows that are at a bound."""
         return np.asarray(self.multipliers != 0.0)
 
-    def correct(self, z: FloatArray, times: Callable[[FloatArray], FloatArray]) -> FloatArray:
-        """Correction (K, n) of the step that brings rows with values z (R,) into their bounds.
+    def correct(
+        self, half: FloatArray, z: FloatArray, times: Callable[[FloatArray], FloatArray]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Step d = A^-1 b (K, n) corrected so that it brings rows with values z (R,) into their
+        bounds, and the values there.
 
-        times: G d for (K, n).
+        half: L^-1 b (K, n). times: G d for (K, n).
         """
-        change = np.zeros(self._factor.shape)
-        reached = z
-        for _ in range(MAX_ROUNDS):
+        if not len(self._rows) and self._initial.any():
+            self._add(np.flatnonzero(self._initial))
+        for _ in range(1 + MAX_ROUNDS):
+            left = half
+            if len(self._rows):
+                u = self._solve(z[self._rows] + self._reach(half))
+                if u is None:  # more rows make it no easier; the line search judges
+                    self.multipliers[:] = 0.0
+                    d = self._factor.backward(half)
+                    return d, z + times(d)
+                left = half - self._pull(u)
+            d = self._factor.backward(left)
+            reached = z + times(d)
             off = np.abs(violation(reached, self.lower, self.upper)) > self._tolerance
-            if not len(self._rows):
-                off |= self._initial
             off[self._rows] = False
-            if off.any():
-                self._add(np.flatnonzero(off))
-            elif len(self._rows) == 0 or reached is not z:
+            if not off.any():
                 break
-            u = self._solve(z)
-            if u is None:  # more rows make it no easier; the line search judges
-                self.multipliers[:] = 0.0
-                return np.zeros(self._factor.shape)
-            change = -self._factor.backward(self._pull(u))
-            reached = z + times(change)
-        return change
+            self._add(np.flatnonzero(off))
+        return d, reached
 
     def _add(self, rows: IntArray) -> None:
         groups = self._begins[rows] // GROUP
@@ -103,11 +107,16 @@ class BoundedStep:
             half.add_times(mine, total)
         return total
 
+    def _reach(self, half: FloatArray) -> FloatArray:
+        """(m,) change of the program's rows by the step whose half is given, (K, n)."""
+        return np.concatenate([each.transposed_times(half) for each in self._halves])
+
     def _solve(self, z: FloatArray) -> FloatArray | None:
-        """Multipliers (m,) of the program's rows; None where no solver finds them."""
+        """The program's multipliers (m,), of its rows' values z (m,); None where no solver finds
+        them."""
         rows = self._rows
         # The rows give a little (SOFT); their last multipliers make up for it.
-        base = z[rows] + self._soft * self.multipliers[rows]
+        base = z + self._soft * self.multipliers[rows]
         lower, upper = self.lower[rows] - base, self.upper[rows] - base
         stiffness = self._stiffness + np.diag(self._soft)
         u = multipliers_by_active_set(stiffness, lower, upper, self.multipliers[rows])

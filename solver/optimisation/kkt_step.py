@@ -19,6 +19,7 @@ from ..numerics.splines import ORDER
 from ..numerics.tied_factor import Factor, TiedFactor
 from ..transcription.rows import Rows, by_kind
 from ..transcription.transcription import Transcription
+from .acceleration import Anderson
 from .bounded_qp import BoundedStep
 
 # Velocities are weighed against positions by the time in which they would move as far.
@@ -28,6 +29,7 @@ ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
 PENALTY = 3e3
 MAX_SWEEPS = 8
 SWEEP_REDUCTION = 1e-3  # of the equality residual, at which sweeps end
+SWEEP_REST = 0.25  # of a tolerance, at which sweeps end too: closer, weak rows cost long ways
 RIDGE = 1e-8  # of the diagonal
 MERIT_DEAD_BAND = 0.5  # of a bound's tolerance, which the merit function ignores
 
@@ -160,6 +162,13 @@ class LinearisedProblem:
         twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), working)
         return twin
 
+    def renewed(self) -> "LinearisedProblem":
+        """The same as if no step had been taken yet: the bounds' program begins where the last one
+        ended, and what is kept for other problems must not tell of earlier ones."""
+        twin = copy(self)
+        twin._bound(self._transcription, self.rows, None)
+        return twin
+
     def _bound(self, transcription: Transcription, rows: Rows, working: BoolArray | None) -> None:
         """Sets the rows, all equalities being those of the factor, and the bounds' program."""
         self._transcription, self.rows = transcription, rows
@@ -243,8 +252,9 @@ class LinearisedProblem:
 
         Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
         y += rho (r + J d), until the linearised equalities hold a thousand times better than
-        before. value: (R,). gradient: g (K, n_block), None for the minimum-norm step. multipliers:
-        y to begin with (R,), None zero. sweeps: at most so many.
+        before, or well within their tolerances. Rows that bounds leave little room settle slowly,
+        which Anderson acceleration mends. value: (R,). gradient: g (K, n_block), None for the
+        minimum-norm step. multipliers: y to begin with (R,), None zero. sweeps: at most so many.
         """
         windows = self._equalities
         r = np.zeros(windows.J.shape[:2])
@@ -256,21 +266,23 @@ class LinearisedProblem:
             gradient = gradient @ self._basis
         d = np.zeros((self._blocks, windows.size))
         residual = r
-        enough = max(1e-9, SWEEP_REDUCTION * float(np.abs(residual).max()))
-        z = self._scaled(value, self._free)
+        enough = SWEEP_REST * self._scaled(self._tolerance, self._equal)
+        enough = np.maximum(enough, SWEEP_REDUCTION * float(np.abs(residual).max()))
+        z, accelerated = self._scaled(value, self._free), Anderson()
         for sweep in range(sweeps):
             lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
             if sweep:
                 lagrangian_gradient += self._metric.times(d)
             if gradient is not None:
                 lagrangian_gradient += gradient
-            d = d - self._factor.solve(lagrangian_gradient)
-            if len(z):
-                d = d + self._bounded.correct(z + self._bound_values(d), self._bound_values)
+            half = self._factor.forward(-lagrangian_gradient)
+            change, z = self._bounded.correct(half, z, self._bound_values)
+            d = d + change
             residual = r + windows.times(d)
-            y += PENALTY * residual
-            if np.abs(residual).max() < enough:
+            if sweep == sweeps - 1 or (np.abs(residual[windows.where]) < enough).all():
+                y = y + PENALTY * residual
                 break
+            y = accelerated.next(y, PENALTY * residual)
         found = np.zeros(len(value))
         found[self._equal] = y[windows.where]
         found[self._free] = self._bounded.multipliers

@@ -25,11 +25,13 @@ from .kkt_step import LinearisedProblem, Remains
 
 MAX_CHORD_RATIO = 0.03  # of the violation that a step leaves, for the next to keep its Jacobian
 MAX_CHORD_REST = 0.5  # tolerances, which a chord step must be expected to leave to be the last one
+MAX_CHORD_GUARDED = 10.0  # tolerances (1 cm, 1 degree) by which guards join, for a chord step
 MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
 NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
+GUARDS_JOIN = 1e2  # times the tolerances; from further off steps that keep guards may lead astray
 MIN_PROJECTION_DECREASE = 0.05  # of the objective: what a further step must gain
 
 
@@ -160,7 +162,7 @@ def restore(
     and where they hold, for a set with more guard rows to go on in, or the same; with more rows the
     next step has a new Jacobian.
     """
-    iterate, near = _ChordIterate(feasible, metric, x), NEARLY_FEASIBLE
+    iterate, near = _ChordIterate(feasible, metric, x), GUARDS_JOIN
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
@@ -222,8 +224,8 @@ class _ChordIterate:
         return 2.0 * self.violation**2 < MAX_CHORD_REST * self._before
 
     def widen(self, feasible: FeasibleSet) -> None:
-        """Goes on in a set with other guard rows, and with a new Jacobian: the steps before tell
-        how well the old one serves near by, but a guard that joins may ask for a long way."""
+        """Goes on in a set with other guard rows, and with a new Jacobian where one that joins asks
+        for a long way: the steps before tell how well the old one serves near by."""
         t, self._feasible = feasible.transcription, feasible
         guards = t.guard_rows(self.x)
         if self._linearised is not None:
@@ -232,8 +234,9 @@ class _ChordIterate:
             self._rows = Rows.join([self._rows.some(~self._rows.guards), guards])
         kept = np.arange(len(self._value)) < len(self._value) - self._guards
         self._value = np.concatenate([self._value[kept], guards.value])
-        self._guards, self._stale = len(guards.value), True
-        self.violation, self._before = max(self.violation, worst_violation(guards)), np.inf
+        joined = worst_violation(guards)
+        self._guards, self._stale = len(guards.value), joined > MAX_CHORD_GUARDED
+        self.violation, self._before = max(self.violation, joined), np.inf
 
     def _linearise(self) -> LinearisedProblem:
         rows = self._feasible.rows(self.x) if self._rows is None else self._rows

@@ -21,6 +21,7 @@ from ..inverse_kinematics.reseat import com_shift
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, dense_instants, greville_abscissae
 from ..transcription.motion import Motion
 from .durations import TimedMotion, find_durations
+from .fit import LinearisedPoses
 from .warm_start import Standing, continuation_steps, stance_moves, warm_start
 
 MIN_MOVE = 1e-6  # m, of a landing relative to its take-off
@@ -82,7 +83,7 @@ def changed_jumps(
 
 
 def anticipate(
-    start: Motion,
+    start: LinearisedPoses,
     schedule: ContactSchedule,
     target: FloatArray,
     kept: tuple[Interval, ...],
@@ -92,24 +93,25 @@ def anticipate(
 
     jumps: those that change; at least one. None where no such motion is found.
     """
-    standings = Standing.still(start.places), Standing.still(target)
+    before = start.motion.places
+    standings = Standing.still(before), Standing.still(target)
     moves = tuple(move.straight for move in stance_moves(schedule, *standings))
-    places = start.places.copy()
+    places = before.copy()
     for move in moves:
         for i, contact in enumerate(schedule.contacts):
             touches = contact.start < move.end and contact.end > move.start
             if touches and not contact.asked_for:
-                places[i] = start.places[i] + move.shift
+                places[i] = before[i] + move.shift
     steps = continuation_steps(moves)
     for parts in (1, 2 * steps) if steps <= MAX_STEPS else (1,):  # most need no more than one
         found = _timed(start, schedule, places, jumps, parts)
         if found is not None:
-            return _resized(start, jumps, found, kept)
+            return _resized(start.motion, jumps, found, kept)
     return None
 
 
 def _timed(
-    start: Motion,
+    start: LinearisedPoses,
     schedule: ContactSchedule,
     places: FloatArray,
     jumps: tuple[Jump, ...],
@@ -119,18 +121,20 @@ def _timed(
 
     parts: of the way there, each from the motion and the durations that the one before found.
     """
-    motion, stretches = start, tuple(Stretch(j.take_off, j.landing, 1.0) for j in jumps)
+    first, poses = start.motion, start
+    motion, stretches = first, tuple(Stretch(j.take_off, j.landing, 1.0) for j in jumps)
     for part in range(1, parts + 1):
-        warp = TimeWarp.of(stretches, start.duration)
-        to = start.places + part / parts * (places - start.places)
+        warp = TimeWarp.of(stretches, first.duration)
+        to = first.places + part / parts * (places - first.places)
         standings = Standing.still(motion.places), Standing.still(to)
         moves = stance_moves(warp.schedule(schedule), *standings)
         carried = warm_start(motion, tuple(move.straight for move in moves))
         flights = [Interval(float(warp(j.take_off)), float(warp(j.landing))) for j in jumps]
-        found = find_durations(motion, carried, to, flights)
+        found = find_durations(poses, carried, to, flights)
         if found is None:
             return None
         motion = found.motion
+        poses = LinearisedPoses(motion, start.price)
         stretches = tuple(
             replace(whole, factor=whole.factor * one.factor)
             for whole, one in zip(stretches, found.stretches, strict=True)

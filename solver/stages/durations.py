@@ -15,7 +15,6 @@ x = x0, s = 0 is the solution exactly.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -23,17 +22,12 @@ from ..analysis.timeline import Stretch, TimeWarp
 from ..arrays import FloatArray
 from ..data.contacts import Interval
 from ..numerics.block_banded import BlockBanded
-from ..objectives.tracking_cost import CostWeights
 from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet
 from ..transcription.motion import Motion
 from ..transcription.rows import Rows
-from .fit import motion_metric
+from .fit import LinearisedPoses
 
-# As in an adaptation, but forces and the centre of mass only settle what no pose shows. The weight
-# of accelerations was chosen on the two broad jumps, where a third of the same performer tells how
-# much longer he flies; the ten hops of docs/pairs.md had no say.
-POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, force=1e-5)
 DERIVATIVE_STEP = 1e-4  # of s, of the finite differences of the rows
 PROBE = 0.03  # of s, for which D is taken: a step with its bounds is only piecewise linear in it
 MAX_STEP = 0.3  # of s in one step
@@ -51,16 +45,15 @@ class TimedMotion:
 
 
 def find_durations(
-    start: Motion, reference: FloatArray, places: FloatArray, flights: Sequence[Interval]
+    start: LinearisedPoses, reference: FloatArray, places: FloatArray, flights: Sequence[Interval]
 ) -> TimedMotion | None:
     """Durations of flights for contacts at other places, and the motion that goes with them.
 
     start: what it violates is let be. reference: x0 (K, n_block), of the same transcription,
     carried to places (n_contacts, 3) m. None where no such motion is found.
     """
-    problem = _BorderedProblem(start, places, tuple(flights))
-    metric = motion_metric(start, POSE_COST_WEIGHTS)
-    linearised = FeasibleSet(start.transcription, start.places).linearise(problem.rows, metric)
+    metric, linearised = start.metric, start.unpriced
+    problem = _BorderedProblem(start.motion, linearised.rows, places, tuple(flights))
     x, s = reference, np.zeros(len(flights))
     before = linearised.violation(problem.values(x, s))
     for steps in range(1, MAX_STEPS + 1):
@@ -70,6 +63,8 @@ def find_durations(
             break
     if not linearised.violation(problem.values(x, s)) < MAX_RATIO * before:
         return None
+    # By metres alone the least change twirls a neck by 70 degrees at the end of a clip.
+    x = reference + start.priced.step(problem.values(reference, s))[0]
     return TimedMotion(problem.feasible(s).motion(x), problem.stretches(s))
 
 
@@ -101,16 +96,12 @@ def _step(
 
 @dataclass(frozen=True)
 class _BorderedProblem:
-    """Rows by unknowns and durations."""
+    """Rows by unknowns and durations. rows: of the start, with the contacts where they are."""
 
     start: Motion
+    rows: Rows
     places: FloatArray
     flights: tuple[Interval, ...]
-
-    @cached_property
-    def rows(self) -> Rows:
-        """Of the start, with the contacts where they are."""
-        return self.start.transcription.rows(self.start.x, self.start.places)
 
     def stretches(self, s: FloatArray) -> tuple[Stretch, ...]:
         return tuple(

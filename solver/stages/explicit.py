@@ -20,13 +20,14 @@ from ..objectives.least_squares import (
     WeightedObjective,
     values_at_nodes,
 )
+from ..objectives.motion_metric import motion_target
 from ..objectives.tracking_cost import TrackingCost
 from ..optimisation.gauss_newton import minimise
 from ..optimisation.sqp import Outcome, Progress, restore
 from ..transcription.motion import Motion
 from ..transcription.sampling import MotionFunction
 from ..transcription.transcription import Transcription
-from .fit import ADAPT_COST_WEIGHTS, motion_target
+from .fit import ADAPT_COST_WEIGHTS
 from .setup import Setup
 
 DAMPING_SHARE = 0.02  # of what REFERENCE_DRIFT costs: Levenberg damping of the steps

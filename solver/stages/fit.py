@@ -11,7 +11,6 @@ import numpy as np
 
 from ..analysis.performance import Performance
 from ..arrays import FloatArray, IntArray
-from ..body.kinematics import forward_kinematics
 from ..data.contacts import Contact, ContactSchedule
 from ..data.requests import BodyChange
 from ..data.status import Status
@@ -19,12 +18,13 @@ from ..human.human_guard import HumanGuard, recorded_ranges
 from ..human.range_price import range_price
 from ..numerics.block_banded import BlockBanded
 from ..numerics.splines import SplineBasis
-from ..objectives.cost_to_go import EndTarget
 from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
-from ..objectives.tracking_cost import CostWeights, TrackingCost, TrackingTarget, marker_points
+from ..objectives.motion_metric import motion_metric
+from ..objectives.tracking_cost import CostWeights, TrackingCost
 from ..optimisation.gauss_newton import minimise
 from ..optimisation.guards import with_guards
+from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
 from ..solid.penetrations import Penetrations
 from ..solid.shape_changes import AS_IS, ShapeChanges
@@ -45,7 +45,9 @@ from .transcribe import initial_guess, recorded_target, transcribe
 # One g of the centre of mass's acceleration weighs like a decimetre: recordings are off by a tenth
 # of g and by a centimetre. One g of a limb's acceleration weighs like 1.6 cm, and a body weight of
 # force across the recorded direction like 3 cm.
-# Set beside force plates (docs/validation.md).
+# Set beside force plates (docs/validation.md). By metres alone a step turns the bones of a neck
+# against each other by degrees for half a millimetre of a pin, and bends the rows so much that it
+# leads nowhere; damped a little it does. Chosen on the five clips of `dev.py figures`.
 FIT_COST_WEIGHTS = CostWeights(
     position=1.0,
     acceleration_time=0.04,
@@ -55,6 +57,7 @@ FIT_COST_WEIGHTS = CostWeights(
     friction=1e-3,
     support=1e-3,
     goes_on=True,
+    damping=0.02,
 )
 # An adaptation keeps the shape; where the centre of mass goes is for physics to say. Forces
 # weigh too: what a person does to jump further is push longer, not only harder.
@@ -62,16 +65,24 @@ FIT_COST_WEIGHTS = CostWeights(
 ADAPT_COST_WEIGHTS = CostWeights(
     shape=1.0, com=0.02, acceleration_time=0.1, force=3e-3, support=1.0
 )
+# Durations are found by poses (durations.py): as in an adaptation, but forces and the centre of
+# mass only settle what no pose shows. The weight of accelerations was chosen on two broad jumps,
+# where a third tells how much longer the performer flies; the hops of docs/pairs.md had no say.
+POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, force=1e-5)
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
-MAX_PROJECTION_STEPS = 6
+MAX_PROJECTION_STEPS = 3  # undamped, from afar; on the refined knots Gauss-Newton steps go on
 MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
-MAX_IMPROVEMENTS = 4  # Gauss-Newton steps on the refined knots
+MAX_IMPROVEMENTS = 8  # Gauss-Newton steps on the refined knots
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
 # Tolerances, of the motions on the way to a fit: within a quarter of what tells a span weak.
 ON_THE_WAY = 5.0
 ADAPT_TOLERANCE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
+
+
+MetricOf = Callable[[Motion], BlockBanded]
+"""Metric W of the minimum-norm steps at a motion."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +103,41 @@ class SolvedMotion:
     @property
     def solved(self) -> bool:
         return self.outcome.status is Status.SOLVED
+
+
+@dataclass(frozen=True)
+class LinearisedPoses:
+    """A motion's rows, linearised by how far poses are apart. price: of turning joints, or None."""
+
+    motion: Motion
+    price: JointPrice | None
+
+    @cached_property
+    def metric(self) -> BlockBanded:
+        """W of the distance in metres, without the price."""
+        return motion_metric(self.motion, POSE_COST_WEIGHTS)
+
+    @property
+    def unpriced(self) -> LinearisedProblem:
+        """With that metric."""
+        return self._by_metres.renewed()
+
+    @property
+    def priced(self) -> LinearisedProblem:
+        """With a metric that counts what a change takes of the joints' ranges, where known."""
+        return (self._by_metres if self.price is None else self._by_ranges).renewed()
+
+    @cached_property
+    def _by_metres(self) -> LinearisedProblem:
+        return self._linearised(self.metric)
+
+    @cached_property
+    def _by_ranges(self) -> LinearisedProblem:
+        return self._linearised(motion_metric(self.motion, POSE_COST_WEIGHTS, self.price))
+
+    def _linearised(self, metric: BlockBanded) -> LinearisedProblem:
+        feasible = FeasibleSet(self.motion.transcription, self.motion.places)
+        return feasible.linearise(feasible.rows(self.motion.x), metric)
 
 
 @dataclass(frozen=True)
@@ -119,6 +165,11 @@ class Fit(SolvedMotion):
     def metric(self) -> BlockBanded:
         """Metric W of the minimum-norm steps of its adaptations, of a person."""
         return motion_metric(self.motion, ADAPT_COST_WEIGHTS, self.price)
+
+    @cached_property
+    def poses(self) -> LinearisedPoses:
+        """Its rows, as durations of its adaptations are sought with."""
+        return LinearisedPoses(self.motion, self.price)
 
     @cached_property
     def overlaps(self) -> Penetrations:
@@ -162,25 +213,24 @@ def fit(
     recorded = recorded_motion(performance, schedule, periodic=periodic, rides=rides)
     transcription, x, places = recorded.transcription, recorded.x, recorded.places
     human = HumanGuard(recorded_ranges(recorded), recorded)
-    tracking_cost = TrackingCost(
-        transcription, recorded_target(transcription, performance, schedule), FIT_COST_WEIGHTS
-    )
+    tracking_cost = _distance(transcription, performance, schedule)
     if transcription.seam is not None:
         x = transcription.seam.closed(x, tracking_cost.expand(x)[1])
     feasible = FeasibleSet(transcription, places)
     near = project(
         feasible, tracking_cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
     )
-    metric = tracking_cost.expand(near.x)[1]
+    price = range_price(recorded)
+    metric_of = partial(motion_metric, weights=FIT_COST_WEIGHTS, price=price)
+    metric = metric_of(feasible.motion(near.x))
     outcomes, last = [near], near
     for _ in range(1 + MAX_PLACE_UPDATES):
         last = restore(feasible, metric, last.x, stage="fit", enough=ON_THE_WAY, progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
-            outcomes += refine(
-                last, fit_metric, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress
-            )
-            outcomes += _improved(outcomes[-1], performance, schedule, human, progress)
+            outcomes += refine(last, metric_of, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress)
+            cost = _distance(outcomes[-1].transcription, performance, schedule, price)
+            outcomes += _improved(outcomes[-1], cost, metric_of, performance, human, progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
         feasible = replace(feasible, places=places)
@@ -208,10 +258,22 @@ def recorded_motion(
     return Motion(transcription, x, settled_places(transcription, places))
 
 
-def _improved(
-    outcome: Outcome,
+def _distance(
+    transcription: Transcription,
     performance: Performance,
     schedule: ContactSchedule,
+    price: JointPrice | None = None,
+) -> TrackingCost:
+    """The distance to the recording on a transcription."""
+    target = recorded_target(transcription, performance, schedule)
+    return TrackingCost(transcription, target, FIT_COST_WEIGHTS, price)
+
+
+def _improved(
+    outcome: Outcome,
+    cost: TrackingCost,
+    metric_of: MetricOf,
+    performance: Performance,
     human: HumanGuard,
     progress: Progress | None,
 ) -> list[Outcome]:
@@ -219,18 +281,16 @@ def _improved(
 
     And in the ranges of joints, where such a motion is found; else what was refined, all rows met.
     """
-    t = outcome.transcription
-    cost = TrackingCost(t, recorded_target(t, performance, schedule), FIT_COST_WEIGHTS)
-    feasible = FeasibleSet(t, outcome.places)
+    feasible = FeasibleSet(outcome.transcription, outcome.places)
     nearer = minimise(
         feasible, cost, outcome.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
     )
     metric = cost.expand(nearer.x)[1]
     restored = _restored(feasible, metric, nearer.x, human, performance, progress)
     if not restored.solved:
-        metric = fit_metric(feasible.motion(outcome.x))
+        metric = metric_of(feasible.motion(outcome.x))
         return [restore(feasible, metric, outcome.x, stage="fit", progress=progress)]
-    return [nearer, restored, *refine(restored, fit_metric, ADAPT_TOLERANCE, progress=progress)]
+    return [nearer, restored, *refine(restored, metric_of, ADAPT_TOLERANCE, progress=progress)]
 
 
 def _restored(
@@ -284,7 +344,7 @@ def settled_places(transcription: Transcription, places: FloatArray) -> FloatArr
 
 def refine(
     outcome: Outcome,
-    metric_of: Callable[[Motion], BlockBanded],
+    metric_of: MetricOf,
     tolerance: DenseTolerance,
     *,
     basis: FloatArray | None = None,
@@ -335,38 +395,3 @@ def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
         )
     x[~new.active] = 0.0
     return Motion(new, x, motion.places)
-
-
-def fit_metric(motion: Motion) -> BlockBanded:
-    """Metric W of the minimum-norm steps of a fit."""
-    return motion_metric(motion, FIT_COST_WEIGHTS)
-
-
-def motion_metric(
-    motion: Motion, weights: CostWeights, price: JointPrice | None = None
-) -> BlockBanded:
-    """Metric W at a motion: Gauss-Newton Hessian of the tracking cost to itself."""
-    cost = TrackingCost(motion.transcription, motion_target(motion), weights, price)
-    return cost.expand(motion.x)[1]
-
-
-def motion_target(motion: Motion) -> TrackingTarget:
-    """A motion as a tracking target."""
-    t = motion.transcription
-    com = t.basis.combine(motion.x[:, t.layout.com], t.node_times)
-    q, a = (t.angles_at_nodes(motion.x, k) for k in (0, 2))
-    markers = forward_kinematics(t.character, q).points(marker_points(t.character)) + com[:, None]
-    com_acceleration = t.basis.combine(motion.x[:, t.layout.com], t.node_times, 2)
-    level = np.zeros((t.basis.n_coefficients, 2))
-    forces = motion.x[:, t.layout.forces]
-    return TrackingTarget(markers, com, q, a, com_acceleration, forces, level, _ends(motion))
-
-
-def _ends(motion: Motion) -> EndTarget:
-    """A motion's first and last instant as a target."""
-    t = motion.transcription
-    times, points = t.basis.breaks[[0, -1]], marker_points(t.character)
-    value, rate = (t.basis.combine(motion.x[:, t.layout.motion], times, k) for k in (0, 1))
-    relative = forward_kinematics(t.character, value[:, t.layout.angles]).points(points)
-    com = t.layout.com
-    return EndTarget(relative + value[:, None, com], rate[:, com], rate[:, t.layout.angles])

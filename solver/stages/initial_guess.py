@@ -32,6 +32,8 @@ def resampled_fit(
     same = context.timeline.unchanged and coarse is None and not added
     if same and len(schedule.contacts) == len(t.contacts):
         contacts = tuple(detailed_contact(c, problem, context, None) for c in t.contacts)
+        if all(new is old for new, old in zip(contacts, t.contacts, strict=True)):
+            return reference
         return replace(reference, transcription=replace(t, contacts=contacts))
     points, which = body_points(t.character, context.recording, schedule)
     plain, extra = point_contacts(schedule, which)

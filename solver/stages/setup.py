@@ -35,6 +35,7 @@ from ..inverse_kinematics.reseat import reseat
 from ..numerics.block_banded import BlockBanded
 from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
+from ..objectives.motion_metric import motion_metric
 from ..objectives.tracking_cost import CostWeights
 from ..optimisation.guards import Guard
 from ..optimisation.reduction import ReducedSpace, reduce
@@ -47,7 +48,7 @@ from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
 from .anticipation import anticipate, changed_jumps
-from .fit import ADAPT_COST_WEIGHTS, Fit, motion_metric
+from .fit import ADAPT_COST_WEIGHTS, Fit, LinearisedPoses
 from .footing import check_sunk, on_faces, pin_turns
 from .initial_guess import resampled_fit
 from .platforms import find_standing, recorded_in
@@ -242,12 +243,12 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     """
     asked, requests = requested(fit, problem), problem.requests
     context, start, target, reference = asked.context, asked.start, asked.target, asked.reference
-    durations = Durations.MOVING_GROUND
+    durations, price = Durations.MOVING_GROUND, _price(fit, reference, requests)
     if not target.moves:  # the ground's clock is no jumper's to stretch
-        context, start, durations = _anticipated(fit, problem, context, start, target.places)
+        context, start, durations = _anticipated(fit, problem, context, start, target.places, price)
     start = _with_constraints(_riding(start, asked.fitted, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
-    weights, price = _cost_weights(requests), _price(fit, reference, requests)
+    weights = _cost_weights(requests)
     kept = same and weights is ADAPT_COST_WEIGHTS and price is not None
     metric = fit.metric if kept else motion_metric(start, weights, price)
     if _weighs_torques(requests):
@@ -283,6 +284,7 @@ def _anticipated(
     context: EvaluationContext,
     start: Motion,
     target: FloatArray,
+    price: JointPrice | None,
 ) -> tuple[EvaluationContext, Motion, Durations]:
     """Context and initial guess with the durations that go with where the contacts shall be."""
     requests = problem.requests
@@ -294,7 +296,9 @@ def _anticipated(
     jumps = changed_jumps(start, context.schedule, target, kept)
     if not jumps:
         return context, start, Durations.RECORDED
-    found = anticipate(start, context.schedule, target, kept, jumps)
+    own = start is fit.motion and price is fit.price
+    poses = fit.poses if own else LinearisedPoses(start, price)
+    found = anticipate(poses, context.schedule, target, kept, jumps)
     if found is None:
         return context, start, Durations.NONE_FOUND
     warp = TimeWarp.of(found.stretches, start.duration)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hangtime.solver.numerics.splines import SplineBasis, gauss_instants
 from hangtime.solver.objectives.cost_to_go import CostToGo
+from hangtime.solver.objectives.motion_metric import motion_target
 from hangtime.solver.objectives.tracking_cost import marker_points
-from hangtime.solver.stages.fit import motion_target
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.toy_problems import places, random_state, standing
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hangtime.solver.objectives.joint_price import JointPrice
+from hangtime.solver.objectives.motion_metric import motion_target
 from hangtime.solver.objectives.tracking_cost import (
     CostWeights,
     TrackingCost,
     TrackingTarget,
     marker_points,
 )
-from hangtime.solver.stages.fit import motion_target
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.toy_problems import figure, places, random_state, standing
 

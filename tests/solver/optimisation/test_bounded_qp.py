@@ -173,10 +173,18 @@ class Problem:
         return np.linalg.solve(root.T, -residual[:-1] / residual[-1]).reshape(self.G.shape[1:])
 
 
+def corrected(problem: Problem, bounded: BoundedStep) -> np.ndarray:
+    """Of no step at all."""
+    still = np.zeros(problem.G.shape[1:])
+    change, reached = bounded.correct(still, problem.z, problem.times)
+    assert reached == pytest.approx(problem.z + problem.times(change))
+    return change
+
+
 def settled(problem: Problem, bounded: BoundedStep) -> np.ndarray:
     """As often corrected as the sweeps of a step would, for the rows' softness to vanish."""
     for _ in range(4):
-        change = bounded.correct(problem.z, problem.times)
+        change = corrected(problem, bounded)
     return change
 
 
@@ -214,7 +222,7 @@ def test_a_step_within_its_bounds_is_left_alone() -> None:
     problem = Problem(1, 6, 5)
     problem.lower, problem.upper = problem.z - 1.0, problem.z + 1.0
     bounded = problem.step()
-    assert not bounded.correct(problem.z, problem.times).any()
+    assert not corrected(problem, bounded).any()
     assert not bounded.working.any()
 
 
@@ -233,7 +241,7 @@ def test_a_program_without_an_answer_leaves_the_step_as_it_is(
     with monkeypatch.context() as lost:
         lost.setattr(bounded_qp, "multipliers_by_active_set", lambda *_: None)
         lost.setattr(bounded_qp, "solve_dual_qp", no_answer)
-        assert not bounded.correct(problem.z, problem.times).any()
+        assert not corrected(problem, bounded).any()
         assert len(asked) == 1
         assert not bounded.working.any()
     best = problem.reference()

@@ -101,9 +101,10 @@ def test_contacts_are_the_other_sides_and_forces_too(subjects: tuple[Subject, Su
     forces = [motion.forces(times) for motion in fits]
     places = [{c.contact.point: c.point for c in motion.transcription.contacts} for motion in fits]
     weight = forces[0].sum(axis=1)[:, 2].mean()
+    # Times may be 2 ms apart, in which a force rises by a tenth of the weight or more.
     for name, point in places[0].items():
         mine, theirs = forces[0][:, point, 2], forces[1][:, places[1][other_side(name)], 2]
-        assert np.abs(mine - theirs).max() < 0.1 * weight
+        assert np.abs(mine - theirs).max() < 0.15 * weight
         assert np.abs(mine - forces[1][:, places[1][name], 2]).max() > 0.1 * weight
 
 
