@@ -120,12 +120,12 @@ def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | 
         attempts.append(_attempt(setup, 2**harder, progress, limbs=limbs, giving_up=giving_up))
         arrived = [attempt for attempt in attempts if attempt.arrived]
         enough = len(arrived) == MAX_ARRIVALS or any(
-            each.over == 0.0 or each.over > HOPELESS for each in arrived
+            (each.over == 0.0 and not each.missed) or each.over > HOPELESS for each in arrived
         )
         iterations = sum(len(outcome.steps) for each in attempts for outcome in each.outcomes)
         if enough or iterations > MAX_SQP_ITERATIONS:
             break
-    best = min(arrived, key=lambda each: each.over, default=None)
+    best = min(arrived, key=lambda each: (each.missed, each.over), default=None)
     outcomes = [o for each in attempts if each is not best for o in each.outcomes]
     if best is None:
         return _best_feasible(max(attempts, key=lambda each: each.reached), outcomes, fit, setup)
@@ -171,13 +171,15 @@ class ContinuationAttempt:
     """Outcomes of one continuation attempt, and the number of steps that it was to have.
 
     closed: outcomes after the last step, that hold between the nodes too. over: by how many
-    tolerances the last goes beyond its guards, which are given up where they hold it back.
+    tolerances the last goes beyond its guards, which are given up where they hold it back. missed:
+    whether it misses a constraint between the nodes.
     """
 
     steps_taken: tuple[Outcome, ...]
     steps: int
     closed: tuple[Outcome, ...] = ()
     over: float = 0.0
+    missed: bool = False
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -208,7 +210,9 @@ def _attempt(
         return attempt
     closed = close_between_nodes(attempt.outcomes[-1], setup, progress)
     attempt = replace(attempt, closed=tuple(closed))
-    return replace(attempt, over=_beyond(attempt.outcomes[-1], setup, setup.guards))
+    last = attempt.outcomes[-1]
+    over = _beyond(last, setup, setup.guards)
+    return replace(attempt, over=over, missed=misses_a_constraint(last))
 
 
 def _best_feasible(
