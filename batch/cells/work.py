@@ -78,7 +78,7 @@ def adapt_cell(
     require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
     forms = [form for output, form in FORMS.items() if output in settings.outputs]
     if loaded.scene is not None:
-        require_place(loaded.scene, wanted)
+        require_place(loaded.scene, wanted, recipe.loop)
         for form in forms:
             require_exported(loaded.scene, outbox.folder, replace(export, format=form))
     for line in _doubts(recipe.problem, loaded.subject):

@@ -164,7 +164,7 @@ def adapt(options: argparse.Namespace) -> None:
     with Outbox(options.out) as outbox:
         loaded = load(clip, problem, stages, recipe.repairs)
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
-        require_place(loaded, wanted)
+        require_place(loaded, wanted, recipe.loop)
         require_exported(loaded, options.out, export)
         _ask_about(problem, loaded)
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)

@@ -47,11 +47,12 @@ def require_exported(clip: LoadedClip, folder: Path, export: ExportOptions) -> N
     require_exportable(clip.armature, path, export)
 
 
-def require_place(clip: LoadedClip, wanted: ResultOptions) -> None:
+def require_place(clip: LoadedClip, wanted: ResultOptions, loop: LoopOptions | None) -> None:
     """Before a solve takes its seconds. Raises NoNewSlot."""
     from ...bridge.takes.write_result import require_slot
 
-    if wanted.written_as is WrittenAs.SLOT:
+    apart = loop is not None or clip.subject.problem.requests.body.limbs
+    if wanted.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own
         require_slot(clip.armature)
 
 

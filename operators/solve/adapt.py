@@ -180,13 +180,14 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
         raise ChangedMeanwhile(armature.name, while_solving=False)
     options = result_options(settings)
     require_return_after(options, span_of(settings, recording)[1])
-    if options.written_as is WrittenAs.SLOT:
-        require_slot(armature)
     _require_loopable(armature)
     yield from require_writable(armature, recording, span_of(settings, recording))
     scene = yield from read_surfaces(armature, recording.frames)
     skin = (yield from read_bound(armature, recording.frames)).skin
     problem = problem_of(settings, recording, scene.objects, skin=skin)
+    apart = loop_options(settings) is not None or problem.requests.body.limbs
+    if options.written_as is WrittenAs.SLOT and not apart:  # those are actions of their own
+        require_slot(armature)
     return Asked(armature.name, armature.session_uid, recording, problem, scene)
 
 

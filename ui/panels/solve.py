@@ -94,6 +94,7 @@ class TakePanel(ArmaturePanel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = split(self)
         options = settings_in(context).result
+        layout.active = not settings_in(context).loop.use  # a loop is an action of its own
         layout.prop(options, "after")
         if options.after == After.RETURN.name:
             optional(layout, options, "use_return_frame", "By Frame", "return_frame")
