@@ -10,7 +10,7 @@ from functools import partial
 import bpy
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.faults import NoControls
 from ...solver.data.recording import PoseTrack
 from ..accessors import current_scene
@@ -46,6 +46,12 @@ class ControlRig:
     def posing(self) -> Posing:
         """To pose them."""
         return Posing(self.armature, self.controls, self.bodies)
+
+    def followers(self, control: str) -> BoolArray:
+        """(B,) the bodies that any degree of freedom of a control moves."""
+        index, responses = self.controls.index(control), self.responses
+        own = [d for d, dof in enumerate(responses.dofs) if dof.control == index]
+        return np.asarray(responses.follow[own].any(0))
 
 
 @dataclass(frozen=True)

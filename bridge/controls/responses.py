@@ -178,21 +178,21 @@ def _turned(before: FloatArray, after: FloatArray) -> FloatArray:
 
 def apart(responses: Responses) -> list[list[tuple[Dof, BoolArray]]]:
     """The dofs in as few groups as come by themselves of which no two share a follower."""
-    groups: list[tuple[list[tuple[Dof, BoolArray]], BoolArray]] = []
-    order = np.argsort(-responses.follow.sum(1), kind="stable")
-    for d in order:
-        dof, of = responses.dofs[d], responses.follow[d]
-        free = next(
-            (
-                g
-                for g in groups
-                if not (g[1] & of).any() and all(dof.control != o.control for o, _ in g[0])
-            ),
-            None,
-        )
+    dofs, follow = responses.dofs, responses.follow
+    controls = np.eye(1 + max(dof.control for dof in dofs), dtype=bool)
+    moved = [np.append(of, controls[dof.control]) for dof, of in zip(dofs, follow, strict=True)]
+    return [[(dofs[d], follow[d]) for d in group] for group in disjoint(moved)]
+
+
+def disjoint(sets: Sequence[BoolArray]) -> list[list[int]]:
+    """Sets (M,) of things, by index, in as few groups as come by themselves of which no two share
+    one; the largest first."""
+    groups: list[tuple[list[int], BoolArray]] = []
+    for i in np.argsort([-own.sum() for own in sets], kind="stable").tolist():
+        free = next((group for group in groups if not (group[1] & sets[i]).any()), None)
         if free is None:
-            groups.append(([(dof, of)], of.copy()))
+            groups.append(([i], sets[i].copy()))
         else:
-            free[0].append((dof, of))
-            free[1][:] |= of
+            free[0].append(i)
+            free[1][:] |= sets[i]
     return [group for group, _ in groups]

@@ -1,41 +1,44 @@
 """The keyed figure of a rig that controls pose: what their channels move of its bodies, as tried.
 
-What a rig does between controls and bodies nobody tells, so it is measured at every frame
-(`controls/responses.py`), and keys are judged by the bodies, as Blender evaluates them.
+What a rig does between controls and bodies nobody tells, so each channel is tried at every frame,
+and keys are judged by the bodies, as Blender evaluates them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from ...solver.arrays import FloatArray, IntArray
+from ...solver.arrays import BoolArray, FloatArray, IntArray
+from ...solver.numerics.rotations import rotation_vector
 from ..accessors import armature_data, current_scene
 from ..armature import fcurves
 from ..armature.channels import proper
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import metres_per_unit
 from ..controls.control_rig import ControlRig
-from ..controls.responses import Dof, Freedom, apart, measured
+from ..controls.posing import Posing
+from ..controls.responses import Freedom, disjoint
 from ..recipe.keys import KeyOptions
 from .bone_channels import BoneChannels, KeyedParts, sampled_channels
 from .events import KeyEvents
 from .figure import CarriedParts, Errors
-from .pose_figure import PLANTED, STEP, angles_between, nearest_frames
+from .pose_figure import PLANTED, angles_between, nearest_frames
+
+STEP = 0.001  # of a channel, by which it is tried
+STILL = 1e-6  # of a channel; one that changes by less is off by less, whatever its keys
 
 
 @dataclass(frozen=True)
 class Tried:
-    """What D dofs do to B bodies at a frame: turns (D, B, 3) rad and shifts (D, B, 3) m, world, for
-    a radian, a unit or a whole size of each. bases: (C, 4, 4) of the controls. rotations (B, 3, 3),
-    heads (B, 3) m: of the bodies, world."""
+    """What N channels of controls, one after the other, do to B bodies at a frame: turns (N, B, 3)
+    rad and shifts (N, B, 3) m, world, for a unit of each. rotations (B, 3, 3), heads (B, 3) m: of
+    the bodies, world."""
 
     turns: FloatArray
     shifts: FloatArray
-    bases: FloatArray
     rotations: FloatArray
     heads: FloatArray
 
@@ -97,42 +100,42 @@ class PosedControls:
         edges = [frame for point in planted for frame in (point.first, point.last)]
         fixed = nearest_frames(self.frames, events.columns)
         feet = nearest_frames(self.frames, (*events.columns, *edges))
-        bodies = {self.bones.index(point.bone) for point in planted}
+        bodies = [self.bones.index(point.bone) for point in planted]
+        last = np.cumsum([own.values.shape[1] for own in self.channels])
         controls = []
-        for own in self.channels:
-            turns, places = self._effects(own, turned, owners)
-            moved = np.flatnonzero(np.abs(turns).max((0, 1, 3)) > 0.0)
-            leads = bool(bodies & set(moved.tolist())) and len(moved) < len(self.bones) // 2
-            controls.append(KeyedControl(own.values, feet if leads else fixed, turns, places))
+        for own, stop in zip(self.channels, last.tolist(), strict=True):
+            columns = slice(stop - own.values.shape[1], stop)
+            turns, places = self._effects(columns, turned, owners)
+            of = self.rig.followers(own.bone)
+            leads = bool(of[bodies].any()) and of.sum() < len(self.bones) // 2
+            carried = CarriedParts(np.flatnonzero(of), np.flatnonzero(of[owners]))
+            columns_of = feet if leads else fixed
+            controls.append(KeyedControl(own.values, columns_of, turns, places, carried))
         return ControlFigure(
             self.frames, tuple(controls), heads[:, owners] + turned, distances, error.angle
         )
 
     def _effects(
-        self, own: BoneChannels, arms: FloatArray, owners: list[int]
+        self, columns: slice, arms: FloatArray, owners: list[int]
     ) -> tuple[FloatArray, FloatArray]:
-        """Turns (T, n, B, 3) of bodies and displacements (T, n, P, 3) of points, world, by channel
-        of a control. arms: (T, P, 3) from the owners' heads."""
-        control = self.rig.controls.index(own.bone)
-        dofs = self.rig.responses.dofs
-        rows = [d for d, dof in enumerate(dofs) if dof.control == control]
-        amounts = _amounts(own, [dofs[d] for d in rows])
-        turns = np.stack([each.turns[rows] for each in self.tried])
-        shifts = np.stack([each.shifts[rows] for each in self.tried])
-        turned = np.einsum("tnd,tdbi->tnbi", amounts, turns)
-        moved = np.einsum("tnd,tdbi->tnbi", amounts, shifts)[:, :, owners]
-        return turned, moved + np.cross(turned[:, :, owners], arms[:, None])
+        """Turns (T, n, B, 3) of bodies and displacements (T, n, P, 3) of points, world, by some of
+        all channels. arms: (T, P, 3) from the owners' heads."""
+        turns = np.stack([each.turns[columns] for each in self.tried])
+        shifts = np.stack([each.shifts[columns] for each in self.tried])
+        return turns, shifts[:, :, owners] + np.cross(turns[:, :, owners], arms[:, None])
 
 
 @dataclass(frozen=True)
 class KeyedControl:
     """Channels of a control. samples: (T, n). fixed: frames that get a key in any case. turns:
-    (T, n, B, 3) of bodies and places: (T, n, P, 3) of points, world, by channel."""
+    (T, n, B, 3) of bodies and places: (T, n, P, 3) of points, world, by channel. carried: those
+    that follow the control."""
 
     samples: FloatArray
     fixed: tuple[float, ...]
     turns: FloatArray
     places: FloatArray
+    carried: CarriedParts
 
 
 @dataclass(frozen=True)
@@ -148,10 +151,10 @@ class ControlFigure:
     distances: FloatArray
     angle: float
 
-    @cached_property
+    @property
     def carried(self) -> tuple[CarriedParts, ...]:
         """By control the bodies and the points that it moves."""
-        return tuple(CarriedParts(_moved(own.turns), _moved(own.places)) for own in self.bones)
+        return tuple(own.carried for own in self.bones)
 
     def no_errors(self) -> Errors:
         """Zero at every frame."""
@@ -177,33 +180,78 @@ def posed_controls(
     rig: ControlRig, curves: fcurves.CurveHolder, frames: FloatArray
 ) -> Incremental[PosedControls]:
     """The controls of a rig as curves have them, tried at frames (T,), in slices."""
-    posing, groups = rig.posing, apart(rig.responses)
-    order = [dof for group in groups for dof, _ in group]
-    rows = [order.index(dof) for dof in rig.responses.dofs]
+    posing, index = rig.posing, {float(frame): t for t, frame in enumerate(frames)}
 
-    def look(part: FloatArray) -> list[Tried]:
+    def animated(part: FloatArray) -> list[FloatArray]:
         with posing.kept():
-            return [tried(float(frame)) for frame in part]
+            return [at(float(frame)) for frame in part]
 
-    def tried(frame: float) -> Tried:
+    def at(frame: float) -> FloatArray:
         posing.go_to(frame)
-        bases = posing.bases()
-        responses, posed = measured(posing, bases, groups), posing.look()
-        to_world = _to_world(posing.object_to_world())
-        turns, shifts = responses.columns(posed, bases)
-        turns = turns[rows] @ proper(to_world[:3, :3]).T
-        return Tried(
-            turns, shifts[rows] @ to_world[:3, :3].T, bases, *_in_world(to_world, posed.bodies)
-        )
+        return posing.bases()
 
-    parts = yield from in_slices(frames, look)
-    found = tuple(each for part in parts for each in part)
-    bases = np.stack([each.bases for each in found])
+    parts = yield from in_slices(frames, animated)
+    bases = np.stack([each for part in parts for each in part])
     channels = tuple(
         sampled_channels(rig.armature, name, _keyed(rig, name), bases[:, c], curves, frames)
         for c, name in enumerate(rig.controls)
     )
-    return PosedControls(rig, frames, channels, found)
+    groups = _groups(rig, channels)
+    count = sum(own.values.shape[1] for own in channels)
+
+    def look(part: FloatArray) -> list[Tried]:
+        with posing.kept():
+            return [_tried(posing, at(float(f)), groups, count, index[float(f)]) for f in part]
+
+    tried = yield from in_slices(frames, look)
+    return PosedControls(rig, frames, channels, tuple(each for part in tried for each in part))
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """A channel changed by a step. row: its own, of the channels of all controls. bases: (T, 4, 4)
+    of its control then. of: (B,) the bodies that follow this control."""
+
+    row: int
+    control: int
+    bases: FloatArray
+    of: BoolArray
+
+
+def _groups(rig: ControlRig, channels: tuple[BoneChannels, ...]) -> list[list[_Trial]]:
+    """Trials of the channels that change, locked ones too: a take may turn what the interface does
+    not. Those that are tried at once move no body in common."""
+    trials, row = [], 0
+    for control, own in enumerate(channels):
+        of, changes = rig.followers(own.bone), np.ptp(own.values, axis=0)
+        for step, change in zip(STEP * np.eye(len(changes)), changes, strict=True):
+            if change > STILL:
+                trials.append(_Trial(row, control, own.basis_of(own.values + step), of))
+            row += 1
+    mine = np.eye(len(channels), dtype=bool)
+    moved = [np.append(trial.of, mine[trial.control]) for trial in trials]
+    return [[trials[i] for i in group] for group in disjoint(moved)]
+
+
+def _tried(
+    posing: Posing, bases: FloatArray, groups: list[list[_Trial]], count: int, t: int
+) -> Tried:
+    """What channels, that many, do at the frame that is shown, of index t. bases: (C, 4, 4)."""
+    for control, basis in enumerate(bases):
+        posing.pose(control, basis)
+    to_world = _to_world(posing.object_to_world())
+    rotations, heads = _in_world(to_world, posing.look().bodies)
+    turns, shifts = np.zeros((2, count, *heads.shape))
+    for group in groups:
+        for trial in group:
+            posing.pose(trial.control, trial.bases[t])
+        turned, moved = _in_world(to_world, posing.look().bodies)
+        turn = rotation_vector(turned @ np.swapaxes(rotations, 1, 2)) / STEP
+        for trial in group:
+            posing.pose(trial.control, bases[trial.control])
+            turns[trial.row, trial.of] = turn[trial.of]
+            shifts[trial.row, trial.of] = (moved - heads)[trial.of] / STEP
+    return Tried(turns, shifts, rotations, heads)
 
 
 def _keyed(rig: ControlRig, name: str) -> KeyedParts:
@@ -211,31 +259,6 @@ def _keyed(rig: ControlRig, name: str) -> KeyedParts:
     parts = used[name]
     turns = Freedom.TURN in parts or name in rig.carriers
     return KeyedParts(turns, Freedom.SHIFT in parts, Freedom.SIZE in parts)
-
-
-def _amounts(own: BoneChannels, dofs: list[Dof]) -> FloatArray:
-    """(T, n, D) by how much each dof of a control changes with each channel."""
-    count, width = own.values.shape
-    found = np.zeros((count, width, len(dofs)))
-    linear = np.linalg.inv(own.basis_of(own.values)[:, :3, :3])
-    for k, step in enumerate(STEP * np.eye(width)):
-        ahead, back = (own.basis_of(own.values + sign * step) for sign in (1.0, -1.0))
-        change = (ahead - back) / (2.0 * STEP)
-        inner = linear @ change[:, :3, :3]  # in the axes of the basis
-        for d, dof in enumerate(dofs):
-            if dof.freedom is Freedom.SHIFT:
-                found[:, k, d] = change[:, dof.axis, 3]
-            elif dof.freedom is Freedom.SIZE:
-                found[:, k, d] = np.trace(inner, axis1=1, axis2=2) / 3.0
-            else:
-                j, n = (dof.axis + 1) % 3, (dof.axis + 2) % 3
-                found[:, k, d] = (inner[:, n, j] - inner[:, j, n]) / 2.0
-    return found
-
-
-def _moved(effects: FloatArray) -> IntArray:
-    """Indices of what (T, n, M, 3) effects are on."""
-    return np.asarray(np.flatnonzero(np.abs(effects).max((0, 1, 3)) > 0.0))
 
 
 def _to_world(object_to_world: FloatArray) -> FloatArray:
