@@ -169,7 +169,7 @@ class ResultPanel(ArmaturePanel):
             show.action = take.action.name
             for _ in range(take.depth - 1):
                 row.label(text="", icon="BLANK1")
-            row.prop(take.action, "name", text="", emboss=False)
+            row.prop(action_settings(take.action), "called", text="", emboss=False)
             end = row.row(align=True)
             end.alignment = "RIGHT"
             if take.source is None:

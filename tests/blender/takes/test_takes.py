@@ -105,6 +105,24 @@ def test_a_second_result_builds_on_the_first(armature: bpy.types.Object) -> None
     ]
 
 
+def test_the_list_of_takes_leaves_the_recordings_name_out(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    recording.name = "jump"
+    first = adapt(armature, 10, 20, 0.1)
+    start_from_result(armature, first)
+    second = adapt(armature, 24, 40, 0.2)
+
+    def listed() -> list[str]:
+        return [take.action.hangtime.called for take in takes_of(armature)]
+
+    assert listed() == ["jump", "adapted", "adapted 2"]
+    second.hangtime.called = "adapted 2"  # as it is told already
+    assert second.name == "jump adapted 2"
+    first.hangtime.called = "soft landing"
+    assert first.name == "soft landing"
+    assert listed() == ["jump", "soft landing", "adapted 2"]
+
+
 def test_a_result_is_compared_with_what_it_was_made_from(armature: bpy.types.Object) -> None:
     recording = current_action(armature)
     assert compared(armature) is None
