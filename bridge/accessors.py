@@ -50,6 +50,15 @@ def source_of(action: bpy.types.Action) -> bpy.types.Action | None:
     return recording
 
 
+def called(action: bpy.types.Action) -> str:
+    """A take's name as its list has it: without the recording's, with which results' names begin,
+    so that there is room for what tells them apart."""
+    root = action
+    while (source := source_of(root)) is not None:
+        root = source
+    return action.name.removeprefix(f"{root.name} ")
+
+
 def armature_data(armature: bpy.types.Object) -> bpy.types.Armature:
     """The armature's bones at rest, and how they are shown."""
     assert isinstance(armature.data, bpy.types.Armature)

@@ -16,6 +16,8 @@ from ..rows.stored import DIGITS, angle, boolean, frame, number, position, targe
 from . import stances
 from .surface import has_faces
 
+SHOWN = 3  # decimals of a length, as while a pin is dragged; Blender would show 0.004764 m
+
 
 def _is_empty(_owner: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
     return bool(candidate.type == "EMPTY")
@@ -70,11 +72,16 @@ class HangtimeContact(bpy.types.PropertyGroup):
     )
 
 
+def _shown(length: float) -> float:
+    """A length as the artist reads it; what is stored keeps all digits, and so do solves."""
+    return round(float(length), SHOWN) + 0.0  # no zero has a minus
+
+
 def _shift(axis: int, name: str, description: str) -> Any:
     """A stance's shift along one of its axes."""
 
     def get(stance: HangtimeStance) -> float:
-        return float(stance.shifted[axis])
+        return _shown(stance.shifted[axis])
 
     def put(stance: HangtimeStance, to: float) -> None:
         shifted = list(stance.shifted)

@@ -6,13 +6,14 @@ Lengths are in Blender units, world; frames are the scene's; angles in rad.
 from __future__ import annotations
 
 from math import pi
+from typing import cast
 
 import bpy
 
 from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.problem import MassTable
 from ...solver.data.solver_options import ShapeSource
-from ..accessors import attached
+from ..accessors import attached, called, present
 from ..rows.finding import CLASSES as FINDING_CLASSES
 from ..rows.finding import HangtimeFinding
 from ..rows.row import CLASSES as ROW_CLASSES
@@ -316,6 +317,15 @@ class HangtimeAskedFor(bpy.types.PropertyGroup):
     target: declared(target(type=bpy.types.ID), options=HIDDEN)
 
 
+def _get_called(made: HangtimeAction) -> str:
+    return called(cast(bpy.types.Action, made.id_data))
+
+
+def _set_called(made: HangtimeAction, to: str) -> None:
+    if to not in ("", _get_called(made)):
+        present(made.id_data).name = to
+
+
 class HangtimeAction(bpy.types.PropertyGroup):
     """Of an adapted action: the take that it was made from, how, and what was found.
 
@@ -325,6 +335,8 @@ class HangtimeAction(bpy.types.PropertyGroup):
     the settings, of the take's keys and of its own when it was made. asked_targets: the data-blocks
     that the settings pointed to then. spans: the frames of all adaptations that it holds.
     """
+
+    called: declared(text("Name", get=_get_called, set=_set_called), options=HIDDEN)
 
     recording: declared(target(type=bpy.types.Action), options=HIDDEN)
     maker: declared(target(), options=HIDDEN)

@@ -44,6 +44,15 @@ def required_result(context: bpy.types.Context) -> bpy.types.Action:
     return present(result_of(required_armature(context)))
 
 
+def compared(armature: bpy.types.Object) -> tuple[bpy.types.Action, bpy.types.Action] | None:
+    """What a result was made from, and the result; None where another armature performs it, or the
+    result itself is what the next one is made from."""
+    result, recorded = result_of(armature), recorded_action(armature)
+    if result is None or recorded in (None, result) or performer_of(armature) != armature:
+        return None
+    return present(recorded), result
+
+
 def performer_of(armature: bpy.types.Object) -> bpy.types.Object:
     """Who performs the result: the armature, or one of other proportions."""
     performer: bpy.types.Object | None = action_settings(present(result_of(armature))).performer

@@ -101,17 +101,19 @@ def lay_out(
     """Rows at the foot of an editor; the last alone, with the doubts over it, where it is low; None
     where it is too low.
 
-    In Blender's usual layout nothing is free: there the last row reaches a little over the strip
-    with the frames' numbers, at whose foot there are none.
+    In Blender's usual layout nothing is free: there the last row lies over the strip with the
+    frames' numbers, at whose foot there are none, or where even that is not free at its top.
     """
     bottom = (MARKERS if markers else SCROLLER) * scale
     free = height - SCRUBBING * scale - bottom
-    if not rows or free <= -LOWEST * scale:
+    if not rows or height < SCRUBBING * scale:
         return None
     each = min(TALLEST * scale, free / len(rows))
     if each >= LOWEST * scale:
         return Bars(rows, axis, bottom, each, scale)
     alone = min(max(free, LOWEST * scale), TALLEST * scale)
+    if free <= -LOWEST * scale:
+        bottom = height - alone
     return Bars((_in_one(rows),), axis, bottom, alone, scale)
 
 

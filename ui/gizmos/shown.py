@@ -49,7 +49,8 @@ def knob(group: bpy.types.GizmoGroup) -> bpy.types.Gizmo:
 
 
 def paint(gizmo: bpy.types.Gizmo, colour: Colour) -> None:
-    """It stays to be seen while it is dragged."""
+    """A new gizmo's looks: hidden until it is put somewhere; while dragged it stays to be seen."""
+    gizmo.hide = True
     gizmo.use_draw_modal = True
     gizmo.color, gizmo.alpha = colour[:3], colour[3]
     gizmo.color_highlight, gizmo.alpha_highlight = HIGHLIGHT[:3], HIGHLIGHT[3]

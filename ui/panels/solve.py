@@ -3,14 +3,13 @@
 import bpy
 
 from ...bridge.accessors import current_action, present
-from ...bridge.armature.actions import recorded_action
 from ...bridge.properties.settings import action_settings, settings_of
 from ...bridge.rows.choices import After
 from ...bridge.rows.kind import Icon
 from ...bridge.takes.takes import ListedTake, starts_from_result, takes_of
 from ...operators.names import OperatorId
 from ...operators.solve.common import chosen_armature
-from ...operators.solve.results import performer_of, result_of
+from ...operators.solve.results import compared, performer_of, result_of
 from ...operators.solve.session import session
 from ..drawing.wrapping import wrapped
 from .failure import draw_failure
@@ -152,10 +151,7 @@ class ResultPanel(ArmaturePanel):
     @staticmethod
     def _draw_switch(row: bpy.types.UILayout, armature: bpy.types.Object) -> None:
         """Recording or result, whichever is shown pressed."""
-        result, recorded = result_of(armature), recorded_action(armature)
-        if result is None or recorded is None or performer_of(armature) != armature:
-            return
-        for text, action in (("Recording", recorded), ("Result", result)):
+        for text, action in zip(("Recording", "Result"), compared(armature) or (), strict=False):
             pressed = current_action(armature) == action
             show = row.operator(OperatorId.SHOW_TAKE, text=text, depress=pressed)
             show.action, show.switch = action.name, True
@@ -173,7 +169,7 @@ class ResultPanel(ArmaturePanel):
             show.action = take.action.name
             for _ in range(take.depth - 1):
                 row.label(text="", icon="BLANK1")
-            row.prop(take.action, "name", text="", emboss=False)
+            row.prop(action_settings(take.action), "called", text="", emboss=False)
             end = row.row(align=True)
             end.alignment = "RIGHT"
             if take.source is None:

@@ -33,6 +33,7 @@ from hangtime.bridge.takes.takes import (
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
 from hangtime.operators import operator_types
 from hangtime.operators.solve import adapt as adapt_operators
+from hangtime.operators.solve.results import compared
 from hangtime.operators.solve.takes import left_behind
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
@@ -102,6 +103,38 @@ def test_a_second_result_builds_on_the_first(armature: bpy.types.Object) -> None
         (second, first, 2),
         (again, first, 2),
     ]
+
+
+def test_the_list_of_takes_leaves_the_recordings_name_out(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    recording.name = "jump"
+    first = adapt(armature, 10, 20, 0.1)
+    start_from_result(armature, first)
+    second = adapt(armature, 24, 40, 0.2)
+
+    def listed() -> list[str]:
+        return [take.action.hangtime.called for take in takes_of(armature)]
+
+    assert listed() == ["jump", "adapted", "adapted 2"]
+    second.hangtime.called = "adapted 2"  # as it is told already
+    assert second.name == "jump adapted 2"
+    first.hangtime.called = "soft landing"
+    assert first.name == "soft landing"
+    assert listed() == ["jump", "soft landing", "adapted 2"]
+
+
+def test_a_result_is_compared_with_what_it_was_made_from(armature: bpy.types.Object) -> None:
+    recording = current_action(armature)
+    assert compared(armature) is None
+    first = adapt(armature, 10, 20, 0.1)
+    assert compared(armature) == (recording, first)
+    show(armature, recording)
+    assert compared(armature) == (recording, first)
+    show(armature, first)
+    start_from_result(armature, first)
+    assert compared(armature) is None  # it would be compared with itself
+    second = adapt(armature, 24, 40, 0.2)
+    assert compared(armature) == (first, second)
 
 
 def test_each_take_has_the_settings_it_was_made_with(armature: bpy.types.Object) -> None:

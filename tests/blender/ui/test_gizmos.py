@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import degrees, radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,8 +27,10 @@ from hangtime.tests.blender.helpers.overlays import (
 from hangtime.ui.gizmos.limit_handles import chosen_places
 from hangtime.ui.gizmos.pin_handles import handles as pin_handles
 from hangtime.ui.gizmos.places import Knob, LimitHandlePlaces
+from hangtime.ui.gizmos.shown import paint, put
 from hangtime.ui.overlay.context.figure_cache import FigureCache
 from hangtime.ui.overlay.context.layer import Part
+from hangtime.ui.overlay.geometry import palette
 from hangtime.ui.overlay.geometry.shapes import Look
 from mathutils import Matrix, Vector
 
@@ -80,6 +83,15 @@ def test_groups_come_and_go_with_the_extension() -> None:
         hangtime.unregister()
         assert known() == set()
         hangtime.register()
+
+
+def test_a_handle_is_hidden_until_it_is_put_somewhere() -> None:
+    """Blender draws a new one at the world's origin, in files without any armature too."""
+    gizmo = SimpleNamespace(hide=False)
+    paint(gizmo, palette.PIN)
+    assert gizmo.hide
+    put(gizmo, Vector((1.0, 2.0, 3.0)))
+    assert not gizmo.hide
 
 
 # ---------------------------------------------------------------- limits

@@ -267,6 +267,15 @@ def test_the_path_is_a_line_on_the_ground_and_a_parabola_in_flight(
     assert len({tuple(shape.colours[0]) for shape in dashes}) == 2
 
 
+def test_the_path_of_a_long_take_keeps_its_bends(armature: bpy.types.Object) -> None:
+    frames = np.arange(2753.0)  # 23 s of hops, 0.2 m up and down, at 120 frames a second
+    com = np.stack([0.01 * frames, 0.0 * frames, 0.2 * np.sin(frames * np.pi / 90.0)], axis=1)
+    take = replace(traced(armature), frames=frames, com=com, flights=())
+    (line,) = motion.path_shapes(take, (1.0, 1.0, 1.0, 1.0), 1.0)
+    drawn = np.interp(com[:, 0], line.points[:, 0], line.points[:, 2])
+    np.testing.assert_allclose(drawn, com[:, 2], atol=0.005)
+
+
 def test_a_pose_is_hung_where_the_figure_is(armature: bpy.types.Object) -> None:
     """The pose of the same frame is the figure itself."""
     armature.hangtime.adapted = None

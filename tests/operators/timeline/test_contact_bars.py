@@ -74,7 +74,7 @@ def test_what_does_not_count_and_flights_have_no_edges_to_grab() -> None:
     assert grip.bar.name == "ground 1"
 
 
-def test_a_low_editor_shows_the_phases_alone_and_a_lower_one_nothing() -> None:
+def test_a_low_editor_shows_the_phases_alone_a_lower_one_at_its_top() -> None:
     axis = Axis(0.0, 400.0, 0.0, 800.0)
     low = lay_out(ROWS, axis, 48.0, 1.0)
     assert low is not None
@@ -82,7 +82,10 @@ def test_a_low_editor_shows_the_phases_alone_and_a_lower_one_nothing() -> None:
     usual = lay_out(ROWS, axis, 40.0, 1.0)  # Blender's usual layout
     assert usual is not None
     assert (len(usual.rows), usual.row_height) == (1, 5.0)
-    assert lay_out(ROWS, axis, 34.0, 1.0) is None
+    small = lay_out(ROWS, axis, 30.0, 1.0)  # the same in a window of 1280 × 800
+    assert small is not None
+    assert (len(small.rows), small.row_height, small.room.top) == (1, 5.0, 30.0)
+    assert lay_out(ROWS, axis, 20.0, 1.0) is None
     assert lay_out((), axis, 400.0, 1.0) is None
 
 

@@ -25,10 +25,16 @@ def test_a_contact_takes_its_stance_along(analysed: bpy.types.Object) -> None:
         np.testing.assert_allclose(shift, wanted, atol=1e-6)
     stance = settings.stances["ground 2"]
     forward = np.array(stance.forward_axis)
-    assert stance.forward == pytest.approx(forward @ [0.1, -0.2, 0.3], abs=1e-6)
-    assert stance.left == pytest.approx(np.cross([0, 0, 1], forward) @ [0.1, -0.2, 0.3], abs=1e-6)
-    assert stance.up == pytest.approx(0.3, abs=1e-6)
+    axes = [forward, np.cross([0, 0, 1], forward), [0, 0, 1]]
+    np.testing.assert_allclose(stance.shifted, np.dot(axes, [0.1, -0.2, 0.3]), atol=1e-6)
     assert stance.turn == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_shift_is_told_in_millimetres_and_kept_exactly(analysed: bpy.types.Object) -> None:
+    stance = analysed.hangtime.stances["ground 2"]
+    stance.forward, stance.left, stance.up = wanted = (0.3667291, 0.0047641, -0.0001249)
+    assert (stance.forward, stance.left, stance.up) == pytest.approx((0.367, 0.005, 0.0), abs=1e-7)
+    np.testing.assert_allclose(stance.shifted, wanted, atol=1e-7)
 
 
 def test_a_contact_moves_alone_where_that_is_wished(analysed: bpy.types.Object) -> None:
