@@ -74,13 +74,20 @@ class OwnedChannel:
 def owned_channels(armature: bpy.types.Object, bones: tuple[str, ...]) -> Iterator[OwnedChannel]:
     """The channels of a track's bones, of which the first is the pelvis."""
     carrier = carrier_of(armature_data(armature).bones[bones[0]]).name
-    posed = pose_of(armature).bones
+    posed, carrying = pose_of(armature).bones, carrying_bones(armature, bones)
     for bone in bones:
         attribute = rotation_channel(posed[bone])
         path = posed[bone].path_from_id(attribute)
-        yield OwnedChannel(bone, path, attribute, carries=bone == bones[0])
+        yield OwnedChannel(bone, path, attribute, carries=bone in carrying)
     path = posed[carrier].path_from_id("location")
     yield OwnedChannel(carrier, path, "location", carries=True)
+
+
+def carrying_bones(armature: bpy.types.Object, bones: tuple[str, ...]) -> tuple[str, ...]:
+    """Of a track's bones those that have to turn for all to turn as one body: the pelvis, and what
+    does not inherit its rotation."""
+    rest = armature_data(armature).bones
+    return bones[:1] + tuple(each for each in bones[1:] if not rest[each].use_inherit_rotation)
 
 
 def owned_by(rig: ControlRig) -> Iterator[OwnedChannel]:

@@ -12,39 +12,41 @@ from mathutils import Euler, Matrix, Quaternion
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data, pose_of, present, take_strips
 from ..armature import fcurves
-from ..armature.pose_basis import place
+from ..armature.pose_basis import place, with_ancestors
 from ..armature.poses import Poses
 
 _TRANSFORM = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
 def plain_poses(
-    armature: bpy.types.Object, curves: fcurves.CurveHolder, bone: str, frames: FloatArray
+    armature: bpy.types.Object,
+    curves: fcurves.CurveHolder,
+    bones: tuple[str, ...],
+    frames: FloatArray,
 ) -> Poses | None:
-    """Poses of a bone and its ancestors at frames (T,), as these curves animate them; None where
+    """Poses of bones and their ancestors at frames (T,), as these curves animate them; None where
     more than these curves moves them or the object."""
-    rest = armature_data(armature).bones[bone]
-    chain = [each.name for each in (*reversed(rest.parent_recursive), rest)]
-    if not _plain(armature, curves, chain):
+    rest, names = armature_data(armature).bones, with_ancestors(armature, bones)
+    if not _plain(armature, curves, names):
         return None
+    above = [rest[name].parent for name in names]
+    parents = tuple(-1 if each is None else names.index(each.name) for each in above)
     posed: list[FloatArray] = []
-    for name in chain:
+    for name, parent in zip(names, parents, strict=True):
         basis = _bases(pose_of(armature).bones[name], curves, frames)
-        above = posed[-1] if posed else None
-        posed.append(place(armature_data(armature).bones[name], above, basis))
+        posed.append(place(rest[name], posed[parent] if parent >= 0 else None, basis))
     world = np.tile(np.array(armature.matrix_world, float), (len(frames), 1, 1))
-    parents = tuple(range(-1, len(chain) - 1))
-    return Poses(tuple(chain), parents, world, np.stack(posed, axis=1))
+    return Poses(tuple(names), parents, world, np.stack(posed, axis=1))
 
 
-def _plain(armature: bpy.types.Object, curves: fcurves.CurveHolder, chain: list[str]) -> bool:
+def _plain(armature: bpy.types.Object, curves: fcurves.CurveHolder, bones: list[str]) -> bool:
     data = present(armature.animation_data)
     ours = {track.name for track, _ in take_strips(armature)}
     others = data.use_nla and any(track.name not in ours for track in data.nla_tracks)
     whole = data.action_blend_type == "REPLACE" and data.action_influence == 1.0
     moved = armature.parent is not None or len(armature.constraints) > 0
     moved |= any(not curve.data_path.startswith("pose.") for curve in curves.fcurves)
-    held = any(len(pose_of(armature).bones[name].constraints) for name in chain)
+    held = any(len(pose_of(armature).bones[name].constraints) for name in bones)
     return whole and not (others or moved or held or len(data.drivers))
 
 

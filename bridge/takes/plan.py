@@ -57,7 +57,7 @@ class Plan:
 
     @property
     def rest_frames(self) -> FloatArray:
-        """Frames after these at which only the pelvis is keyed, as it is carried."""
+        """Frames after these at which only what carries the figure is keyed."""
         if self.moved is None:
             return np.empty(0)
         rest = self.span.rest

@@ -32,7 +32,7 @@ from ..controls.targets import targets_of
 from .carry import carried, shares_of_return
 from .key_splice import FullTurns, anchor, applied, retime, splice
 from .offsets import faded, seam_offset
-from .owned import OwnedChannel, owned_by, owned_channels
+from .owned import OwnedChannel, carrying_bones, owned_by, owned_channels
 from .plain_root import plain_poses
 from .plan import AdaptedMotion, Plan, planned
 from .span import ResultSpan, WrittenTake
@@ -51,12 +51,14 @@ def write_take(
     """Put a motion into an action, which is a copy of the take's; in slices.
 
     Keys outside of the adapted and blended frames stay as they are, bit by bit, but for their time
-    where durations changed, and for those of the pelvis where what follows is carried.
+    where durations changed, and for those that carry the figure where what follows is moved.
     """
     curves = fcurves.holder_in(action, slot)
     assert curves is not None
+    bones = motion.track.bones
     rig = yield from _controls(armature, action, motion)
-    owned = tuple(owned_channels(armature, motion.track.bones) if rig is None else owned_by(rig))
+    owned = tuple(owned_channels(armature, bones) if rig is None else owned_by(rig))
+    carrying = carrying_bones(armature, bones) if rig is None else bones[:1]
     plan = planned(curves, motion)
     yield from _retime(action, curves, owned, plan.time, alone=motion.options.others_stay)
     done = _apply_modifiers(armature, curves, owned, plan.span)
@@ -66,10 +68,10 @@ def write_take(
     later = None
     if len(plan.rest_frames):
         if rig is None:
-            later = plain_poses(armature, curves, motion.track.bones[0], plan.rest_frames)
+            later = plain_poses(armature, curves, carrying, plan.rest_frames)
         if later is None:
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
-    body, rest = _tracks(poses, later, plan, motion)
+    body, rest = _tracks(poses, later, plan, motion, carrying)
     yield
     if rig is None:
         bases = yield from pose_bases(armature, poses, body)
@@ -153,14 +155,15 @@ def _apply_modifiers(
 
 
 def _tracks(
-    poses: Poses, later: Poses | None, plan: Plan, motion: AdaptedMotion
+    poses: Poses, later: Poses | None, plan: Plan, motion: AdaptedMotion, carrying: tuple[str, ...]
 ) -> tuple[PoseTrack, PoseTrack | None]:
-    """Poses of all bodies at the body's frames, and of the pelvis at the frames that follow."""
+    """Poses of all bodies at the body's frames, and of those that carry them at the frames that
+    follow."""
     span = plan.span
     take = _take_of(poses, motion.track.bones, plan.body_frames)
     rest = None
     if later is not None:
-        rest = _take_of(later, motion.track.bones[:1], plan.rest_frames)
+        rest = _take_of(later, carrying, plan.rest_frames)
     shares = _shares(take, rest, plan)
     following = _frames_from(take, span.last)
     count = len(following.frames)
