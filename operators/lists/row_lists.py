@@ -12,10 +12,9 @@ from ...bridge.constraints.linked_rows import linked_count
 from ...bridge.properties.constraint import HangtimeConstraint
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ..operator_types import OperatorResult, PolledOperator
-from ..solve.common import chosen_armature, required_armature
+from ..solve.common import LINKED, chosen_armature, required_armature
 
 NO_ARMATURE = "Select the armature that carries the recording"
-LINKED = "The armature is linked; make a library override of it first"
 NO_CONSTRAINT = "Choose a constraint in the list first"
 NO_BODY_CHANGE = "Choose a weight, a limb or a shape in the list first"
 NO_SURFACE = "Choose a surface in the list first"

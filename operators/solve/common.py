@@ -22,6 +22,7 @@ from .session import session
 
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
 EDIT_MODE = "Leave edit mode first"
+LINKED = "The armature is linked; make a library override of it first"  # else nothing is saved
 TWEAK_MODE = "Leave tweak mode first (Tab in the Nonlinear Animation editor)"
 
 
@@ -65,6 +66,8 @@ def hindrance(context: bpy.types.Context) -> str | None:
     if armature is None or armature.type != "ARMATURE":
         active = present(context.view_layer).objects.active
         return said(NoArmature(active.name if active is not None else None))
+    if not armature.is_editable:
+        return LINKED
     if armature.mode == "EDIT":
         return EDIT_MODE
     if tweaked(armature):

@@ -195,26 +195,6 @@ def test_a_contact_that_was_not_seen_is_added(analysed: bpy.types.Object) -> Non
     assert "Left heel added" not in settings.contacts
 
 
-def test_an_override_of_an_analysed_armature_is_analysed_again(
-    analysed: bpy.types.Object, tmp_path: Path
-) -> None:
-    name, count = analysed.name, len(analysed.hangtime.contacts)
-    library = str(tmp_path / "library.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=library)
-    rate = bpy.context.scene.render.fps, bpy.context.scene.render.fps_base
-    bpy.ops.wm.read_homefile(use_empty=True)
-    bpy.context.scene.render.fps, bpy.context.scene.render.fps_base = rate
-    with bpy.data.libraries.load(library, link=True) as (_, wanted):
-        wanted.objects = [name]
-    override = wanted.objects[0].override_create(remap_local_usages=True)
-    if override.name not in bpy.context.scene.objects:
-        bpy.context.collection.objects.link(override)
-    bpy.context.scene.hangtime.armature = override
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    assert len(override.hangtime.contacts) == count
-    assert override.hangtime.contacts["Left heel 2"].used
-
-
 @pytest.mark.slow
 def test_longer_legs_perform_and_are_exported_on_their_own_armature(
     analysed: bpy.types.Object, tmp_path: Path

@@ -1,0 +1,85 @@
+"""Armatures that are linked from another file, and library overrides of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature.keys_digest import keys_digest
+from hangtime.bridge.armature.poses import sample
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def linked(armature: bpy.types.Object, path: Path) -> bpy.types.Object:
+    """An armature linked from a library file into an empty one, active."""
+    name, render = armature.name, bpy.context.scene.render
+    rate = render.fps, render.fps_base
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.context.scene.render.fps, bpy.context.scene.render.fps_base = rate
+    with bpy.data.libraries.load(str(path), link=True) as (_, wanted):
+        wanted.objects = [name]
+    (found,) = wanted.objects
+    bpy.context.collection.objects.link(found)
+    bpy.context.view_layer.objects.active = found
+    return found
+
+
+def overridden(armature: bpy.types.Object, path: Path) -> bpy.types.Object:
+    """The library override of one, active."""
+    override = linked(armature, path).override_create(remap_local_usages=True)
+    bpy.context.view_layer.objects.active = override
+    return override
+
+
+def test_a_linked_armature_whose_results_would_not_be_saved_is_refused(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    linked(analysed, tmp_path / "library.blend")
+    for each in (bpy.ops.hangtime.analyze, bpy.ops.hangtime.adapt, bpy.ops.hangtime.examine):
+        with pytest.raises(RuntimeError, match="make a library override"):
+            each()
+
+
+def test_an_override_of_an_analysed_armature_is_analysed_again(
+    analysed: bpy.types.Object, tmp_path: Path
+) -> None:
+    count = len(analysed.hangtime.contacts)
+    override = overridden(analysed, tmp_path / "library.blend")
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert len(override.hangtime.contacts) == count
+    assert override.hangtime.contacts["Left heel 2"].used
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("written_as", ["ACTION", "STRIP", "COMBINE"])
+def test_an_overrides_linked_recording_is_adapted_and_its_result_saved(
+    analysed: bpy.types.Object, tmp_path: Path, written_as: str
+) -> None:
+    library = tmp_path / "library.blend"
+    armature = overridden(analysed, library)
+    take, before = armature.animation_data.action, library.read_bytes()
+    keys = keys_digest(take)
+    assert take.library is not None
+    armature.hangtime.result.written_as = written_as
+    armature.hangtime.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert keys_digest(take) == keys
+    frames = np.arange(140.0, 330.0, 10.0)
+    result, shown = current_action(armature).name, sample(armature, frames).matrices
+    mine = str(tmp_path / "shot.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=mine)
+    bpy.ops.wm.open_mainfile(filepath=mine)
+    again = bpy.context.view_layer.objects.active
+    assert current_action(again).name == result
+    np.testing.assert_array_equal(sample(again, frames).matrices, shown)
+    assert bpy.ops.hangtime.compare() == {"FINISHED"}
+    assert current_action(again).library is not None
+    assert np.abs(sample(again, frames).matrices - shown).max() > 0.01
+    assert library.read_bytes() == before
