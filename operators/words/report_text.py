@@ -209,8 +209,8 @@ def _quality(report: Report) -> Iterator[str]:
     for kind, left in ((PhaseKind.FLIGHT, residuals.flight), (PhaseKind.GROUND, residuals.ground)):
         if left is not None:
             yield (
-                f"Physics     {kind.value}: unexplained force {left.force_rms_bw:.1e} "
-                f"of the weight, moment {left.moment_rms_bw_m:.1e} of weight × metre (rms)"
+                f"Physics     {kind.value}: unexplained force {left.force_rms_bw:.5f} "
+                f"of the weight, moment {left.moment_rms_bw_m:.5f} of weight × metre (rms)"
             )
             if left.moment_rms_bw_m > LEFT_AT_MOST[kind]:
                 yield "            more than it should be between the solver's nodes: choose fewer"

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -156,6 +157,7 @@ def test_the_text_names_what_matters() -> None:
     text = as_text(replace(found(), stages=(StageReport("Fitting", 1.0),)))
     for word in ("hop.bvh", "Landing", "Left toe 2", "Guessed", "Fitting 1.0 s", "crouch"):
         assert word in text
+    assert not re.search(r"\de-\d", text), "numbers have no exponents"
 
 
 # ---------------------------------------------------------------- the trajectory
