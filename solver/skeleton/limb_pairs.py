@@ -1,8 +1,8 @@
 """The two pairs of limbs of a skeleton, found without names: subtrees that mirror each other."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import combinations
+from dataclasses import dataclass, replace
+from itertools import combinations, pairwise, permutations
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from .tree import Tree
 UNEQUAL = 0.2  # sum of the relative differences up to which two subtrees mirror each other
 ODD = 0.1  # what a joint more on one side adds to that
 SHORTEST = 0.4  # of the longest pair: what reaches less far is no limb, but fingers, eyes, a skirt
+SAME = 0.1  # of a limb's reach: joints of twins are as far from each other to within that
 FEWEST_JOINTS = 3  # of an arm without clavicle or of a leg without toes
 
 
@@ -48,6 +49,42 @@ def find_limbs(tree: Tree) -> Limbs | None:
         return None
     arms = min(others, key=lambda p: (_depth(tree, p), -_size(tree, p.first[0]), -_reach(tree, p)))
     return Limbs(legs, arms)
+
+
+def without_props(tree: Tree) -> Tree:
+    """The tree without what only one of two limbs holds: bones beyond the end of the other one,
+    where joint by joint the two are alike."""
+    odd: set[int] = set()
+    roots = [bone for bone in tree.inside if tree.parents[bone] < 0]
+    for siblings in (roots, *(tree.children[bone] for bone in tree.inside)):
+        for a, b in permutations(siblings, 2):
+            if tree.reach[b] > tree.reach[a] > 0.0:
+                odd.update(_beyond(tree, tree.main_line(a), b))
+    held = {bone for bone in tree.inside if odd & set(tree.ancestors(bone))}
+    return replace(tree, inside=tuple(bone for bone in tree.inside if bone not in held))
+
+
+def _beyond(tree: Tree, line: list[int], first: int) -> Iterator[int]:
+    """First bones of what reaches beyond a line of a limb on its twin, which begins with `first`;
+    none where the line has no twin there."""
+    if len(line) < FEWEST_JOINTS:
+        return
+    twin, room = [first], SAME * tree.reach[line[0]]
+    for above, below in pairwise(line):
+        step = _step(tree, above, below)
+        near = [b for b in tree.children[twin[-1]] if abs(_step(tree, twin[-1], b) - step) <= room]
+        if not near:
+            return
+        twin.append(max(near, key=lambda bone: float(tree.reach[bone])))
+    for mine, theirs in zip(line, twin, strict=True):
+        for bone in tree.children[theirs]:
+            if _step(tree, theirs, bone) + tree.reach[bone] > tree.reach[mine] + room:
+                yield from () if bone in twin else (bone,)
+
+
+def _step(tree: Tree, above: int, below: int) -> float:
+    """m, from a bone's head to that of one below it."""
+    return float(np.linalg.norm(tree.heads[below] - tree.heads[above]))
 
 
 def _outermost(tree: Tree) -> Iterator[LimbPair]:

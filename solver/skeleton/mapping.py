@@ -42,13 +42,16 @@ class Guess:
 def guess_bones(tree: Tree) -> Guess:
     """Names first, then the skeleton's shape, which checks them and finds what they do not tell.
 
-    A convention's names count, and what they do not name is not there. Single words that contradict
-    the skeleton (a forearm that is not below its upper arm) give way to its shape, limb by limb.
+    A convention's names count, and what neither they nor words name is not there. Single words that
+    contradict the skeleton (a forearm that is not below its upper arm) give way to its shape, limb
+    by limb.
     """
-    named, shape = matched(tree), by_shape(tree)
-    words = by_words(tree) if named is None else named.bones
-    found = dict(words) if named is not None else _completed(tree, words, shape)
-    found.pop((Part.PELVIS, Side.MIDDLE), None)
+    named, shape, words = matched(tree), by_shape(tree), by_words(tree)
+    if named is None:
+        found = _completed(tree, words, shape)
+    else:
+        found = words = _with_words(tree, named.bones, words)
+    found = {key: bone for key, bone in found.items() if key[0] is not Part.PELVIS}
     if all(key in found for key in REQUIRED_KEYS):
         pelvis = _pelvis(tree, found)
         if pelvis is not None:
@@ -146,11 +149,27 @@ def _is_line(tree: Tree, found: Found, limb: Sequence[Part], side: Side) -> bool
     return all(upper in tree.ancestors(lower)[1:] for upper, lower in pairwise(bones))
 
 
+def _with_words(tree: Tree, named: Found, words: Found) -> Found:
+    """What a convention names, and of the rest what single words do: in their mixtures a rig has
+    Unreal's thighs and toes by another name."""
+    found = dict(named)
+    for key, bone in words.items():
+        if key in found or bone in found.values():
+            continue
+        more = {**found, key: bone}
+        if all(_is_line(tree, more, limb, key[1]) for limb in (ARM, LEG) if key[0] in limb):
+            found = more
+    return found
+
+
 def _completed(tree: Tree, words: Found, shape: Found) -> Found:
     """What words tell, and of the rest what the shape does, as far as limbs hang together."""
     found = dict(words)
     for side in SIDES:
         for limb in (ARM, LEG):
+            shoulder = found.get((Part.UPPER_ARM, side))
+            if limb is ARM and shoulder is not None and shoulder == shape.get((Part.CLAVICLE, side)):
+                del found[Part.UPPER_ARM, side]  # what is called a shoulder is the clavicle
             if shape and not _is_line(tree, found, limb, side):
                 found = {k: b for k, b in found.items() if k[1] is not side or k[0] not in limb}
             for part in limb:

@@ -83,6 +83,7 @@ def by_words(tree: Tree) -> Found:
             if bone is not None:
                 found[part, side] = bone
         _settle_shoulder(found, words, side)
+        _settle_ankle(tree, found, words, side)
     if ("head", Side.MIDDLE) in words:
         found[Part.HEAD, Side.MIDDLE] = words["head", Side.MIDDLE]
     return found
@@ -94,3 +95,14 @@ def _settle_shoulder(found: Found, words: Mapping[tuple[str, Side], int], side: 
         found[Part.UPPER_ARM, side] = words["shoulder", side]
         if found.get((Part.CLAVICLE, side)) == words["shoulder", side]:
             del found[Part.CLAVICLE, side]
+
+
+def _settle_ankle(
+    tree: Tree, found: Found, words: Mapping[tuple[str, Side], int], side: Side
+) -> None:
+    """A 'foot' below an 'ankle' is named as a joint, too: it is what bends at the ball."""
+    foot, ankle = found.get((Part.FOOT, side)), words.get(("ankle", side))
+    if foot is None or ankle is None or (Part.TOE, side) in found:
+        return
+    if ankle in tree.ancestors(foot)[1:]:
+        found[Part.FOOT, side], found[Part.TOE, side] = ankle, foot

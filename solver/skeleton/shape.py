@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy as np
 
 from ..arrays import FloatArray
-from .limb_pairs import LimbPair, find_limbs
+from .limb_pairs import LimbPair, find_limbs, without_props
 from .names import side_of
 from .parts import LEG, SIDES, Found, Part, Side
 from .tree import Tree
@@ -29,8 +29,14 @@ LONGER, TURNED, FANNED = 0.2, 0.5, 0.5  # weights of a limb's other marks agains
 def by_shape(tree: Tree) -> Found:
     """The bones of legs, arms and head; empty where the skeleton has no two pairs of limbs.
 
-    Hands, toes, clavicles may lack; so may all of it, for what is no humanoid.
+    Hands, toes, clavicles may lack; so may all of it, for what is no humanoid. What one hand alone
+    holds has bones as well, and does not count.
     """
+    return _by_limbs(tree) or _by_limbs(without_props(tree))
+
+
+def _by_limbs(tree: Tree) -> Found:
+    """As `by_shape`, of limbs that mirror each other as they are."""
     limbs = find_limbs(tree)
     if limbs is None:
         return {}

@@ -126,6 +126,70 @@ def test_without_clavicles_toes_and_hands_the_rest_is_found() -> None:
     assert {k: mine.get(k) for k in wanted_limbs} == wanted_limbs
 
 
+JOINTS_BY_NAME = {
+    "upper_arm": "{s}_Shoulder",
+    "forearm": "{s}_Elbow",
+    "hand": "{s}_Wrist",
+    "thigh": "{s}_Hip",
+    "shank": "{s}_Knee",
+    "foot": "{s}_Ankle",
+}
+SEGMENTS_BY_NAME = {
+    "clavicle": "clavicle_{s}",
+    "upper_arm": "upperarm_{s}",
+    "forearm": "lowerarm_{s}",
+    "hand": "hand_{s}",
+    "thigh": "thigh_{s}",
+    "shank": "calf_{s}",
+    "foot": "foot_{s}",
+}
+MIXTURES = {
+    "toes by another name than Unreal's": SEGMENTS_BY_NAME | {"toe": "toes_{s}"},
+    "clavicles and toes by other names than SMPL's": JOINTS_BY_NAME
+    | {"clavicle": "{s}_Clavicle", "toe": "{s}_Ball"},
+    "a foot below an ankle": {"foot": "Ankle.{s}", "toe": "Foot.{s}"},
+    "a shoulder above an arm of an unknown name": {"clavicle": "Shoulder.{s}"},
+}
+
+
+@pytest.mark.parametrize("words", MIXTURES.values(), ids=list(MIXTURES))
+def test_names_of_several_kinds_are_told_together(words: dict[str, str]) -> None:
+    """On a rig whose other bones have no words."""
+    layout = RIGS["gibberish"]
+    names = {layout.parts["pelvis"]: "pelvis", layout.parts["head"]: "head"}
+    for joint, bone in layout.parts.items():
+        part, _, side = joint.partition(".")
+        names.setdefault(bone, words.get(part, bone).format(s=side.upper()))
+    bones = [replace(b, name=names.get(b.name, b.name)) for b in rest_bones(layout, actor())]
+    assert found(bones) == {label: names[bone] for label, bone in right(layout).items()}
+
+
+def test_source_s_names_are_biped_s() -> None:
+    layout = RIGS["gibberish"]
+    ends = {"pelvis": "Pelvis", "head": "Head1", "upper_arm": "UpperArm", "forearm": "Forearm"}
+    ends |= {part: part.capitalize() for part in ("clavicle", "hand", "thigh", "foot")}
+    ends |= {"shank": "Calf", "toe": "Toe0"}
+    names = {}
+    for joint, bone in layout.parts.items():
+        part, _, side = joint.partition(".")
+        if part in ends:
+            names[bone] = "ValveBiped.Bip01_" + (f"{side.upper()}_" if side else "") + ends[part]
+    bones = [replace(b, name=names.get(b.name, b.name)) for b in rest_bones(layout, actor())]
+    assert found(bones) == {label: names[bone] for label, bone in right(layout).items()}
+    assert guess_bones(tree_of(bones)).convention == "Biped"
+
+
+def test_what_one_hand_holds_is_no_part_of_an_arm() -> None:
+    bones = list(rest_bones(RIGS["gibberish"], actor()))
+    hand = next(i for i, bone in enumerate(bones) if bone.name == RIGS["gibberish"].parts["hand.r"])
+    alone = found(bones)
+    for name, ahead in (("grip", 0.1), ("barrel", 0.4), ("muzzle", 0.8)):
+        at = bones[hand].head + (0.0, -ahead, 0.0)
+        above = hand if name == "grip" else len(bones) - 1
+        bones.append(Bone(name, above, at, at + (0.0, -0.1, 0.0), np.eye(3)))
+    assert found(bones) == alone == right(RIGS["gibberish"])
+
+
 def test_rigify_s_deform_bones_hang_together_across_families() -> None:
     """As Rigify generates them: DEF-thigh.L is below ORG-spine, which DEF-spine stands for."""
     bones = []
