@@ -12,6 +12,7 @@ from ...solver.arrays import FloatArray
 from ...solver.data.recording import Recording
 from ..accessors import assigned_action, current_action, current_scene, mapped_strip, source_of
 from ..properties.settings import settings_of
+from ..unkeyed import note_unkeyed
 from . import fcurves
 from .incremental import Incremental, complete, sample_incrementally
 from .played import playing_strip
@@ -88,6 +89,14 @@ def show(
 def _evaluate() -> None:
     scene = current_scene()
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+
+
+def note_take(
+    armature: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action
+) -> None:
+    """Keep with a result, before it is ever performed, what only it has keys for."""
+    with showing_action(armature, take):
+        note_unkeyed(armature, result, take)
 
 
 @contextmanager

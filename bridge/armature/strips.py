@@ -11,8 +11,10 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from ..accessors import BESIDE, IN_STRIP, SHOWS, shown_by, take_strips
+from ..accessors import BESIDE, IN_STRIP, SHOWS, current_action, shown_by, take_strips
 from ..action_slots import span_of
+from ..unkeyed import put_back
+from . import fcurves
 
 Strips = list[tuple[bpy.types.NlaTrack, bpy.types.NlaStrip]]
 
@@ -37,7 +39,7 @@ def lay_strips(
     """
     data = owner.animation_data_create()
     blend = data.action_blend_type, data.action_extrapolation, data.action_influence
-    data.action = None
+    fcurves.assign(owner, None)
     if not strips_of(owner, take):
         strip = _lay(data, take, slot)
         strip.blend_type, strip.extrapolation, strip.influence = blend
@@ -72,7 +74,7 @@ def _lay(
 def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
     """Let a strip's take be seen: of the strips that Hangtime made only the first one, below,
     stays, and the take's own with those that it is the difference from."""
-    strips = take_strips(owner)
+    strips, left = take_strips(owner), current_action(owner)
     needed, seen = [action], set()
     while needed:
         showing = needed.pop()
@@ -82,6 +84,8 @@ def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:
         needed += [each for each in beside if each is not None and each not in seen]
     for index, (track, strip) in enumerate(strips):
         track.mute = index > 0 and shown_by(strip) not in seen
+    if left is not None and left != action:
+        put_back(owner, left)
 
 
 def remove_strips(owner: bpy.types.Object, action: bpy.types.Action) -> None:
@@ -100,8 +104,11 @@ def remove_strips(owner: bpy.types.Object, action: bpy.types.Action) -> None:
 def without_strips(owner: bpy.types.Object) -> Iterator[None]:
     """Context in which no strip that Hangtime made is seen."""
     tracks = [(track, track.mute) for track, _ in take_strips(owner)]
+    left = current_action(owner)
     for track, _ in tracks:
         track.mute = True
+    if left is not None:
+        put_back(owner, left)
     try:
         yield
     finally:

@@ -15,7 +15,7 @@ from ...solver.data.recording import PoseTrack
 from ..accessors import armature_data, current_scene, pose_of, present
 from ..action_slots import all_curves
 from ..armature import fcurves
-from ..armature.actions import recorded_action, show, showing_action
+from ..armature.actions import note_take, recorded_action, show, showing_action
 from ..armature.channels import channels, proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.played import scene_copy
@@ -124,6 +124,7 @@ def write_loop(
             _repeat(curve)
         action.use_frame_range = action.use_cyclic = True
         action.frame_start, action.frame_end = frames[[0, -1]].tolist()
+        note_take(armature, action, recorded)
         kept = None
         if rig is not None:
             kept = yield from _kept(rig, action, loop)
@@ -182,8 +183,9 @@ def _write_controls(
     carried = loop.travels and (loop.root is None or loop.root.name in rig.carriers)
     with showing():
         travel = shifts_of_carriers(rig, float(frames[0]), loop.travel)
-    for channel in owned_by(rig):
-        recorded = channel.recorded(armature, curves, frames[:1])
+        rests = {channel: channel.at_rest(armature) for channel in owned_by(rig)}
+    for channel, rest in rests.items():
+        recorded = channel.recorded(curves, rest, frames[:1])
         values = channel.values(armature, bases[channel.bone], recorded)
         goes_on = carried and channel.carries and channel.attribute == "location"
         if goes_on:

@@ -31,14 +31,12 @@ class OwnedChannel:
     carries: bool
 
     def at_rest(self, armature: bpy.types.Object) -> FloatArray:
-        """(n,) the values that the property has where nothing animates it."""
+        """(n,) the values that the property has where nothing animates it, as the take is shown."""
         return np.array(getattr(pose_of(armature).bones[self.bone], self.attribute))
 
-    def recorded(
-        self, armature: bpy.types.Object, curves: CurveHolder, frames: FloatArray
-    ) -> FloatArray:
-        """(T, n) the values that the take's curves have at frames (T,)."""
-        values = np.tile(self.at_rest(armature), (len(frames), 1)).astype(float)
+    def recorded(self, curves: CurveHolder, rest: FloatArray, frames: FloatArray) -> FloatArray:
+        """(T, n) the values that the take's curves have at frames (T,). rest: as of `at_rest`."""
+        values = np.tile(rest, (len(frames), 1)).astype(float)
         for index in range(values.shape[1]):
             curve = curves.fcurves.find(self.path, index=index)
             if curve is not None:

@@ -15,7 +15,7 @@ from ...solver.data.stance_move import StanceMove
 from ..accessors import current_scene
 from ..action_slots import all_curves
 from ..armature import fcurves
-from ..armature.actions import showing_action
+from ..armature.actions import note_take, showing_action
 from ..armature.channels import proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
@@ -45,6 +45,7 @@ _RETIMED_A_SLICE = 10  # curves
 def write_take(
     armature: bpy.types.Object,
     action: bpy.types.Action,
+    take: bpy.types.Action,
     slot: str | None,
     motion: AdaptedMotion,
 ) -> Incremental[WrittenTake]:
@@ -61,9 +62,11 @@ def write_take(
     carrying = carrying_bones(armature, bones) if rig is None else bones[:1]
     plan = planned(curves, motion)
     yield from _retime(action, curves, owned, plan.time, alone=motion.options.others_stay)
-    done = _apply_modifiers(armature, curves, owned, plan.span)
-    action.update_tag()
     showing = partial(showing_action, armature, action)
+    with showing():
+        rests = {channel: channel.at_rest(armature) for channel in owned}
+    done = _apply_modifiers(curves, rests, plan.span)
+    action.update_tag()
     poses = yield from sample_incrementally(armature, plan.body_frames, showing)
     later = None
     if len(plan.rest_frames):
@@ -84,12 +87,13 @@ def write_take(
             more = yield from carried_controls(rig, later, rest, showing)
         bases |= {c.bone: np.concatenate([bases[c.bone], more[c.bone]]) for c in owned if c.carries}
     for channel in owned:
-        _write_channel(armature, curves, channel, bases[channel.bone], plan)
+        _write_channel(armature, curves, channel, rests[channel], bases[channel.bone], plan)
         yield
     if motion.ends:
         for curve in all_curves(action):
             fcurves.crop(curve, min(plan.span.begin, plan.span.first), plan.span.last)
     action.update_tag()
+    note_take(armature, action, take)
     kept = None
     if rig is not None:
         shown = yield from sample_incrementally(armature, plan.body_frames, showing)
@@ -137,19 +141,15 @@ def _retime(
 
 
 def _apply_modifiers(
-    armature: bpy.types.Object,
-    curves: fcurves.CurveHolder,
-    owned: Iterable[OwnedChannel],
-    span: ResultSpan,
+    curves: fcurves.CurveHolder, rests: dict[OwnedChannel, FloatArray], span: ResultSpan
 ) -> tuple[str, ...]:
     """Make keys of owned curves that have modifiers or are muted, which would act on new keys."""
     frames = np.arange(np.floor(span.begin), np.ceil(span.end) + 1.0)
     bones = []
-    for channel in owned:
+    for channel, rest in rests.items():
         for curve in (c for c in curves.fcurves if c.data_path == channel.path):
             if len(curve.modifiers) or curve.mute:
-                rest = channel.at_rest(armature)[curve.array_index] if curve.mute else None
-                applied(curve, frames, rest)
+                applied(curve, frames, rest[curve.array_index] if curve.mute else None)
                 bones.append(channel.bone)
     return tuple(dict.fromkeys(bones))
 
@@ -248,16 +248,19 @@ def _write_channel(
     armature: bpy.types.Object,
     curves: fcurves.CurveHolder,
     channel: OwnedChannel,
+    rest: FloatArray,
     bases: FloatArray,
     plan: Plan,
 ) -> None:
-    """Put a bone's bases (T, 4, 4) at the body's frames, and those that follow, into its curves."""
+    """Put a bone's bases (T, 4, 4) at the body's frames, and those that follow, into its curves.
+
+    rest: (n,) of the channel, where nothing animates it.
+    """
     frames = np.concatenate([plan.body_frames, plan.rest_frames])[: len(bases)]
-    recorded = channel.recorded(armature, curves, frames)
+    recorded = channel.recorded(curves, rest, frames)
     values = channel.values(armature, bases, recorded)
     goes_on = plan.span.blend_out > 0.0 or len(frames) > len(plan.body_frames)
     turns = channel.turns(values, recorded) if goes_on else [FullTurns()] * values.shape[1]
-    rest = channel.at_rest(armature)
     for index, column in enumerate(values.T):
         curve = fcurves.ensured(curves, channel.path, index, channel.bone)
         anchor(curve, plan.between(channel), plan.beside(channel), rest[index])

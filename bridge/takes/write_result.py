@@ -11,7 +11,7 @@ from ...solver.data.faults import NoNewSlot
 from ..accessors import ATTRIBUTE, current_action, present, source_of
 from ..action_slots import all_curves, bag_of, home_of, settle
 from ..armature import fcurves
-from ..armature.actions import recorded_action, show, showing_action
+from ..armature.actions import note_take, recorded_action, show, showing_action
 from ..armature.incremental import Incremental, complete
 from ..armature.played import in_scene_time, scene_copy
 from ..armature.strips import lay_strips, strips_of
@@ -149,12 +149,13 @@ def _write(
             armature, motion.track, recorded, slot, name=name, showing=showing
         )
         forget_copied(cut)
+        note_take(armature, cut, recorded)
         return cut, None
     action = scene_copy(armature, recorded, name)
     forget_copied(action)
     whole = False
     try:
-        written = yield from write_take(armature, action, slot, motion)
+        written = yield from write_take(armature, action, recorded, slot, motion)
         if cut_off:
             for curve in all_curves(action):
                 fcurves.crop(curve, float(motion.track.frames[0]), float(motion.track.frames[-1]))

@@ -1,0 +1,43 @@
+"""Channels that a result keys and its take does not: Blender leaves them as the result had them.
+
+So a result knows what they are in its take, and whoever stops performing it gets them back.
+"""
+
+from __future__ import annotations
+
+import json
+
+import bpy
+
+from .accessors import source_of
+from .action_slots import all_curves
+
+_UNKEYED = "hangtime_unkeyed"  # of a result: bone, property, index and value of each, as JSON
+_TRANSFORMS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+
+
+def note_unkeyed(
+    owner: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action
+) -> None:
+    """Keep with a result what its take leaves alone, as `owner` has it that performs the take."""
+    keyed = {(curve.data_path, curve.array_index) for curve in all_curves(take)}
+    found = []
+    for curve in all_curves(result):
+        path, _, name = curve.data_path.rpartition(".")
+        if name in _TRANSFORMS and (curve.data_path, curve.array_index) not in keyed:
+            values = getattr(owner.path_resolve(path) if path else owner, name)
+            found.append((path, name, curve.array_index, values[curve.array_index]))
+    result[_UNKEYED] = json.dumps(found)
+
+
+def put_back(owner: bpy.types.Object, result: bpy.types.Action) -> None:
+    """Give `owner`, which performed a result, the channels that its takes leave alone as they have
+    them; bones that are gone meanwhile have none."""
+    take: bpy.types.Action | None = result
+    while take is not None:
+        for path, name, index, value in json.loads(take.get(_UNKEYED, "[]")):
+            try:
+                getattr(owner.path_resolve(path) if path else owner, name)[index] = value
+            except ValueError:
+                continue
+        take = source_of(take)

@@ -1,0 +1,76 @@
+"""What a take leaves without keys is as it was, once a result that has keys there is left."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.accessors import current_action
+from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.poses import sample
+from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.recipe.result import ResultOptions
+from hangtime.bridge.rows.choices import WrittenAs
+from hangtime.bridge.takes.plan import AdaptedMotion
+from hangtime.bridge.takes.takes import note_made, show_take
+from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
+from hangtime.solver.data.recording import PoseTrack
+from hangtime.solver.data.reports.jumps import TimeMap
+from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.tests.blender.helpers import rigs
+
+FRAMES = np.arange(1.0, 61.0)
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+@pytest.fixture
+def armature() -> bpy.types.Object:
+    """One whose foot is posed but has no keys, and whose hips have none for their height."""
+    rigs.reset()
+    made = rigs.make_armature()
+    rigs.animate(made, frames=range(1, 61))
+    curves = fcurves.holder(made)
+    hips = made.pose.bones["hips"].path_from_id("location")
+    for curve in list(curves.fcurves):
+        if fcurves.bone_of(curve.data_path) == "foot" or (
+            curve.data_path == hips and curve.array_index == 2
+        ):
+            curves.fcurves.remove(curve)
+    made.pose.bones["hips"].location.z = 0.2
+    made.pose.bones["foot"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
+    bpy.context.scene.hangtime.armature = made
+    return made
+
+
+def adapted(armature: bpy.types.Object, written_as: WrittenAs) -> bpy.types.Action:
+    """A result in which frames 20 to 30 are higher and turned."""
+    part = read_recording(armature).window(20, 30)
+    bones = [part.index(bone) for bone in rigs.MOVING]
+    angles = np.linspace(0.1, 0.4, len(bones))  # each bone turns against its parent
+    rotations = axis_rotation(0, angles) @ part.rotations[:, bones]
+    track = PoseTrack(part.frames, rigs.MOVING, rotations, part.heads[:, bones[0]] + [0, 0, 0.1])
+    options = ResultOptions(blend_in=3.0, blend_out=3.0, written_as=written_as)
+    motion = AdaptedMotion(track, TimeMap((20.0, 30.0), (20.0, 30.0)), None, options)
+    action, written = complete(write_adapted_incrementally(armature, motion))
+    if written_as is WrittenAs.COMBINE:
+        combine(armature, action, options.after)
+    note_made(armature, action, written.span, written.later)
+    return action
+
+
+@pytest.mark.parametrize("written_as", [WrittenAs.ACTION, WrittenAs.STRIP, WrittenAs.COMBINE])
+def test_the_take_is_there_to_the_bit_where_it_has_no_keys(
+    armature: bpy.types.Object, written_as: WrittenAs
+) -> None:
+    take, before = current_action(armature), sample(armature, FRAMES).matrices
+    result = adapted(armature, written_as)
+    bpy.context.scene.frame_set(25)
+    for _ in range(2):
+        show_take(armature, take)
+        np.testing.assert_array_equal(sample(armature, FRAMES).matrices, before)
+        show_take(armature, result)
+        assert np.abs(sample(armature, [25.0]).matrices - before[24]).max() > 0.05
