@@ -16,9 +16,7 @@ _UNKEYED = "hangtime_unkeyed"  # of a result: bone, property, index and value of
 _TRANSFORMS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
-def note_unkeyed(
-    owner: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action
-) -> None:
+def note_unkeyed(owner: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action) -> None:
     """Keep with a result what its take leaves alone, as `owner` has it that performs the take."""
     keyed = {(curve.data_path, curve.array_index) for curve in all_curves(take)}
     found = []

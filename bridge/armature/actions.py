@@ -91,9 +91,7 @@ def _evaluate() -> None:
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
 
 
-def note_take(
-    armature: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action
-) -> None:
+def note_take(armature: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action) -> None:
     """Keep with a result, before it is ever performed, what only it has keys for."""
     with showing_action(armature, take):
         note_unkeyed(armature, result, take)

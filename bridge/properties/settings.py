@@ -124,9 +124,11 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     examination_stale: hidden(boolean())
     feet: hidden(text())  # JSON: the repairs that they were looked at with, and the feet's faults
     contacts: bpy.props.CollectionProperty(type=HangtimeContact, override=OVERRIDABLE_LIST)
-    active_contact: hidden(whole())
+    active_contact: hidden(whole("Contact", "Contact at work"))
     stances: bpy.props.CollectionProperty(type=HangtimeStance, override=OVERRIDABLE_LIST)
-    active_stance: hidden(whole(get=_get_active_stance, set=_set_active_stance))
+    active_stance: hidden(
+        whole("Stance", "Stance at work", get=_get_active_stance, set=_set_active_stance)
+    )
     whole_stance: chosen(
         boolean(
             "Move Whole Stance",
@@ -137,11 +139,11 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     )
 
     constraints: bpy.props.CollectionProperty(type=HangtimeConstraint, override=OVERRIDABLE_LIST)
-    active_constraint: hidden(whole())
+    active_constraint: hidden(whole("Constraint", "Constraint at work"))
     surfaces: bpy.props.CollectionProperty(type=HangtimeSurface, override=OVERRIDABLE_LIST)
-    active_surface: hidden(whole())
+    active_surface: hidden(whole("Surface", "Surface at work"))
     body_changes: bpy.props.CollectionProperty(type=HangtimeBodyChange, override=OVERRIDABLE_LIST)
-    active_body_change: hidden(whole())
+    active_body_change: hidden(whole("Body Change", "Body change at work"))
     use_new_mass: chosen(
         boolean("Other Mass", "Perform the motion with another mass than the recording's")
     )

@@ -111,7 +111,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     )
     action, written = yield from write_adapted_incrementally(armature, motion)
     keep(action, answer.traces, stood)
-    told = take_lines(written)
+    told = take_lines(written, roles(settings_of(armature)))
     if options.written_as is WrittenAs.SLOT and options.markers is ContactMarkers.ACTION:
         told = [*told, MARKERS_LEFT_OUT]
     _note(armature, armature, action, answer, told)

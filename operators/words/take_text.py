@@ -1,6 +1,6 @@
 """Wording of what was done to the take around the adapted frames."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import degrees, hypot
 
@@ -13,11 +13,18 @@ _LEVEL = 0.0005  # m
 _STRAIGHT = 0.05  # degrees
 
 
-def take_lines(written: WrittenTake | KeptByControls | None) -> list[str]:
-    """Lines for sidebar and report; none where the adapted frames are alone."""
+def take_lines(
+    written: WrittenTake | KeptByControls | None, roles: Mapping[str, str] | None = None
+) -> list[str]:
+    """Lines for sidebar and report; none where the adapted frames are alone.
+
+    roles: what stances are to the clip, by their phases' names, where the artist sees them so.
+    """
     if written is None:
         return []
-    return list(_controls(written) if isinstance(written, KeptByControls) else _lines(written))
+    if isinstance(written, KeptByControls):
+        return list(_controls(written))
+    return list(_lines(written, roles or {}))
 
 
 def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
@@ -44,7 +51,7 @@ def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
     return record
 
 
-def _lines(written: WrittenTake) -> Iterator[str]:
+def _lines(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:
     span = written.span
     yield f"Take: frames {span.first:g} to {span.last:g} are adapted"
     ways = (("in", span.before), ("out", span.after))
@@ -55,7 +62,7 @@ def _lines(written: WrittenTake) -> Iterator[str]:
         way = "later" if written.later > 0 else "earlier"
         yield f"What follows comes {_frames(abs(written.later))} {way}"
     if written.moved is not None:
-        yield from _carried(written)
+        yield from _carried(written, roles)
     if written.controls is not None:
         yield from _controls(written.controls)
     if written.applied:
@@ -70,8 +77,10 @@ def polish_lines(polish: PlacedPolish | None) -> list[str]:
     if len(frames):
         count = len(polish.polish.offsets)
         channels = "1 channel" if count == 1 else f"{count} channels"
-        between = f"between frames {frames[0]:g} and {frames[-1]:g}"
-        told.append(f"Hand polish of {name} is kept: {channels}, {between}")
+        where = f"at frame {frames[0]:g}"
+        if len(frames) > 1:
+            where = f"between frames {frames[0]:g} and {frames[-1]:g}"
+        told.append(f"Hand polish of {name} is kept: {channels}, {where}")
     if polish.lost is not None:
         first, last = polish.lost
         told.append(
@@ -89,7 +98,7 @@ def pin_lines(pins: Sequence[MovedPin]) -> list[str]:
     ]
 
 
-def _carried(written: WrittenTake) -> Iterator[str]:
+def _carried(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:
     move = written.moved
     assert move is not None
     parts = [f"{hypot(*move.shift[:2]):.3f} m along the ground"]
@@ -98,7 +107,7 @@ def _carried(written: WrittenTake) -> Iterator[str]:
     if abs(degrees(move.turn)) > _STRAIGHT:
         side = "left" if move.turn > 0.0 else "right"
         parts.append(f"{abs(degrees(move.turn)):.1f}° to the {side}")
-    yield f"What follows is carried along with {move.phase}:"
+    yield f"What follows is carried along with {roles.get(move.phase, move.phase)}:"
     yield f"  {', '.join(parts)}"
     if written.back is not None:
         yield f"  It is back where it was at frame {written.back:g}"

@@ -167,8 +167,8 @@ def _completed(tree: Tree, words: Found, shape: Found) -> Found:
     found = dict(words)
     for side in SIDES:
         for limb in (ARM, LEG):
-            shoulder = found.get((Part.UPPER_ARM, side))
-            if limb is ARM and shoulder is not None and shoulder == shape.get((Part.CLAVICLE, side)):
+            shoulder, clavicle = found.get((Part.UPPER_ARM, side)), shape.get((Part.CLAVICLE, side))
+            if limb is ARM and shoulder is not None and shoulder == clavicle:
                 del found[Part.UPPER_ARM, side]  # what is called a shoulder is the clavicle
             if shape and not _is_line(tree, found, limb, side):
                 found = {k: b for k, b in found.items() if k[1] is not side or k[0] not in limb}

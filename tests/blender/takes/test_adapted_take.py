@@ -52,7 +52,7 @@ def test_what_follows_a_moved_landing_is_carried_along(analysed: bpy.types.Objec
     speed = np.diff(now.heads[:, 0], axis=0)
     bends = np.linalg.norm(np.diff(speed, axis=0), axis=1)
     assert bends[LAST - 3 : LAST + 2].max() < 2.0 * bends[FIRST : LAST - 5].max()
-    assert "carried along with ground 2" in analysed.hangtime.status
+    assert "carried along with Landing" in analysed.hangtime.status
 
 
 @pytest.mark.slow

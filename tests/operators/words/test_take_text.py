@@ -25,6 +25,13 @@ def test_a_take_that_goes_on_as_it_was_says_so_in_a_line() -> None:
     ]
 
 
+def test_what_follows_is_told_as_the_artist_calls_the_stance() -> None:
+    written = WrittenTake(SPAN, MOVED, None, SAME)
+    assert "What follows is carried along with Landing 1:" in take_lines(
+        written, {"ground 2": "Landing 1"}
+    )
+
+
 def test_what_follows_is_told() -> None:
     written = WrittenTake(SPAN, MOVED, 450.0, LATER, ("LeftArm",))
     assert take_lines(written)[2:] == [

@@ -184,9 +184,9 @@ def test_what_one_hand_holds_is_no_part_of_an_arm() -> None:
     hand = next(i for i, bone in enumerate(bones) if bone.name == RIGS["gibberish"].parts["hand.r"])
     alone = found(bones)
     for name, ahead in (("grip", 0.1), ("barrel", 0.4), ("muzzle", 0.8)):
-        at = bones[hand].head + (0.0, -ahead, 0.0)
+        at = bones[hand].head - [0.0, ahead, 0.0]
         above = hand if name == "grip" else len(bones) - 1
-        bones.append(Bone(name, above, at, at + (0.0, -0.1, 0.0), np.eye(3)))
+        bones.append(Bone(name, above, at, at - [0.0, 0.1, 0.0], np.eye(3)))
     assert found(bones) == alone == right(RIGS["gibberish"])
 
 
