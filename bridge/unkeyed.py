@@ -9,17 +9,17 @@ import json
 
 import bpy
 
-from .accessors import source_of
 from .action_slots import all_curves
 
-_UNKEYED = "hangtime_unkeyed"  # of a result: bone, property, index and value of each, as JSON
+_UNKEYED = "hangtime_unkeyed"  # of a result, as JSON
 _TRANSFORMS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
 def note_unkeyed(owner: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action) -> None:
-    """Keep with a result what its take leaves alone, as `owner` has it that performs the take."""
+    """Keep with a result what its take leaves alone, as `owner` has it that performs the take; and
+    what that take, where it is a result, knows so of its own."""
     keyed = {(curve.data_path, curve.array_index) for curve in all_curves(take)}
-    found = []
+    found = _noted(take)
     for curve in all_curves(result):
         path, _, name = curve.data_path.rpartition(".")
         if name in _TRANSFORMS and (curve.data_path, curve.array_index) not in keyed:
@@ -31,11 +31,15 @@ def note_unkeyed(owner: bpy.types.Object, result: bpy.types.Action, take: bpy.ty
 def put_back(owner: bpy.types.Object, result: bpy.types.Action) -> None:
     """Give `owner`, which performed a result, the channels that its takes leave alone as they have
     them; bones that are gone meanwhile have none."""
-    take: bpy.types.Action | None = result
-    while take is not None:
-        for path, name, index, value in json.loads(take.get(_UNKEYED, "[]")):
-            try:
-                getattr(owner.path_resolve(path) if path else owner, name)[index] = value
-            except ValueError:
-                continue
-        take = source_of(take)
+    for path, name, index, value in _noted(result):
+        try:
+            getattr(owner.path_resolve(path) if path else owner, name)[index] = value
+        except ValueError:
+            continue
+
+
+def _noted(result: bpy.types.Action) -> list[tuple[str, str, int, float]]:
+    """Bone, property, index and value of each channel; none of what is no result."""
+    return [
+        (path, name, at, value) for path, name, at, value in json.loads(result.get(_UNKEYED, "[]"))
+    ]

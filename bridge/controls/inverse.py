@@ -26,6 +26,9 @@ DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1.0
 LESS, MORE = 5.0, 6.0  # by which damping goes down after a gain, and up after none
 LONGEST, MOST = 0.5, 0.1  # rad of one step, and change of size
 LOST = 0.005  # m of error at which a frame is solved from other starts as well
+# m of error up to which what was tried before is good enough to end by: it is off by the share by
+# which the rig answers otherwise here, some hundredths, of an error that is small itself.
+SLIGHT = 0.002
 FULL = 0.05  # of a turn, by which a body that follows in full may miss it
 SIZES = 0.002  # m of error that a doubled size counts: where a limb is straight it does nothing
 
@@ -52,6 +55,11 @@ class _Look:
     posed: Posed
     error: FloatArray
 
+    @property
+    def size(self) -> float:
+        """Of the error, m."""
+        return float(np.linalg.norm(self.error))
+
 
 def _offset(animated: FloatArray, offsets: FloatArray) -> FloatArray:
     """Bases (C, 4, 4) with offsets (C, 7): turn vector in the basis's axes, shift, log of size."""
@@ -70,6 +78,14 @@ def _changed(offsets: FloatArray, changes: FloatArray) -> FloatArray:
     return moved
 
 
+def _difference(before: FloatArray, after: FloatArray) -> FloatArray:
+    """The changes (C, 7) that make offsets of others."""
+    changes = after - before
+    turns = np.swapaxes(rotation_matrix(before[:, :3]), 1, 2) @ rotation_matrix(after[:, :3])
+    changes[:, :3] = rotation_vector(turns)
+    return changes
+
+
 class Inverse:
     """Solves frames one after the other; each begins with what the one before needed."""
 
@@ -78,22 +94,28 @@ class Inverse:
         self._groups = apart(responses)
         self._responses = responses
         self._offsets = np.zeros((len(posing.controls), 7))
+        self._change = np.zeros_like(self._offsets)  # of the offsets at the last frame
         self._influences = Influences(posing.armature)
         self._acted: BoolArray | None = None
         self.tries = 0
 
     def solve(self, t: int) -> Inverted:
-        """Solve the frame of index t: from what the one before needed; where that leads nowhere,
-        from the take, or from controls snapped to where their bodies should be."""
+        """Solve the frame of index t: from what the one before needed, or from that changed once
+        more as it was changed there, whichever is nearer; where that leads nowhere, from the take,
+        or from controls snapped to where their bodies should be."""
         self._posing.go_to(float(self._targets.frames[t]))
         animated = self._posing.bases()
         self._try_where_switched(animated)
-        offsets, best = self._solved(animated, self._offsets, t)
+        ahead = _changed(self._offsets, self._change)
+        looks = [self._look(animated, start, t) for start in (self._offsets, ahead)]
+        nearer = looks[1].size < looks[0].size
+        offsets, best = self._solved(animated, ahead if nearer else self._offsets, t)
         for start in (self._taken, self._snapped):
-            if np.linalg.norm(best.error) > LOST:
+            if best.size > LOST:
                 other = self._solved(animated, start(animated, t), t)
-                if np.linalg.norm(other[1].error) < np.linalg.norm(best.error):
+                if other[1].size < best.size:
                     offsets, best = other
+        self._change = _difference(self._offsets, offsets) if best.size < LOST else 0.0 * offsets
         self._offsets = offsets
         lacks = best.error[: -len(offsets)].reshape(2, -1, 3)
         return Inverted(
@@ -149,6 +171,7 @@ class Inverse:
                 if of.any()
             }
             self._offsets[[c for c in range(len(animated)) if c not in felt]] = 0.0
+            self._change = np.zeros_like(self._offsets)
         self._acted = acts
 
     def _solved(
@@ -158,19 +181,20 @@ class Inverse:
         best = self._look(animated, offsets, t)
         fresh, damping = False, DAMPING
         for _ in range(STEPS):
-            size = float(np.linalg.norm(best.error))
+            size = best.size
             moved, reach = self._stepped(offsets, best, t, damping)
-            if fresh and reach < STILL:
+            if (fresh or size < SLIGHT) and reach < STILL:
                 break
             after = self._look(animated, moved, t)
-            left = float(np.linalg.norm(after.error))
+            left = after.size
             gained = size - left
             if gained > 0.0:
                 offsets, best = moved, after
             done = gained < max(NEAR, LITTLE * size) if gained > 0.0 else damping > MOST_DAMPING
-            if fresh and (done or left < NEAR):
+            slight = best.size < SLIGHT
+            if (fresh or slight) and (done or left < NEAR):
                 break
-            anew = left > SLOW * size and (gained > 0.0 or not fresh)
+            anew = left > SLOW * size and not slight and (gained > 0.0 or not fresh)
             damping = max(damping / LESS, LEAST_DAMPING) if gained > 0.0 else MORE * damping
             if anew:
                 self._responses = measured(self._posing, best.bases, self._groups)

@@ -15,7 +15,7 @@ from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.rows.choices import WrittenAs
 from hangtime.bridge.takes.plan import AdaptedMotion
-from hangtime.bridge.takes.takes import note_made, show_take
+from hangtime.bridge.takes.takes import note_made, show_take, start_from_result
 from hangtime.bridge.takes.write_result import combine, write_adapted_incrementally
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
@@ -74,3 +74,13 @@ def test_the_take_is_there_to_the_bit_where_it_has_no_keys(
         np.testing.assert_array_equal(sample(armature, FRAMES).matrices, before)
         show_take(armature, result)
         assert np.abs(sample(armature, [25.0]).matrices - before[24]).max() > 0.05
+
+
+def test_a_result_of_a_result_gives_back_what_the_first_take_has_no_keys_for(
+    armature: bpy.types.Object,
+) -> None:
+    take, before = current_action(armature), sample(armature, FRAMES).matrices
+    start_from_result(armature, adapted(armature, WrittenAs.ACTION))
+    adapted(armature, WrittenAs.ACTION)
+    show_take(armature, take)
+    np.testing.assert_array_equal(sample(armature, FRAMES).matrices, before)
