@@ -27,6 +27,19 @@ def home_of(result: bpy.types.Action) -> Home | None:
     return None if slot is None else (action, slot)
 
 
+def lost_slot(result: bpy.types.Action) -> bool:
+    """Whether a result was a slot that the artist deleted: it has no keys any more."""
+    return result.get(_HOME) is not None and home_of(result) is None
+
+
+def without_slot(owner: bpy.types.Object) -> bool:
+    """Whether an action is assigned to an object that uses no slot of it, so that nothing moves."""
+    data = owner.animation_data
+    if data is None or data.action is None or not hasattr(data, "action_slot"):
+        return False
+    return bool(len(data.action.slots)) and data.action_slot is None
+
+
 def result_in(
     action: bpy.types.Action, slot: bpy.types.ActionSlot | None
 ) -> bpy.types.Action | None:

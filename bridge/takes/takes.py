@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..accessors import HOLDS, current_action, source_of
+from ..action_slots import lost_slot
 from ..armature.actions import recorded_action, show
 from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
@@ -118,7 +119,7 @@ def results_from(
 
     Those of earlier versions do not tell for which.
     """
-    found = [other for other in bpy.data.actions if source_of(other) == action]
+    found = [o for o in bpy.data.actions if source_of(o) == action and not lost_slot(o)]
     if armature is not None:
         found = [o for o in found if action_settings(o).maker in (None, armature)]
     return sorted(found, key=lambda other: int(action_settings(other).count))

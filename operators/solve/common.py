@@ -5,6 +5,7 @@ from dataclasses import replace
 import bpy
 
 from ...bridge.accessors import current_action, present
+from ...bridge.action_slots import without_slot
 from ...bridge.armature.played import why_no_action
 from ...bridge.properties.settings import (
     HangtimeSettings,
@@ -23,6 +24,10 @@ from .session import session
 BUSY = "Hangtime is at work; wait for it, or press Esc in the viewport"
 EDIT_MODE = "Leave edit mode first"
 LINKED = "The armature is linked; make a library override of it first"  # else nothing is saved
+NO_SLOT = (
+    "{} uses no slot of its action, so nothing moves it: choose one beside the action's name in "
+    "the Action editor, or a take in Hangtime's list"
+)
 TWEAK_MODE = "Leave tweak mode first (Tab in the Nonlinear Animation editor)"
 
 
@@ -60,6 +65,14 @@ def required_armature(context: bpy.types.Context) -> bpy.types.Object:
 
 def hindrance(context: bpy.types.Context) -> str | None:
     """Precondition: a sentence why the armature cannot be read now; None where it can."""
+    why = unready(context)
+    if why is None and without_slot(required_armature(context)):
+        return NO_SLOT.format(required_armature(context).name)
+    return why
+
+
+def unready(context: bpy.types.Context) -> str | None:
+    """Precondition: a sentence why no take of an armature can be shown now; None where one can."""
     armature = chosen_armature(context)
     if shared().busy or session().solving is not None:
         return BUSY

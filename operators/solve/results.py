@@ -3,6 +3,7 @@
 import bpy
 
 from ...bridge.accessors import current_action, present, source_of
+from ...bridge.action_slots import lost_slot
 from ...bridge.armature.actions import recorded_action, show
 from ...bridge.armature.strips import remove_strips
 from ...bridge.properties.settings import action_settings, settings_of
@@ -33,6 +34,8 @@ def result_of(armature: bpy.types.Object | None) -> bpy.types.Action | None:
     beside = adapted is not None and action_settings(adapted).performer not in (None, armature)
     if shown is not None and source_of(shown) is not None and not beside:
         return shown
+    if adapted is not None and lost_slot(adapted):
+        adapted = None
     if adapted is not None or shown is None:
         return adapted
     left = results_from(shown, armature)

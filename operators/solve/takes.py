@@ -16,8 +16,8 @@ from ...bridge.takes.takes import (
 )
 from ...solver.data.faults import BadRecipe
 from ..names import OperatorId
-from ..operator_types import OperatorResult
-from .common import ReadyOperator, required_armature
+from ..operator_types import OperatorResult, PolledOperator
+from .common import ReadyOperator, required_armature, unready
 
 NO_RESULT_SHOWN = "The recording is shown; show the result to start from"
 BESIDE = "The armature {} performs {}, as its limbs are others"
@@ -47,7 +47,7 @@ def left_behind(armature: bpy.types.Object) -> str:
     return LEFT_BEHIND.format(result.name, source.name, result.name, way)
 
 
-class ShowTakeOperator(ReadyOperator, bpy.types.Operator):
+class ShowTakeOperator(PolledOperator, bpy.types.Operator):
     bl_idname = OperatorId.SHOW_TAKE
     bl_label = "Show Take"
     bl_description = "Show this take, with the settings it was made with"
@@ -56,6 +56,10 @@ class ShowTakeOperator(ReadyOperator, bpy.types.Operator):
     action: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     # Between a result and what it was made from nothing else changes.
     switch: bpy.props.BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return unready(context)
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         action = bpy.data.actions.get(self.action)

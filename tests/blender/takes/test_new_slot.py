@@ -141,6 +141,23 @@ def test_a_result_is_built_upon_and_gone_when_it_is_discarded(armature: bpy.type
 
 
 @with_slots
+def test_a_result_whose_slot_was_deleted_is_gone_and_the_take_is_chosen_again(
+    armature: bpy.types.Object,
+) -> None:
+    take, before = current_action(armature), sample(armature, FRAMES).matrices
+    bpy.context.scene.hangtime.armature = armature
+    lifted(armature, 0.1)
+    take.slots.remove(armature.animation_data.action_slot)
+    assert [each.action for each in takes_of(armature)] == [take]
+    with pytest.raises(RuntimeError, match="uses no slot of its action"):
+        bpy.ops.hangtime.analyze()
+    with pytest.raises(RuntimeError, match="Nothing has been adapted yet"):
+        bpy.ops.hangtime.compare()
+    assert bpy.ops.hangtime.show_take(action=take.name) == {"FINISHED"}
+    np.testing.assert_array_equal(sample(armature, FRAMES).matrices, before)
+
+
+@with_slots
 def test_slots_are_results_after_the_file_was_saved_and_opened(
     armature: bpy.types.Object, tmp_path: Path
 ) -> None:
