@@ -90,6 +90,12 @@ class DragStream:
             if not unseen:
                 yield message
 
+    def first_news(self, seconds: float) -> Iterator[Progress | Answer]:
+        """The same, after a wait of at most so many seconds for an answer."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._answered or self._ended, seconds)
+        yield from self.news()
+
     def _go_on(self, seen: Answer | None) -> None:
         """The next may leave: a motion that is seen, and still on its way, is asked again."""
         with self._changed:
@@ -122,4 +128,5 @@ class DragStream:
         """Called by the thread that listens."""
         with self._changed:
             self._answered = not isinstance(message, Progress)
-        self._arrived.put(message)
+            self._arrived.put(message)
+            self._changed.notify_all()

@@ -24,6 +24,9 @@ from .mouse import BACK, CONFIRM, GIVEN, Press
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 LOOK_EVERY = 0.01  # s; a look costs little, and the ghost waits for the next one
+# s, at most, for which the first move of the mouse waits for its ghost, which mostly takes less:
+# Blender draws then, and a ghost that comes later is seen a whole drawing later.
+TOGETHER = 0.06
 
 
 class FollowedDrag(PolledOperator):
@@ -84,6 +87,7 @@ class FollowedDrag(PolledOperator):
             return self.refuse(why)
         self._moved, self._share = True, 0.0
         self._idle = self._told = False  # Blender; anything by the worker
+        self._waits = True  # for the first ghost
         self._fault = self._shown = ""
         self._task = self._follow(context)
         self._area = present(context.area)
@@ -176,6 +180,10 @@ class FollowedDrag(PolledOperator):
                 stream.want(problem(skin=skin, held=self.held), ahead=not self._press.dragging)
             for message in stream.news():
                 self._hear(message)
+            if self._waits and self._press.dragging:
+                self._waits = False
+                for message in stream.first_news(TOGETHER):
+                    self._hear(message)
             yield
 
     def _read_before(self, context: bpy.types.Context) -> Asked | None:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from threading import Thread
+from threading import Thread, Timer
 from typing import Any
 
 import numpy as np
@@ -275,6 +275,18 @@ def test_what_is_made_ready_before_a_drag_is_no_ghost_and_is_asked_for_once(
     stream.deliver(on_its_way(later[0]))
     assert [message.id for message in stream.news()] == [later[0].id]
     assert next(asked).problem == raised(0.01)
+
+
+def test_the_first_ghost_is_waited_for_but_not_for_long(jump: Recording) -> None:
+    stream = DragStream(jump, count(1))
+    asked = stream.requests()
+    stream.want(raised(0.01))
+    request = next(asked)
+    assert not list(stream.first_news(0.05))
+    late = Timer(0.1, lambda: stream.deliver(on_its_way(request)))
+    late.start()
+    assert [message.id for message in stream.first_news(60.0)] == [request.id]
+    assert not list(stream.news())
 
 
 def on_its_way(request: Request) -> Followed:
