@@ -56,17 +56,19 @@ def killed_and_resumed(
         ended: dict[Path, int] = {}
         while True:
             moment = chance.uniform(SOON, LATE) if killed < kills else None
-            begun: set[str] = set()
+            begun: set[Path] = set()
+            left = at_work(batch)  # by workers of the run before, which may only just have died
             whole = end_at(batch, package, moment, begun=begun)
             killed += not whole
             now = results(batch)
             again = {path for path, written in ended.items() if now.get(path) != written}
-            bad += len(again | {path for path in ended if path.parent.name in begun})
+            cells = {cell_of(aside) for aside in begun - left}
+            bad += len(again | {path for path in ended if path.parent.name in cells})
             ended = now
             if whole:
                 break
-        left = left_half_written(batch, package)
-        bad += len({*differing(contents(batch, manifest), expected), *left})
+        half = left_half_written(batch, package)
+        bad += len({*differing(contents(batch, manifest), expected), *half})
     return bad
 
 
@@ -84,11 +86,11 @@ def end_at(
     package: Path,
     moment: float | None,
     jobs: int = 2,
-    begun: set[str] | None = None,
+    begun: set[Path] | None = None,
 ) -> bool:
     """Run a batch for so many seconds, or until it ends; whether it ended by itself.
 
-    begun: takes the cells that are seen to be begun. Raises CalledProcessError where it ended
+    begun: takes the folders aside of cells that are seen to be at work. Raises CalledProcessError where it ended
     badly.
     """
     words = command(batch, package, jobs)
@@ -107,9 +109,14 @@ def end_at(
     return True
 
 
-def at_work(batch: Path) -> set[str]:
-    """Cells whose folders are still aside: some worker is, or was when it was killed, at them."""
-    return {path.name.split(".")[1] for path in batch.glob(f"{CELLS}/.*")}
+def at_work(batch: Path) -> set[Path]:
+    """Folders of cells that are still aside: some worker is, or was when it was killed, at them."""
+    return set(batch.glob(f"{CELLS}/.*"))
+
+
+def cell_of(aside: Path) -> str:
+    """The cell that a folder aside is of."""
+    return aside.name.split(".")[1]
 
 
 def results(batch: Path) -> dict[Path, int]:

@@ -87,7 +87,6 @@ class FollowedDrag(PolledOperator):
             return self.refuse(why)
         self._moved, self._share = True, 0.0
         self._idle = self._told = False  # Blender; anything by the worker
-        self._waits = True  # for the first ghost
         self._fault = self._shown = ""
         self._task = self._follow(context)
         self._area = present(context.area)
@@ -164,7 +163,7 @@ class FollowedDrag(PolledOperator):
         reading, asked = ask_for(context), self._read_before(context)
         if asked is None:
             asked = yield from reading
-        stream = shared().follow(asked.recording)
+        stream, waits = shared().follow(asked.recording), True
         while True:
             try:
                 if self._idle and self._told:  # not at each of the mouse's moves, which would lag
@@ -180,8 +179,8 @@ class FollowedDrag(PolledOperator):
                 stream.want(problem(skin=skin, held=self.held), ahead=not self._press.dragging)
             for message in stream.news():
                 self._hear(message)
-            if self._waits and self._press.dragging:
-                self._waits = False
+            if waits and self._press.dragging:
+                waits = False
                 for message in stream.first_news(TOGETHER):
                     self._hear(message)
             yield

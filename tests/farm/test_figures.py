@@ -9,7 +9,7 @@ from hangtime.batch.records.result import CELLS, RESULT, CellResult, State
 from hangtime.devtools.farm import main as farm
 from hangtime.devtools.farm.limits import EQUAL, OVERHEAD, SPEED_UP
 from hangtime.devtools.farm.plans import plan_hops
-from hangtime.devtools.farm.runs import at_work, results
+from hangtime.devtools.farm.runs import at_work, cell_of, results
 
 ALIKE = EQUAL + "2 workers"
 
@@ -32,7 +32,7 @@ def test_a_result_that_a_killed_worker_had_aside_is_none_yet(tmp_path: Path) -> 
         (tmp_path / CELLS / name).mkdir(parents=True)
         (tmp_path / CELLS / name / RESULT).touch()
     assert [path.parent.name for path in results(tmp_path)] == ["1-a"]
-    assert at_work(tmp_path) == {"2-b"}
+    assert [cell_of(aside) for aside in at_work(tmp_path)] == ["2-b"]
 
 
 def test_what_a_cell_takes_beside_its_solve_is_by_the_walls_clock(tmp_path: Path) -> None:

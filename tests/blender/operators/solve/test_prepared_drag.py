@@ -29,6 +29,7 @@ class Asked:
     def __init__(self) -> None:
         self.problems: list[MotionProblem] = []
         self.ahead: list[bool] = []
+        self.waited = 0  # times
 
     def prepare(self, _recording, problem: MotionProblem) -> None:
         self.problems.append(problem)
@@ -41,6 +42,10 @@ class Asked:
         self.ahead.append(ahead)
 
     news = staticmethod(lambda: ())
+
+    def first_news(self, _seconds: float) -> tuple[()]:
+        self.waited += 1
+        return ()
 
 
 @pytest.fixture
@@ -98,9 +103,11 @@ def test_the_first_ghost_waits_for_no_reading(
     next(following)
     assert not read
     assert asked.ahead == [True, False]
+    assert asked.waited == 1
     drag._told, drag._idle = True, False
     next(following)  # one of the mouse's many moves
     assert not read
+    assert asked.waited == 1, "only the first move waits"
     drag._idle = True
     next(following)
     assert read == [0]
