@@ -26,6 +26,7 @@ from ..solver.data.faults import WorkerDied
 from ..solver.data.problem import MotionProblem
 from ..solver.data.recording import Recording, digest
 from ..solver.doctor.repairs import Repairs
+from ..solver.kept_memory import KEPT_MEMORY
 from ..solver.one_thread import ONE_THREAD
 from ..solver.worker.program import LOADING, TIMED_OUT
 from ..solver.worker.protocol import (
@@ -184,7 +185,7 @@ class _Process:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 bufsize=0,  # nothing is left for closing to write
-                env={**os.environ, **ONE_THREAD},
+                env={**os.environ, **ONE_THREAD, **KEPT_MEMORY},
                 creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
             )
         except OSError as problem:

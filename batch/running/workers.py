@@ -14,6 +14,7 @@ from queue import SimpleQueue
 from threading import Thread
 from typing import Any
 
+from ...solver.kept_memory import KEPT_MEMORY
 from ...solver.one_thread import ONE_CORE
 from ..records.faults import BatchFault
 
@@ -54,7 +55,7 @@ class WorkerProcess:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
-                env={**os.environ, **ONE_CORE},
+                env={**os.environ, **ONE_CORE, **KEPT_MEMORY},
                 start_new_session=True,  # an interrupt is the parent's, who then ends it
                 creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
             )
