@@ -2,7 +2,7 @@
 and nothing else knows them.
 
 A solve makes and drops the same large arrays over and over. Handed back each time, they come anew as
-pages that the system has to clear: 3 to 7 % of a solve's time, and more where several processes ask.
+pages that the system has to clear, which takes some hundredths of a solve's time.
 """
 
 KEPT_MEMORY = {
