@@ -26,7 +26,7 @@ ELSEWHERE = "Drag in a 3D viewport"
 LOOK_EVERY = 0.01  # s; a look costs little, and the ghost waits for the next one
 # s, at most, for which the first move of the mouse waits for its ghost, which mostly takes less:
 # Blender draws then, and a ghost that comes later is seen a whole drawing later.
-TOGETHER = 0.06
+TOGETHER = 0.08
 
 
 class FollowedDrag(PolledOperator):
