@@ -1,8 +1,8 @@
-"""Environment variables by which glibc keeps memory that is freed; it reads them as a process starts,
-and nothing else knows them.
+"""Environment variables by which glibc keeps memory that is freed; it reads them as a process
+starts, and nothing else knows them.
 
-A solve makes and drops the same large arrays over and over. Handed back each time, they come anew as
-pages that the system has to clear, which takes some hundredths of a solve's time.
+A solve makes and drops the same large arrays over and over. Handed back each time, they come anew
+as pages that the system has to clear, which takes some hundredths of a solve's time.
 """
 
 KEPT_MEMORY = {

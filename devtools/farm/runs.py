@@ -90,8 +90,8 @@ def end_at(
 ) -> bool:
     """Run a batch for so many seconds, or until it ends; whether it ended by itself.
 
-    begun: takes the folders aside of cells that are seen to be at work. Raises CalledProcessError where it ended
-    badly.
+    begun: takes the folders aside of cells that are seen to be at work. Raises CalledProcessError
+    where it ended badly.
     """
     words = command(batch, package, jobs)
     variables = {**os.environ, **ONE_THREAD}
