@@ -34,7 +34,9 @@ Parts = dict[tuple[Part, Side], tuple[str, ...]]
 
 def parts_of(armature: bpy.types.Object) -> Parts:
     """The bones of each part of the body, parents first: the artist's choice, else by name."""
-    bones, chosen = named_bones(armature), chosen_parts(settings_of(armature))
+    bones, rows = named_bones(armature), chosen_parts(settings_of(armature))
+    # A script may have called a row anything.
+    chosen = {label: bone for label, bone in rows.items() if label in LABELS}
     try:
         segments = map_anatomy(bones, chosen)
     except MissingPart:

@@ -69,6 +69,14 @@ def test_a_limit_says_by_how_much_the_recording_goes_beyond(jump: bpy.types.Obje
     assert told == pytest.approx(over, abs=2.0)  # it was looked at now and then only
 
 
+def test_a_part_of_a_name_that_none_has_is_left_out(jump: bpy.types.Object) -> None:
+    """As a script may call it."""
+    named = parts_of(jump)
+    part = jump.hangtime.parts.add()
+    part.name, part.bone = "Landing", "Hips"
+    assert parts_of(jump) == named
+
+
 def test_joints_without_a_bone_are_named(
     jump: bpy.types.Object, capfd: pytest.CaptureFixture[str]
 ) -> None:
