@@ -35,6 +35,7 @@ from ..solver.worker.protocol import (
     Ending,
     Failed,
     Halt,
+    Halted,
     Hello,
     Message,
     Progress,
@@ -159,13 +160,15 @@ class Worker:
             process.end()
 
     def _stuck(self) -> bool:
-        """True where a request that was dropped a while ago still goes on."""
+        """True where a request that was dropped a while ago still goes on, or nobody heard so."""
         if self._dropped is None:
             return False
         dropped, since = self._dropped
         for _ in dropped.news():
             pass  # nobody waits for it
-        return dropped.answer is None and monotonic() - since > _PATIENCE_S
+        assert self._process is not None
+        heard = self._process.has_halted(dropped)  # by a process that was stopped once it answered
+        return not (heard and dropped.answer) and monotonic() - since > _PATIENCE_S
 
 
 @cache
@@ -199,6 +202,7 @@ class _Process:
         self._sending = Lock()
         self._asked: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
         self._heard: SimpleQueue[Message | Exception] = SimpleQueue()
+        self._halted: set[int] = set()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
         self._listener.start()
@@ -220,6 +224,10 @@ class _Process:
     def halt(self, pending: PendingRequest, how: Ending) -> None:
         """Tells the worker to end a request; never waits."""
         Thread(target=self._halt, args=(Halt(pending.request.id, how),), daemon=True).start()
+
+    def has_halted(self, pending: PendingRequest) -> bool:
+        """True where the worker has heard that a request is halted."""
+        return pending.request.id in self._halted
 
     def _halt(self, halt: Halt) -> None:
         _survive_broken_pipes()
@@ -268,7 +276,10 @@ class _Process:
         self._send(request)
         while True:
             message = self._hear()
-            if isinstance(message, Hello | Ready | Request | Halt) or message.id != request.id:
+            if (
+                isinstance(message, Hello | Ready | Request | Halt | Halted)
+                or message.id != request.id
+            ):
                 raise ProtocolError(f"{type(message).__name__} was not asked for")
             yield message
             if not isinstance(message, Progress):
@@ -297,7 +308,10 @@ class _Process:
         one that does not listen either would be written to for ever."""
         try:
             while (message := receive(self._from_worker)) is not None:
-                self._heard.put(message)
+                if isinstance(message, Halted):
+                    self._halted.add(message.id)
+                else:
+                    self._heard.put(message)
             self._heard.put(EOFError())
         except (OSError, ValueError, ProtocolError) as problem:  # ValueError: closed by end()
             self._heard.put(problem)

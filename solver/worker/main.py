@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from queue import SimpleQueue
-from threading import Thread
+from threading import Lock, Thread
 from typing import TYPE_CHECKING, BinaryIO
 
 from .program import bounded_loading, private_stdout
 
 if TYPE_CHECKING:
-    from .protocol import Ending, Request
+    from .protocol import Ending, Halted, Message, Request
 
 FOREIGN, PROTOCOL_FAULT = 3, 4  # exit codes
 
@@ -29,7 +30,7 @@ def main() -> int:
 
 
 def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
-    from .protocol import PROTOCOL, Hello, Progress, Ready, receive, send
+    from .protocol import PROTOCOL, Hello, Ready, receive, send
 
     hello = receive(requests)
     if hello is None:
@@ -41,22 +42,26 @@ def _serve(requests: BinaryIO, answers: BinaryIO) -> int:
     with bounded_loading():
         from .service import Service
 
-    def tell(progress: Progress) -> None:
-        send(answers, progress)
+    sending = Lock()
 
-    inbox = Inbox(requests)
+    def tell(message: Message) -> None:
+        with sending:
+            send(answers, message)
+
+    inbox = Inbox(requests, tell)
     service = Service(inbox.ending)
     Thread(target=inbox.listen, daemon=True).start()
     while True:
-        send(answers, service.answer(inbox.next(), tell))
+        tell(service.answer(inbox.next(), tell))
 
 
 class Inbox:
     """Requests in the order they came, and which of them shall end: heard on a thread of its own,
     for a request is halted while the one that solves is busy."""
 
-    def __init__(self, stream: BinaryIO) -> None:
+    def __init__(self, stream: BinaryIO, tell: Callable[[Message], None]) -> None:
         self._stream = stream
+        self._tell = tell
         self._requests: SimpleQueue[Request] = SimpleQueue()
         self._endings: dict[int, Ending] = {}
 
@@ -70,7 +75,7 @@ class Inbox:
 
     def listen(self) -> None:
         """Hears the parent out. Ends the process where the parent goes or talks nonsense."""
-        from .protocol import Halt, ProtocolError, Request, receive
+        from .protocol import Halt, Halted, ProtocolError, Request, receive
 
         while True:
             try:
@@ -81,7 +86,14 @@ class Inbox:
                 os._exit(0)  # nobody waits for what is being solved
             if isinstance(message, Halt):
                 self._endings[message.id] = message.how
+                self._acknowledge(Halted(message.id))
             elif isinstance(message, Request):
                 self._requests.put(message)
             else:
                 os._exit(PROTOCOL_FAULT)
+
+    def _acknowledge(self, halted: Halted) -> None:
+        try:
+            self._tell(halted)
+        except OSError:
+            os._exit(0)  # the parent has gone

@@ -4,7 +4,7 @@ The parent starts the worker and says Hello; the worker answers Ready. Then the 
 Request at a time, and the worker tells any number of Progress and one answer.
 
 Meanwhile the parent may tell it to Halt: to drop the request, which is answered by Cancelled, or to
-end with the motion as it stands.
+end with the motion as it stands. Each Halt is met by Halted at once.
 
 Each message is a length (8 bytes, little-endian) and a pickle. Both ends run the same files of one
 version, under the package names that their importers gave them; what arrives may name nothing but
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from ..doctor.feet import FootFault
     from ..doctor.repairs import Repairs
 
-PROTOCOL = 7
+PROTOCOL = 8
 LARGEST = 1 << 30  # bytes; a longer message is not one
 _HEAD = struct.Struct("<Q")  # length of the pickle
 
@@ -96,6 +96,13 @@ class Halt:
 
     id: int
     how: Ending
+
+
+@dataclass(frozen=True)
+class Halted:
+    """The worker has heard the Halt for this id, whether the request still went on or not."""
+
+    id: int
 
 
 @dataclass(frozen=True)
@@ -198,7 +205,7 @@ class Failed:
 
 
 Answer = Analysed | Examined | Fitted | Adapted | Followed | Cancelled | Failed
-Message = Hello | Ready | Request | Halt | Progress | Answer
+Message = Hello | Ready | Request | Halt | Halted | Progress | Answer
 
 
 class ProtocolError(Exception):

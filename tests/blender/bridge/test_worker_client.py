@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 from collections.abc import Iterator
@@ -175,6 +176,25 @@ def test_a_request_that_is_dropped_costs_neither_worker_nor_fit(
     assert isinstance(answer, Adapted)
     assert fitted.pid == pid
     assert "fit" not in {progress.stage for progress in told}
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no processes are stopped here")
+def test_a_process_that_was_stopped_once_it_had_answered_is_replaced(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its answer, which nobody had polled, is no sign that it still hears."""
+    monkeypatch.setattr("hangtime.bridge.worker_client._PATIENCE_S", 0.2)
+    worker.ask(RequestKind.ANALYSE, jump, MotionProblem(frames=SPAN)).wait()
+    worker.ask(RequestKind.ANALYSE, jump, MotionProblem(frames=SPAN))
+    time.sleep(2.0)  # it answers in some tenths
+    pid = worker.pid
+    assert pid is not None
+    os.kill(pid, signal.SIGSTOP)
+    worker.drop()
+    time.sleep(0.3)
+    answer = worker.ask(RequestKind.ANALYSE, jump, MotionProblem(frames=SPAN)).wait()
+    assert isinstance(answer, Analysed)
+    assert worker.pid != pid
 
 
 def test_a_solve_that_is_stopped_gives_the_motion_as_it_stands(
