@@ -12,13 +12,12 @@ from dataclasses import replace
 from io import TextIOWrapper
 from pathlib import Path
 
-from ..operators.headless.commands import CANCELLED, WRONG_INPUT, explained
+from ..operators.headless.explained import CANCELLED, WRONG_INPUT, explained
 from ..solver.data.faults import Fault
 from ..solver.numerics.parallel import cores
-from .cells.cell import run_cell
-from .cells.outputs import needs_blender, require_blender
 from .collect.collecting import collect
 from .farm.commands import FARM_ACTS, add_farm_commands
+from .planning.blender_need import needs_blender, require_blender
 from .planning.plan import Asked, Planned, plan, refreshed
 from .records.faults import BatchFault
 from .records.locks import batch_lock
@@ -42,7 +41,9 @@ def run(argv: Sequence[str]) -> int:
             stream.reconfigure(errors="replace")
     commands = parser()
     try:
-        options = commands.parse_args(_with_command(argv))
+        options, rest = commands.parse_known_args(_with_command(argv))
+        if rest:
+            commands.error(_left_over(rest, options))
     except SystemExit as end:  # argparse has said why
         return WRONG_INPUT if end.code else 0
     act: Callable[[argparse.Namespace], int] = options.act
@@ -56,6 +57,15 @@ def run(argv: Sequence[str]) -> int:
         print("\nInterrupted; the same command again goes on from here.", file=sys.stderr)
         return CANCELLED
     return WRONG_INPUT
+
+
+def _left_over(words: list[str], options: argparse.Namespace) -> str:
+    """What to say of words that belong to no option."""
+    known = [output.value for output in Output]
+    if all(word.strip(",").lower() in known for word in words):
+        asked = [*(output.value for output in getattr(options, "outputs", ())), *words]
+        return f"write --outputs {','.join(word.strip(',').lower() for word in asked)}"
+    return f"unrecognized arguments: {' '.join(words)}"
 
 
 def _with_command(argv: Sequence[str]) -> list[str]:
@@ -264,6 +274,8 @@ def collect_batch(options: argparse.Namespace) -> int:
 
 def cell_of_batch(options: argparse.Namespace) -> int:
     """Solves one cell. Raises BatchFault."""
+    from .cells.cell import run_cell  # loads the solver, for which a batch would wait
+
     result = run_cell(options.folder, options.cell)
     for line in (result.sentence, *result.headline):
         if line:

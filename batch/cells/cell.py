@@ -9,7 +9,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TextIO
 
-from ...operators.headless.commands import explained
+from ...operators.headless.explained import explained
 from ...operators.headless.outbox import Outbox
 from ...operators.headless.stages import Stages
 from ...solver.data.faults import Fault, NoSolution, OutputNotWritable
@@ -50,16 +50,6 @@ def run_cell(
     with written_cell(folder, cell) as aside:
         result = _written(settings, plan, fits or SharedFits(folder), aside, act)
     return lasting_result(folder, cell) or result  # another process may have been quicker
-
-
-def write_failure(folder: Path, cell: str, sentence: str) -> CellResult:
-    """The result of a cell whose process could not tell any; or what another has told of it
-    meanwhile. Raises as `run_cell` does."""
-    settings, plan = read_plan(folder, cell)
-    result = _result(settings, plan, _Ended(State.FAILED, sentence), {}, ())
-    with written_cell(folder, cell) as aside:
-        (aside / RESULT).write_text(result.as_json(), encoding="utf-8")
-    return lasting_result(folder, cell) or result
 
 
 def _written(

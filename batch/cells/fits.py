@@ -28,9 +28,9 @@ from ...solver.worker.unpickling import Unreadable, unpickled
 from ..records.aside import written_aside
 from ..records.locks import held
 from ..records.manifest import version
+from ..records.result import FITS
 from .reading import ReadClip
 
-FITS = "fits"  # within a batch's folder
 FILE = "fit.pickle"
 Analysed = tuple[Subject, ReadClip]
 IN_MEMORY = 2  # a fit's metrics are ten times as large as the fit

@@ -18,7 +18,6 @@ from ...solver.doctor.repair import mended, placed, trimmed, turned
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 
-WITHOUT_BLENDER = (".bvh", ".amc")
 _EPSILON = 1e-4  # frames, by which a bound may miss a whole one
 
 

@@ -14,7 +14,7 @@ from ...bridge.recipe.problem import Recipe
 from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...bridge.rows.choices import FileFormat
 from ...operators.headless.clip import Clip, LoadedClip, load
-from ...operators.headless.commands import explained
+from ...operators.headless.explained import explained
 from ...operators.headless.outbox import Outbox
 from ...operators.headless.outputs import Outputs, require_exported, require_place
 from ...operators.headless.stages import Stages
@@ -28,13 +28,14 @@ from ...solver.data.requests import Requests
 from ...solver.doctor.diagnose import diagnose
 from ...solver.results.report import fit_quality
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
+from ..planning.blender_need import needs_blender, require_blender
 from ..planning.clips import clip_files, clip_sha256
 from ..planning.recipes import VariedRecipe
 from ..records.faults import WrongPlan
 from ..records.manifest import BatchSettings, CellPlan, Output
 from .figures import figures, fit_figures
 from .fits import SharedFits, digest_of
-from .outputs import needs_blender, require_blender, write_motion, write_plain
+from .outputs import write_motion, write_plain
 from .reading import ReadClip, read_clip
 
 DIAGNOSIS = "doctor.txt"

@@ -18,14 +18,13 @@ from pathlib import Path
 
 from distributed import Client, Future, wait
 
-from ..cells.cell import write_failure
-from ..cells.fits import FITS
-from ..cells.outputs import needs_blender
 from ..cells.work import InputChanged
+from ..planning.blender_need import needs_blender
 from ..queue.attempts import Attempt, Attempts, pair_of
+from ..records.failure import write_failure
 from ..records.faults import BatchFault, FolderGone, WrongPlan, gone
 from ..records.manifest import CellPlan, Manifest, read_manifest
-from ..records.result import CellResult, State, lasting_result
+from ..records.result import FITS, CellResult, State, lasting_result
 from .crew import Crew
 from .late import await_results
 from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of

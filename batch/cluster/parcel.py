@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
-from ..cells.fits import FITS
 from ..cells.work import InputChanged, cell_files, changed
 from ..records.aside import written_aside
 from ..records.faults import FolderGone, gone
 from ..records.manifest import CellPlan
-from ..records.result import lasting_result, written_cell
+from ..records.result import FITS, lasting_result, written_cell
 from .worker_side import Files, write_files
 
 CLIP = "clip.sha256"  # within a fit's folder: whose it is

@@ -18,10 +18,10 @@ from distributed import get_worker
 
 from ...solver.one_thread import ONE_THREAD, SOLVER_THREADS
 from ..cells.cell import run_cell
-from ..cells.fits import FITS, SharedFits
+from ..cells.fits import SharedFits
 from ..records.aside import remove_abandoned
 from ..records.manifest import BatchSettings, CellPlan, Manifest, version, write_manifest
-from ..records.result import CELLS, CellResult, cell_folder
+from ..records.result import CELLS, FITS, CellResult, cell_folder
 
 PACKAGE = Path(__file__).parents[2]
 KEPT_FITS = 8  # on a worker's disk

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from .jobs import flamenco_job, openjd_parameters
-from .task import run_task
 
 JOBS = {"flamenco": flamenco_job, "openjd": openjd_parameters}
 TASK, JOB = "task", "job"
@@ -39,6 +38,8 @@ def add_farm_commands(
 
 def task_of_farm(options: argparse.Namespace) -> int:
     """Solves a task's cells. Raises BatchFault."""
+    from .task import run_task  # loads the solver
+
     return run_task(options.folder, options.cells, sys.stdout)
 
 

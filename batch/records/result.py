@@ -14,7 +14,7 @@ from .aside import removed, written_aside
 from .faults import gone
 from .locks import held
 
-CELLS = "cells"  # within a batch's folder
+CELLS, FITS = "cells", "fits"  # within a batch's folder
 RESULT = "result.json"  # within a cell's; its last file to be written
 LOOKS = 3  # at a result that another machine replaces meanwhile
 PLACING = ".placing.lock"  # within a batch's; held while a cell takes its place

@@ -9,13 +9,12 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic
 
-from ..cells.cell import write_failure
-from ..cells.fits import FITS
 from ..queue.attempts import Attempt, Attempts
 from ..records.aside import remove_abandoned
+from ..records.failure import write_failure
 from ..records.faults import BatchFault, FolderGone
 from ..records.manifest import Manifest
-from ..records.result import CELLS, lasting_result, read_result
+from ..records.result import CELLS, FITS, lasting_result, read_result
 from .memory import MemoryWatch
 from .progress import Progress
 from .workers import Message, WorkerProcess

@@ -10,26 +10,21 @@ from pathlib import Path
 
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
-from ...bridge.recipe.object_texts import support_texts
 from ...bridge.recipe.objects import placed_objects
-from ...bridge.recipe.problem import PARTS, Recipe, locate, parse_recipe, read_recipe_text
+from ...bridge.recipe.problem import PARTS, Recipe, parse_recipe, read_recipe_text
 from ...bridge.recipe.result import ResultOptions, require_return_after
-from ...solver.data.faults import BadRecipe, Fault, NoSolution, UnseenSupport
+from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.doubt_text import doubts_of
 from ..words.headline import headline
-from ..words.messages import recipe_place, sentence
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
+from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, explained
 from .outbox import Outbox, not_writable
 from .outputs import Outputs, require_exported, require_place
 from .stages import WIDTH, Stages
-
-WRONG_INPUT = 2
-NO_SOLUTION = 3
-CANCELLED = 130
 
 
 def run(argv: Sequence[str]) -> int:
@@ -51,16 +46,6 @@ def run(argv: Sequence[str]) -> int:
         print("\nCancelled; nothing was written.", file=sys.stderr)
         return CANCELLED
     return 0
-
-
-def explained(fault: Fault, recipe: Path | None) -> str:
-    """The fault in words, with the recipe's line where one is to blame, or lines to add to it."""
-    if isinstance(fault, UnseenSupport) and fault.boxes:
-        return "\n\n".join([sentence(fault), *support_texts(fault.boxes)]).rstrip()
-    if recipe is None or isinstance(fault, BadRecipe):
-        return sentence(fault)
-    line = locate(read_recipe_text(recipe), fault)
-    return sentence(fault) if line is None else f"{recipe_place(recipe, line)}: {sentence(fault)}"
 
 
 def parser() -> argparse.ArgumentParser:

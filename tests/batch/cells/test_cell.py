@@ -5,16 +5,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hangtime.batch.cells import outputs, work
+from hangtime.batch.cells import work
 from hangtime.batch.cells.cell import run_cell
-from hangtime.batch.cells.fits import FILE, FITS, SharedFits
+from hangtime.batch.cells.fits import FILE, SharedFits
 from hangtime.batch.cells.reading import ReadClip, read_clip
 from hangtime.batch.cells.work import Done, cell_files
 from hangtime.batch.commands import run
+from hangtime.batch.planning import blender_need
 from hangtime.batch.planning.plan import Asked, plan
 from hangtime.batch.records.faults import FolderGone, WrongPlan
 from hangtime.batch.records.manifest import BatchSettings, CellPlan, Output, read_manifest
-from hangtime.batch.records.result import CELLS, State, cell_folder, read_result
+from hangtime.batch.records.result import CELLS, FITS, State, cell_folder, read_result
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.solver.data.faults import OutputNotWritable
 from hangtime.solver.stages.fit import Fit
@@ -195,7 +196,7 @@ def test_without_blender_a_clip_that_needs_it_is_told_and_keeps_no_result(
 ) -> None:
     (tmp_path / "hop.fbx").write_text("")
     plan(Asked(BatchSettings(check=True), [str(tmp_path / "hop.fbx")]), tmp_path / "out")
-    monkeypatch.setattr(outputs, "find_spec", lambda _: None)
+    monkeypatch.setattr(blender_need, "find_spec", lambda _: None)
     cell = cells(tmp_path / "out")[0].cell
     with pytest.raises(WrongPlan, match=r"hop\.fbx .* needs Blender"):
         run_cell(tmp_path / "out", cell)
@@ -206,7 +207,7 @@ def test_without_blender_a_clip_that_needs_it_is_told_before_others_are_solved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "z.fbx").write_text("")
-    monkeypatch.setattr(outputs, "find_spec", lambda _: None)
+    monkeypatch.setattr(blender_need, "find_spec", lambda _: None)
     clips = [str(mocap_path("hop_01_01.bvh")), str(tmp_path / "z.fbx")]
     assert run([*clips, "--check", "--out", str(tmp_path / "out"), "--jobs", "1"]) == 2
     assert "z.fbx or an output that was asked for needs Blender" in capsys.readouterr().err
@@ -250,6 +251,9 @@ def test_the_command_line_runs_a_batch_and_goes_on_with_it(
         (["nothing.bvh", "--recipes", "r.toml", "--out", "o"], "No recipe"),
         (["cell", "nowhere", "00001-ab"], "There is no"),
         (["a.bvh", "--out", "o", "--outputs", "xyz"], "unknown output"),
+        (["a.bvh", "--out", "o", "--outputs", "npz", "fbx"], "write --outputs npz,fbx"),
+        (["a.bvh", "--out", "o", "--outputs", "npz,", "fbx"], "write --outputs npz,fbx"),
+        (["a.bvh", "--out", "o", "else"], "unrecognized arguments: else"),
         (["a.bvh", "--out", "o", "--jobs", "0"], "1 or more"),
         (["job", "flamenco", "o", "--cells-per-task", "0"], "1 or more"),
         (["a.bvh", "--out", "o", "--unit", "cm"], "'cm' is no number"),

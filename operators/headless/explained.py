@@ -1,0 +1,25 @@
+"""What every command of a terminal ends with: its exit code, and a fault in words.
+
+Loads none of the solver's stages: a batch plans and hands out cells without them.
+"""
+
+from pathlib import Path
+
+from ...bridge.recipe.object_texts import support_texts
+from ...bridge.recipe.problem import locate, read_recipe_text
+from ...solver.data.faults import BadRecipe, Fault, UnseenSupport
+from ..words.messages import recipe_place, sentence
+
+WRONG_INPUT = 2
+NO_SOLUTION = 3
+CANCELLED = 130
+
+
+def explained(fault: Fault, recipe: Path | None) -> str:
+    """The fault in words, with the recipe's line where one is to blame, or lines to add to it."""
+    if isinstance(fault, UnseenSupport) and fault.boxes:
+        return "\n\n".join([sentence(fault), *support_texts(fault.boxes)]).rstrip()
+    if recipe is None or isinstance(fault, BadRecipe):
+        return sentence(fault)
+    line = locate(read_recipe_text(recipe), fault)
+    return sentence(fault) if line is None else f"{recipe_place(recipe, line)}: {sentence(fault)}"
