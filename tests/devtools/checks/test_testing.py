@@ -43,7 +43,8 @@ def test_a_test_that_hangs_is_named_with_the_stacks_of_its_processes(
 
 
 def test_a_suite_that_hangs_tells_its_test(tmp_path: Path) -> None:
-    said = lost(tmp_path, "import time\ndef test_hangs():\n    time.sleep(600.0)", Limits(4.0, 99.0))
+    hangs = "import time\ndef test_hangs():\n    time.sleep(600.0)"
+    said = lost(tmp_path, hangs, Limits(4.0, 99.0))
     assert "more than 4 s; it was at" in said
     assert "test_hangs" in said
 
