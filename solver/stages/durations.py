@@ -34,6 +34,7 @@ MAX_STEP = 0.3  # of s in one step
 MIN_STEP = 0.01  # of s: some milliseconds of a flight; the next step would change it by far less
 MAX_STEPS = 4
 MAX_RATIO = 0.5  # of the violation, left at the end; the solve proper does the rest
+DIVERGED = 10.0  # times the violation, from where no step has come back
 
 
 @dataclass(frozen=True)
@@ -55,13 +56,17 @@ def find_durations(
     metric, linearised = start.metric, start.unpriced
     problem = _BorderedProblem(start.motion, linearised.rows, places, tuple(flights))
     x, s = reference, np.zeros(len(flights))
-    before = linearised.violation(problem.values(x, s))
+    value = problem.values(x, s)
+    before = linearised.violation(value)
     for steps in range(1, MAX_STEPS + 1):
-        step, change = _step(linearised, metric, problem, (x, s), metric.times(x - reference))
+        gradient = metric.times(x - reference)
+        step, change = _step(linearised, metric, problem, (x, s), value, gradient)
         x, s = x + step, s + change
-        if steps > 1 and np.abs(change).max() < MIN_STEP:
+        value = problem.values(x, s)
+        settled = steps > 1 and np.abs(change).max() < MIN_STEP
+        if settled or not linearised.violation(value) < DIVERGED * before:
             break
-    if not linearised.violation(problem.values(x, s)) < MAX_RATIO * before:
+    if not linearised.violation(value) < MAX_RATIO * before:
         return None
     # By metres alone the least change twirls a neck by 70 degrees at the end of a clip.
     x = reference + start.priced.step(problem.values(reference, s))[0]
@@ -73,11 +78,12 @@ def _step(
     metric: BlockBanded,
     problem: "_BorderedProblem",
     at: tuple[FloatArray, FloatArray],
+    value: FloatArray,
     gradient: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Step of x (K, n_block) and s (n,) from `at`. gradient: W (x - x0), (K, n_block)."""
+    """Step of x (K, n_block) and s (n,) from `at`. value: of the rows there, (R,). gradient:
+    W (x - x0), (K, n_block)."""
     x, s = at
-    value = problem.values(x, s)
     still = linearised.step(value, gradient)[0]
     moves = []
     for unit in np.eye(len(s)):
