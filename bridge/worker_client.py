@@ -316,7 +316,9 @@ class _Process:
         except (OSError, ValueError, ProtocolError) as problem:  # ValueError: closed by end()
             self._heard.put(problem)
         except BaseException as problem:
-            # A mistake of ours; who waits for an answer must hear that nobody listens any more.
+            # A mistake of ours; who waits for an answer must hear that nobody listens any more, and
+            # who is sending, whose pipe is broken then, why.
+            self._last_lines.append(repr(problem))
             self._heard.put(problem)
             self._popen.kill()
             raise
