@@ -201,7 +201,7 @@ class _Process:
         self._greeted = Event()
         self._sending = Lock()
         self._asked: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
-        self._heard: SimpleQueue[Message | Exception] = SimpleQueue()
+        self._heard: SimpleQueue[Message | BaseException] = SimpleQueue()
         self._halted: set[int] = set()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
@@ -298,7 +298,7 @@ class _Process:
 
     def _hear(self) -> Message:
         heard = self._heard.get()
-        if isinstance(heard, Exception):
+        if isinstance(heard, BaseException):
             self._heard.put(heard)  # for who asks next
             raise heard
         return heard
@@ -315,6 +315,11 @@ class _Process:
             self._heard.put(EOFError())
         except (OSError, ValueError, ProtocolError) as problem:  # ValueError: closed by end()
             self._heard.put(problem)
+        except BaseException as problem:
+            # A mistake of ours; who waits for an answer must hear that nobody listens any more.
+            self._heard.put(problem)
+            self._popen.kill()
+            raise
         with suppress(subprocess.TimeoutExpired):
             self._popen.wait(_LAST_WORDS_S)
         self._popen.kill()

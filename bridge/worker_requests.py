@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from queue import Empty, SimpleQueue
 from threading import Condition
+from time import monotonic
 
 from ..solver.data.problem import MotionProblem
 from ..solver.data.recording import Recording
@@ -91,10 +92,15 @@ class DragStream:
                 yield message
 
     def first_news(self, seconds: float) -> Iterator[Progress | Answer]:
-        """The same, after a wait of at most so many seconds for an answer."""
-        with self._changed:
-            self._changed.wait_for(lambda: self._answered or self._ended, seconds)
-        yield from self.news()
+        """The same, after a wait of at most so many seconds for a motion that is news: not for one
+        while the worker tells of a fit, which takes longer."""
+        until = monotonic() + seconds
+        found: list[Progress | Answer] = []
+        while not (found or self._ended) and (left := until - monotonic()) > 0.0:
+            with self._changed:
+                self._changed.wait_for(lambda: not self._arrived.empty() or self._ended, left)
+            found = list(self.news())
+        yield from found
 
     def _go_on(self, seen: Answer | None) -> None:
         """The next may leave: a motion that is seen, and still on its way, is asked again."""

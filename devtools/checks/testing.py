@@ -13,8 +13,10 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import IO
 
+from ...solver.worker.program import STACKS_FOLDER
 from ..environment.virtual_environment import ROOT
 from .summary import read_all
+from .watched_tests import Limits, test_at, wait
 
 RUNNER = Path(__file__).with_name("run_pytest.py")
 SUITES = {
@@ -30,17 +32,19 @@ def main(argv: list[str]) -> int:
     )
     parser.add_argument("--reports", type=Path, metavar="DIR", help="keep the JUnit reports here")
     parser.add_argument("--limit", type=float, default=1800, metavar="S", help="seconds a suite")
+    parser.add_argument("--test-limit", type=float, default=600, metavar="S", help="... a test")
     own, rest = parser.parse_known_args(argv)
+    limits = Limits(own.limit, own.test_limit)
     suites = {"chosen": rest} if rest else SUITES
     with tempfile.TemporaryDirectory() as scratch:
         folder = (own.reports or Path(scratch)).resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        code = run_all(suites, folder, own.limit)
+        code = run_all(suites, folder, limits)
         print(read_all(folder), flush=True)
     return code
 
 
-def run_all(suites: Mapping[str, list[str]], folder: Path, limit: float) -> int:
+def run_all(suites: Mapping[str, list[str]], folder: Path, limits: Limits) -> int:
     """1 where a suite fails. They run side by side, and are told one after the other."""
     with ThreadPoolExecutor() as pool, contextlib.ExitStack() as logs:
         waiting: list[tuple[Future[int], IO[bytes] | None]] = []
@@ -49,7 +53,7 @@ def run_all(suites: Mapping[str, list[str]], folder: Path, limit: float) -> int:
             if waiting:
                 log = logs.enter_context(tempfile.TemporaryFile())
             report = folder / f"{name}.xml"
-            waiting.append((pool.submit(run, arguments, report, limit, log), log))
+            waiting.append((pool.submit(run, arguments, report, limits, log), log))
         codes = []
         for pending, log in waiting:
             codes.append(pending.result())
@@ -59,31 +63,34 @@ def run_all(suites: Mapping[str, list[str]], folder: Path, limit: float) -> int:
     return int(any(codes))
 
 
-def run(arguments: list[str], report: Path, limit: float, log: IO[bytes] | None = None) -> int:
+def run(arguments: list[str], report: Path, limits: Limits, log: IO[bytes] | None = None) -> int:
     """Exit code of one pytest process; a report is left even where the process was lost.
 
     log: takes what it says; None lets it say so itself.
     """
     report.unlink(missing_ok=True)
     command = [sys.executable, str(RUNNER), f"--junitxml={report}", *arguments]
-    process = subprocess.Popen(
-        command,
-        cwd=ROOT,
-        start_new_session=True,
-        stdout=log,
-        stderr=subprocess.STDOUT if log else None,
-    )
-    try:
-        code = process.wait(timeout=limit)
-    except subprocess.TimeoutExpired:
-        write_loss(report, f"pytest's process took more than {limit:g} s")
+    with tempfile.TemporaryDirectory() as scratch:
+        watched = Path(scratch)
+        process = subprocess.Popen(
+            command,
+            cwd=ROOT,
+            env={**os.environ, STACKS_FOLDER: scratch},
+            start_new_session=True,
+            stdout=log,
+            stderr=subprocess.STDOUT if log else None,
+        )
+        try:
+            lost = wait(process, watched, limits)
+        finally:
+            end(process)
+        if lost is None and not report.exists():
+            code, test = process.returncode, test_at(watched)
+            lost = f"pytest's process ended with code {code} before it could report, at {test}"
+    if lost is not None:
+        write_loss(report, lost, log)
         return 1
-    finally:
-        end(process)
-    if not report.exists():
-        write_loss(report, f"pytest's process ended with code {code} before it could report")
-        return 1
-    return code
+    return process.returncode
 
 
 def end(process: "subprocess.Popen[bytes]") -> None:
@@ -93,11 +100,15 @@ def end(process: "subprocess.Popen[bytes]") -> None:
             os.killpg(process.pid, signal.SIGKILL)
     else:
         process.kill()
+    process.wait()
 
 
-def write_loss(report: Path, problem: str) -> None:
-    """A report of one failure, so that a lost process is counted."""
-    print(problem, file=sys.stderr, flush=True)
+def write_loss(report: Path, problem: str, log: IO[bytes] | None) -> None:
+    """A report of one failure, so that a lost process is counted; told where its tests are, too."""
+    if log is None:
+        print(problem, file=sys.stderr, flush=True)
+    else:
+        log.write(f"\n{problem}\n".encode())
     words = xml.sax.saxutils.quoteattr(problem)
     report.write_text(
         '<testsuites><testsuite name="pytest" tests="1" failures="1" errors="0" skipped="0">'

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...solver.arrays import IntArray
 from ...solver.body.anatomy import Part
 from ...solver.data.recording import Recording
 from ...solver.data.scaling import scaled_recording
@@ -138,17 +139,35 @@ def dropped(count: int) -> Damage:
     def do(recording: Recording, rng: np.random.Generator) -> Damaged:
         gone = set(_moving(recording, rng, count))
         keep = np.array([t for t in range(len(recording.frames)) if t not in gone])
-        size = len(keep)
-        less = replace(
-            recording,
-            frames=recording.frames[:size],
-            times=recording.times[:size],
-            heads=recording.heads[keep],
-            rotations=recording.rotations[keep],
-        )
-        return Damaged(less, replace(less))
+        return _without(recording, keep)
 
     return Damage(f"{count} frames missing", FindingKind.DROPPED_FRAMES, do)
+
+
+def gap(count: int) -> Damage:
+    """Frames missing in one place, as where capture stalls."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        moving = _moving(recording, rng, len(recording.frames))
+        at = next(t for t in moving if t + count + 4 < len(recording.frames))
+        return _without(
+            recording, np.delete(np.arange(len(recording.frames)), slice(at, at + count))
+        )
+
+    return Damage(f"{count} frames missing in a row", FindingKind.DROPPED_FRAMES, do)
+
+
+def _without(recording: Recording, keep: IntArray) -> Damaged:
+    """With some frames alone, so that the rest comes earlier."""
+    size = len(keep)
+    less = replace(
+        recording,
+        frames=recording.frames[:size],
+        times=recording.times[:size],
+        heads=recording.heads[keep],
+        rotations=recording.rotations[keep],
+    )
+    return Damaged(less, replace(less))
 
 
 def sliding(speed: float) -> Damage:
@@ -243,6 +262,7 @@ DAMAGES = (
     *map(flipped, (2, 12)),
     *map(held, (1, 6)),
     *map(dropped, (1, 4)),
+    *map(gap, (3, 6)),
     *map(sliding, (0.2, 0.5)),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
     noisy(3.0, 1.0),

@@ -24,9 +24,9 @@ from .mouse import BACK, CONFIRM, GIVEN, Press
 LOST = "no motion follows there; the ghost stays where it last could"
 ELSEWHERE = "Drag in a 3D viewport"
 LOOK_EVERY = 0.01  # s; a look costs little, and the ghost waits for the next one
-# s, at most, for which the first move of the mouse waits for its ghost, which mostly takes less:
+# s, at most, for which the first move of the mouse waits for its ghost, which mostly takes a third:
 # Blender draws then, and a ghost that comes later is seen a whole drawing later.
-TOGETHER = 0.08
+TOGETHER = 0.12
 
 
 class FollowedDrag(PolledOperator):

@@ -93,7 +93,8 @@ def diagnose(
         found.append(scale)
     height = performance.character.height
     leaps = find_leaps(performance, count - len(recording.frames))
-    found += [leaps] if leaps is not None else []
+    if leaps is not None and not _are_gaps(leaps, found):
+        found.append(leaps)
     found += find_footing(performance)
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
@@ -104,6 +105,13 @@ def diagnose(
 
 def _remedy(finding: Finding | None) -> Repairs:
     return (finding and finding.remedy) or Repairs()
+
+
+def _are_gaps(leaps: Finding, found: list[Finding]) -> bool:
+    """Whether the body leaps nowhere but over frames that were found to be missing."""
+    dropped = (finding for finding in found if finding.kind is FindingKind.DROPPED_FRAMES)
+    gaps = [span for finding in dropped for span in finding.frames]
+    return all(any(a <= end and start <= b for start, end in gaps) for a, b in leaps.frames)
 
 
 def _require_length(recording: Recording) -> None:

@@ -25,7 +25,7 @@ FLIP = np.radians(140.0)  # from a frame to the next; no joint turns so far
 HELD = 1e-5  # m and entries of a matrix; a pose that changes by less is held
 MOVING = 1e-3  # m, of the farthest joint from a frame to the next, beside a pose that is held
 LONGEST_HELD = 0.25  # s; a longer one is a pause
-DROPPED = (0.8, 2.3)  # further than the frames beside: by one to two missing frames
+DROPPED = (0.8, 10.5)  # further than the frames beside: by one to ten missing frames
 ALIKE = 0.15  # of a step, by which it may differ from its neighbours' way
 
 
@@ -133,7 +133,7 @@ def find_held(recording: Recording) -> Finding | None:
 
 
 def find_dropped(recording: Recording) -> Finding | None:
-    """Steps of the whole body that are as long as two or three beside them: frames are missing."""
+    """Steps of the whole body as long as two to eleven of those beside them: frames are missing."""
     moves = np.diff(recording.heads, axis=0).reshape(len(recording.frames) - 1, -1)
     if len(moves) < 3:
         return None

@@ -34,6 +34,7 @@ MAX_STEP = 0.3  # of s in one step
 MIN_STEP = 0.01  # of s: some milliseconds of a flight; the next step would change it by far less
 MAX_STEPS = 4
 MAX_RATIO = 0.5  # of the violation, left at the end; the solve proper does the rest
+DIVERGED = 10.0  # times the violation, from where no step has come back
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,8 @@ def find_durations(
         step, change = _step(linearised, metric, problem, at, metric.times(x - reference))
         x, timed = x + step, problem.timed(timed.s + change)
         value = timed.values(x)
-        if steps > 1 and np.abs(change).max() < MIN_STEP:
+        settled = steps > 1 and np.abs(change).max() < MIN_STEP
+        if settled or not linearised.violation(value) < DIVERGED * before:
             break
     if not linearised.violation(value) < MAX_RATIO * before:
         return None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 from collections.abc import Callable
 from queue import SimpleQueue
 from threading import Lock, Thread
@@ -17,7 +18,7 @@ from .program import bounded_loading, private_stdout
 if TYPE_CHECKING:
     from .protocol import Ending, Halted, Message, Request
 
-FOREIGN, PROTOCOL_FAULT = 3, 4  # exit codes
+FOREIGN, PROTOCOL_FAULT, DEAF = 3, 4, 5  # exit codes
 
 
 def main() -> int:
@@ -74,7 +75,16 @@ class Inbox:
         return self._endings.get(request)
 
     def listen(self) -> None:
-        """Hears the parent out. Ends the process where the parent goes or talks nonsense."""
+        """Hears the parent out. Ends the process where the parent goes or talks nonsense, and where
+        it cannot listen any more: the next request would be waited for, for ever."""
+        try:
+            self._listen()
+        finally:  # by an exception; every other end of it is the process's
+            traceback.print_exc()
+            sys.stderr.flush()
+            os._exit(DEAF)
+
+    def _listen(self) -> None:
         from .protocol import Halt, Halted, ProtocolError, Request, receive
 
         while True:

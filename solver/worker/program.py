@@ -10,6 +10,7 @@ import faulthandler
 import importlib
 import importlib.util
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -19,6 +20,7 @@ from typing import BinaryIO
 NAME = "hangtime"
 LOADING = 60.0  # s, in which libraries load from the slowest disk
 TIMED_OUT = "Timeout ("  # as faulthandler begins to tell
+STACKS_FOLDER = "HANGTIME_STACKS"  # where tests have processes tell what they are doing
 
 
 def private_stdout() -> BinaryIO:
@@ -44,6 +46,14 @@ def bounded_loading() -> Iterator[None]:
         faulthandler.cancel_dump_traceback_later()
 
 
+def tell_stacks() -> None:
+    """Where a folder is named for it, the signal USR1 has all threads' stacks written there."""
+    folder = os.environ.get(STACKS_FOLDER)
+    if folder and hasattr(signal, "SIGUSR1"):
+        said = Path(folder, f"{os.getpid()}.stacks").open("w")  # noqa: SIM115 - as long as it lives
+        faulthandler.register(signal.SIGUSR1, said, all_threads=True)
+
+
 def load_package(root: Path) -> None:
     """Makes a folder importable as the package, whatever it is called."""
     spec = importlib.util.spec_from_file_location(
@@ -57,5 +67,6 @@ def load_package(root: Path) -> None:
 
 
 if __name__ == "__main__":
+    tell_stacks()
     load_package(Path(__file__).resolve().parents[2])
     sys.exit(importlib.import_module(f"{NAME}.{sys.argv[-1]}").main())

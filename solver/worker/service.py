@@ -83,6 +83,7 @@ class Service:
         self._ending = ending
         self._fits = RecentFits(MOST_FITS)
         self._recording: Recording | None = None
+        self._digest = ""  # of that: a drag asks about it with each update
         self._subject: tuple[_Key, Subject] | None = None
         self._last: tuple[Fit, MotionProblem, Adaptation] | None = None
         self._following: _Following | None = None
@@ -99,7 +100,7 @@ class Service:
     def _complete(self, request: Request) -> Request:
         """With the last recording where the request brings none."""
         if request.recording is not None:
-            self._recording = request.recording
+            self._recording, self._digest = request.recording, digest(request.recording)
         return replace(request, recording=self._recording)
 
     def _met(self, request: Request, tell: Tell) -> Answer:
@@ -157,7 +158,7 @@ class Service:
     def _subject_of(self, request: Request) -> Subject:
         """The analysis, kept for the next request about the same frames and contacts."""
         assert request.recording is not None
-        asked = (digest(request.recording), request.problem.known_to_fit())
+        asked = (self._digest, request.problem.known_to_fit())
         key = (*asked, self._explaining(request.problem.scene))
         if self._subject is None or self._subject[0] != key:
             subject = measure(request.recording, request.problem)

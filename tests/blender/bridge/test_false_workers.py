@@ -78,6 +78,21 @@ send(sys.stdout.buffer, Ready(PROTOCOL))
 raise SystemExit("cannot hear you")
 """
 
+# As a worker does whose listening fails by a mistake in it, once it was asked.
+LISTENS_NO_MORE = """
+import runpy, sys, time
+runpy.run_path({loader!r})["load"]()
+from hangtime.solver.worker import main, protocol
+heard = protocol.receive
+def receive(stream):
+    message = heard(stream)
+    if isinstance(message, protocol.Request):
+        raise ZeroDivisionError("of the listener")
+    return message
+protocol.receive = receive
+sys.exit(main.main())
+"""
+
 Told = Callable[[str], str]
 
 
@@ -128,6 +143,22 @@ def test_one_that_closes_its_pipe_and_stays_is_not_waited_for(told: Told) -> Non
 def test_one_that_was_greeted_and_neither_speaks_nor_listens_is_not_waited_for(told: Told) -> None:
     """What it is sent is more than a pipe holds."""
     assert told(GREETS_ALONE.format(loader=LOADER)) == "exit code -9"
+
+
+def test_one_whose_listener_fails_ends_and_says_so(told: Told) -> None:
+    said = told(LISTENS_NO_MORE.format(loader=LOADER))
+    assert said == "ZeroDivisionError: of the listener (exit code 5)"
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_where_our_own_listener_fails_nobody_waits(
+    told: Told, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def receive(_: object) -> None:
+        raise ZeroDivisionError("of ours")
+
+    monkeypatch.setattr("hangtime.bridge.worker_client.receive", receive)
+    assert "ZeroDivisionError('of ours')" in told(GREETS_ALONE.format(loader=LOADER))
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")

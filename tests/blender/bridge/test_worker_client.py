@@ -309,6 +309,38 @@ def test_the_first_ghost_is_waited_for_but_not_for_long(jump: Recording) -> None
     assert not list(stream.news())
 
 
+def test_the_first_ghost_is_waited_for_while_the_worker_is_made_ready(jump: Recording) -> None:
+    """Where the mouse moves at once, what was asked at the press is answered first, unseen."""
+    stream = DragStream(jump, count(1))
+    asked = stream.requests()
+    stream.want(raised(0.0), ahead=True)
+    ready = next(asked)
+    stream.want(raised(0.01))
+    seen: list[int] = []
+
+    def talk() -> None:
+        stream.deliver(on_its_way(ready))
+        moved = next(asked)
+        seen.append(moved.id)
+        stream.deliver(on_its_way(moved))
+
+    Timer(0.1, talk).start()
+    assert [message.id for message in stream.first_news(60.0)] == seen != []
+
+
+def test_no_ghost_is_waited_for_while_the_worker_fits(jump: Recording) -> None:
+    stream = DragStream(jump, count(1))
+    asked = stream.requests()
+    stream.want(raised(0.01))
+    told = Progress(next(asked).id, "fit", 1, 9.0, "ground 1", 0.1)
+    stream.deliver(told)
+    late = Timer(60.0, lambda: None)
+    late.start()
+    assert list(stream.first_news(60.0)) == [told]
+    assert late.is_alive()
+    late.cancel()
+
+
 def on_its_way(request: Request) -> Followed:
     """An answer, of which the stream looks at nothing else."""
     unread: Any = None

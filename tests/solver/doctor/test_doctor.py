@@ -10,6 +10,7 @@ from hangtime.devtools.doctor.damages import (
     begun_at_rest,
     dropped,
     flipped,
+    gap,
     held,
     lain,
     noisy,
@@ -79,12 +80,26 @@ def test_a_clean_recording_has_no_findings() -> None:
 
 @pytest.mark.parametrize(
     "damage",
-    [spiked(20.0), spiked(120.0), held(6), stretched(0.05), noisy(3.0, 1.0), dropped(2)],
+    [spiked(20.0), spiked(120.0), held(6), stretched(0.05), noisy(3.0, 1.0), dropped(2)]
+    + [gap(3), gap(6)],
     ids=lambda damage: damage.name,
 )
 def test_damage_of_poses_is_named_and_nothing_else(damage: Damage) -> None:
     damaged = damage.of(jump())
     assert [finding.kind for finding in of_poses(damaged.recording)] == [damage.kind]
+
+
+def test_frames_that_are_missing_in_a_row_are_counted_and_no_other_fault_is_told() -> None:
+    """The body's leap over them is what they are told by."""
+    recording = jump()
+    keep = np.delete(np.arange(len(recording.frames)), slice(98, 104))  # in the push
+    frames, times = (each[: len(keep)] for each in (recording.frames, recording.times))
+    heads, rotations = recording.heads[keep], recording.rotations[keep]
+    less = replace(recording, frames=frames, times=times, heads=heads, rotations=rotations)
+    (found,) = diagnose(less, mass=70.0).findings
+    assert found.kind is FindingKind.DROPPED_FRAMES
+    assert found.amount == pytest.approx(6.0, abs=1.0)
+    assert found.frames[0][0] <= frames[98] <= found.frames[0][1]
 
 
 def test_a_spike_is_told_with_its_bone_and_frame() -> None:

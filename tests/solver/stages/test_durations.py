@@ -2,16 +2,20 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.body.anatomy import Part
+from hangtime.solver.data.contacts import Interval
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import PhaseTiming, Requests
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.data.status import Durations
+from hangtime.solver.stages import durations as durations_module
 from hangtime.solver.stages.anticipation import changed_jumps
 from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
@@ -224,3 +228,29 @@ def test_a_jump_that_its_own_durations_fold_up_keeps_the_recorded_ones() -> None
     beyond = [each for guard in guards for each in guard.violations(found.motion)]
     assert {guard.kind for guard in guards} == {RowKind.SOLID, RowKind.RANGE}
     assert all(each.amount < 3.0 * each.kind.tolerance for each in beyond), beyond
+
+
+def test_steps_that_diverge_are_given_up_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From a pin some metres behind, each further step cost a minute and led to 1e29 tolerances."""
+    steps = []
+
+    def step(_linearised: object, _metric: object, _problem: object, at: Any, *_: object) -> Any:
+        steps.append(at)
+        return 99.0 * at[0], np.array([0.3])
+
+    def timed(s: np.ndarray) -> Any:
+        return SimpleNamespace(s=s, values=lambda x: x.ravel())
+
+    monkeypatch.setattr(durations_module, "_step", step)
+    monkeypatch.setattr(
+        durations_module,
+        "_BorderedProblem",
+        lambda *_: SimpleNamespace(timed=timed),
+    )
+    linearised = SimpleNamespace(rows=None, violation=lambda value: np.abs(value).max())
+    metric = SimpleNamespace(times=lambda x: x)
+    start: Any = SimpleNamespace(motion=None, metric=metric, unpriced=linearised)
+    flights = (Interval(0.5, 1.0),)
+    found = durations_module.find_durations(start, np.ones((1, 1)), np.zeros((1, 3)), flights)
+    assert found is None
+    assert len(steps) == 1
