@@ -22,9 +22,10 @@ from ..cells.work import InputChanged
 from ..planning.blender_need import needs_blender
 from ..queue.attempts import Attempt, Attempts, pair_of
 from ..records.failure import write_failure
-from ..records.faults import BatchFault, FolderGone, WrongPlan, gone
+from ..records.faults import FolderGone, WrongPlan, gone
 from ..records.manifest import CellPlan, Manifest, read_manifest
 from ..records.result import FITS, CellResult, State, lasting_result
+from .connection import FarmGone, connected
 from .crew import Crew
 from .late import await_results
 from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of
@@ -42,13 +43,8 @@ from .worker_side import (
 Tell = Callable[[str], None]
 MOST_TRIES = 4  # of a cell that fails, or whose worker ends meanwhile
 PATIENCE = 0.5  # s between looks at the workers
-ANSWERING = 10.0  # s that a scheduler may take
 MOST_SENT = 64  # files that workers keep for later cells, the latest of them
 FETCHING = 15.0  # s that a cell's files may take on their way; a lost worker's never come
-
-
-class FarmGone(BatchFault):
-    """A scheduler that cannot be reached, or no more."""
 
 
 def run_on_dask(
@@ -85,24 +81,6 @@ def run_on_dask(
                 f"The scheduler at {address} is gone ({error or type(error).__name__}). What has "
                 "ended is kept: start it again, and give the same command."
             ) from error
-
-
-@contextmanager
-def connected(address: str) -> Iterator[Client]:
-    """A client of the scheduler. Raises FarmGone."""
-    file = Path(address)
-    try:
-        if "://" not in address and file.is_file():
-            client = Client(scheduler_file=str(file), timeout=ANSWERING)
-        else:
-            client = Client(address, timeout=ANSWERING)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise FarmGone(
-            f"No scheduler answers at {address} ({error or type(error).__name__}); check the "
-            "address, such as tcp://host:8786, or the scheduler file, and that it runs."
-        ) from error
-    with client:
-        yield client
 
 
 @contextmanager
