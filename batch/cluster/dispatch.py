@@ -9,11 +9,14 @@ the batch's folder at once, so that a run which is killed has lost nothing.
 from __future__ import annotations
 
 import hashlib
+import operator
+import pickle
 import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from distributed import Client, Future, wait
@@ -179,14 +182,24 @@ class Dispatch:
             return
         if self.crew.reach[attempt.worker] is Reach.SHARED:
             paths = [str(path) for path in parcel.files.values()]
-            task: tuple[object, ...] = (solve_in, str(self.folder.resolve()), cell, paths)
+            solve = partial(solve_in, str(self.folder.resolve()), cell, paths)
+            sent: list[dict[str, Future]] = []
         else:
             files = {name: self._sent(path) for name, path in parcel.files.items()}
             fits = {name: self._sent(path) for name, path in self._fits(attempt.plan)}
-            task = (solve_away, self.token, self.manifest.settings, parcel.plan, files, fits)
-        key = f"cell-{cell}-{uuid.uuid4().hex}"
-        future = self.client.submit(*task, key=key, workers=[attempt.worker], pure=False)
-        self.futures[future] = attempt
+            solve = partial(solve_away, self.token, self.manifest.settings, parcel.plan)
+            sent = [files, fits]
+        self.futures[self._submitted(attempt, solve, sent)] = attempt
+
+    def _submitted(
+        self, attempt: Attempt, solve: Callable[..., Delivery], sent: list[dict[str, Future]]
+    ) -> Future:
+        """The cell as a task of its worker. A scheduler opens what it is given and may have no
+        Hangtime: it gets bytes, and functions of Python's own."""
+        name, where = f"{attempt.plan.cell}-{uuid.uuid4().hex}", [attempt.worker]
+        packed = pickle.dumps(solve)
+        opened = self.client.submit(pickle.loads, packed, key=f"solve-{name}", workers=where)
+        return self.client.submit(operator.call, opened, *sent, key=f"cell-{name}", workers=where)
 
     def _fits(self, plan: CellPlan) -> Iterator[tuple[str, Path]]:
         """Files of the fits of a cell's clip that are in the batch's folder."""
