@@ -68,7 +68,7 @@ def build_wheel(out: Path) -> Path:
             raise BuildError(f"{done.stdout}{done.stderr}\nfailed: {' '.join(command)}")
         made = next(folder.glob("*.whl"))
         out.mkdir(parents=True, exist_ok=True)
-        return Path(shutil.copy(made, out / made.name))
+        return Path(shutil.copyfile(made, out / made.name))  # pip's own is for its owner alone
 
 
 def wheel_files() -> list[Path]:

@@ -9,11 +9,14 @@ the batch's folder at once, so that a run which is killed has lost nothing.
 from __future__ import annotations
 
 import hashlib
+import operator
+import pickle
 import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from distributed import Client, Future, wait
@@ -22,9 +25,10 @@ from ..cells.work import InputChanged
 from ..planning.blender_need import needs_blender
 from ..queue.attempts import Attempt, Attempts, pair_of
 from ..records.failure import write_failure
-from ..records.faults import BatchFault, FolderGone, WrongPlan, gone
+from ..records.faults import FolderGone, WrongPlan, gone
 from ..records.manifest import CellPlan, Manifest, read_manifest
 from ..records.result import FITS, CellResult, State, lasting_result
+from .connection import FarmGone, connected
 from .crew import Crew
 from .late import await_results
 from .parcel import deliver_cell, deliver_fits, fits_by_clip, parcel_of
@@ -42,13 +46,8 @@ from .worker_side import (
 Tell = Callable[[str], None]
 MOST_TRIES = 4  # of a cell that fails, or whose worker ends meanwhile
 PATIENCE = 0.5  # s between looks at the workers
-ANSWERING = 10.0  # s that a scheduler may take
 MOST_SENT = 64  # files that workers keep for later cells, the latest of them
 FETCHING = 15.0  # s that a cell's files may take on their way; a lost worker's never come
-
-
-class FarmGone(BatchFault):
-    """A scheduler that cannot be reached, or no more."""
 
 
 def run_on_dask(
@@ -85,24 +84,6 @@ def run_on_dask(
                 f"The scheduler at {address} is gone ({error or type(error).__name__}). What has "
                 "ended is kept: start it again, and give the same command."
             ) from error
-
-
-@contextmanager
-def connected(address: str) -> Iterator[Client]:
-    """A client of the scheduler. Raises FarmGone."""
-    file = Path(address)
-    try:
-        if "://" not in address and file.is_file():
-            client = Client(scheduler_file=str(file), timeout=ANSWERING)
-        else:
-            client = Client(address, timeout=ANSWERING)
-    except (OSError, TimeoutError, ValueError) as error:
-        raise FarmGone(
-            f"No scheduler answers at {address} ({error or type(error).__name__}); check the "
-            "address, such as tcp://host:8786, or the scheduler file, and that it runs."
-        ) from error
-    with client:
-        yield client
 
 
 @contextmanager
@@ -201,14 +182,24 @@ class Dispatch:
             return
         if self.crew.reach[attempt.worker] is Reach.SHARED:
             paths = [str(path) for path in parcel.files.values()]
-            task: tuple[object, ...] = (solve_in, str(self.folder.resolve()), cell, paths)
+            solve = partial(solve_in, str(self.folder.resolve()), cell, paths)
+            sent: list[dict[str, Future]] = []
         else:
             files = {name: self._sent(path) for name, path in parcel.files.items()}
             fits = {name: self._sent(path) for name, path in self._fits(attempt.plan)}
-            task = (solve_away, self.token, self.manifest.settings, parcel.plan, files, fits)
-        key = f"cell-{cell}-{uuid.uuid4().hex}"
-        future = self.client.submit(*task, key=key, workers=[attempt.worker], pure=False)
-        self.futures[future] = attempt
+            solve = partial(solve_away, self.token, self.manifest.settings, parcel.plan)
+            sent = [files, fits]
+        self.futures[self._submitted(attempt, solve, sent)] = attempt
+
+    def _submitted(
+        self, attempt: Attempt, solve: Callable[..., Delivery], sent: list[dict[str, Future]]
+    ) -> Future:
+        """The cell as a task of its worker. A scheduler opens what it is given and may have no
+        Hangtime: it gets bytes, and functions of Python's own."""
+        name, where = f"{attempt.plan.cell}-{uuid.uuid4().hex}", [attempt.worker]
+        packed = pickle.dumps(solve)
+        opened = self.client.submit(pickle.loads, packed, key=f"solve-{name}", workers=where)
+        return self.client.submit(operator.call, opened, *sent, key=f"cell-{name}", workers=where)
 
     def _fits(self, plan: CellPlan) -> Iterator[tuple[str, Path]]:
         """Files of the fits of a cell's clip that are in the batch's folder."""

@@ -12,6 +12,7 @@ from ..records.manifest import CellPlan
 from ..records.result import CellResult, State
 
 SILENCE_S = 10.0  # between lines where there is no terminal to write in place
+STILL_S = 60.0  # the same, while no cell ends
 
 
 class Progress:
@@ -30,7 +31,7 @@ class Progress:
         self._out, self._total, self._clock = out, total, clock
         self._counts = done.copy()
         self._began = self._last = clock()
-        self._now = 0
+        self._now = self._shown = 0
         self._live = out.isatty()
 
     def ended(self, plan: CellPlan, result: CellResult) -> None:
@@ -51,8 +52,10 @@ class Progress:
         if self._live:
             self._out.write(f"\r\x1b[K{self.line()}" + ("\n" if last else ""))
             self._out.flush()
-        elif last or self._clock() - self._last >= SILENCE_S:
-            self._last = self._clock()
+            return
+        silence = STILL_S if self._now == self._shown else SILENCE_S
+        if last or self._clock() - self._last >= silence:
+            self._last, self._shown = self._clock(), self._now
             self.note(self.line())
 
     def line(self) -> str:

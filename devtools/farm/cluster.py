@@ -50,7 +50,8 @@ def running_cluster(folder: Path, package: Path, workers: int) -> Iterator[Clust
     folder.mkdir(parents=True, exist_ok=True)
     command = ["dask_scheduler", "--host", LOOPBACK, "--port", "0", "--no-dashboard"]
     command += ["--scheduler-file", str(folder / "scheduler.json")]
-    cluster = Cluster(folder, package, start(command, folder / "scheduler.log", package))
+    bare = folder / "without Hangtime"  # as schedulers that a studio has
+    cluster = Cluster(folder, package, start(command, folder / "scheduler.log", bare))
     try:
         await_file(cluster)
         for _ in range(workers):

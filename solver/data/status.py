@@ -19,7 +19,7 @@ class Durations(Enum):
     RECORDED = "as recorded"  # no jump from standing has another length, or times are kept
     FOUND = "found"  # those that go with the moved landings and take-offs
     NONE_FOUND = "none found"  # no motion was found with others, so they are as recorded
-    NOT_MET = "not met"  # what is asked for was not reached with those found: as recorded
+    NOT_MET = "not met"  # those found missed what is asked for, or guards: as recorded
     MOVING_GROUND = "moving ground"  # a stance rides on what keeps its own time: as recorded
 
 

@@ -198,12 +198,12 @@ class _ChordIterate:
         self._rows: Rows | None = rows  # at x with their Jacobian, where that is known
         self._linearised: LinearisedProblem | None = None
         self._before = np.inf  # violation before the last step
-        self._stale = False
+        self._stale = self._chord = False
         self._guards = int(rows.guards.sum())  # which are the last
 
     def advance(self, stage: str) -> Step | None:
         """Takes a step; None where a chord step was shortened, so that a new Jacobian is due."""
-        slow = self._linearised is None or self.violation > MAX_CHORD_RATIO * self._before
+        slow = self._linearised is None or not self._gains()
         known = self._rows is not None and not self._nearly_there()
         fresh = slow or self._stale or known
         linearised = self._linearise() if fresh or self._linearised is None else self._linearised
@@ -215,8 +215,15 @@ class _ChordIterate:
         self._stale = trial.length < 1.0 and not fresh
         if self._stale:
             return None
-        self._before = before
+        self._before, self._chord = before, not fresh
         return Step(stage, before, trial.length, worst)
+
+    def _gains(self) -> bool:
+        """Whether the last step gained so much that the next may keep its Jacobian: for many more,
+        or, as a chord step gains what the one before it did, for one that ends it."""
+        if self._chord and self.violation**2 < MAX_CHORD_REST * self._before:
+            return True
+        return self.violation <= MAX_CHORD_RATIO * self._before
 
     def _nearly_there(self) -> bool:
         """Whether a chord step will end it: of what is left, its Jacobian leaves twice the share

@@ -55,39 +55,41 @@ def find_durations(
     """
     metric, linearised = start.metric, start.unpriced
     problem = _BorderedProblem(start.motion, linearised.rows, places, tuple(flights))
-    x, s = reference, np.zeros(len(flights))
-    value = problem.values(x, s)
+    x, timed = reference, problem.timed(np.zeros(len(flights)))
+    value = timed.values(x)
     before = linearised.violation(value)
     for steps in range(1, MAX_STEPS + 1):
-        gradient = metric.times(x - reference)
-        step, change = _step(linearised, metric, problem, (x, s), value, gradient)
-        x, s = x + step, s + change
-        value = problem.values(x, s)
+        at = x, timed.s, value
+        step, change = _step(linearised, metric, problem, at, metric.times(x - reference))
+        x, timed = x + step, problem.timed(timed.s + change)
+        value = timed.values(x)
         settled = steps > 1 and np.abs(change).max() < MIN_STEP
         if settled or not linearised.violation(value) < DIVERGED * before:
             break
     if not linearised.violation(value) < MAX_RATIO * before:
         return None
     # By metres alone the least change twirls a neck by 70 degrees at the end of a clip.
-    x = reference + start.priced.step(problem.values(reference, s))[0]
-    return TimedMotion(problem.feasible(s).motion(x), problem.stretches(s))
+    x = reference + start.priced.step(timed.values(reference))[0]
+    return TimedMotion(timed.feasible.motion(x), problem.stretches(timed.s))
 
 
 def _step(
     linearised: LinearisedProblem,
     metric: BlockBanded,
     problem: "_BorderedProblem",
-    at: tuple[FloatArray, FloatArray],
-    value: FloatArray,
+    at: tuple[FloatArray, FloatArray, FloatArray],
     gradient: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Step of x (K, n_block) and s (n,) from `at`. value: of the rows there, (R,). gradient:
-    W (x - x0), (K, n_block)."""
-    x, s = at
+    """Step of x (K, n_block) and s (n,) from `at`, where the rows have values (R,), the third.
+
+    gradient: W (x - x0), (K, n_block).
+    """
+    x, s, value = at
     still = linearised.step(value, gradient)[0]
     moves = []
     for unit in np.eye(len(s)):
-        slope = (problem.values(x, s + DERIVATIVE_STEP * unit) - value) / DERIVATIVE_STEP
+        aside = problem.timed(s + DERIVATIVE_STEP * unit)
+        slope = (aside.values(x) - value) / DERIVATIVE_STEP
         moves.append((linearised.step(value + PROBE * slope, gradient)[0] - still) / PROBE)
     pulls = [metric.times(move) for move in moves]
     schur = np.array([[float((pull * move).sum()) for move in moves] for pull in pulls])
@@ -114,12 +116,21 @@ class _BorderedProblem:
             Stretch(f.start, f.end, float(k)) for f, k in zip(self.flights, np.exp(s), strict=True)
         )
 
-    def feasible(self, s: FloatArray) -> FeasibleSet:
-        """The feasible set of these durations."""
+    def timed(self, s: FloatArray) -> "_TimedRows":
+        """The rows with these durations: what they are made of takes as long as their values."""
         warp = TimeWarp.of(self.stretches(s), self.start.duration)
-        return FeasibleSet(self.start.transcription.retimed(warp), self.places)
+        feasible = FeasibleSet(self.start.transcription.retimed(warp), self.places)
+        return _TimedRows(s, feasible, np.where(self.rows.equal, self.rows.value, 0.0))
 
-    def values(self, x: FloatArray, s: FloatArray) -> FloatArray:
-        """(R,) values of the rows, less what the start violates of the equations."""
-        left = np.where(self.rows.equal, self.rows.value, 0.0)
-        return np.asarray(self.feasible(s).values(x) - left)
+
+@dataclass(frozen=True)
+class _TimedRows:
+    """Rows with durations exp(s). left: (R,) what the start violates of the equations."""
+
+    s: FloatArray
+    feasible: FeasibleSet
+    left: FloatArray
+
+    def values(self, x: FloatArray) -> FloatArray:
+        """(R,) values of the rows at x (K, n_block), less what is left."""
+        return np.asarray(self.feasible.values(x) - self.left)

@@ -29,6 +29,7 @@ from .setup import Setup, check_places, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
+MAX_TIMED_ATTEMPTS = 2  # with found durations, which begin at their places: no step is smaller
 MAX_ARRIVALS = 2  # where guards were given up, which in smaller steps need not be
 HOPELESS = 500.0  # tolerances beyond guards, as of ten limbs 50 mm deep: smaller steps find no room
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
@@ -37,6 +38,7 @@ MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for 
 MAX_GUARD_STEPS = 10  # after which what is in the way is given up
 MOST_FURTHER = 0.1  # rad, by which rows may take another joint further beyond its range
 SAME_PLACE = 1e-4  # m
+NO_SHORTCOMINGS = 0.0, False, 0.0
 MAX_DENSE_VIOLATION = 3.0  # times a constraint's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
 
@@ -73,7 +75,8 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     """Adapts a fitted performance to a problem (thesis 4.3, 4.4).
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins, OutOfReach and the requests' own faults.
-    What cannot be reached with the durations that go with the pins is tried with the recorded ones;
+    What is not met with the durations that go with the pins, or only where guards are given up, is
+    tried with the recorded ones, and the better of both returned;
     a loop keeps these, for it lasts whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A
     solve that fails is returned with the best motion found and a status that says so; one that
     `progress` ends by raising Stopped, with the motion as it stood.
@@ -83,13 +86,23 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
     _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)
-        if found.reached == 1.0 or setup.durations is not Durations.FOUND:
+        if setup.durations is not Durations.FOUND or _shortcomings(found) == NO_SHORTCOMINGS:
             return found
         setup = replace(set_up(fit, problem.keeping_times()), durations=Durations.NOT_MET)
         again = _solve(fit, problem, setup, progress)
-        return replace(again, outcomes=(*found.outcomes, *again.outcomes))
+        worse, better = (
+            (found, again) if _shortcomings(again) < _shortcomings(found) else (again, found)
+        )
+        return replace(better, outcomes=(*worse.outcomes, *better.outcomes))
     except Stopped as stop:
         return _stopped(stop.motion, fit, setup)
+
+
+def _shortcomings(found: Adaptation) -> tuple[float, bool, float]:
+    """What a motion is judged by, the worst first: the share of the way that is missing, whether it
+    misses a constraint between the nodes, and how far it goes beyond its guards."""
+    missed = found.outcome.status is Status.MISSED
+    return 1.0 - found.reached, missed, _beyond(found.outcome, found.setup, found.setup.guards)
 
 
 def _require_closed(setup: Setup) -> None:
@@ -113,7 +126,8 @@ def _stopped(motion: Motion, fit: Fit, setup: Setup) -> Adaptation:
 
 def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | None) -> Adaptation:
     attempts: list[ContinuationAttempt] = []
-    for harder in range(MAX_ATTEMPTS):
+    timed = setup.durations is Durations.FOUND
+    for harder in range(MAX_TIMED_ATTEMPTS if timed else MAX_ATTEMPTS):
         # What moves far may bring one limb through another on its way.
         limbs = any(attempt.held_back and attempt.steps > 1 for attempt in attempts)
         giving_up = harder > 0  # what smaller steps keep needs no giving up

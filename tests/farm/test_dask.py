@@ -1,11 +1,15 @@
 """Batches on a real scheduler with real workers, processes of this machine on its loopback."""
 
+import gc
 import shutil
+import sys
+import threading
 from pathlib import Path
 from random import Random
 
 import pytest
-from hangtime.batch.cluster.dispatch import FarmGone, run_on_dask
+from hangtime.batch.cluster.connection import FarmGone, connected
+from hangtime.batch.cluster.dispatch import run_on_dask
 from hangtime.batch.cluster.worker_side import Reach, look_around
 from hangtime.batch.planning.plan import Asked, plan
 from hangtime.batch.records.faults import FolderGone, WrongPlan
@@ -105,11 +109,38 @@ def test_a_clip_that_goes_meanwhile_fails_its_own_cells_alone(
     assert not any("share" in words for words in told)
 
 
-def test_no_scheduler_is_told_in_a_sentence(tmp_path: Path) -> None:
+def test_no_scheduler_is_told_in_a_sentence_and_nothing_is_left_of_it(tmp_path: Path) -> None:
     plan_hops(tmp_path / "batch", 2)
+    before = threading.enumerate()
     for address in ("tcp://127.0.0.1:9", str(tmp_path / "no file.json")):
         with pytest.raises(FarmGone, match=r"^No scheduler answers at .* check the address"):
             run_on_dask(tmp_path / "batch", address, lambda _: None)
+    left = [thread.name for thread in threading.enumerate() if thread not in before]
+    assert [name for name in left if "Offload" not in name] == []  # Dask keeps that pool of threads
+
+
+def test_a_connection_does_not_wait_for_one_that_failed_before(
+    tmp_path: Path, package: Path
+) -> None:
+    gc.disable()  # what is left is collected in the next connection's own thread
+    try:
+        with pytest.raises(FarmGone), connected(str(tmp_path / "no file.json")):
+            pass
+        threading.setprofile(collect)
+        with (
+            running_cluster(tmp_path / "cluster", package, 0) as cluster,
+            connected(str(cluster.file)) as client,
+        ):
+            assert client.status == "running"
+    finally:
+        threading.setprofile(None)
+        gc.enable()
+
+
+def collect(*_of_call: object) -> None:
+    """A profiler that collects garbage as its thread begins, and then takes itself out."""
+    sys.setprofile(None)
+    gc.collect()
 
 
 def test_a_folder_that_goes_ends_the_run_in_a_sentence(tmp_path: Path, package: Path) -> None:

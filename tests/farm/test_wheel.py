@@ -16,6 +16,9 @@ HERE = {"PYTHONPATH", "PYTHONHOME"}
 def test_a_cell_is_solved_by_the_installed_wheel(tmp_path: Path, solved: dict[str, str]) -> None:
     wheel = build_wheel(tmp_path / "dist")
     assert wheel.stat().st_size < 2e6
+    others = tmp_path / "readable by others"
+    others.touch()
+    assert wheel.stat().st_mode == others.stat().st_mode, "workers of other users install it"
     environment = tmp_path / "environment"
     # numpy and CasADi are those of these tests: to fetch them anew would tell nothing more.
     venv.EnvBuilder(with_pip=True).create(environment)

@@ -1,5 +1,6 @@
 """Durations and size of a jump go with where it lands: both ways, and not at all where it stays."""
 
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +12,7 @@ from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.contacts import Interval
 from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import PhaseTiming, Requests
+from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.data.status import Durations
 from hangtime.solver.stages import durations as durations_module
@@ -212,6 +214,22 @@ def test_an_adaptation_knows_nothing_of_earlier_ones() -> None:
     assert np.array_equal(far().outcome.x, first)
 
 
+@pytest.mark.slow
+def test_a_jump_that_its_own_durations_fold_up_keeps_the_recorded_ones() -> None:
+    """A hop of 44 cm onto one foot that turns, 20 cm higher: with the durations that go with that
+    an arm is 14 cm in the trunk, with the recorded ones nothing is in anything."""
+    frames = (91.0, 334.0)
+    analysis = analyse(load_recording("131_03_hop.bvh"), MotionProblem(frames=frames))
+    raised = replace(to(0.0, up=0.2), frames=frames)
+    found = adapt(fit(analysis.performance, analysis.schedule), raised)
+    assert found.solved
+    assert found.setup.durations is Durations.NOT_MET
+    guards = found.setup.guards
+    beyond = [each for guard in guards for each in guard.violations(found.motion)]
+    assert {guard.kind for guard in guards} == {RowKind.SOLID, RowKind.RANGE}
+    assert all(each.amount < 3.0 * each.kind.tolerance for each in beyond), beyond
+
+
 def test_steps_that_diverge_are_given_up_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """From a pin some metres behind, each further step cost a minute and led to 1e29 tolerances."""
     steps = []
@@ -220,11 +238,14 @@ def test_steps_that_diverge_are_given_up_at_once(monkeypatch: pytest.MonkeyPatch
         steps.append(at)
         return 99.0 * at[0], np.array([0.3])
 
+    def timed(s: np.ndarray) -> Any:
+        return SimpleNamespace(s=s, values=lambda x: x.ravel())
+
     monkeypatch.setattr(durations_module, "_step", step)
     monkeypatch.setattr(
         durations_module,
         "_BorderedProblem",
-        lambda *_: SimpleNamespace(values=lambda x, _: x.ravel()),
+        lambda *_: SimpleNamespace(timed=timed),
     )
     linearised = SimpleNamespace(rows=None, violation=lambda value: np.abs(value).max())
     metric = SimpleNamespace(times=lambda x: x)
