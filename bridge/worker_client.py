@@ -201,7 +201,7 @@ class _Process:
         self._greeted = Event()
         self._sending = Lock()
         self._asked: SimpleQueue[PendingRequest | DragStream | None] = SimpleQueue()
-        self._heard: SimpleQueue[Message | BaseException] = SimpleQueue()
+        self._heard: SimpleQueue[Message | Exception] = SimpleQueue()
         self._halted: set[int] = set()
         self._last_lines: deque[str] = deque(maxlen=_KEPT_LINES)
         self._listener = Thread(target=self._keep_errors, daemon=True)
@@ -298,7 +298,7 @@ class _Process:
 
     def _hear(self) -> Message:
         heard = self._heard.get()
-        if isinstance(heard, BaseException):
+        if isinstance(heard, Exception):
             self._heard.put(heard)  # for who asks next
             raise heard
         return heard
@@ -316,8 +316,10 @@ class _Process:
         except (OSError, ValueError, ProtocolError) as problem:  # ValueError: closed by end()
             self._heard.put(problem)
         except BaseException as problem:
-            # A mistake of ours; who waits for an answer must hear that nobody listens any more.
-            self._heard.put(problem)
+            # A mistake of ours; who waits for an answer must hear that nobody listens any more, and
+            # who is sending, whose pipe is broken then, why.
+            self._last_lines.append(repr(problem))
+            self._heard.put(ProtocolError(repr(problem)))
             self._popen.kill()
             raise
         with suppress(subprocess.TimeoutExpired):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from queue import SimpleQueue
 
 import numpy as np
 import pytest
@@ -150,15 +152,17 @@ def test_one_whose_listener_fails_ends_and_says_so(told: Told) -> None:
     assert said == "ZeroDivisionError: of the listener (exit code 5)"
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_where_our_own_listener_fails_nobody_waits(
     told: Told, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def receive(_: object) -> None:
         raise ZeroDivisionError("of ours")
 
+    shown: SimpleQueue[threading.ExceptHookArgs] = SimpleQueue()
+    monkeypatch.setattr(threading, "excepthook", shown.put)
     monkeypatch.setattr("hangtime.bridge.worker_client.receive", receive)
     assert "ZeroDivisionError('of ours')" in told(GREETS_ALONE.format(loader=LOADER))
+    assert shown.get(timeout=30.0).exc_type is ZeroDivisionError
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")

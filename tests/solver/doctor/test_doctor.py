@@ -80,8 +80,14 @@ def test_a_clean_recording_has_no_findings() -> None:
 
 @pytest.mark.parametrize(
     "damage",
-    [spiked(20.0), spiked(120.0), held(6), stretched(0.05), noisy(3.0, 1.0), dropped(2)]
-    + [gap(3), gap(6)],
+    [
+        *map(spiked, (20.0, 120.0)),
+        held(6),
+        stretched(0.05),
+        noisy(3.0, 1.0),
+        dropped(2),
+        *map(gap, (3, 6)),
+    ],
     ids=lambda damage: damage.name,
 )
 def test_damage_of_poses_is_named_and_nothing_else(damage: Damage) -> None:
