@@ -158,6 +158,8 @@ def _rows(table: Table, key: str) -> FloatArray:
 
 def _from_file(table: Table) -> tuple[FloatArray, IntArray]:
     path = Path(table.source.path).parent / (table.word("file") or "")
+    if not path.is_file():  # a device may have no end
+        table.refuse("file", f"there is no file {path}; check its path")
     try:
         return read_obj(path)
     except UnreadableMesh as error:

@@ -79,6 +79,8 @@ def test_obj_files_lie_beside_the_recipe(tmp_path: Path) -> None:
         ('box = [1, 1, 1]\nunder = "Landing"\nplace = [0, 0, 0]', 4),
         ("box = [1, 1, 1]\naxes = [[1, 0, 0], [0, 2, 0], [0, 0, 1]]", 3),
         ('file = "nowhere.obj"', 2),
+        ('file = "/dev/full"', 2),  # which can be read without end
+        ('file = "\\u0000"', 2),
         ('box = [1, 1, 1]\nrole = "wall"', 3),
     ],
 )
