@@ -265,8 +265,10 @@ class _Process:
         self._popen.wait()
         self._greeted.set()  # for who waits to halt something
         self._asked.put(None)
+        with self._sending:  # else what is being sent may go into a pipe that takes this number
+            self._to_worker.close()
         self._listener.join(_LAST_WORDS_S)
-        for pipe in (self._to_worker, self._from_worker, self._popen.stderr):
+        for pipe in (self._from_worker, self._popen.stderr):
             assert pipe is not None
             pipe.close()
 

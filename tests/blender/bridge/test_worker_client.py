@@ -10,11 +10,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from threading import Thread, Timer
-from typing import Any
+from threading import Event, Thread, Timer
+from typing import Any, BinaryIO
 
 import numpy as np
 import pytest
+from hangtime.bridge import worker_client
 from hangtime.bridge.worker_client import RequestKind, Worker
 from hangtime.bridge.worker_requests import DragStream, PendingRequest
 from hangtime.solver.data.faults import (
@@ -35,8 +36,11 @@ from hangtime.solver.worker.protocol import (
     Failed,
     Fitted,
     Followed,
+    Halt,
+    Message,
     Progress,
     Request,
+    send,
 )
 from hangtime.tests.blender.helpers.scripts import output_of
 from hangtime.tests.helpers.clips import load_recording
@@ -427,6 +431,33 @@ def test_closing_ends_the_process_whatever_it_does(worker: Worker, jump: Recordi
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks processes up in /proc")
+def test_a_pipe_is_kept_open_while_something_is_being_sent_into_it(
+    worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else the next file that is opened may get its number, and what is sent: a new worker did,
+    and ended, for it is greeted first."""
+    halting, go_on = Event(), Event()
+    open_to_the_end = []
+
+    def slowly(stream: BinaryIO, message: Message) -> None:
+        if isinstance(message, Halt):
+            halting.set()
+            go_on.wait(5.0)
+            open_to_the_end.append(not stream.closed)
+        send(stream, message)
+
+    monkeypatch.setattr(worker_client, "send", slowly)
+    worker.ask(RequestKind.FIT, jump, MotionProblem(frames=SPAN))
+    worker.drop()
+    assert halting.wait(60.0)
+    closing = Thread(target=worker.close)
+    closing.start()
+    closing.join(0.3)
+    go_on.set()
+    closing.join()
+    assert open_to_the_end == [True]
+
+
 def test_the_worker_ends_with_its_parent(jump: Recording) -> None:
     assert len(jump.frames) > 0
     assert gone(int(output_of(ORPHAN, JUMP)))
