@@ -34,6 +34,7 @@ from .runs import killed_and_resumed, run_local
 from .sessions import run_session
 
 SEED = 13
+PAIRS = 5  # of runs, of whose speed-ups the median is told: a phase of the machine spoils a run
 Found = Iterator[tuple[str, float]]
 
 
@@ -69,11 +70,11 @@ def measured(scratch: Path, *, quick: bool) -> Found:
     expected = contents(scratch / "one", one.manifest)
     yield EQUAL + "2 workers", apart(scratch / "two", expected)
     if not quick:  # the start of a run would be a great part of it
-        # The other way round as well: a machine that grows slower or faster meanwhile counts for
-        # both alike.
-        two_again = run_local(scratch / "two again", package, cells, 2)
-        one_again = run_local(scratch / "one again", package, cells, 1)
-        yield SPEED_UP, (one.seconds + one_again.seconds) / (two.seconds + two_again.seconds)
+        ratios = [one.seconds / two.seconds]
+        for again in range(1, PAIRS):
+            folder, other_way = scratch / f"again {again}", again % 2 == 1
+            ratios.append(speed_up(folder, package, cells, two_first=other_way))
+        yield SPEED_UP, median(ratios)
     yield from told_times(scratch / "one", one.manifest)
     for share, how in ((True, "shared folder"), (False, "through the scheduler")):
         plan_hops(scratch / how, cells)
@@ -85,6 +86,16 @@ def measured(scratch: Path, *, quick: bool) -> Found:
     yield EQUAL + "OpenJD's session", apart(scratch / "openjd", expected)
     yield from killed(scratch, package, quick=quick)
     yield from sized(scratch)
+
+
+def speed_up(folder: Path, package: Path, cells: int, *, two_first: bool) -> float:
+    """How much sooner two workers are done than one. two_first: every other time they go first, so
+    that a machine that grows slower meanwhile counts for both alike."""
+    seconds = {
+        jobs: run_local(folder / str(jobs), package, cells, jobs).seconds
+        for jobs in ((2, 1) if two_first else (1, 2))
+    }
+    return seconds[1] / seconds[2]
 
 
 def apart(folder: Path, expected: dict[str, str]) -> float:
