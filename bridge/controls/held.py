@@ -34,7 +34,8 @@ def held_bones(
         for frame in at:
             posing.go_to(float(frame))
             bases.append(posing.bases())
-    off = np.stack([_off(armature, poses, n, b) for n, b in zip(names, np.swapaxes(bases, 0, 1))])
+    own = zip(names, np.swapaxes(bases, 0, 1), strict=True)
+    off = np.stack([_off(armature, poses, name, each) for name, each in own])
     if not off.any():
         return None
     first = float(at[np.flatnonzero(off.any(axis=0))[0]])

@@ -70,14 +70,17 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.DrivenBones: "Drivers pose the bones {bones:names} whatever keys they have, so a result "
     "could not be written; bake the action and delete these drivers, or choose other bones under "
     "Bones.",
-    faults.HeldBones: "Constraints pose the bones {bones:names} otherwise than their keys say (frame "
-    "{frame:g}), so a result could not be written; bake the action and mute these constraints.",
+    faults.HeldBones: "Constraints pose the bones {bones:names} otherwise than their keys say "
+    "(frame {frame:g}), so a result could not be written; bake the action and mute these "
+    "constraints.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (
         "No bone was found for the {part}; say which bone it is, or add one in edit mode.",
-        "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is, or add one in edit mode.",
-        "No bone was found for the {part} (looked for {tried:names}); say which bone it is, or add one in edit mode.",
+        "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is, "
+        "or add one in edit mode.",
+        "No bone was found for the {part} (looked for {tried:names}); say which bone it is, or add "
+        "one in edit mode.",
     ),
     faults.NotMirrored: (
         "The clip cannot be mirrored: no bone's name tells its side; name them such as “LeftFoot” "

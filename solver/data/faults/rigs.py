@@ -1,4 +1,4 @@
-"""Faults of a rig that poses bones whatever keys they have, so that a result could not be written."""
+"""Faults of a rig that poses bones whatever keys they have: a result could not be written to it."""
 
 from dataclasses import dataclass
 

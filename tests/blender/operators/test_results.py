@@ -280,8 +280,8 @@ def test_a_result_whose_recording_was_deleted_is_not_made_from_itself(
 ) -> None:
     result = current_action(adapted)
     bpy.data.actions.remove(result.hangtime.recording)
-    with pytest.raises(RuntimeError, match="Nothing that .* was made from is there"):
+    with pytest.raises(RuntimeError, match=r"Nothing that .* was made from is there"):
         bpy.ops.hangtime.compare()
-    with pytest.raises(RuntimeError, match="is not there any more.* press Analyze"):
+    with pytest.raises(RuntimeError, match=r"is not there any more.* press Analyze"):
         bpy.ops.hangtime.update()
     assert current_action(adapted) == result

@@ -12,14 +12,13 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
-from mathutils import Matrix
-
 from hangtime.bridge import worker_client, worker_requests
 from hangtime.bridge.armature.pose_basis import basis_under
 from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, SceneState, ask_by_text, landing
+from mathutils import Matrix
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
