@@ -146,6 +146,34 @@ def test_a_limit_that_only_the_result_reaches_is_told(analysed: bpy.types.Object
         assert told in text
 
 
+@pytest.mark.slow
+def test_a_bone_that_stretches_is_told_with_the_result(jump: bpy.types.Object) -> None:
+    shin = jump.pose.bones["LeftLeg"]
+    for frame, length in ((225, 1.0), (240, 1.1), (262, 1.0)):
+        shin.scale.y = length
+        shin.keyframe_insert("scale", frame=frame)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    jump.hangtime.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    told = "The length of LeftLeg changes by 4."
+    made = jump.hangtime.adapted.hangtime
+    for text in (jump.hangtime.status, made.report, made.warning):
+        assert told in text
+        assert "(frame 240)" in text
+
+
+@pytest.mark.slow
+def test_a_collar_bone_that_turns_stretches_nothing(jump: bpy.types.Object) -> None:
+    collar = jump.pose.bones["LeftShoulder"]
+    for frame, turned in ((180, 0.0), (240, 0.6), (262, 0.0)):
+        collar.rotation_quaternion = (np.cos(turned), np.sin(turned), 0.0, 0.0)
+        collar.keyframe_insert("rotation_quaternion", frame=frame)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    jump.hangtime.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert "length of" not in jump.hangtime.status
+
+
 def test_a_clip_without_a_flight_is_analysed(jump: bpy.types.Object) -> None:
     jump.hangtime.last_frame = 150
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
