@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from ...solver.data.faults import Fault, NoAction, UnreadStrips
+from ...solver.data.faults import BlendedAction, Fault, NoAction, UnreadStrips
 from ..accessors import IN_STRIP, assigned_action, mapped_strip, take_strips
 from ..action_slots import all_curves, alone
 from ..played_strips import (
@@ -51,6 +51,18 @@ def require_unstarred(owner: bpy.types.Object) -> None:
     if starred:
         names = tuple(strip.name for track in starred for strip in track.strips)
         raise UnreadStrips(owner.name, names, STARRED)
+
+
+def require_unblended(owner: bpy.types.Object) -> None:
+    """Raises BlendedAction where the action that is assigned is blended with strips below it: its
+    keys, and those of any result, are not what is shown."""
+    data = owner.animation_data
+    if data is None or data.action is None:
+        return
+    alone = data.action_blend_type == "REPLACE" and data.action_influence == 1.0
+    below = () if alone else tuple(strip.name for strip in visible_strips(owner))
+    if below:
+        raise BlendedAction(data.action.name, below)
 
 
 def adopt_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:

@@ -12,7 +12,7 @@ from ...solver.data.recording import Bone, Recording
 from ..accessors import armature_data, current_action, current_scene, present
 from . import fcurves
 from .channels import proper
-from .played import require_unstarred, strip_time, why_no_action
+from .played import require_unblended, require_unstarred, strip_time, why_no_action
 from .poses import Poses, frames_per_second, metres_per_unit, sample
 
 _SAME_SCALE = 1e-4  # relative; float32 and chains of parents leave about 1e-6
@@ -33,7 +33,7 @@ def read_recording(
     it was. The recording is called what the action is called.
 
     Raises NoArmature, NoBones, NoAction (also for an action without curves or without a slot for
-    this armature), UnreadStrips, NonFiniteKey, BadScale.
+    this armature), UnreadStrips, BlendedAction, NonFiniteKey, BadScale.
     """
     frames = whole_frames(armature, first, last, beyond)
     return record(present(armature), frames)
@@ -48,6 +48,7 @@ def whole_frames(
     """
     armature, curves = _require_animated(armature)
     require_unstarred(armature)
+    require_unblended(armature)
     for curve in curves:
         _require_finite(armature, curve)
     action = present(current_action(armature))

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from ..accessors import BESIDE, IN_STRIP, SHOWS, current_action, shown_by, take_strips
-from ..action_slots import span_of
+from ..action_slots import all_curves, span_of
 from ..unkeyed import put_back
 from . import fcurves
 
@@ -38,11 +38,10 @@ def lay_strips(
     result's strip replaces the take's.
     """
     data = owner.animation_data_create()
-    blend = data.action_blend_type, data.action_extrapolation, data.action_influence
+    extrapolation = data.action_extrapolation
     fcurves.assign(owner, None)
     if not strips_of(owner, take):
-        strip = _lay(data, take, slot)
-        strip.blend_type, strip.extrapolation, strip.influence = blend
+        _lay(data, take, slot).extrapolation = extrapolation
     if difference is None:
         _lay(data, result, slot)
     else:
@@ -56,7 +55,7 @@ def _lay(
 ) -> bpy.types.NlaStrip:
     """A new strip above all others, which shows each frame of an action at that frame."""
     action[IN_STRIP] = True
-    first, last = span_of(action)
+    first, last = _shown_span(action)
     start, end = float(np.floor(first)), float(np.ceil(last))
     track = data.nla_tracks.new()
     track.name = action.name
@@ -69,6 +68,13 @@ def _lay(
     strip.frame_start, strip.frame_end = start, max(end, start + 1.0)
     strip.blend_type, strip.extrapolation = "REPLACE", "HOLD"
     return strip
+
+
+def _shown_span(action: bpy.types.Action) -> tuple[float, float]:
+    """First and last frame at which an assigned action moves anything: a manual frame range holds
+    back no keys beyond it, while a strip would."""
+    ranges = [span_of(action), *(tuple(curve.range()) for curve in all_curves(action))]
+    return min(each[0] for each in ranges), max(each[1] for each in ranges)
 
 
 def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import bpy
 
 from ..accessors import armature_data, pose_of
 from ..armature import fcurves
+from ..armature.pose_basis import carrier_of
+from ..armature.write import rotation_channel
 
 _INNER = ("ORG-", "DEF-", "MCH-", "VIS_", "WGT-")  # Rigify's, which are no controls
 _FEWEST_SHAPES = 5  # bones with shapes of their own, by which a rig shows what its controls are
@@ -18,6 +20,28 @@ _CHAINS = (bpy.types.KinematicConstraint, bpy.types.SplineIKConstraint)
 def is_driven(armature: bpy.types.Object, bones: Iterable[str]) -> bool:
     """Whether constraints, more than keys of their own, pose some of these bones."""
     return bool(driven_of(armature, bones))
+
+
+def beside_keys(armature: bpy.types.Object) -> bool:
+    """Whether there is anything beside keys that could pose bones: constraints or drivers."""
+    data = armature.animation_data
+    driven = data is not None and len(data.drivers) > 0
+    return driven or any(len(bone.constraints) for bone in pose_of(armature).bones)
+
+
+def turned_by_drivers(armature: bpy.types.Object, bones: Sequence[str]) -> list[str]:
+    """Those of these bones, the pelvis first, whose rotations drivers set, or the location that
+    carries the pelvis. A driver that is in error sets nothing, and keys count."""
+    data, posed = armature.animation_data, pose_of(armature).bones
+    if data is None:
+        return []
+    driven = {d.data_path for d in data.drivers if not d.mute and d.driver and d.driver.is_valid}
+    carrier = posed[carrier_of(armature_data(armature).bones[bones[0]]).name]
+    paths = {name: posed[name].path_from_id(rotation_channel(posed[name])) for name in bones}
+    found = [name for name, path in paths.items() if path in driven]
+    if carrier.path_from_id("location") in driven:
+        found.append(carrier.name)
+    return list(dict.fromkeys(found))
 
 
 def driven_of(armature: bpy.types.Object, bones: Iterable[str]) -> list[str]:

@@ -17,7 +17,8 @@ from ...bridge.constraints.motion_problem import (
     span_of,
     wanted_range,
 )
-from ...bridge.controls.driven import constrained
+from ...bridge.controls.driven import beside_keys, turned_by_drivers
+from ...bridge.controls.held import held_bones
 from ...bridge.controls.refusals import require_posable
 from ...bridge.loops.write_loop import (
     root_bone,
@@ -32,7 +33,7 @@ from ...bridge.takes.write_result import (
 )
 from ...bridge.worker_client import shared
 from ...solver.body.anatomy import map_anatomy
-from ...solver.data.faults import ChangedMeanwhile
+from ...solver.data.faults import ChangedMeanwhile, DrivenBones, HeldBones
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.solver_options import SolverOptions
 from ...solver.data.status import Status
@@ -197,9 +198,9 @@ def require_writable(
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
     Controls are tried once for a recording, as that takes long and a drag's ghost waits for it.
-    Raises NoControls, and as `map_anatomy`.
+    Raises NoControls, DrivenBones, HeldBones, and as `map_anatomy`.
     """
-    if not constrained(armature):  # keys of their own pose all bones
+    if not beside_keys(armature):
         return
     settings = settings_of(armature)
     segments = map_anatomy(recording.bones, chosen_parts(settings))
@@ -210,6 +211,15 @@ def require_writable(
     if not driven:
         driven = yield from require_posable(armature, bodies, frames, showing_recorded(armature))
         session().tried = trying if driven else None
+    if driven:
+        return
+    turned = turned_by_drivers(armature, bodies)
+    if turned:
+        raise DrivenBones(tuple(turned))
+    with showing_recorded(armature)():
+        held = held_bones(armature, bodies, frames)
+    if held is not None:
+        raise HeldBones(*held)
 
 
 def _require_loopable(armature: bpy.types.Object) -> None:

@@ -7,7 +7,7 @@ from functools import partial
 
 import bpy
 
-from ...bridge.accessors import present, shown_range
+from ...bridge.accessors import current_action, present, shown_range, source_of
 from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.traces_store import keep
@@ -63,6 +63,10 @@ CLOSENESS_WORDS = ((1.5, "very close to the recording"), (3.0, "close to the rec
 HEIGHTS = (0.7, 3.0)  # m; beyond, a figure was imported at a wrong scale
 USUAL_HEIGHT = 1.75  # m
 MOST_SNAPS = 3  # of the frame range to a cycle; the last only confirms
+ORPHAN = (
+    "What {} was made from is not there any more, so it cannot be made anew. To adapt it as it is, "
+    "press Analyze"
+)
 LOOSE = "only roughly like the recording: check the contacts' frames, and the scale"
 
 
@@ -119,6 +123,16 @@ class UpdateOperator(Adapting, bpy.types.Operator):
         "take below has changed, and adapts, or refines what was refined"
     )
     bl_options = {"UNDO"}
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        why = super().obstacle(context)
+        if why is not None:
+            return why
+        armature = required_armature(context)
+        made, shown = settings_of(armature).adapted, present(current_action(armature))
+        # Made anew from itself it would have the edit twice.
+        return ORPHAN.format(shown.name) if shown == made and source_of(shown) is None else None
 
     def solution(self, settings: HangtimeSettings, asked: SolverOptions) -> SolverOptions:
         if settings.adapted is not None and action_settings(settings.adapted).refined:

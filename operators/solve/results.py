@@ -18,6 +18,7 @@ from .task import CANCELLED
 NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
 NOT_SHOWN = "The recording is shown; show the result that is to go"
+NOT_COMPARED = "Nothing that {} was made from is there to compare it with"
 BUILT_ON = "{} was made from this result; discard that one first"
 REPORT = "{} report"
 SURE = "Accept this result?"
@@ -86,11 +87,14 @@ class CompareOperator(_OfResult, bpy.types.Operator):
             return why
         armature = required_armature(context)
         performer = performer_of(armature)
-        return None if performer == armature else BESIDE.format(performer.name)
+        if performer != armature:
+            return BESIDE.format(performer.name)
+        result = required_result(context)
+        return NOT_COMPARED.format(result.name) if compared(armature) is None else None
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
-        recorded, adapted = present(recorded_action(armature)), required_result(context)
+        recorded, adapted = present(compared(armature))
         show(armature, recorded if current_action(armature) == adapted else adapted)
         return {"FINISHED"}
 

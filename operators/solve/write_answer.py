@@ -13,6 +13,8 @@ from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
 from ...bridge.constraints.status import write_status
+from ...bridge.controls.driven import is_driven
+from ...bridge.controls.held import held_bones, stretched_bone
 from ...bridge.files.reproportioned import build_reproportioned
 from ...bridge.loops.write_loop import (
     Loop,
@@ -42,7 +44,7 @@ from ...bridge.takes.write_result import (
 )
 from ...solver.body.proportions import changed_recording
 from ...solver.data.faults import ChangedMeanwhile, Fault
-from ...solver.data.recording import Recording, same_motion
+from ...solver.data.recording import PoseTrack, Recording, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
 from ..words.report_text import as_text
@@ -56,6 +58,15 @@ from .solving import SolveState
 
 ALONE = (
     "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
+)
+HELD = (
+    "Constraints keep {} from the result (frame {:g}), so it is not what was solved; mute them and "
+    "press Update"
+)
+STRETCHED = (
+    "The length of {} changes by {:.1f} cm in the recording (frame {:g}) and the solution's does "
+    "not, so that contacts are off by as much; delete its scale and location keys, or mend it by "
+    "Examine, and press Update"
 )
 MARKERS_LEFT_OUT = (
     "Contact markers are left out: an action's are those of all of its slots, the take's included; "
@@ -124,6 +135,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         _tell_polish(armature, action, renewal, moved)
         rig = written.rig if written is not None else None
         yield from write_keys(armature, armature, action, answer, rig)
+        _tell_unmet(armature, action, asked, answer.track)
     finally:  # cancelled it has a key on every frame
         mark_contacts(armature, action, answer, options)
         match options.written_as:
@@ -136,6 +148,23 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     return f"Wrote the action {action.name}"
 
 
+def _tell_unmet(
+    armature: bpy.types.Object, action: bpy.types.Action, asked: Asked, track: PoseTrack
+) -> None:
+    """Which bones are kept from the result: by constraints, such as a limit that the take did not
+    reach, or as their lengths change and the solution's do not."""
+    if is_driven(armature, track.bones):  # what controls miss is told as they are written
+        return
+    held = held_bones(armature, track.bones, track.frames)
+    if held is not None:
+        _warn(armature, action, [HELD.format(", ".join(held[0]), held[1])])
+    within = asked.recording.window(*present(asked.problem.frames))
+    stretched = stretched_bone(within, track.bones)
+    if stretched is not None:
+        bone, by, frame = stretched
+        _warn(armature, action, [STRETCHED.format(bone, 100.0 * by, frame)])
+
+
 def _tell_polish(
     armature: bpy.types.Object,
     action: bpy.types.Action,
@@ -143,8 +172,17 @@ def _tell_polish(
     moved: Sequence[MovedPin],
 ) -> None:
     """What became of hand polish: in the sidebar, the report, and among the warnings."""
+    _warn(armature, action, pin_lines(moved), polish_lines(renewal.put))
+
+
+def _warn(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    warned: Sequence[str],
+    told: Sequence[str] = (),
+) -> None:
+    """Say more of a result in the sidebar and its report, and warn before it is accepted."""
     settings, made = settings_of(armature), action_settings(action)
-    told, warned = polish_lines(renewal.put), pin_lines(moved)
     settings.status = "\n".join([settings.status, *told, *warned])
     made.report = "\n".join([made.report, *told, *warned])
     made.warning = "\n".join([line for line in (made.warning, *warned) if line])

@@ -37,6 +37,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.UnreadStrips: "The NLA strips that “{armature}” performs cannot be read: {strips:names} "
     "{why}. Leave one strip unmuted that plays its action once (any start, any scale), or assign "
     "the action.",
+    faults.BlendedAction: "The action “{action}” is blended with the NLA strips below it "
+    "({strips:names}), and what they make together has no keys of its own; in the Nonlinear "
+    "Animation editor give the action Blending Replace and Influence 1, or mute these strips.",
     faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
     faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
     "jump needs {minimum_s:g} s at least; choose more frames.",
@@ -64,12 +67,20 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoControls: "The bones {bones:names} follow constraints, and no bone that you can pose "
     "turns them by itself, so a result could not be written; bake them and mute the constraints, "
     "or choose other bones under Bones.",
+    faults.DrivenBones: "Drivers pose the bones {bones:names} whatever keys they have, so a result "
+    "could not be written; bake the action and delete these drivers, or choose other bones under "
+    "Bones.",
+    faults.HeldBones: "Constraints pose the bones {bones:names} otherwise than their keys say "
+    "(frame {frame:g}), so a result could not be written; bake the action and mute these "
+    "constraints.",
     faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
     "in edit mode, or choose another bone for that part of the body.",
     faults.MissingPart: (
-        "No bone was found for the {part}; say which bone it is.",
-        "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is.",
-        "No bone was found for the {part} (looked for {tried:names}); say which bone it is.",
+        "No bone was found for the {part}; say which bone it is, or add one in edit mode.",
+        "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is, "
+        "or add one in edit mode.",
+        "No bone was found for the {part} (looked for {tried:names}); say which bone it is, or add "
+        "one in edit mode.",
     ),
     faults.NotMirrored: (
         "The clip cannot be mirrored: no bone's name tells its side; name them such as “LeftFoot” "

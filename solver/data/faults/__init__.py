@@ -11,6 +11,7 @@ from .loops import NothingRecurs as NothingRecurs
 from .loops import NotInLoop as NotInLoop
 from .loops import SeamStanceMoved as SeamStanceMoved
 from .recordings import BadScale as BadScale
+from .recordings import BlendedAction as BlendedAction
 from .recordings import BoneTaken as BoneTaken
 from .recordings import ChangedMeanwhile as ChangedMeanwhile
 from .recordings import ClipNotOpened as ClipNotOpened
@@ -66,6 +67,8 @@ from .requests import UnknownPhaseIn as UnknownPhaseIn
 from .requests import UnknownReductionBone as UnknownReductionBone
 from .requests import WrongAngle as WrongAngle
 from .requests import WrongWeights as WrongWeights
+from .rigs import DrivenBones as DrivenBones
+from .rigs import HeldBones as HeldBones
 from .rigs import NoControls as NoControls
 from .scenes import GroundNotThere as GroundNotThere
 from .scenes import InsideOut as InsideOut

@@ -31,6 +31,14 @@ class UnreadStrips(Fault):
 
 
 @dataclass
+class BlendedAction(Fault):
+    """The action is blended with strips below it: the pose is no longer what its keys say."""
+
+    action: str
+    strips: tuple[str, ...]
+
+
+@dataclass
 class NoBones(Fault):
     """The armature has no bones."""
 

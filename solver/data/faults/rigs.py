@@ -1,4 +1,4 @@
-"""Faults of a rig whose bones follow others, so that a result could not be written to it."""
+"""Faults of a rig that poses bones whatever keys they have: a result could not be written to it."""
 
 from dataclasses import dataclass
 
@@ -10,3 +10,18 @@ class NoControls(Fault):
     """Constraints pose these bones, and no bone that can be posed turns them by itself."""
 
     bones: tuple[str, ...]
+
+
+@dataclass
+class DrivenBones(Fault):
+    """Drivers set the rotations of these bones, or the location that carries the first."""
+
+    bones: tuple[str, ...]
+
+
+@dataclass
+class HeldBones(Fault):
+    """Constraints pose these bones otherwise than their keys say, first at a frame."""
+
+    bones: tuple[str, ...]
+    frame: float

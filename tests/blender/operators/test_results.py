@@ -273,3 +273,15 @@ def test_writing_that_is_cancelled_leaves_nothing_behind(analysed: bpy.types.Obj
     assert list(bpy.data.actions) == [recorded]
     assert not recorded.use_fake_user
     assert current_action(analysed) == recorded
+
+
+def test_a_result_whose_recording_was_deleted_is_not_made_from_itself(
+    adapted: bpy.types.Object,
+) -> None:
+    result = current_action(adapted)
+    bpy.data.actions.remove(result.hangtime.recording)
+    with pytest.raises(RuntimeError, match=r"Nothing that .* was made from is there"):
+        bpy.ops.hangtime.compare()
+    with pytest.raises(RuntimeError, match=r"is not there any more.* press Analyze"):
+        bpy.ops.hangtime.update()
+    assert current_action(adapted) == result

@@ -158,6 +158,16 @@ def test_a_result_whose_slot_was_deleted_is_gone_and_the_take_is_chosen_again(
 
 
 @with_slots
+def test_a_result_is_gone_with_the_action_that_held_its_slot(armature: bpy.types.Object) -> None:
+    bpy.context.scene.hangtime.armature = armature
+    lifted(armature, 0.1)
+    bpy.data.actions.remove(armature.animation_data.action)
+    for each in (bpy.ops.hangtime.compare, bpy.ops.hangtime.discard):
+        with pytest.raises(RuntimeError, match="Nothing has been adapted yet"):
+            each()
+
+
+@with_slots
 def test_slots_are_results_after_the_file_was_saved_and_opened(
     armature: bpy.types.Object, tmp_path: Path
 ) -> None:

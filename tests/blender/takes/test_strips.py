@@ -174,3 +174,15 @@ def test_a_difference_goes_with_its_result(armature: bpy.types.Object) -> None:
         second.name,
         f"{second.name} difference",
     }
+
+
+def test_a_take_moves_beyond_its_manual_frame_range_and_blends_with_nothing(
+    armature: bpy.types.Object,
+) -> None:
+    take, data = current_action(armature), armature.animation_data
+    take.use_frame_range, take.frame_start, take.frame_end = True, 8.5, 16.0
+    data.action_blend_type, data.action_influence = "COMBINE", 0.6
+    before = sample(armature, FRAMES)
+    lifted(armature, 0.1)
+    show(armature, take)
+    assert same(sample(armature, FRAMES), before)

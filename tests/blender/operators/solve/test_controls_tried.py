@@ -26,7 +26,7 @@ def test_controls_are_tried_again_only_for_another_recording(
         yield
         return True
 
-    monkeypatch.setattr(adapt, "constrained", lambda _: True)
+    monkeypatch.setattr(adapt, "beside_keys", lambda _: True)
     monkeypatch.setattr(adapt, "require_posable", posable)
 
     def ask() -> None:

@@ -13,9 +13,12 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge import worker_client, worker_requests
+from hangtime.bridge.armature.pose_basis import basis_under
+from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.tests.blender.helpers.actions import curves_of
-from hangtime.tests.blender.helpers.jump_scene import FIRST, SceneState, ask_by_text, landing
+from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, SceneState, ask_by_text, landing
+from mathutils import Matrix
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -54,6 +57,28 @@ def infinite_key(armature: bpy.types.Object) -> None:
     snapshot_curve(armature).keyframe_points[90].co.y = float("nan")
 
 
+def driven_shin(armature: bpy.types.Object) -> None:
+    shin = armature.pose.bones["LeftLeg"]
+    shin.driver_add("rotation_quaternion", 1).driver.expression = "0.1 * frame"
+
+
+def held_foot(armature: bpy.types.Object) -> None:
+    hold = armature.pose.bones["LeftFoot"].constraints.new("COPY_ROTATION")
+    hold.target, hold.subtarget, hold.influence = armature, "RightFoot", 0.3
+
+
+def stopped_shin(armature: bpy.types.Object) -> None:
+    limit = armature.pose.bones["LeftLeg"].constraints.new("LIMIT_ROTATION")
+    limit.owner_space, limit.use_limit_x, limit.max_x = "LOCAL", True, 0.5
+
+
+def blended_over_a_strip(armature: bpy.types.Object) -> None:
+    data = armature.animation_data
+    breath = data.nla_tracks.new().strips.new("Breath", 1, data.action.copy())
+    assert breath.frame_end > FIRST
+    data.action_influence = 0.8
+
+
 def snapshot_curve(armature: bpy.types.Object) -> bpy.types.FCurve:
     return next(c for c in curves_of(armature) if "LeftUpLeg" in c.data_path)
 
@@ -79,6 +104,10 @@ def assert_refused(operator: Callable[[], set[str]], armature: bpy.types.Object,
         (too_short, "Only 0.08 s of the recording"),
         (bad_scale, "must be the same, and above zero"),
         (infinite_key, "LeftUpLeg” has a value at frame"),
+        (driven_shin, "Drivers pose the bones LeftLeg whatever keys they have"),
+        (held_foot, "pose the bones LeftFoot otherwise than their keys say (frame 110)"),
+        (stopped_shin, "pose the bones LeftLeg otherwise than their keys say (frame"),
+        (blended_over_a_strip, "is blended with the NLA strips below it (Breath)"),
     ],
 )
 def test_what_cannot_be_analysed_is_said_and_changes_nothing(
@@ -86,6 +115,63 @@ def test_what_cannot_be_analysed_is_said_and_changes_nothing(
 ) -> None:
     spoil(jump)
     assert_refused(bpy.ops.hangtime.analyze, jump, says)
+
+
+def test_a_driver_in_error_and_a_limit_that_is_not_reached_leave_keys_as_they_are(
+    jump: bpy.types.Object,
+) -> None:
+    jump.pose.bones["Spine"].driver_add("rotation_quaternion", 0).driver.expression = "nonsense +"
+    limit = jump.pose.bones["LeftLeg"].constraints.new("LIMIT_ROTATION")
+    limit.owner_space, limit.use_limit_y, limit.min_y, limit.max_y = "LOCAL", True, -3.0, 3.0
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+
+
+@pytest.mark.slow
+def test_a_limit_that_only_the_result_reaches_is_told(analysed: bpy.types.Object) -> None:
+    frames = np.arange(FIRST - 10.0, LAST + 11.0)
+    with_limit, poses = analysed.pose.bones["LeftUpLeg"], sample(analysed, frames)
+    thigh, above = (
+        poses.matrices[:, poses.bones.index(bone.name)] for bone in (with_limit, with_limit.parent)
+    )
+    bent = [Matrix(each).to_euler().x for each in basis_under(with_limit.bone, above, thigh)]
+    limit = with_limit.constraints.new("LIMIT_ROTATION")
+    limit.owner_space, limit.use_limit_x = "LOCAL", True
+    limit.min_x, limit.max_x = min(bent) - 1e-3, max(bent) + 1e-3
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    analysed.hangtime.stances["ground 2"].up = 0.2
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    told = "Constraints keep LeftUpLeg from the result (frame "
+    made = analysed.hangtime.adapted.hangtime
+    for text in (analysed.hangtime.status, made.report, made.warning):
+        assert told in text
+
+
+@pytest.mark.slow
+def test_a_bone_that_stretches_is_told_with_the_result(jump: bpy.types.Object) -> None:
+    shin = jump.pose.bones["LeftLeg"]
+    for frame, length in ((225, 1.0), (240, 1.1), (262, 1.0)):
+        shin.scale.y = length
+        shin.keyframe_insert("scale", frame=frame)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    jump.hangtime.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    told = "The length of LeftLeg changes by 4."
+    made = jump.hangtime.adapted.hangtime
+    for text in (jump.hangtime.status, made.report, made.warning):
+        assert told in text
+        assert "(frame 240)" in text
+
+
+@pytest.mark.slow
+def test_a_collar_bone_that_turns_stretches_nothing(jump: bpy.types.Object) -> None:
+    collar = jump.pose.bones["LeftShoulder"]
+    for frame, turned in ((180, 0.0), (240, 0.6), (262, 0.0)):
+        collar.rotation_quaternion = (np.cos(turned), np.sin(turned), 0.0, 0.0)
+        collar.keyframe_insert("rotation_quaternion", frame=frame)
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    jump.hangtime.stances["ground 2"].up = 0.05
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert "length of" not in jump.hangtime.status
 
 
 def test_a_clip_without_a_flight_is_analysed(jump: bpy.types.Object) -> None:
