@@ -15,12 +15,14 @@ from ..driving.actions import (
     RIG,
     armature,
     current_scene,
+    curves_of,
     extension_module,
     idle,
     open_panel,
     over_viewport,
     pose_bone,
     press,
+    select_alone,
     settings,
 )
 from ..driving.driver import Actions, Driver, Scenario, Until
@@ -122,15 +124,12 @@ def edits_key(driver: Driver) -> Actions:
     By Python: choosing the bone, the editor and the curve is Blender's business.
     """
     bpy.ops.object.mode_set(mode="POSE")
-    for bone in present(armature().pose).bones:
-        bone.bone.select = bone.name == FOOT
-    data = armature().data
-    assert isinstance(data, bpy.types.Armature)
-    data.bones.active = data.bones[FOOT]
+    select_alone(FOOT)
     path = pose_bone(FOOT).path_from_id("location")
-    for curve in shown().fcurves:
+    curves = curves_of(shown())
+    for curve in curves:
         curve.hide = (curve.data_path, curve.array_index) != (path, 2)
-    curve = next(c for c in shown().fcurves if not c.hide)
+    curve = next(c for c in curves if not c.hide)
     key = curve.keyframe_points[len(curve.keyframe_points) // 2]
     was, others = key.co.copy(), [point.co.y for point in curve.keyframe_points if point != key]
     area = driver.screen.area()
