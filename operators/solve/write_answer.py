@@ -57,6 +57,12 @@ from .solving import SolveState
 ALONE = (
     "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
 )
+FORMS = {
+    WrittenAs.ACTION: "action",
+    WrittenAs.STRIP: "strip",
+    WrittenAs.COMBINE: "strip",
+    WrittenAs.SLOT: "slot",
+}
 MARKERS_LEFT_OUT = (
     "Contact markers are left out: an action's are those of all of its slots, the take's included; "
     "choose Timeline"
@@ -133,7 +139,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
                 lay_in_slot(armature, present(source_of(action)), action)
         note_made(armature, action, span, time.later)
         renewal.note(action, time, (times.recorded_frame[0], times.recorded_frame[-1]))
-    return f"Wrote the action {action.name}"
+    return f"Wrote the {FORMS[options.written_as]} {action.name}"
 
 
 def _tell_polish(
