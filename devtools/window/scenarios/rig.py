@@ -89,6 +89,7 @@ def drags_landing(driver: Driver) -> Actions:
     assert 0.5 * AHEAD < went < 1.5 * AHEAD, f"the pin went {went:.3f} m, not about {AHEAD} m"
     landed = poses(45)[FOOT].translation - KEPT[45][FOOT].translation
     assert abs(landed.length - went) < 0.05, f"{FOOT} went {landed.length:.3f} m, not {went:.3f} m"
+    yield 0.5
 
 
 def scrubs(driver: Driver) -> Actions:
@@ -173,6 +174,7 @@ def strip_off(driver: Driver) -> Actions:
     assert apart > 0.1, f"the result is the take ({apart:g})"
     track.mute = True
     apart = max(difference(frame) for frame in KEPT)
+    yield 0.5
     yield from driver.picture("rig_strip_off")
     assert apart == 0.0, f"with the strip off, bones are {apart:g} from the take's"
     track.mute = False
