@@ -253,7 +253,7 @@ SCENARIOS = (
     Scenario("adapts", adapts, ("moves_landing",), 120),
     Scenario("undoes", undoes, ("adapts",)),
     Scenario("compares", compares, ("adapts",)),
-    Scenario("pins_bone", pins_bone, ("chooses_landing",)),
+    Scenario("pins_bone", pins_bone, ("chooses_landing",), 120),
 )
 LAST = (
     Scenario("accepts", accepts, ("adapts",)),
