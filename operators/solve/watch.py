@@ -16,10 +16,14 @@ DELAY = 0.4  # s after the first change; keys that are dragged change with every
 @persistent  # type: ignore[untyped-decorator]  # any, in the stubs
 def follow_takes(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Notes that an action or an armature changed."""
-    if bpy.app.background or bpy.app.timers.is_registered(look):
-        return
     ids = (update.id for update in depsgraph.updates)
     if any(isinstance(each, bpy.types.Action | bpy.types.Object) for each in ids):
+        look_soon()
+
+
+def look_soon() -> None:
+    """Looks some moments from now, where there is somebody to see it."""
+    if not (bpy.app.background or bpy.app.timers.is_registered(look)):
         bpy.app.timers.register(look, first_interval=DELAY)
 
 

@@ -53,6 +53,7 @@ from .keys import mark_contacts, write_keys
 from .scene import note_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
+from .watch import look_soon
 
 ALONE = (
     "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
@@ -91,6 +92,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     refined = asked.problem.requests.solution.method is Method.EXPLICIT
     action_settings(present(settings.adapted)).refined = refined
     settings.status = "\n".join([settings.status, *remarks])
+    look_soon()  # the result before has its own settings again
     return "; ".join([done, *remarks])
 
 
