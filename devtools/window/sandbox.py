@@ -23,7 +23,10 @@ from ..environment.progress import run_quietly
 from ..environment.virtual_environment import CACHE
 
 SUITE = "trixie"  # of Debian: Blender 4.3
-PACKAGES = ("blender", "imagemagick", "libgl1-mesa-dri", "python3-numpy", "xdotool", "xvfb")
+PACKAGES = (
+    *("blender", "imagemagick", "libgl1-mesa-dri", "python3-numpy", "xdotool", "xvfb"),
+    *("python3-cattr", "python3-requests"),  # Blender 5.2 registers no extensions without these
+)
 # Ends with whoever started it, and then ends all that it started itself.
 ALONE = shlex.split(
     "setpriv --pdeathsig KILL unshare --mount --pid --fork --kill-child --mount-proc"

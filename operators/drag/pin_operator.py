@@ -38,7 +38,7 @@ class DragPinOperator(FollowedDrag, bpy.types.Operator):
         "motion follows as a ghost; letting go adapts. A click chooses it in its list"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING", "GRAB_CURSOR"}
-    key_hints = "X Y Z: along an axis · Shift: finer · Ctrl: in steps, off surfaces · Esc: back"
+    key_hints = "X Y Z: axis · Shift: finer · Ctrl: steps, off surfaces · Esc: back"
 
     contact: bpy.props.IntProperty(
         name="Contact",

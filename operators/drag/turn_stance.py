@@ -28,7 +28,7 @@ class TurnStanceOperator(FollowedDrag, bpy.types.Operator):
         "letting go adapts"
     )
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}
-    key_hints = "Shift: finer · Ctrl: in steps of 5° · Esc: back"
+    key_hints = "Shift: finer · Ctrl: steps of 5° · Esc: back"
 
     by: bpy.props.FloatProperty(
         name="By", description="Counter-clockwise seen from above", subtype="ANGLE"

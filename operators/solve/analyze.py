@@ -111,6 +111,7 @@ class AnalyzeOperator(TaskOperator, bpy.types.Operator):
     def task(self, context: bpy.types.Context) -> Task:
         found = yield from analysis(context)
         if not bpy.app.background:
+            session().advance(SolveState.PREPARING)
             yield from _prepare_drag(context)
         return found
 

@@ -27,11 +27,17 @@ class SolveState(Enum):
     STOPPING = "taking the motion as it stands"
     CHECKING = "checking for changes"
     WRITING = "writing keyframes"
+    PREPARING = "preparing the drag"
     ENDED = "done"
 
 
 MOST_TOLD = 1000.0  # times what is allowed
-SHARES = {SolveState.READING: 0.0, SolveState.CHECKING: 0.9, SolveState.WRITING: 0.95}
+SHARES = {
+    SolveState.READING: 0.0,
+    SolveState.CHECKING: 0.9,
+    SolveState.WRITING: 0.95,
+    SolveState.PREPARING: 0.95,
+}
 
 
 @dataclass

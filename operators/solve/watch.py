@@ -16,23 +16,31 @@ DELAY = 0.4  # s after the first change; keys that are dragged change with every
 @persistent  # type: ignore[untyped-decorator]  # any, in the stubs
 def follow_takes(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Notes that an action or an armature changed."""
-    if bpy.app.background or bpy.app.timers.is_registered(_look):
-        return
     ids = (update.id for update in depsgraph.updates)
     if any(isinstance(each, bpy.types.Action | bpy.types.Object) for each in ids):
-        bpy.app.timers.register(_look, first_interval=DELAY)
+        look_soon()
+
+
+def look_soon() -> None:
+    """Looks some moments from now, where there is somebody to see it."""
+    if not (bpy.app.background or bpy.app.timers.is_registered(look)):
+        bpy.app.timers.register(look, first_interval=DELAY)
 
 
 def forget() -> None:
     """Takes back a look that is still to come."""
-    if bpy.app.timers.is_registered(_look):
-        bpy.app.timers.unregister(_look)
+    if bpy.app.timers.is_registered(look):
+        bpy.app.timers.unregister(look)
 
 
-def _look() -> None:
+def look() -> float | None:
+    """Timer: marks results that are out of date; waits for what is under way."""
+    if session().running:  # what it writes changes which results are up to date
+        return DELAY
     armature = chosen_armature(bpy.context)
-    if session().running or armature is None or current_action(armature) is None:
-        return
+    if armature is None or current_action(armature) is None:
+        return None
     if any([look_again(armature), look_at_examination(armature)]):
         for area in editors("VIEW_3D"):
             area.tag_redraw()
+    return None

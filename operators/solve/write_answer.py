@@ -55,6 +55,7 @@ from .keys import mark_contacts, write_keys
 from .scene import note_surfaces, stale_surfaces
 from .session import Asked, session
 from .solving import SolveState
+from .watch import look_soon
 
 ALONE = (
     "The rest of the take is left out: {} has other limbs, and performs the adapted frames alone"
@@ -68,6 +69,12 @@ STRETCHED = (
     "not, so that contacts are off by as much; delete its scale and location keys, or mend it by "
     "Examine, and press Update"
 )
+FORMS = {
+    WrittenAs.ACTION: "action",
+    WrittenAs.STRIP: "strip",
+    WrittenAs.COMBINE: "strip",
+    WrittenAs.SLOT: "slot",
+}
 MARKERS_LEFT_OUT = (
     "Contact markers are left out: an action's are those of all of its slots, the take's included; "
     "choose Timeline"
@@ -96,6 +103,7 @@ def write_answer(asked: Asked, answer: Adapted) -> Incremental[str]:
     refined = asked.problem.requests.solution.method is Method.EXPLICIT
     action_settings(present(settings.adapted)).refined = refined
     settings.status = "\n".join([settings.status, *remarks])
+    look_soon()  # the result before has its own settings again
     return "; ".join([done, *remarks])
 
 
@@ -145,7 +153,7 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
                 lay_in_slot(armature, present(source_of(action)), action)
         note_made(armature, action, span, time.later)
         renewal.note(action, time, (times.recorded_frame[0], times.recorded_frame[-1]))
-    return f"Wrote the action {action.name}"
+    return f"Wrote the {FORMS[options.written_as]} {action.name}"
 
 
 def _tell_unmet(

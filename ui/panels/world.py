@@ -73,7 +73,9 @@ def _draw_surface(
     elif row.status:
         lines(layout, wrapped(context, row.status), icon=MET_ICONS[row.met])
     layout.prop(row, "collection" if row.collection is not None else "object")
-    layout.row().prop(row, "role", expand=True)
+    roles = layout.row()
+    roles.use_property_split = False  # beside a label "Obstacle" is cut off
+    roles.prop(row, "role", expand=True)
     if row.role == SurfaceRole.CLEAR.name:
         layout.prop(row, "clearance")
 

@@ -47,6 +47,12 @@ def shown_action() -> bpy.types.Action:
     return present(present(armature().animation_data).action)
 
 
+def curves_of(action: bpy.types.Action) -> list[bpy.types.FCurve]:
+    """The F-curves of a take; Blender 5.0 and later have them in slots alone."""
+    found: list[bpy.types.FCurve] = extension_module("bridge.action_slots").all_curves(action)
+    return found
+
+
 def show_action(action: bpy.types.Action) -> None:
     """Have the armature perform an action."""
     present(armature().animation_data).action = action
@@ -55,6 +61,16 @@ def show_action(action: bpy.types.Action) -> None:
 def pose_bone(name: str) -> bpy.types.PoseBone:
     """A bone of the armature in its pose."""
     return present(armature().pose).bones[name]
+
+
+def select_alone(name: str) -> None:
+    """Make a bone the active one, and the only one that is selected in pose mode."""
+    for bone in present(armature().pose).bones:  # what is selected went to the pose in Blender 5.0
+        holder = bone if hasattr(bone, "select") else bone.bone
+        holder.select = bone.name == name
+    data = armature().data
+    assert isinstance(data, bpy.types.Armature)
+    data.bones.active = data.bones[name]
 
 
 def active_bone() -> str | None:

@@ -17,6 +17,7 @@ STEP = 1 / 60  # s between the places of a smooth move
 SPEED = 2400.0  # pixels per second
 LONGEST = 0.4  # s a move takes at most
 KEY_PAUSE = 0.02  # s between keys
+KEYCODES = {"F3": "69"}  # by its name newer keyboard maps of X have xdotool hold Alt beside it
 SAY_DONE = "getmouselocation"  # any line that prints one
 PRESS = 0.06  # s that a button is held in a click
 
@@ -100,7 +101,8 @@ class InputDevice:
 
     def key(self, *names: str) -> float:
         """Press keys one after another, each by its X name, such as `ctrl+z`."""
-        lines = [line for name in names for line in (f"key {name}", f"sleep {KEY_PAUSE}")]
+        keys = [KEYCODES.get(name, name) for name in names]
+        lines = [line for key in keys for line in (f"key {key}", f"sleep {KEY_PAUSE}")]
         return self._act(lines, self.place)
 
     def type(self, text: str) -> float:

@@ -9,6 +9,7 @@ from ..driving.actions import (
     LANDING,
     armature,
     current_scene,
+    curves_of,
     fill_in,
     idle,
     landing_field,
@@ -30,7 +31,7 @@ FAULTS = {"spike", "time scale", "floor"}
 def imports_damaged(driver: Driver) -> Actions:
     """Imported again, so that nothing is known of it, and damaged by Python."""
     yield from imports(driver)
-    for curve in shown_action().fcurves:
+    for curve in curves_of(shown_action()):
         if f'"{BONE}"].rotation' in curve.data_path and curve.array_index == 2:
             next(key for key in curve.keyframe_points if key.co[0] == SPIKED).co[1] += TURN
     armature().location.z = RAISED
@@ -79,7 +80,7 @@ def doubts_in_timeline(driver: Driver) -> Actions:
 
 def keys_now() -> list[float]:
     """The tenth key of each of the shown action's curves."""
-    return [curve.keyframe_points[9].co.y for curve in shown_action().fcurves]
+    return [curve.keyframe_points[9].co.y for curve in curves_of(shown_action())]
 
 
 def repairs_all(driver: Driver) -> Actions:

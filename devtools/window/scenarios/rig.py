@@ -15,12 +15,14 @@ from ..driving.actions import (
     RIG,
     armature,
     current_scene,
+    curves_of,
     extension_module,
     idle,
     open_panel,
     over_viewport,
     pose_bone,
     press,
+    select_alone,
     settings,
 )
 from ..driving.driver import Actions, Driver, Scenario, Until
@@ -87,6 +89,7 @@ def drags_landing(driver: Driver) -> Actions:
     assert 0.5 * AHEAD < went < 1.5 * AHEAD, f"the pin went {went:.3f} m, not about {AHEAD} m"
     landed = poses(45)[FOOT].translation - KEPT[45][FOOT].translation
     assert abs(landed.length - went) < 0.05, f"{FOOT} went {landed.length:.3f} m, not {went:.3f} m"
+    yield 0.5
 
 
 def scrubs(driver: Driver) -> Actions:
@@ -122,15 +125,12 @@ def edits_key(driver: Driver) -> Actions:
     By Python: choosing the bone, the editor and the curve is Blender's business.
     """
     bpy.ops.object.mode_set(mode="POSE")
-    for bone in present(armature().pose).bones:
-        bone.bone.select = bone.name == FOOT
-    data = armature().data
-    assert isinstance(data, bpy.types.Armature)
-    data.bones.active = data.bones[FOOT]
+    select_alone(FOOT)
     path = pose_bone(FOOT).path_from_id("location")
-    for curve in shown().fcurves:
+    curves = curves_of(shown())
+    for curve in curves:
         curve.hide = (curve.data_path, curve.array_index) != (path, 2)
-    curve = next(c for c in shown().fcurves if not c.hide)
+    curve = next(c for c in curves if not c.hide)
     key = curve.keyframe_points[len(curve.keyframe_points) // 2]
     was, others = key.co.copy(), [point.co.y for point in curve.keyframe_points if point != key]
     area = driver.screen.area()
@@ -174,6 +174,7 @@ def strip_off(driver: Driver) -> Actions:
     assert apart > 0.1, f"the result is the take ({apart:g})"
     track.mute = True
     apart = max(difference(frame) for frame in KEPT)
+    yield 0.5
     yield from driver.picture("rig_strip_off")
     assert apart == 0.0, f"with the strip off, bones are {apart:g} from the take's"
     track.mute = False

@@ -99,11 +99,14 @@ def test_update_refines_again_when_the_take_below_was_edited(analysed: bpy.types
     assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1, abs=1e-5)
 
 
-def test_a_result_in_a_strip_is_switched_off(analysed: bpy.types.Object) -> None:
+def test_a_result_in_a_strip_is_switched_off(
+    analysed: bpy.types.Object, capfd: pytest.CaptureFixture[str]
+) -> None:
     take, before = current_action(analysed), read_recording(analysed)
     analysed.hangtime.result.written_as = "STRIP"
     analysed.hangtime.stances["ground 2"].up = 0.05
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    assert f"Wrote the strip {current_action(analysed).name}" in capfd.readouterr().out
     track = analysed.animation_data.nla_tracks[-1]
     track.mute = True
     assert current_action(analysed) == take

@@ -33,7 +33,9 @@ from hangtime.bridge.takes.takes import (
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
 from hangtime.operators import operator_types
 from hangtime.operators.solve import adapt as adapt_operators
+from hangtime.operators.solve import watch
 from hangtime.operators.solve.results import compared
+from hangtime.operators.solve.session import session
 from hangtime.operators.solve.takes import left_behind
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
@@ -176,6 +178,19 @@ def test_results_that_are_out_of_date_say_so(armature: bpy.types.Object) -> None
     holder.fcurves[0].keyframe_points[5].co.y += 0.1
     look_again(armature)
     assert first.hangtime.stale == TAKE_CHANGED
+
+
+def test_what_changes_while_something_is_under_way_is_looked_at_when_that_is_over(
+    armature: bpy.types.Object,
+) -> None:
+    first, at_work = adapt(armature, 10, 20, 0.1), SimpleNamespace(leave=lambda: None)
+    armature.hangtime.contacts[0].at = (0.0, 0.0, 0.3)
+    session().running.append(at_work)
+    assert watch.look() == watch.DELAY
+    assert first.hangtime.stale == ""
+    session().running.remove(at_work)
+    assert watch.look() is None
+    assert first.hangtime.stale == EDIT_CHANGED
 
 
 def test_objects_count_by_what_they_are_and_not_by_their_names(armature: bpy.types.Object) -> None:

@@ -37,6 +37,12 @@ def test_the_share_never_falls_on_the_way() -> None:
     assert shares[-1] == 1.0
 
 
+def test_after_an_analysis_it_says_what_is_made_ready() -> None:
+    under_way = solving()
+    under_way.advance(SolveState.PREPARING)
+    assert under_way.text == "preparing the drag, 95 %"
+
+
 def test_only_a_solve_can_be_stopped_and_only_once() -> None:
     under_way = Solving()
     assert not under_way.can_stop

@@ -12,6 +12,7 @@ from ..geometry.shapes import Label
 
 POINTS = 11.0  # size at the interface's usual scale
 BESIDE = (10.0, 6.0)  # px from the place
+OUTLINE = 6  # of Blender's kinds of shadows: a blurred one leaves words over bones unreadable
 SHADE = (0.0, 0.0, 0.0, 0.8)
 
 
@@ -22,7 +23,7 @@ def draw(labels: Iterable[Label], context: bpy.types.Context) -> None:
         return
     blf.size(FONT_ID, POINTS * scale)
     blf.enable(FONT_ID, blf.SHADOW)
-    blf.shadow(FONT_ID, 5, *SHADE)
+    blf.shadow(FONT_ID, OUTLINE, *SHADE)
     for label in labels:
         at = location_3d_to_region_2d(region, view, label.place)
         if at is not None and 0.0 <= at.x <= region.width and 0.0 <= at.y <= region.height:
