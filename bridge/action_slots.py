@@ -30,7 +30,7 @@ def home_of(result: bpy.types.Action) -> Home | None:
 def lost_slot(result: bpy.types.Action) -> bool:
     """Whether a result was a slot that the artist deleted, alone or with the action that held it:
     it has no keys any more."""
-    return _SLOT in result and home_of(result) is None
+    return result.get(_SLOT) is not None and home_of(result) is None
 
 
 def without_slot(owner: bpy.types.Object) -> bool:

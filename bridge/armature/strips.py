@@ -73,8 +73,9 @@ def _lay(
 def _shown_span(action: bpy.types.Action) -> tuple[float, float]:
     """First and last frame at which an assigned action moves anything: a manual frame range holds
     back no keys beyond it, while a strip would."""
-    ranges = [span_of(action), *(tuple(curve.range()) for curve in all_curves(action))]
-    return min(each[0] for each in ranges), max(each[1] for each in ranges)
+    first, last = span_of(action)
+    ranges = [curve.range() for curve in all_curves(action)]
+    return min([first, *(each[0] for each in ranges)]), max([last, *(each[1] for each in ranges)])
 
 
 def show_strip(owner: bpy.types.Object, action: bpy.types.Action) -> None:

@@ -92,7 +92,8 @@ def _off(armature: bpy.types.Object, poses: Poses, name: str, bases: FloatArray)
     own, channels = poses.matrices[:, poses.bones.index(name)], bases.copy()
     if bone.use_connect:  # its location does not count
         channels[:, :3, 3] = 0.0
-    above = bone.parent and poses.matrices[:, poses.bones.index(bone.parent.name)]
+    carrier = bone.parent
+    above = None if carrier is None else poses.matrices[:, poses.bones.index(carrier.name)]
     put = place(bone, above, channels)
     turns = np.swapaxes(proper(put[:, :3, :3]), 1, 2) @ proper(own[:, :3, :3])
     turned = np.linalg.norm(turns - np.eye(3), axis=(1, 2)) > np.sqrt(2.0) * TURNED

@@ -35,8 +35,8 @@ DURATIONS = {  # where they are not as one would expect
         "it less"
     ),
     Durations.NOT_MET: (
-        "As recorded: with those that go with the moved landing what is asked for was not reached, or "
-        "only with limbs through something or joints beyond a person's"
+        "As recorded: with those that go with the moved landing what is asked for was not reached, "
+        "or only with limbs through something or joints beyond a person's"
     ),
     Durations.MOVING_GROUND: "As recorded or asked for: ground that moves keeps its own time",
 }
