@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
-from ...solver.data.faults import EmptyRange
+from ...solver.data.faults import EmptyRange, UnreadableRepairs
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
 from ...solver.data.recording import Recording, Skin, digest
 from ...solver.data.requests import Clear, Requests
@@ -28,7 +28,7 @@ from ..properties.contact import HangtimeContact
 from ..properties.settings import HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
-from ..repairs.stored import applied, of_recording
+from ..repairs.stored import applied, of_recording, unreadable
 from ..rows.copying import resized
 from ..rows.phases import phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
@@ -93,13 +93,16 @@ def problem_of(
     with_contacts: whether corrections, pins and surfaces count; an analysis starts without them.
     held: name of a contact that is pinned even where it was found, for of a long take what is
     solved is what pins are about, and a drag's shall be that before the mouse has moved.
-    Raises EmptyRange for a contact that ends before it begins, BadRecipe, and as `requests_of`.
+    Raises EmptyRange for a contact that ends before it begins, UnreadableRepairs, BadRecipe, and as
+    `requests_of`.
     """
     if with_contacts:
         _require_ordered(settings)
     span = span_of(settings, recording)
     armature: Any = settings.id_data
     repairs = applied(settings) if of_recording(armature) else Repairs()
+    if of_recording(armature) and unreadable(settings):
+        raise UnreadableRepairs
     return MotionProblem(
         frames=span,
         mass=settings.mass,

@@ -34,11 +34,20 @@ def repairs_to_write(settings: HangtimeSettings) -> Repairs | None:
     return applied(settings) if settings.repairs else None
 
 
+def unreadable(settings: HangtimeSettings) -> bool:
+    """Whether a script, or a version that knows other repairs, stored what cannot be read."""
+    return bool(settings.repairs) and applied(settings) == Repairs()
+
+
 def repairs_in(stored: str) -> Repairs:
-    """Repairs in a stored text; those that change nothing in an empty one."""
-    held = {**USUAL, **json.loads(stored or "{}")}
-    mend, drift = tuple(map(Mend, held.pop("mend"))), tuple(held.pop("drift"))
-    return Repairs(**{**held, "up": UpAxis(held["up"]), "mend": mend, "drift": drift})
+    """Repairs in a stored text; those that change nothing in an empty one, and in one that cannot
+    be read, which `unreadable` tells."""
+    try:
+        held = {**USUAL, **json.loads(stored or "{}")}
+        mend, (x, y) = tuple(map(Mend, held["mend"])), map(float, held["drift"])
+        return Repairs(**{**held, "up": UpAxis(held["up"]), "mend": mend, "drift": (x, y)})
+    except (ValueError, TypeError):
+        return Repairs()
 
 
 def text_of(repairs: Repairs) -> str:

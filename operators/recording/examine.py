@@ -4,7 +4,14 @@ import bpy
 
 from ...bridge.constraints.bone_mapping import chosen_parts, find_parts, missing_parts
 from ...bridge.properties.settings import scene_settings, settings_of
-from ...bridge.repairs.stored import applied, finding_of, findings, is_applied, write_diagnosis
+from ...bridge.repairs.stored import (
+    applied,
+    finding_of,
+    findings,
+    is_applied,
+    unreadable,
+    write_diagnosis,
+)
 from ...bridge.worker_client import shared
 from ...solver.data.faults import MissingPart
 from ...solver.data.problem import MotionProblem
@@ -43,6 +50,8 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
             yield from read_bound(armature, recording.frames)
         ).skin  # with whose soles it stands
         session().advance(SolveState.SOLVING)
+        if unreadable(settings):
+            settings.repairs = ""
         repairs = applied(settings)
         problem = MotionProblem(
             frames=(float(recording.frames[0]), float(recording.frames[-1])),

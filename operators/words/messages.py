@@ -105,6 +105,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "delete or mend that key.",
     faults.BadScale: "The scale of “{object_name}” is ({scale:numbers}), but it must be the same, "
     "and above zero, along all three axes; apply the scale or make it even.",
+    faults.UnreadableRepairs: "What this file holds of the recording's repairs cannot be read (a "
+    "script or another version of Hangtime wrote it); press Examine, and repair anew.",
     faults.UnreadableClip: (
         "The recording {path}: {problem}; mend the file or export it again from where it came.",
         "The recording {path}, line {line}: {problem}; mend the file or export it again from where "

@@ -33,6 +33,7 @@ from .recordings import Treadmill as Treadmill
 from .recordings import UnknownClipFormat as UnknownClipFormat
 from .recordings import UnknownContactName as UnknownContactName
 from .recordings import UnreadableClip as UnreadableClip
+from .recordings import UnreadableRepairs as UnreadableRepairs
 from .recordings import UnreadStrips as UnreadStrips
 from .recordings import UnseenSupport as UnseenSupport
 from .recordings import ZeroLengthBone as ZeroLengthBone

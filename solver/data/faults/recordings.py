@@ -133,6 +133,11 @@ class BadScale(Fault):
 
 
 @dataclass
+class UnreadableRepairs(Fault):
+    """What a file holds of a recording's repairs is none."""
+
+
+@dataclass
 class UnreadableClip(Fault):
     """A motion file that cannot be read; line is 1-based, None where the format has no lines."""
 

@@ -99,6 +99,15 @@ def test_a_remedy_is_left_out_again(examined) -> None:
     assert applied(examined.hangtime) == Repairs()
 
 
+@pytest.mark.parametrize("stored", ["骨", "3", '{"mend": ["more"]}', '{"shear": 2.0}'])
+def test_repairs_that_cannot_be_read_are_told_until_it_is_examined_anew(examined, stored) -> None:
+    examined.hangtime.repairs = stored
+    with pytest.raises(RuntimeError, match="repairs cannot be read"):
+        bpy.ops.hangtime.analyze()
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+
+
 def test_armatures_under_one_parent_are_repaired_each_for_itself(jump) -> None:
     """The parent moves: the figure's size counts from the world's origin all the same."""
     scene, parent = bpy.context.scene, bpy.data.objects.new("Set", None)
