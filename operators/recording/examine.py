@@ -27,6 +27,7 @@ from ..solve.task import Task, TaskOperator, answered
 from ..words.doctor_text import HEALTHY
 
 FOUND = "Found {} in the recording; the panel Recording tells what, and the remedies"
+FORGOTTEN = "The repairs that this file held could not be read and are left out; repair anew"
 
 
 class ExamineOperator(TaskOperator, bpy.types.Operator):
@@ -52,6 +53,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         session().advance(SolveState.SOLVING)
         if unreadable(settings):
             settings.repairs = ""
+            self.report({"WARNING"}, FORGOTTEN)
         repairs = applied(settings)
         problem = MotionProblem(
             frames=(float(recording.frames[0]), float(recording.frames[-1])),

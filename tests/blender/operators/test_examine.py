@@ -100,11 +100,14 @@ def test_a_remedy_is_left_out_again(examined) -> None:
 
 
 @pytest.mark.parametrize("stored", ["骨", "3", '{"mend": ["more"]}', '{"shear": 2.0}'])
-def test_repairs_that_cannot_be_read_are_told_until_it_is_examined_anew(examined, stored) -> None:
+def test_repairs_that_cannot_be_read_are_told_until_it_is_examined_anew(
+    examined, stored, capfd
+) -> None:
     examined.hangtime.repairs = stored
     with pytest.raises(RuntimeError, match="repairs cannot be read"):
         bpy.ops.hangtime.analyze()
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert "could not be read and are left out" in capfd.readouterr().out
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
 
 
