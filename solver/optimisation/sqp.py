@@ -24,9 +24,11 @@ from ..transcription.transcription import Transcription
 from .kkt_step import LinearisedProblem, Remains
 
 MAX_CHORD_RATIO = 0.03  # of the violation that a step leaves, for the next to keep its Jacobian
-MAX_CHORD_REST = 0.5  # tolerances, which a chord step must be expected to leave to be the last one
+MAX_CHORD_REST = 0.5  # tolerances, which the last of chord steps must be expected to leave
+MAX_CHORD_STEPS = 3  # in which what is left must be expected to end: a new factor costs as much
 MAX_CHORD_GUARDED = 10.0  # tolerances (1 cm, 1 degree) by which guards join, for a chord step
 MAX_STEPS = 30  # of a restoration
+MAX_TURN = 1.0  # rad, of a joint in one step; linear rows do not tell where a longer turn leads
 MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
@@ -220,8 +222,9 @@ class _ChordIterate:
 
     def _gains(self) -> bool:
         """Whether the last step gained so much that the next may keep its Jacobian: for many more,
-        or, as a chord step gains what the one before it did, for one that ends it."""
-        if self._chord and self.violation**2 < MAX_CHORD_REST * self._before:
+        or, as a chord step gains what the one before it did, for the few that end it."""
+        share = self.violation / self._before
+        if self._chord and self.violation * share**MAX_CHORD_STEPS < MAX_CHORD_REST:
             return True
         return self.violation <= MAX_CHORD_RATIO * self._before
 
@@ -282,14 +285,15 @@ def _shorten(
     """Backtracking line search on the summed squared violation; length 0 if nothing lowers it.
 
     Near the end, where what is left of different rows has different units, lowering the worst
-    violation counts as well. whole: whether the next step will want the Jacobian there, so that
-    the full step is tried with it.
+    violation counts as well. No joint turns by more than MAX_TURN. whole: whether the next step
+    will want the Jacobian there, so that the longest step is tried with it.
     """
     before, worst = linearised.merit(value), linearised.violation(value)
-    length = 1.0
+    turn = float(np.abs(d[:, feasible.transcription.layout.angles]).max())
+    first = length = MAX_TURN / max(turn, MAX_TURN)
     while length > MIN_RESTORATION_LENGTH:
         trial = x + length * d
-        rows = feasible.rows(trial) if whole and length == 1.0 else None
+        rows = feasible.rows(trial) if whole and length == first else None
         left = feasible.values(trial) if rows is None else rows.value
         enough = 1.0 - 0.1 * length
         near = worst < NEARLY_FEASIBLE and linearised.violation(left) < enough * worst
@@ -319,7 +323,7 @@ def project(
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     multipliers: FloatArray | None = None
-    value = objective.value(x)
+    value, violation = objective.value(x), np.inf
     last: Remains | None = None
     for _ in range(max_steps):
         rows = feasible.rows(x)
@@ -334,13 +338,14 @@ def project(
             progress(steps[-1], feasible.motion(x))
         before, value = value, objective.value(x)
         little = abs(before - value) < MIN_PROJECTION_DECREASE * before
-        near = linearised.violation(feasible.values(x)) < NEARLY_FEASIBLE
+        violation = linearised.violation(feasible.values(x))
+        near = violation < NEARLY_FEASIBLE
         last = linearised.remains
         del hessian, linearised, merit  # as large as all else together: not two at a time
         if length == 0.0 or (near and little):
             status = Status.SOLVED
             break
-    return feasible.outcome(x, status, steps, feasible.violation(x))
+    return feasible.outcome(x, status, steps, violation)
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,18 @@
-"""Restoration: it says rightly whether it arrived."""
+"""Restoration: it says rightly whether it arrived, and goes no further than its rows can tell."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
 
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.status import Status
-from hangtime.solver.optimisation.sqp import restore
+from hangtime.solver.optimisation.sqp import MAX_TURN, restore
 from hangtime.solver.stages.setup import set_up
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
 FURTHER = MotionProblem(pins=(Pin("landing", "ground 2", offset=(0.2, 0.0, 0.0)),))
+AWAY = MotionProblem(pins=(Pin("landing", "ground 2", offset=(0.0, 2.0, 1.0)),)).keeping_times()
 
 
 def test_the_last_step_that_is_allowed_may_be_the_one_that_arrives() -> None:
@@ -20,3 +26,21 @@ def test_the_last_step_that_is_allowed_may_be_the_one_that_arrives() -> None:
     assert again.solved
     less = restore(feasible, setup.metric, setup.start.x, stage="test", max_steps=enough - 1)
     assert less.status is Status.TOO_MANY_STEPS
+
+
+def test_no_step_turns_a_joint_by_more_than_rows_can_tell() -> None:
+    """Knees must bend and legs must swing for a landing that is metres away, by several steps."""
+    setup = set_up(fitted_hop(), AWAY)
+    feasible = setup.feasible_set(setup.start.transcription)
+    angles = feasible.transcription.layout.angles
+    ways = [setup.start.x]
+    restore(
+        feasible,
+        setup.metric,
+        setup.start.x,
+        stage="test",
+        max_steps=3,
+        progress=lambda _, motion: ways.append(motion.x),
+    )
+    turns = [float(np.abs(b - a)[:, angles].max()) for a, b in pairwise(ways)]
+    assert max(turns) == pytest.approx(MAX_TURN)
