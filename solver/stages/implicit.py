@@ -31,7 +31,7 @@ from .warm_start import Standing, continuation_steps, partial_places, stance_mov
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_TIMED_ATTEMPTS = 2  # with found durations, which begin at their places: no step is smaller
 MAX_ARRIVALS = 2  # where guards were given up, which in smaller steps need not be
-HOPELESS = 500.0  # tolerances beyond guards, as of ten limbs 50 mm deep: no other try finds room
+HOPELESS = 500.0  # tolerances beyond guards, as of ten limbs 50 mm deep: smaller steps find no room
 MAX_SQP_ITERATIONS = 60  # after which there is no further attempt
 MAX_EXCHANGES = 4
 MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for the next
@@ -76,19 +76,18 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
 
     Raises UnknownPhase, UnknownContact, ContradictoryPins, OutOfReach and the requests' own faults.
     What is not met with the durations that go with the pins, or only where guards are given up, is
-    tried with the recorded ones where there is hope, and the better of both returned; a loop keeps
-    these, for it lasts whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A
-    solve that fails is returned with the best motion found and a status that says so; one that
-    `progress` ends by raising Stopped, with the motion as it stood.
+    tried with the recorded ones, and the better of both returned; a loop keeps these, for it lasts
+    whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve that fails is returned with
+    the best motion found and a status that says so; one that `progress` ends by raising Stopped,
+    with the motion as it stood.
     """
     setup = set_up(fit, problem)
     check_places(fit, problem, setup.context, setup.start, setup.fitted, setup.target)
     _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)
-        *_, over = lacking = _shortcomings(found)
-        good, hopeless = lacking == NO_SHORTCOMINGS, over > HOPELESS
-        if setup.durations is not Durations.FOUND or good or hopeless:
+        lacking = _shortcomings(found)
+        if setup.durations is not Durations.FOUND or lacking == NO_SHORTCOMINGS:
             return found
         setup = replace(set_up(fit, problem.keeping_times()), durations=Durations.NOT_MET)
         again = _solve(fit, problem, setup, progress)
