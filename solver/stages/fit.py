@@ -22,7 +22,6 @@ from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
 from ..objectives.motion_metric import motion_metric
 from ..objectives.tracking_cost import CostWeights, TrackingCost
-from ..optimisation.gauss_newton import minimise
 from ..optimisation.guards import with_guards
 from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
@@ -71,9 +70,9 @@ ADAPT_COST_WEIGHTS = CostWeights(
 POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, force=1e-5)
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
-MAX_PROJECTION_STEPS = 3  # undamped, from afar; on the refined knots Gauss-Newton steps go on
+MAX_PROJECTION_STEPS = 3  # undamped, from afar
 MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
-MAX_IMPROVEMENTS = 8  # Gauss-Newton steps on the refined knots
+MAX_IMPROVEMENTS = 2  # such steps on the refined knots, near by; a third gains a hundredth at most
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
 # Tolerances, of the motions on the way to a fit: within a quarter of what tells a span weak.
@@ -228,9 +227,10 @@ def fit(
         last = restore(feasible, metric, last.x, stage="fit", enough=ON_THE_WAY, progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
-            outcomes += refine(last, metric_of, FIT_TOLERANCE, enough=ON_THE_WAY, progress=progress)
-            cost = _distance(outcomes[-1].transcription, performance, schedule, price)
-            outcomes += _improved(outcomes[-1], cost, metric_of, performance, human, progress)
+            coarse = feasible.motion(last.x)
+            finer = on_finer_basis(coarse, spans_to_refine(coarse, FIT_TOLERANCE))
+            cost = _distance(finer.transcription, performance, schedule, price)
+            outcomes += _improved(finer, cost, metric_of, performance, human, progress)
             break
         places = reached_places(Motion(last.transcription, last.x, places))
         feasible = replace(feasible, places=places)
@@ -270,46 +270,33 @@ def _distance(
 
 
 def _improved(
-    outcome: Outcome,
+    finer: Motion,
     cost: TrackingCost,
     metric_of: MetricOf,
     performance: Performance,
     human: HumanGuard,
     progress: Progress | None,
 ) -> list[Outcome]:
-    """Nearer to the recording on the refined knots: the steps that refine go the shortest way.
+    """Nearer to the recording on the refined knots, where all rows hold between the nodes too.
 
-    And in the ranges of joints, where such a motion is found; else what was refined, all rows met.
+    In the ranges of joints, where such a motion is found near by, else without; and where steps
+    towards the recording lead nowhere, the shortest way to where all rows hold.
     """
-    feasible = FeasibleSet(outcome.transcription, outcome.places)
-    nearer = minimise(
-        feasible, cost, outcome.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
-    )
-    metric = cost.expand(nearer.x)[1]
-    restored = _restored(feasible, metric, nearer.x, human, performance, progress)
-    if not restored.solved:
-        metric = metric_of(feasible.motion(outcome.x))
-        return [restore(feasible, metric, outcome.x, stage="fit", progress=progress)]
-    return [nearer, restored, *refine(restored, metric_of, ADAPT_TOLERANCE, progress=progress)]
-
-
-def _restored(
-    feasible: FeasibleSet,
-    metric: BlockBanded,
-    x: FloatArray,
-    human: HumanGuard,
-    performance: Performance,
-    progress: Progress | None,
-) -> Outcome:
-    """Restoration in the ranges of joints, or where no motion near by is found there, without."""
-    wider = partial(with_guards, (human,))
-    found = restore(feasible, metric, x, stage="fit", progress=progress, wider=wider)
-    if not found.transcription.guards:
-        return found
-    off, before = (_off(feasible.motion(each), performance) for each in (found.x, x))
-    if found.solved and off < before + MAX_GUARDED:
-        return found
-    return restore(feasible, metric, x, stage="fit", progress=progress)
+    plain = FeasibleSet(finer.transcription, finer.places)
+    limit = _off(finer, performance) + MAX_GUARDED
+    for guards in ((human,), ()):
+        wider = partial(with_guards, guards)
+        feasible = wider(plain, finer.x)
+        nearer = project(
+            feasible, cost, finer.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
+        )
+        metric = cost.expand(nearer.x)[1]
+        restored = restore(feasible, metric, nearer.x, stage="fit", progress=progress, wider=wider)
+        near = _off(feasible.motion(restored.x), performance) < limit
+        if restored.solved and (near or not restored.transcription.guards):
+            return [nearer, restored, *refine(restored, metric_of, ADAPT_TOLERANCE, progress)]
+    restored = restore(plain, metric_of(finer), finer.x, stage="fit", progress=progress)
+    return [restored, *refine(restored, metric_of, FIT_TOLERANCE, progress)]
 
 
 def _off(motion: Motion, performance: Performance) -> float:
@@ -346,14 +333,13 @@ def refine(
     outcome: Outcome,
     metric_of: MetricOf,
     tolerance: DenseTolerance,
+    progress: Progress | None = None,
     *,
     basis: FloatArray | None = None,
-    enough: float = 1.0,
-    progress: Progress | None = None,
 ) -> list[Outcome]:
     """Knot refinement: splits spans until dynamics and pins hold between the nodes (thesis 6.4).
 
-    basis: the changes of a block that are allowed, see FeasibleSet. enough: see `restore`.
+    basis: the changes of a block that are allowed, see FeasibleSet.
     """
     outcomes: list[Outcome] = []
     for _ in range(MAX_REFINEMENTS):
@@ -364,9 +350,7 @@ def refine(
         finer = on_finer_basis(motion, weak)
         metric = metric_of(finer)
         feasible = FeasibleSet(finer.transcription, outcome.places, basis)
-        finer_outcome = restore(
-            feasible, metric, finer.x, stage="refine", enough=enough, progress=progress
-        )
+        finer_outcome = restore(feasible, metric, finer.x, stage="refine", progress=progress)
         if finer_outcome.status is not Status.SOLVED:
             break  # what was solved for stands; its residual between the nodes is reported
         outcome = finer_outcome
