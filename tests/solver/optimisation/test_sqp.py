@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.status import Status
 from hangtime.solver.optimisation.sqp import MAX_TURN, restore
