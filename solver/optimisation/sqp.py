@@ -28,7 +28,6 @@ MAX_CHORD_REST = 0.5  # tolerances, which the last of chord steps must be expect
 MAX_CHORD_STEPS = 3  # in which what is left must be expected to end: a new factor costs as much
 MAX_CHORD_GUARDED = 10.0  # tolerances (1 cm, 1 degree) by which guards join, for a chord step
 MAX_STEPS = 30  # of a restoration
-MAX_TURN = 1.0  # rad, of a joint in one step; linear rows do not tell where a longer turn leads
 MIN_RESTORATION_LENGTH = 0.005
 MIN_PROJECTION_LENGTH = 0.1
 STALL_WINDOW = 6  # steps in which the violation has to halve
@@ -152,6 +151,7 @@ def restore(
     stage: str,
     max_steps: int = MAX_STEPS,
     enough: float = 1.0,
+    max_turn: float = np.inf,
     progress: Progress | None = None,
     wider: Callable[[FeasibleSet, FloatArray], FeasibleSet] | None = None,
 ) -> Outcome:
@@ -160,11 +160,11 @@ def restore(
     metric: W, fixed. x: (K, n_block). A line search on the summed squared violation guards the
     steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
     Jacobian and factor, which costs a third of a new one (chord steps). enough: the violation at
-    which it ends, of a motion that other steps go on from. wider: asked where the rows nearly hold,
-    and where they hold, for a set with more guard rows to go on in, or the same; with more rows the
-    next step has a new Jacobian.
+    which it ends, of a motion that other steps go on from. max_turn: rad, of a joint in one step.
+    wider: asked where the rows nearly hold, and where they hold, for a set with more guard rows to
+    go on in, or the same; with more rows the next step has a new Jacobian.
     """
-    iterate, near = _ChordIterate(feasible, metric, x), GUARDS_JOIN
+    iterate, near = _ChordIterate(feasible, metric, x, max_turn), GUARDS_JOIN
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
@@ -192,8 +192,10 @@ def restore(
 class _ChordIterate:
     """Unknowns x on their way to the feasible set; keeps Jacobian and factor while they serve."""
 
-    def __init__(self, feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> None:
-        self._feasible, self._metric = feasible, metric
+    def __init__(
+        self, feasible: FeasibleSet, metric: BlockBanded, x: FloatArray, max_turn: float
+    ) -> None:
+        self._feasible, self._metric, self._max_turn = feasible, metric, max_turn
         rows = feasible.rows(x)
         self.x, self.violation = x, worst_violation(rows)
         self._value = rows.value
@@ -211,7 +213,11 @@ class _ChordIterate:
         linearised = self._linearise() if fresh or self._linearised is None else self._linearised
         before, worst = self.violation, linearised.worst_owner(self._value)
         d, _ = linearised.step(self._value)
-        trial = _shorten(self._feasible, linearised, self.x, d, self._value, whole=slow)
+        turn = float(np.abs(d[:, self._feasible.transcription.layout.angles]).max())
+        longest = self._max_turn / turn if turn > self._max_turn else 1.0
+        trial = _shorten(
+            self._feasible, linearised, self.x, d, self._value, longest=longest, whole=slow
+        )
         self.x, self._value, self._rows = trial.x, trial.value, trial.rows
         self.violation = linearised.violation(trial.value)
         self._stale = trial.length < 1.0 and not fresh
@@ -280,20 +286,20 @@ def _shorten(
     d: FloatArray,
     value: FloatArray,
     *,
+    longest: float,
     whole: bool,
 ) -> _Trial:
     """Backtracking line search on the summed squared violation; length 0 if nothing lowers it.
 
     Near the end, where what is left of different rows has different units, lowering the worst
-    violation counts as well. No joint turns by more than MAX_TURN. whole: whether the next step
-    will want the Jacobian there, so that the longest step is tried with it.
+    violation counts as well. longest: the first length. whole: whether the next step will want the
+    Jacobian there, so that the longest step is tried with it.
     """
     before, worst = linearised.merit(value), linearised.violation(value)
-    turn = float(np.abs(d[:, feasible.transcription.layout.angles]).max())
-    first = length = MAX_TURN / max(turn, MAX_TURN)
+    length = longest
     while length > MIN_RESTORATION_LENGTH:
         trial = x + length * d
-        rows = feasible.rows(trial) if whole and length == first else None
+        rows = feasible.rows(trial) if whole and length == longest else None
         left = feasible.values(trial) if rows is None else rows.value
         enough = 1.0 - 0.1 * length
         near = worst < NEARLY_FEASIBLE and linearised.violation(left) < enough * worst

@@ -71,6 +71,7 @@ POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, for
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
 MAX_PROJECTION_STEPS = 3  # undamped, from afar
+MAX_TURN = 1.0  # rad, of a joint in a step near a motion; where more leads rows do not tell
 MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
 MAX_IMPROVEMENTS = 2  # such steps on the refined knots, near by; a third gains a hundredth at most
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
@@ -291,7 +292,15 @@ def _improved(
             feasible, cost, finer.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
         )
         metric = cost.expand(nearer.x)[1]
-        restored = restore(feasible, metric, nearer.x, stage="fit", progress=progress, wider=wider)
+        restored = restore(
+            feasible,
+            metric,
+            nearer.x,
+            stage="fit",
+            max_turn=MAX_TURN,
+            progress=progress,
+            wider=wider,
+        )
         near = _off(feasible.motion(restored.x), performance) < limit
         if restored.solved and (near or not restored.transcription.guards):
             return [nearer, restored, *refine(restored, metric_of, ADAPT_TOLERANCE, progress)]

@@ -24,7 +24,7 @@ from ..transcription.contact_pins import tied_places
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from .explicit import explicit
-from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
+from .fit import ADAPT_TOLERANCE, MAX_TURN, Fit, SolvedMotion, refine
 from .setup import Setup, check_places, set_up
 from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
 
@@ -303,7 +303,13 @@ def _restored(
     for some in ways:
         wider = partial(with_guards, some)
         outcome = restore(
-            feasible, setup.metric, start, stage="adapt", progress=progress, wider=wider
+            feasible,
+            setup.metric,
+            start,
+            stage="adapt",
+            max_turn=MAX_TURN,
+            progress=progress,
+            wider=wider,
         )
         if outcome.solved or not outcome.transcription.guards:
             break

@@ -22,6 +22,7 @@ from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.scaling import scaled_problem
 from hangtime.solver.data.scene import SceneObject, SceneRole
+from hangtime.solver.data.status import Durations
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.solver.results.violations import condition_violations
 from hangtime.solver.scene.checks import check_scene
@@ -166,6 +167,20 @@ def test_a_body_that_is_all_in_something_gets_no_more_rows_than_a_step_can_bear(
     assert len(rows.items) <= MOST_ROWS
     found = {rows.names[item] for item in rows.items.tolist()}
     assert "Pelvis in Ceiling" in found
+
+
+@pytest.mark.slow
+def test_a_jump_that_its_own_durations_take_through_a_ceiling_keeps_the_recorded_ones() -> None:
+    found = adapt(
+        fitted_hop(),
+        MotionProblem(
+            pins=(Pin("Landing", "ground 2", offset=(0.1, 0.0, 0.1)),), scene=(ceiling(1.2),)
+        ),
+    )
+    assert found.solved
+    assert found.setup.durations is Durations.NOT_MET
+    beyond = [each for guard in found.setup.guards for each in guard.violations(found.motion)]
+    assert all(each.amount < 3.0 * each.kind.tolerance for each in beyond), beyond
 
 
 @pytest.mark.slow
