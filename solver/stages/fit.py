@@ -71,7 +71,7 @@ POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, for
 MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
 MAX_PROJECTION_STEPS = 3  # undamped, from afar
-MAX_TURN = 0.5 * np.pi  # of a joint in a step near a motion; beyond, what is linear points backwards
+MAX_TURN = 0.5 * np.pi  # of a joint in a step near a motion; beyond, linear rows point backwards
 MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
 MAX_IMPROVEMENTS = 2  # such steps on the refined knots, near by; a third gains a hundredth at most
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
