@@ -24,7 +24,8 @@ from ..objectives.motion_metric import motion_metric
 from ..objectives.tracking_cost import CostWeights, TrackingCost
 from ..optimisation.guards import with_guards
 from ..optimisation.kkt_step import LinearisedProblem
-from ..optimisation.sqp import FeasibleSet, Outcome, Progress, project, restore
+from ..optimisation.projection import project
+from ..optimisation.sqp import FeasibleSet, Outcome, Progress, restore
 from ..solid.penetrations import Penetrations
 from ..solid.shape_changes import AS_IS, ShapeChanges
 from ..solid.solid_world import floor_heights, own_overlaps
@@ -73,7 +74,7 @@ MAX_PLACE_UPDATES = 4
 MAX_PROJECTION_STEPS = 3  # undamped, from afar
 MAX_TURN = 0.5 * np.pi  # of a joint in a step near a motion; beyond, linear rows point backwards
 MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further off than that
-MAX_IMPROVEMENTS = 2  # such steps on the refined knots, near by; a third gains a hundredth at most
+MAX_IMPROVEMENTS = 2  # such steps on the refined knots, near by; most end after two anyway
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
 # Tolerances, of the motions on the way to a fit: within a quarter of what tells a span weak.

@@ -1,0 +1,107 @@
+"""Projection onto the feasible set: SQP steps towards an objective's minimum (thesis 4.2)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..data.status import Status
+from .kkt_step import LinearisedProblem, Remains
+from .sqp import NEARLY_FEASIBLE, FeasibleSet, Objective, Outcome, Progress, Step
+
+MIN_PROJECTION_LENGTH = 0.1
+MIN_PROJECTION_DECREASE = 0.05  # of the objective: what a further step must gain
+
+
+def project(
+    feasible: FeasibleSet,
+    objective: Objective,
+    x: FloatArray,
+    *,
+    stage: str,
+    max_steps: int,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Projection: SQP steps that minimise an objective in the feasible set (thesis 4.2).
+
+    x: (K, n_block). Ends when a step changes the objective little and the rows nearly hold;
+    `restore` finishes what is left.
+    """
+    steps: list[Step] = []
+    status = Status.TOO_MANY_STEPS
+    multipliers: FloatArray | None = None
+    value, violation = objective.value(x), np.inf
+    last: Remains | None = None
+    for _ in range(max_steps):
+        rows = feasible.rows(x)
+        gradient, hessian = objective.expand(x)
+        linearised = feasible.linearise(rows, hessian, last)
+        d, multipliers = linearised.step(rows.value, gradient, multipliers)
+        merit = _L1Merit.of(feasible, objective, linearised, multipliers)
+        x, length = _backtrack(merit, merit.combined(value, rows.value), x, d)
+        worst = linearised.worst_owner(rows.value)
+        steps.append(Step(stage, linearised.violation(rows.value), length, worst))
+        if progress is not None:
+            progress(steps[-1], feasible.motion(x))
+        before, value = value, objective.value(x)
+        little = abs(before - value) < MIN_PROJECTION_DECREASE * before
+        violation = linearised.violation(feasible.values(x))
+        near = violation < NEARLY_FEASIBLE
+        last = linearised.remains
+        del hessian, linearised, merit  # as large as all else together: not two at a time
+        if length == 0.0 or (near and little):
+            status = Status.SOLVED
+            break
+    return feasible.outcome(x, status, steps, violation)
+
+
+@dataclass(frozen=True)
+class _L1Merit:
+    """Exact l1 merit function: objective + penalty * violation (Nocedal & Wright, 15.4)."""
+
+    feasible: FeasibleSet
+    objective: Objective
+    linearised: LinearisedProblem
+    penalty: float
+
+    @staticmethod
+    def of(
+        feasible: FeasibleSet,
+        objective: Objective,
+        linearised: LinearisedProblem,
+        multipliers: FloatArray,
+    ) -> "_L1Merit":
+        """With a penalty beyond the largest multiplier, so that the function is exact."""
+        penalty = 2.0 * float(np.abs(multipliers).max()) + 1e-9
+        return _L1Merit(feasible, objective, linearised, penalty)
+
+    def combined(self, value: float, rows: FloatArray) -> float:
+        """The merit of an objective's value and the rows' values (R,)."""
+        return value + self.penalty * self.linearised.l1_violation(rows)
+
+    def correction(self, x: FloatArray) -> FloatArray:
+        """The shortest step (K, n_block) from x to the rows as they were linearised."""
+        return self.linearised.step(self.feasible.values(x))[0]
+
+    def __call__(self, x: FloatArray) -> float:
+        return self.combined(self.objective.value(x), self.feasible.values(x))
+
+
+def _backtrack(
+    merit: _L1Merit, before: float, x: FloatArray, d: FloatArray
+) -> tuple[FloatArray, float]:
+    """Backtracking line search from x along d (K, n_block); x itself and 0 if nothing lowers it.
+
+    A trial point that fails gets a second-order correction (Nocedal & Wright, 18.3): rows curve,
+    and without it good steps are refused (the Maratos effect).
+    """
+    length = 1.0
+    while length > MIN_PROJECTION_LENGTH:
+        trial = x + length * d
+        if merit(trial) < before:
+            return trial, length
+        corrected = trial + merit.correction(trial)
+        if merit(corrected) < before:
+            return corrected, length
+        length *= 0.5
+    return x, 0.0
