@@ -331,6 +331,7 @@ def _set_called(made: HangtimeAction, to: str) -> None:
 class HangtimeAction(bpy.types.PropertyGroup):
     """Of an adapted action: the take that it was made from, how, and what was found.
 
+    unfilled: of a recording into which missing frames were put, the one without.
     maker: the armature whose settings asked for it. count: how many results there were, itself
     included, when it was made. edit: what was asked for, and the artist's changes to that since.
     next_edit: of a take from which nothing is made yet. asked_key, take_key, own_key: digests of
@@ -341,6 +342,7 @@ class HangtimeAction(bpy.types.PropertyGroup):
     called: declared(text("Name", get=_get_called, set=_set_called), options=HIDDEN)
 
     recording: declared(target(type=bpy.types.Action), options=HIDDEN)
+    unfilled: declared(target(type=bpy.types.Action), options=HIDDEN)
     maker: declared(target(), options=HIDDEN)
     count: declared(whole(), options=HIDDEN)
     edit: bpy.props.PointerProperty(type=HangtimeSettings, options=HIDDEN)

@@ -2,6 +2,7 @@
 
 [recording]
 up = "Y"                        # the axis, as it was read, that is to become Z; "-X" ...
+missing = { 57 = 4, 103 = 1 }   # after frame 57 four frames are missing: they are put in
 trim = 1                        # frames left out at the beginning
 repair = ["flips", "spikes", "held frames", "bone lengths", "noise"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly
@@ -12,12 +13,33 @@ floor = 0.12                    # m; the height that becomes 0
 
 from __future__ import annotations
 
+import re
+
 from ...solver.data.problem import Mend
-from ...solver.doctor.repairs import Repairs, UpAxis
+from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
 from ..recipe_syntax.items import Item, Kind, Values, choice, number, whole
 from ..recipe_syntax.table import ABOVE_ZERO, NumberRange, Table
 
+WHOLE = re.compile(r"-?\d+")
+SOME = NumberRange(
+    f"a whole number from 1 to {MOST_MISSING}",
+    lambda value: 1.0 <= value <= MOST_MISSING and value.is_integer(),
+)
 COUNT = NumberRange("a whole number, 0 or more", lambda value: value >= 0.0 and value.is_integer())
+
+
+def _read_missing(table: Table) -> Values:
+    given = table.values.get("missing")
+    counts = table.table("missing", tuple(given) if isinstance(given, dict) else (), "frame")
+    for frame in counts.values:
+        if not WHOLE.fullmatch(frame):
+            counts.refuse(frame, f'"{frame}" is no frame; write such as "missing = {{ 57 = 4 }}"')
+    gaps = [MissingFrames(int(f), int(counts.number(f, SOME) or 0)) for f in counts.values]
+    return {"missing": tuple(sorted(gaps, key=lambda gap: gap.after))}
+
+
+def _write_missing(repairs: Repairs) -> Values:
+    return {"missing": {str(gap.after): gap.count for gap in repairs.missing} or None}
 
 
 def _read_drift(table: Table) -> Values:
@@ -47,6 +69,7 @@ RECORDING = Kind(
     Repairs,
     (
         choice("up", UpAxis),
+        Item(("missing",), _read_missing, _write_missing),
         whole("trim", COUNT),
         Item(("repair",), _read_mend, _write_mend),
         number("time_scale", ABOVE_ZERO),

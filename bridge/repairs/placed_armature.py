@@ -1,7 +1,7 @@
-"""Repairs of where a figure stands, how large it is, and of the scene's clock.
+"""Repairs of where a figure stands, how large it is, of the scene's clock and of missing frames.
 
-An empty above all that the armature hangs on, and no other does, turns, scales and lowers it; no
-key changes.
+An empty above all that the armature hangs on, and no other does, turns, scales and lowers it, and
+frames are put into a copy: no key changes.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from ...solver.doctor.upright import turn_upright
 from ..accessors import current_scene, present
 from ..armature.poses import metres_per_unit
 from ..properties.settings import settings_of
+from .missing_keys import put_in
 from .stored import applied, text_of
 
 NAME = "Hangtime repairs"
@@ -21,8 +22,10 @@ MARK = "hangtime_repairs"  # of the empty, whatever the artist calls it
 
 
 def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
-    """Has these repairs count instead of those before."""
+    """Has these repairs count instead of those before. Raises NotPutIn."""
     before = applied(settings_of(armature))
+    if repairs.missing != before.missing:
+        put_in(armature, repairs.missing, before.missing)
     current_scene().render.fps_base *= repairs.time_scale / before.time_scale
     _place(armature, repairs)
     settings_of(armature).repairs = text_of(repairs)

@@ -11,7 +11,7 @@ from ...solver.data.problem import Mend
 from ...solver.doctor.diagnose import Diagnosis
 from ...solver.doctor.feet import FootFault, FootFaultKind
 from ...solver.doctor.finding import Finding, FindingKind
-from ...solver.doctor.repairs import Repairs, UpAxis
+from ...solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from ..accessors import current_scene, source_of
 from ..armature.actions import recorded_action
 from ..armature.poses import frames_per_second
@@ -45,14 +45,20 @@ def repairs_in(stored: str) -> Repairs:
     try:
         held = {**USUAL, **json.loads(stored or "{}")}
         mend, (x, y) = tuple(map(Mend, held["mend"])), map(float, held["drift"])
-        return Repairs(**{**held, "up": UpAxis(held["up"]), "mend": mend, "drift": (x, y)})
+        missing = tuple(MissingFrames(int(after), int(n)) for after, n in held["missing"])
+        read = {"up": UpAxis(held["up"]), "missing": missing, "mend": mend, "drift": (x, y)}
+        return Repairs(**{**held, **read})
     except (ValueError, TypeError):
         return Repairs()
 
 
 def text_of(repairs: Repairs) -> str:
     """Repairs as a text to be stored; "" of those that change nothing."""
-    plain = {"up": repairs.up.value, "mend": [each.value for each in repairs.mend]}
+    plain = {
+        "up": repairs.up.value,
+        "missing": [(gap.after, gap.count) for gap in repairs.missing],
+        "mend": [each.value for each in repairs.mend],
+    }
     held = {n: plain.get(n, value) for n, value in asdict(repairs).items() if value != USUAL[n]}
     return json.dumps(held) if held else ""
 

@@ -167,7 +167,7 @@ def _without(recording: Recording, keep: IntArray) -> Damaged:
         heads=recording.heads[keep],
         rotations=recording.rotations[keep],
     )
-    return Damaged(less, replace(less))
+    return Damaged(less, recording)
 
 
 def sliding(speed: float) -> Damage:

@@ -20,7 +20,7 @@ The clips of `examples/recordings` (the first 5 s, from where the rest pose ends
 with) are damaged in the ways of `devtools/doctor/damages.py`, diagnosed and repaired. *Found*:
 named rightly. *Off*: rms distance of all joints from the undamaged clip at the same frame, before
 and after all remedies that the doctor offers, its mistaken ones too; of a clock that is wrong no
-joint is off, of missing frames both are of what was left. *Scale off*: of the factor of time or
+joint is off. *Scale off*: of the factor of time or
 size, median and worst over the clips where it was found. One clip has a fault of its own, whose
 finding is no false alarm: the hips of rokoko_jesse_dance leap in frames 8 to 13.
 
@@ -28,7 +28,7 @@ Time and size are told from gravity in the flights, no nearer than the clip itse
 A run's flights of 0.1 s do not tell enough, but where the frame rate that they tell is near a usual
 one, that one is taken, and all clips here were recorded at a usual one. So is the ratio of two
 units that is near for a size; size × 1.6 is none. Drift cannot be told from runs, whose feet stand
-still for no more than moments; missing frames are found, and nothing brings them back.
+still for no more than moments.
 """
 COLUMNS = (
     *("damage", "clips", "found", "other findings", "off before (cm)", "after (cm)"),

@@ -6,9 +6,10 @@ from ...bridge.accessors import current_scene
 from ...bridge.armature.actions import recorded_action
 from ...bridge.files.object_scale import scale_object
 from ...bridge.properties.settings import settings_of
+from ...solver.data.faults import Fault
 from ..names import OperatorId
 from ..operator_types import OperatorResult
-from ..solve.common import ReadyOperator, required_armature
+from ..solve.common import ReadyOperator, required_armature, said
 from ..solve.live import redraw
 from ..solve.session import session
 
@@ -17,14 +18,17 @@ class MendingOperator(ReadyOperator):
     """Mixin: `mend` changes what is read, after which the last failure says nothing any more."""
 
     def execute(self, context: bpy.types.Context) -> OperatorResult:
-        done = self.mend(required_armature(context))
+        try:
+            done = self.mend(required_armature(context))
+        except Fault as fault:
+            return self.refuse(said(fault))
         if "FINISHED" in done:
             session().failure = None
             redraw("VIEW_3D", "DOPESHEET_EDITOR")
         return done
 
     def mend(self, armature: bpy.types.Object) -> OperatorResult:
-        """Does it, or refuses."""
+        """Does it, or refuses. Raises any Fault, having changed nothing."""
         raise NotImplementedError
 
     def done(self, told: str) -> OperatorResult:

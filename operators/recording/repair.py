@@ -6,7 +6,7 @@ from ...bridge.accessors import armature_data, current_scene, pose_of
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.properties.shown_times import shown_frames
 from ...bridge.repairs.remedies import use_remedy
-from ...bridge.repairs.stored import finding_of, findings, is_applied
+from ...bridge.repairs.stored import finding_of, findings, is_applied, repairs_in
 from ...bridge.rows.finding import HangtimeFinding
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
@@ -40,7 +40,8 @@ class RepairOperator(MendingOperator, bpy.types.Operator):
     bl_label = "Repair"
     bl_description = (
         "Apply this remedy, or leave it out again. The recording's keys are never changed: poses "
-        "are mended when they are read, and an empty above the armature turns and scales it"
+        "are mended when they are read, an empty above the armature turns and scales it, and "
+        "missing frames are put into a copy"
     )
     bl_options = {"UNDO"}
 
@@ -74,6 +75,7 @@ class RepairAllOperator(MendingOperator, bpy.types.Operator):
 
     def mend(self, armature: bpy.types.Object) -> OperatorResult:
         rows = to_repair(settings_of(armature))
+        rows.sort(key=lambda row: not repairs_in(row.remedy).missing)  # which may be refused
         for row in rows:
             use_remedy(armature, row, used=True)
         return self.done(f"Repaired {faults(len(rows))}{ANALYZE}")

@@ -42,6 +42,7 @@ REMEDIES = {
     FindingKind.FLIP: "Turn Back",
     FindingKind.SPIKE: "Smooth Over",
     FindingKind.HELD_FRAMES: "Fill In",
+    FindingKind.DROPPED_FRAMES: "Put In",
     FindingKind.BONE_LENGTH: "Hold Lengths",
     FindingKind.NOISE: "Smooth",
     FindingKind.LEAP: "Leave Out",
@@ -100,6 +101,7 @@ def rounded(repairs: Repairs) -> Repairs:
     """To as many digits as mean something."""
     return Repairs(
         repairs.up,
+        repairs.missing,
         repairs.trim,
         repairs.mend,
         float(f"{repairs.time_scale:.4g}"),

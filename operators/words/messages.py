@@ -103,6 +103,10 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "under Bones, or parent the arms to a bone of the spine in edit mode.",
     faults.NonFiniteKey: "The bone “{bone}” has a value at frame {frame:g} that is no number; "
     "delete or mend that key.",
+    faults.NotBetweenFrames: "Frames are said to be missing after frame {frame:g}, but the "
+    "recording goes from frame {first:g} to {last:g}; name one that another comes after under "
+    "“missing”.",
+    faults.NotPutIn: "Missing frames cannot be put into “{action}”: {why}.",
     faults.BadScale: "The scale of “{object_name}” is ({scale:numbers}), but it must be the same, "
     "and above zero, along all three axes; apply the scale or make it even.",
     faults.UnreadableRepairs: "What this file holds of the recording's repairs cannot be read (a "

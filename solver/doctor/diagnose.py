@@ -72,8 +72,10 @@ def diagnose(
     figure = figure_of(recording, chosen)
     for find in (find_flips, find_spikes):
         recording = cured(recording, find(recording, figure))
-    for look in (find_held, find_dropped):
-        recording = cured(recording, look(recording))
+    recording = cured(recording, find_held(recording))
+    dropped = find_dropped(recording)
+    if dropped is not None:
+        found.append(dropped)  # and not cured: what else is found is told by the frames that are
     for find in (find_lengths, find_noise):
         recording = cured(recording, find(recording, figure))
 

@@ -49,7 +49,7 @@ class LocalPoses:
         for b in np.flatnonzero(unsound.any(axis=0)):
             sound = np.flatnonzero(~unsound[:, b])
             for t in np.flatnonzero(unsound[:, b]) if len(sound) else ():
-                near, weights = _lagrange(sound, int(t))
+                near, weights = lagrange(sound, int(t))
                 base = self.rotations[near[0], b]
                 turns = rotation_vector(base.T @ self.rotations[near, b])
                 rotations[t, b] = base @ rotation_matrix(weights @ turns)
@@ -89,7 +89,7 @@ def spans(recording: Recording, mask: BoolArray) -> tuple[tuple[float, float], .
     return tuple((float(frames[a]), float(frames[b])) for a, b in runs(mask))
 
 
-def _lagrange(sound: IntArray, t: int) -> tuple[IntArray, FloatArray]:
+def lagrange(sound: IntArray, t: int) -> tuple[IntArray, FloatArray]:
     """Indices of the sound frames around frame t, and their weights in the polynomial there."""
     at = int(np.searchsorted(sound, t))
     near = sound[max(at - SUPPORT, 0) : at + SUPPORT]

@@ -1,4 +1,4 @@
-"""Repairs of a recording: from a recording to a recording, frame by frame the same instants."""
+"""Repairs of a recording: from a recording to a recording."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
+from ..data.faults import NotBetweenFrames
 from ..data.problem import Mend, MotionProblem
 from ..data.recording import Recording, Skin
 from ..data.scaling import scaled_recording
@@ -17,7 +18,7 @@ from .figure import Figure, figure_of
 from .lengths import kept_lengths
 from .local_poses import LocalPoses
 from .noise import smoothed
-from .repairs import Repairs
+from .repairs import MissingFrames, Repairs
 from .single_frames import held_frames, unflipped, unsound_spikes
 from .upright import turn_upright
 
@@ -27,9 +28,10 @@ def repaired(
 ) -> Recording:
     """The recording with all repairs. chosen: bones by parts of the body, as in a problem.
 
-    Raises MissingPart.
+    Raises MissingPart, NotBetweenFrames.
     """
-    return placed(mended(trimmed(turned(recording, repairs), repairs), repairs, chosen), repairs)
+    whole = filled(turned(recording, repairs), repairs.missing)
+    return placed(mended(trimmed(whole, repairs), repairs, chosen), repairs)
 
 
 def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
@@ -74,6 +76,33 @@ def _rotated(recording: Recording, turn: FloatArray) -> Recording:
     )
     heads, rotations = recording.heads @ turn.T, turn @ recording.rotations
     return replace(recording, bones=bones, heads=heads, rotations=rotations)
+
+
+def filled(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recording:
+    """With frames put in, on the curve through those around; what comes after them comes later.
+
+    Raises NotBetweenFrames.
+    """
+    if not missing:
+        return recording
+    first, last = float(recording.frames[0]), float(recording.frames[-1])
+    for gap in missing:
+        if not first <= gap.after < last:
+            raise NotBetweenFrames(gap.after, first, last)
+    counts = [sum(gap.count for gap in missing if gap.after < frame) for frame in recording.frames]
+    at = np.arange(len(recording.frames)) + np.array(counts)  # where each recorded frame goes
+    source = np.searchsorted(at, np.arange(at[-1] + 1))
+    unsound = np.isin(np.arange(at[-1] + 1), at, invert=True)
+    longer = Recording(
+        recording.name,
+        recording.bones,
+        first + np.arange(at[-1] + 1) * (last - first) / (len(at) - 1),
+        recording.times[0] + np.arange(at[-1] + 1) / recording.rate,
+        recording.heads[source],
+        recording.rotations[source],
+    )
+    bones = np.broadcast_to(unsound[:, None], longer.heads.shape[:2])
+    return LocalPoses.of(longer).filled(bones).posed(longer)
 
 
 def trimmed(recording: Recording, repairs: Repairs) -> Recording:

@@ -7,6 +7,8 @@ from enum import Enum
 
 from ..data.problem import Mend
 
+MOST_MISSING = 1000  # frames in one place; what lies between seconds apart is anybody's guess
+
 
 class UpAxis(Enum):
     """The axis of the world, as it was read, along which the figure stands."""
@@ -20,15 +22,25 @@ class UpAxis(Enum):
 
 
 @dataclass(frozen=True)
+class MissingFrames:
+    """Frames that were not recorded: `count` of them, after a scene frame."""
+
+    after: int
+    count: int
+
+
+@dataclass(frozen=True)
 class Repairs:
     """What to mend, in this order; the defaults leave a recording as it is.
 
-    up: what becomes Z. trim: frames left out at the beginning. mend: of the poses. time_scale,
-    scale: factors of durations and of lengths. drift: m/s, along the floor, that is taken out, and
-    floor: m, the height that becomes 0; both after the factors.
+    up: what becomes Z. missing: frames that are put in; all others of a recipe count with them.
+    trim: frames left out at the beginning. mend: of the poses. time_scale, scale: factors of
+    durations and of lengths. drift: m/s, along the floor, that is taken out, and floor: m, the
+    height that becomes 0; both after the factors.
     """
 
     up: UpAxis = UpAxis.Z
+    missing: tuple[MissingFrames, ...] = ()
     trim: int = 0
     mend: tuple[Mend, ...] = ()
     time_scale: float = 1.0
@@ -61,6 +73,7 @@ class Repairs:
         mend = {*self.mend, *other.mend}
         return Repairs(
             other.up if other.up is not usual.up else self.up,
+            other.missing or self.missing,
             other.trim or self.trim,
             tuple(each for each in Mend if each in mend),
             other.time_scale if other.time_scale != 1.0 else self.time_scale,

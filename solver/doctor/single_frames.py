@@ -12,7 +12,7 @@ from ..numerics.rotations import rotation_matrix, rotation_vector
 from .figure import Figure
 from .finding import Finding, FindingKind
 from .local_poses import LocalPoses, angles_between, fourth_differences, runs, spans
-from .repairs import Repairs
+from .repairs import MissingFrames, Repairs
 
 # From the cubic through the frames around; honest toes that strike the ground are 25° off, and no
 # other joint is 13° off.
@@ -145,11 +145,19 @@ def find_dropped(recording: Recording) -> Finding | None:
     alike = rest < ALIKE * np.linalg.norm(own, axis=1)
     whole = (times - 1.0 > DROPPED[0]) & (times - 1.0 < DROPPED[1])
     fast = np.abs(usual).max(axis=1) > MOVING
-    missing = np.concatenate(([False, False], whole & alike & fast, [False]))
-    if not missing.any():
+    counts = np.zeros(len(recording.frames), int)  # before each frame
+    counts[2:-1] = np.where(whole & alike & fast, np.round(times - 1.0), 0)
+    after = np.flatnonzero(counts)
+    if len(after) == 0:
         return None
-    count = float(np.round(times - 1.0)[missing[2:-1]].sum())
-    return Finding(FindingKind.DROPPED_FRAMES, count, "frames", spans(recording, missing))
+    missing = tuple(MissingFrames(round(recording.frames[t - 1]), int(counts[t])) for t in after)
+    return Finding(
+        FindingKind.DROPPED_FRAMES,
+        float(counts.sum()),
+        "frames",
+        spans(recording, counts > 0),
+        remedy=Repairs(missing=missing),
+    )
 
 
 def _steps(recording: Recording) -> FloatArray:

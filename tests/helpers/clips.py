@@ -34,6 +34,16 @@ def load_recording(name: str) -> Recording:
     return to_recording(clip, clip.unit or guess_unit(clip, up), up)
 
 
+def without_frames(clip: Path, after: int, count: int, folder: Path) -> Path:
+    """A copy of a BVH file without so many frames after one (the first is 1)."""
+    text, motion = clip.read_text().split("MOTION\n")
+    _, time, *frames = motion.splitlines()
+    kept = frames[:after] + frames[after + count :]
+    copy = folder / "without_frames.bvh"
+    copy.write_text("\n".join([f"{text}MOTION", f"Frames: {len(kept)}", time, *kept, ""]))
+    return copy
+
+
 def begun_at_rest(clip: Path, folder: Path) -> Path:
     """A copy of a BVH file with the rest pose, whose angles are 0, on its first frame."""
     text, motion = clip.read_text().split("MOTION\n")

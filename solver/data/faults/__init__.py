@@ -25,8 +25,10 @@ from .recordings import NoArmature as NoArmature
 from .recordings import NoBones as NoBones
 from .recordings import NonFiniteKey as NonFiniteKey
 from .recordings import NoSpine as NoSpine
+from .recordings import NotBetweenFrames as NotBetweenFrames
 from .recordings import NotJoined as NotJoined
 from .recordings import NotMirrored as NotMirrored
+from .recordings import NotPutIn as NotPutIn
 from .recordings import OddHeight as OddHeight
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import Treadmill as Treadmill

@@ -62,6 +62,23 @@ class FramesFarApart(Fault):
 
 
 @dataclass
+class NotBetweenFrames(Fault):
+    """Frames are said to be missing after one that has none after it in the recording."""
+
+    frame: float
+    first: float
+    last: float
+
+
+@dataclass
+class NotPutIn(Fault):
+    """Missing frames cannot be put into an action. why: a reason, to be said after its name."""
+
+    action: str
+    why: str
+
+
+@dataclass
 class ZeroLengthBone(Fault):
     """A bone that must carry mass has no length."""
 

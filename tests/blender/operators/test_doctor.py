@@ -9,13 +9,14 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.batch.cells.reading import read_clip
 from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
 from hangtime.operators.headless.stages import Stages
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
-from hangtime.tests.helpers.clips import begun_at_rest, mocap_path
+from hangtime.tests.helpers.clips import begun_at_rest, mocap_path, without_frames
 
 CLIP = "forward_jump_116cm.bvh"
 TOO_LARGE = 0.12  # m a unit, 2.13 times what is right
@@ -59,3 +60,18 @@ def test_a_repaired_clip_is_read_upright_in_its_true_size_and_time(read_as, up) 
     np.testing.assert_allclose(
         mended.recording.heads[..., 2], right.recording.heads[..., 2] + 0.3, atol=1e-3
     )
+
+
+def test_missing_frames_are_put_in_as_without_blender(tmp_path: Path, capsys) -> None:
+    clip, recipe = without_frames(mocap_path(CLIP), 150, 4, tmp_path), tmp_path / "mend.toml"
+    assert main(["doctor", str(clip), *FRAMES, "--write-recipe", str(recipe)]) == 0
+    assert "remedy: missing = { 150 = 4 }" in capsys.readouterr().out
+    repairs = parse_recipe(recipe.read_text(encoding="utf-8")).repairs
+    problem = MotionProblem(frames=(100.0, 290.0))
+    right = read_clip(mocap_path(CLIP), problem).recording
+    plain = read_clip(clip, problem, repairs).recording
+    in_blender = load(Clip(clip), problem, Stages(StringIO()), repairs).subject.recording
+    for mended in (plain, in_blender.window(*problem.frames)):
+        wanted = right.window(*problem.frames)
+        np.testing.assert_array_equal(mended.window(*problem.frames).frames, wanted.frames)
+        assert np.abs(mended.window(*problem.frames).heads - wanted.heads).max() < 2e-3

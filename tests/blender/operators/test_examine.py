@@ -8,7 +8,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature.actions import read_recorded
-from hangtime.bridge.armature.fcurves import curves_of
+from hangtime.bridge.armature.fcurves import curves_of, put, table
 from hangtime.bridge.armature.keys_digest import keys_digest
 from hangtime.bridge.constraints.motion_problem import problem_of, repaired_since
 from hangtime.bridge.files.import_clip import import_clip
@@ -31,6 +31,7 @@ from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap_path
 
 SPIKED, TURN, RAISED, SLOWED = 150, 0.8, 0.2, 1.25
+GAP, LACKS = 150, 4  # frames are missing after one
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -99,7 +100,59 @@ def test_a_remedy_is_left_out_again(examined) -> None:
     assert applied(examined.hangtime) == Repairs()
 
 
-@pytest.mark.parametrize("stored", ["骨", "3", '{"mend": ["more"]}', '{"shear": 2.0}'])
+@pytest.fixture
+def lacking(jump: bpy.types.Object) -> bpy.types.Object:
+    """The jump without frames 151 to 154, those after them that much earlier."""
+    for curve in curves_of(jump):
+        keys = table(curve)
+        at = keys["co"][:, 0]
+        keys = {name: column[(at <= GAP) | (at > GAP + LACKS)] for name, column in keys.items()}
+        late = keys["co"][:, 0] > GAP
+        for name in ("co", "handle_left", "handle_right"):
+            keys[name][late, 0] -= LACKS
+        put(curve, keys)
+    return jump
+
+
+def test_missing_frames_are_put_into_a_copy(jump, request) -> None:
+    whole = read_recorded(jump, *JUMP_FRAMES)
+    lacking = request.getfixturevalue("lacking")
+    settings, recorded = lacking.hangtime, lacking.animation_data.action
+    before = keys_digest(recorded)
+    settings.use_range, settings.first_frame, settings.last_frame = True, 60, 326
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert finding_of(settings.findings["dropped frames"]).amount == LACKS
+    assert bpy.ops.hangtime.repair(kind="dropped frames") == {"FINISHED"}
+    assert lacking.animation_data.action != recorded
+    assert keys_digest(recorded) == before
+    assert (settings.first_frame, settings.last_frame) == (60, 326 + LACKS)
+    filled = read_recorded(lacking, *JUMP_FRAMES)
+    assert np.abs(filled.heads - whole.heads).max() < 2e-3
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert is_applied(settings, settings.findings["dropped frames"])  # no more is found to be wrong
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert bpy.ops.hangtime.repair(kind="dropped frames") == {"FINISHED"}
+    assert lacking.animation_data.action == recorded
+    assert settings.last_frame == 326
+    assert applied(settings) == Repairs()
+
+
+def test_missing_frames_are_not_put_into_a_strip(lacking) -> None:
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    data = lacking.animation_data
+    action, slot = data.action, getattr(data, "action_slot", None)
+    strip = data.nla_tracks.new().strips.new("Take", 1, action)
+    if slot is not None:
+        strip.action_slot = slot
+    data.action = None
+    with pytest.raises(RuntimeError, match="a strip plays it"):
+        bpy.ops.hangtime.repair(kind="dropped frames")
+    assert applied(lacking.hangtime) == Repairs()
+
+
+@pytest.mark.parametrize(
+    "stored", ['{"missing": [3]}', "骨", "3", '{"mend": ["more"]}', '{"shear": 2.0}']
+)
 def test_repairs_that_cannot_be_read_are_told_until_it_is_examined_anew(
     examined, stored, capfd
 ) -> None:

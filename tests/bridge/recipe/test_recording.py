@@ -6,16 +6,16 @@ from hangtime.bridge.recipe.recording import RECORDING
 from hangtime.bridge.recipe_syntax.toml_text import sections
 from hangtime.solver.data.faults import BadRecipe
 from hangtime.solver.data.problem import Mend, MotionProblem
-from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 
-FULL = Repairs(
-    UpAxis.MINUS_X, 2, (Mend.FLIPS, Mend.HELD_FRAMES), 0.8, 1.6, (0.1, -0.25), floor=0.12
-)
+MISSING = (MissingFrames(-5, 1), MissingFrames(57, 4))
+MENDS = (Mend.FLIPS, Mend.HELD_FRAMES)
+FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), floor=0.12)
 
 
 def test_repairs_come_back() -> None:
-    (text,) = sections(RECORDING.header, RECORDING.write(FULL))
-    assert parse_recipe(text).repairs == FULL
+    texts = sections(RECORDING.header, RECORDING.write(FULL))
+    assert parse_recipe("\n".join(texts)).repairs == FULL
 
 
 def test_a_recipe_that_says_nothing_repairs_nothing() -> None:
@@ -24,7 +24,17 @@ def test_a_recipe_that_says_nothing_repairs_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    "line", ['repair = ["warts"]', "trim = 1.5", "time_scale = 0", 'up = "W"', "drift = [1]"]
+    "line",
+    [
+        'repair = ["warts"]',
+        "trim = 1.5",
+        "time_scale = 0",
+        'up = "W"',
+        "drift = [1]",
+        "missing = { soon = 4 }",
+        "missing = { 57 = 0 }",
+        "missing = [57, 4]",
+    ],
 )
 def test_a_mistake_is_told_with_its_line(line: str) -> None:
     with pytest.raises(BadRecipe) as told:

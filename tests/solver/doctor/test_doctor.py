@@ -25,7 +25,12 @@ from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import perform
 from hangtime.solver.body.character import Character, build_character
-from hangtime.solver.data.faults import ClipTooShort, FramesFarApart, NotComputable
+from hangtime.solver.data.faults import (
+    ClipTooShort,
+    FramesFarApart,
+    NotBetweenFrames,
+    NotComputable,
+)
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.diagnose import diagnose
@@ -36,8 +41,8 @@ from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.doctor.footing import find_footing
 from hangtime.solver.doctor.lengths import find_lengths
 from hangtime.solver.doctor.noise import find_noise
-from hangtime.solver.doctor.repair import as_asked, repaired
-from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.repair import as_asked, filled, repaired
+from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.solver.doctor.single_frames import find_dropped, find_flips, find_held, find_spikes
 from hangtime.solver.doctor.upright import find_up
 from hangtime.tests.helpers.clips import JUMP, load_recording
@@ -106,6 +111,25 @@ def test_frames_that_are_missing_in_a_row_are_counted_and_no_other_fault_is_told
     assert found.kind is FindingKind.DROPPED_FRAMES
     assert found.amount == pytest.approx(6.0, abs=1.0)
     assert found.frames[0][0] <= frames[98] <= found.frames[0][1]
+    assert found.remedy is not None
+    (missing,) = found.remedy.missing
+    assert missing.after == frames[97]
+
+
+def test_frames_that_are_put_in_make_what_follows_later() -> None:
+    less, first = gap(6).of(jump()).recording, round(jump().frames[0])
+    longer = filled(less, (MissingFrames(first + 20, 2), MissingFrames(first + 50, 4)))
+    np.testing.assert_allclose(longer.frames, jump().frames)
+    np.testing.assert_allclose(longer.times, jump().times)
+    np.testing.assert_allclose(longer.heads[:21], less.heads[:21], atol=1e-12)
+    np.testing.assert_allclose(longer.heads[23:53], less.heads[21:51], atol=1e-12)
+    np.testing.assert_allclose(longer.heads[57:], less.heads[51:], atol=1e-12)
+
+
+def test_frames_after_the_last_one_are_not_missing() -> None:
+    last = round(jump().frames[-1])
+    with pytest.raises(NotBetweenFrames):
+        filled(jump(), (MissingFrames(last, 2),))
 
 
 def test_a_spike_is_told_with_its_bone_and_frame() -> None:
@@ -122,8 +146,15 @@ def test_a_spike_is_told_with_its_bone_and_frame() -> None:
 
 @pytest.mark.parametrize(
     ("damage", "cm"),
-    [(spiked(120.0), 0.05), (flipped(12), 0.1), (held(6), 0.05), (stretched(0.15), 0.15)],
-    ids=["spikes", "flips", "held frames", "bone lengths"],
+    [
+        (spiked(120.0), 0.05),
+        (flipped(12), 0.1),
+        (held(6), 0.05),
+        (stretched(0.15), 0.15),
+        (gap(1), 0.01),
+        (gap(6), 0.1),
+    ],
+    ids=["spikes", "flips", "held frames", "bone lengths", "a missing frame", "a gap"],
 )
 def test_the_remedy_brings_the_original_back(damage: Damage, cm: float) -> None:
     damaged = damage.of(jump())
