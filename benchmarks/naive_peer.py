@@ -14,14 +14,9 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from ..devtools.peers.ipopt_peer import run, sparse
+from ..devtools.peers.newton_euler import BodyMotion, body_frames, momentum_rate, point_motion
 from ..devtools.peers.task import PeerResult, Task, metric_matrix
 from ..solver.arrays import FloatArray, IntArray
-from ..solver.body.inverse_dynamics import (
-    BodyMotion,
-    body_frames,
-    momentum_rate,
-    point_motion,
-)
 from ..solver.data.constants import STANDARD_GRAVITY
 from ..solver.data.row_kinds import RowKind
 from ..solver.transcription.rows import Rows

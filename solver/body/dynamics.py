@@ -136,9 +136,9 @@ class MomentumRate:
         hung = _swung(omega[above], alpha[above], centres - centres[above])
         carried = _summed(hung, self._bodies_before) + _swung(omega, alpha, coms - centres)
         R = instants_last(posed.rotations)
-        omega, alpha = (_times(R.swapaxes(1, 2), each) for each in (omega, alpha))
-        spin = _times(self._inertias, alpha) + cross(omega, _times(self._inertias, omega))
-        return carried, _times(R, spin)
+        omega, alpha = (times(R.swapaxes(1, 2), each) for each in (omega, alpha))
+        spin = times(self._inertias, alpha) + cross(omega, times(self._inertias, omega))
+        return carried, times(R, spin)
 
     def outward(self, each: FloatArray) -> FloatArray:
         """(B, ...) sums over each body and all that hangs on it."""
@@ -162,10 +162,23 @@ class MomentumRate:
         here: tr(D) - D with D the integral of velocity times place, as tr(Q) - Q is the inertia
         with Q the integral of place times place.
         """
+        moving = self.expanded(posed, speeds, accelerations)
+        S, rate, second = moving.axes, moving.rate, moving.second
+        sums = moving.sums.some(self.character.body_of_angle)
+        by_a = sums.momentum(S)
+        by_v = 2.0 * (sums.momentum(rate) + sums.swept(S.turn))
+        by_q = cross(S.turn, sums.moment) + cross(S.move, sums.force) + sums.momentum(second)
+        by_q += 2.0 * sums.swept(rate.turn)
+        return moving.sums.moment[0], by_q, by_v, by_a
+
+    def expanded(
+        self, posed: Pose, speeds: FloatArray, accelerations: FloatArray
+    ) -> "ExpandedMotion":
+        """What the derivatives of a motion's momentum and torques are made of."""
         axes, centres, coms = (
             instants_last(v) for v in (posed.axes, posed.centres, posed.body_coms)
         )
-        S = _Spatial(axes, cross(centres[self.character.body_of_angle], axes))
+        S = Spatial(axes, cross(centres[self.character.body_of_angle], axes))
         own = S.scaled(speeds)
         V = own.summed(self._angles_before)
         before = V.less(own)
@@ -174,68 +187,75 @@ class MomentumRate:
         A = gained.summed(self._angles_before)
         # All bodies share the acceleration that keeps the centre of mass where it is: it has no
         # moment, and then nothing pulls there.
-        bodies = _BodySums.of(self, posed, coms, V.some(self._last_angle), A.some(self._last_angle))
+        bodies = BodySums.of(self, posed, coms, V.some(self._last_angle), A.some(self._last_angle))
         A_before = A.less(gained)
-        A_before = _Spatial(A_before.turn, A_before.move - bodies.shared)
+        A_before = Spatial(A_before.turn, A_before.move - bodies.shared)
         second = A_before.across(S).plus(before.across(rate))
-        whole = bodies.each(self.outward)
-        sums = whole.some(self.character.body_of_angle)
-        by_a = sums.momentum(S)
-        by_v = 2.0 * (sums.momentum(rate) + sums.swept(S.turn))
-        by_q = cross(S.turn, sums.moment) + cross(S.move, sums.force) + sums.momentum(second)
-        by_q += 2.0 * sums.swept(rate.turn)
-        return whole.moment[0], by_q, by_v, by_a
+        return ExpandedMotion(S, rate, second, bodies.each(self.outward))
 
 
 @dataclass(frozen=True)
-class _Spatial:
+class ExpandedMotion:
+    """An angle's axis S (n_angles), S' and S'' as `derivatives` has them, and the integrals over
+    each body and all that hangs on it."""
+
+    axes: "Spatial"
+    rate: "Spatial"
+    second: "Spatial"
+    sums: "BodySums"
+
+
+@dataclass(frozen=True)
+class Spatial:
     """K spatial vectors about the centre of mass: turn, and move there; (K, 3, N) each."""
 
     turn: FloatArray
     move: FloatArray
 
-    def scaled(self, rates: FloatArray) -> "_Spatial":
+    def scaled(self, rates: FloatArray) -> "Spatial":
         """Times rates (N, K)."""
         each = rates.T[:, None]
-        return _Spatial(self.turn * each, self.move * each)
+        return Spatial(self.turn * each, self.move * each)
 
-    def plus(self, other: "_Spatial") -> "_Spatial":
-        return _Spatial(self.turn + other.turn, self.move + other.move)
+    def plus(self, other: "Spatial") -> "Spatial":
+        return Spatial(self.turn + other.turn, self.move + other.move)
 
-    def less(self, other: "_Spatial") -> "_Spatial":
-        return _Spatial(self.turn - other.turn, self.move - other.move)
+    def less(self, other: "Spatial") -> "Spatial":
+        return Spatial(self.turn - other.turn, self.move - other.move)
 
-    def some(self, which: IntArray | list[int]) -> "_Spatial":
-        return _Spatial(self.turn[which], self.move[which])
+    def some(self, which: IntArray | list[int]) -> "Spatial":
+        return Spatial(self.turn[which], self.move[which])
 
-    def summed(self, before: list[int]) -> "_Spatial":
+    def summed(self, before: list[int]) -> "Spatial":
         """Sums along the tree."""
-        return _Spatial(_summed(self.turn, before), _summed(self.move, before))
+        return Spatial(_summed(self.turn, before), _summed(self.move, before))
 
-    def across(self, other: "_Spatial") -> "_Spatial":
+    def across(self, other: "Spatial") -> "Spatial":
         """Spatial cross product (Featherstone 2008, ch. 2.9)."""
         move = cross(self.turn, other.move)
         move += cross(self.move, other.turn)
-        return _Spatial(cross(self.turn, other.turn), move)
+        return Spatial(cross(self.turn, other.turn), move)
 
 
 @dataclass(frozen=True)
-class _BodySums:
+class BodySums:
     """Integrals over the mass of bodies, or of all that hangs on them; places p from the centre
-    of mass. second: p p' (B, 3, 3, N) kg m². first: p (B, 3, N) kg m. swept_out: p' p^T. force:
-    p'' and moment: p x p''. shared: (3, N) the mean acceleration, which is left out."""
+    of mass, velocities from the root's centre. second: p p^T (B, 3, 3, N) kg m². first: p (B, 3, N)
+    kg m. swept_out: p' p^T, carried: p'. force: p'' and moment: p x p''. shared: (3, N) the mean
+    acceleration, which is left out."""
 
     second: FloatArray
     first: FloatArray
     swept_out: FloatArray
+    carried: FloatArray
     force: FloatArray
     moment: FloatArray
     shared: FloatArray
 
     @staticmethod
     def of(
-        rate: "MomentumRate", posed: Pose, coms: FloatArray, V: _Spatial, A: _Spatial
-    ) -> "_BodySums":
+        rate: "MomentumRate", posed: Pose, coms: FloatArray, V: Spatial, A: Spatial
+    ) -> "BodySums":
         """Of each body with its motion; coms (B, 3, N)."""
         mass = rate.masses
         local = rate.local_seconds  # about its own centre of mass
@@ -247,43 +267,65 @@ class _BodySums:
         shared = (mass * acceleration).sum(axis=0) / mass.sum()
         force = mass * (acceleration - shared)
         turning = np.stack([cross(V.turn, own[:, :, k]) for k in range(3)], axis=2)
-        spin = _trace(own) * A.turn - _times(own, A.turn) - cross(V.turn, _times(own, V.turn))
-        return _BodySums(
+        spin = trace(own) * A.turn - times(own, A.turn) - cross(V.turn, times(own, V.turn))
+        return BodySums(
             own + first[:, :, None] * coms[:, None],
             first,
             turning + velocity[:, :, None] * first[:, None],
+            mass * velocity,
             force,
             spin + cross(coms, force),
             shared,
         )
 
-    def some(self, which: IntArray) -> "_BodySums":
+    def some(self, which: IntArray) -> "BodySums":
         return self.each(lambda each: each[which])
 
-    def each(self, work: Callable[[FloatArray], FloatArray]) -> "_BodySums":
+    def each(self, work: Callable[[FloatArray], FloatArray]) -> "BodySums":
         """What `work` makes of the integrals."""
-        return _BodySums(
+        return BodySums(
             work(self.second),
             work(self.first),
             work(self.swept_out),
+            work(self.carried),
             work(self.force),
             work(self.moment),
             self.shared,
         )
 
-    def momentum(self, motion: _Spatial) -> FloatArray:
+    def momentum(self, motion: Spatial) -> FloatArray:
         """(K, 3, N) angular momentum of motions of each."""
-        found = _trace(self.second) * motion.turn
-        found -= _times(self.second, motion.turn)
+        found = trace(self.second) * motion.turn
+        found -= times(self.second, motion.turn)
         found += cross(self.first, motion.move)
         return found
 
     def swept(self, turns: FloatArray) -> FloatArray:
         """(K, 3, N) products of B with turns."""
-        return _trace(self.swept_out) * turns - _times(self.swept_out, turns)
+        return trace(self.swept_out) * turns - times(self.swept_out, turns)
+
+    def sweep(self, turns: FloatArray) -> Spatial:
+        """The same with the force that goes with it."""
+        return Spatial(self.swept(turns), cross(turns, self.carried))
+
+    def swept_back(self, axes: Spatial) -> FloatArray:
+        """(K, 3, N) products of `sweep`'s transpose with axes."""
+        back = trace(self.swept_out) * axes.turn
+        back -= times(self.swept_out.swapaxes(1, 2), axes.turn)
+        return back + cross(self.carried, axes.move)
+
+    def impulse(self, motion: Spatial, masses: FloatArray) -> Spatial:
+        """Momentum, angular and linear, of motions of each; masses (K, 1, 1) kg."""
+        linear = cross(motion.turn, self.first) + masses * motion.move
+        return Spatial(self.momentum(motion), linear)
+
+    def wrench(self, axes: Spatial) -> Spatial:
+        """What turning about axes does to the wrenches: a spatial cross product."""
+        moment = cross(axes.turn, self.moment) + cross(axes.move, self.force)
+        return Spatial(moment, cross(axes.turn, self.force))
 
 
-def _trace(matrices: FloatArray) -> FloatArray:
+def trace(matrices: FloatArray) -> FloatArray:
     """(K, 1, N) of (K, 3, 3, N)."""
     return np.asarray((matrices[:, 0, 0] + matrices[:, 1, 1] + matrices[:, 2, 2])[:, None])
 
@@ -302,7 +344,7 @@ def _summed(each: FloatArray, before: list[int]) -> FloatArray:
     return total
 
 
-def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+def times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
     """(B, 3, N) products of matrices (B, 3, 3, N) with vectors (B, 3, N)."""
     columns = (matrices[:, :, k] * vectors[:, k, None] for k in range(3))
     return np.asarray(sum(columns))

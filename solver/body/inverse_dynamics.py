@@ -1,96 +1,96 @@
-"""Inverse dynamics by the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3): in arrays,
-and as CasADi expressions where derivatives are wanted."""
+"""Inverse dynamics by the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3), in arrays.
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+Wrenches are taken about the centre of mass and summed from the leaves inwards. The torque along an
+axis is what all that hangs on the joint needs there, less what external forces give. Its
+derivatives are after Singh, Russell and Wensing (2022), as in dynamics.py: an eighth of what CasADi
+takes, and nothing is built.
+"""
 
-import casadi as ca
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from functools import cached_property
+
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from .character import Character
-from .dynamics import MomentumRate, cross, instants_last
-from .kinematics import BodyPoint, forward_kinematics
+from .dynamics import BATCH, MomentumRate, Spatial, cross, instants_last, times, trace
+from .kinematics import BodyPoint, Pose, forward_kinematics
 
 
 @dataclass(frozen=True)
-class BodyMotion:
-    """Motion of a body's frame as expressions, world axes.
+class Movement:
+    """A movement at N instants, world axes. speeds, accelerations: (N, n_angles) of the angles,
+    rad, s. com_acceleration: (N, 3) m/s². forces: (N, P, 3) N, on the body."""
 
-    R: rotation, body to world. omega, alpha: angular velocity (rad/s) and acceleration (rad/s²).
-    x, v, a: position, velocity, acceleration of its joint's centre from the root's, m, s.
-    """
+    pose: Pose
+    speeds: FloatArray
+    accelerations: FloatArray
+    com_acceleration: FloatArray
+    forces: FloatArray
 
-    R: ca.SX
-    omega: ca.SX
-    alpha: ca.SX
-    x: ca.SX
-    v: ca.SX
-    a: ca.SX
-
-
-def point_motion(frame: BodyMotion, local: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """Position, velocity, acceleration (3,) of a body-fixed point, world axes, from the root."""
-    arm = frame.R @ local
-    swing = ca.cross(frame.omega, arm)
-    return (
-        frame.x + arm,
-        frame.v + swing,
-        frame.a + ca.cross(frame.alpha, arm) + ca.cross(frame.omega, swing),
-    )
+    def at(self, some: slice) -> "Movement":
+        """At some of the instants."""
+        parts = (self.speeds, self.accelerations, self.com_acceleration, self.forces)
+        return Movement(self.pose.at(some), *(part[some] for part in parts))
 
 
-def body_frames(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> list[BodyMotion]:
-    """Forward pass of the recursive Newton-Euler algorithm (Featherstone 2008, ch. 5.3).
+@dataclass(frozen=True)
+class ExternalForces:
+    """Sums of external forces f at places p, from the centre of mass, on each body or on all that
+    hangs on it. force: (B, 3, N) N, moment: N·m, held: f p^T (B, 3, 3, N)."""
 
-    q, v, a: (n_angles,) joint angles, rad, and their first two derivatives by s. One per body.
-    """
-    zero = ca.SX.zeros(3)
-    ground = BodyMotion(ca.SX.eye(3), zero, zero, zero, zero, zero)
-    frames: list[BodyMotion] = []
-    for joint in character.joints:
-        parent = frames[joint.parent] if joint.parent >= 0 else ground
-        x, xv, xa = point_motion(parent, ca.SX(joint.offset))
-        R = parent.R @ ca.SX(joint.axes.before)
-        omega, alpha = parent.omega, parent.alpha
-        for k in range(joint.axes.dofs):
-            i = joint.first + k
-            axis = R[:, k]
-            alpha = alpha + axis * a[i] + ca.cross(omega, axis * v[i])
-            omega = omega + axis * v[i]
-            R = times_axis_rotation(R, k, q[i])
-        frames.append(BodyMotion(R @ ca.SX(joint.axes.after), omega, alpha, x, xv, xa))
-    return frames
+    force: FloatArray
+    moment: FloatArray
+    held: FloatArray
+
+    @staticmethod
+    def of(points: Sequence[BodyPoint], movement: Movement) -> "ExternalForces":
+        """On each body."""
+        bodies, count = len(movement.pose.character.bodies), len(movement.speeds)
+        sums = ExternalForces(
+            *(np.zeros((bodies, *shape, count)) for shape in ((3,), (3,), (3, 3)))
+        )
+        if points:
+            at = instants_last(movement.pose.points(points))
+            forces = instants_last(movement.forces)
+            owners = [point.body for point in points]
+            np.add.at(sums.force, owners, forces)
+            np.add.at(sums.moment, owners, cross(at, forces))
+            np.add.at(sums.held, owners, forces[:, :, None] * at[:, None])
+        return sums
+
+    def each(self, work: Callable[[FloatArray], FloatArray]) -> "ExternalForces":
+        """What `work` makes of the sums."""
+        return ExternalForces(work(self.force), work(self.moment), work(self.held))
+
+    def some(self, which: IntArray) -> "ExternalForces":
+        return self.each(lambda each: each[which])
+
+    def turned(self, axes: Spatial) -> FloatArray:
+        """(K, 3, N) sums of f x (what the axes do to p)."""
+        swung = trace(self.held) * axes.turn - times(self.held.swapaxes(1, 2), axes.turn)
+        return np.asarray(swung + cross(self.force, axes.move))
 
 
-def times_axis_rotation(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
-    """R (3, 3) times the rotation by `angle`, rad, about coordinate axis 0, 1 or 2."""
-    c, s = ca.cos(angle), ca.sin(angle)
-    columns = [R[:, 0], R[:, 1], R[:, 2]]
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    columns[i], columns[j] = R[:, i] * c + R[:, j] * s, R[:, j] * c - R[:, i] * s
-    return ca.horzcat(*columns)
+def needed_wrench(
+    momentum: MomentumRate, points: Sequence[BodyPoint], movement: Movement
+) -> Spatial:
+    """(B, 3, N) moment about the centre of mass, N·m, and force, N, that each body and all that
+    hangs on it need beside the external forces on them; world axes."""
+    character, masses, pose = momentum.character, momentum.masses, movement.pose
+    carried, moment = momentum.of_bodies(pose, movement.speeds, movement.accelerations)
+    shared = (masses * carried).sum(axis=0) / character.mass
+    force = masses * (carried - shared + _lift(character, movement))
+    moment += cross(instants_last(pose.body_coms), force)
+    given = ExternalForces.of(points, movement)
+    return Spatial(momentum.outward(moment - given.moment), momentum.outward(force - given.force))
 
 
-def momentum_rate(character: Character, q: ca.SX, v: ca.SX, a: ca.SX) -> ca.SX:
-    """(3,) rate of change of the angular momentum about the centre of mass, N·m, world axes.
-
-    q, v, a: (n_angles,) rad, s. Sum over bodies of r x m a + I alpha + omega x I omega
-    (Newton-Euler; thesis 3.2.2; Orin, Goswami and Lee 2013).
-    """
-    frames = body_frames(character, q, v, a)
-    moving = []
-    centre = ca.SX.zeros(3)
-    for frame, body in zip(frames, character.bodies, strict=True):
-        x, _, acceleration = point_motion(frame, ca.SX(body.com))
-        moving.append((x, acceleration))
-        centre += body.mass / character.mass * x
-    rate = ca.SX.zeros(3)
-    for (x, acceleration), frame, body in zip(moving, frames, character.bodies, strict=True):
-        inertia = frame.R @ ca.SX(body.inertia) @ frame.R.T
-        spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
-        rate += ca.cross(x - centre, body.mass * acceleration) + spin
-    return rate
+def _lift(character: Character, movement: Movement) -> FloatArray:
+    """(3, N) m/s², by which every body is lifted: the centre of mass's own and gravity's."""
+    up = np.array([0.0, 0.0, character.gravity])
+    return np.asarray(movement.com_acceleration.T + up[:, None])
 
 
 @dataclass(frozen=True)
@@ -107,22 +107,8 @@ class GeneralisedForces:
     torques: FloatArray
 
 
-@dataclass(frozen=True)
-class _Wrench:
-    """Wrench: force, and moment about a point at x (3,)."""
-
-    x: ca.SX
-    force: ca.SX
-    moment: ca.SX
-
-    def about(self, x: ca.SX) -> ca.SX:
-        """Moment about another point."""
-        return self.moment + ca.cross(self.x - x, self.force)
-
-
 class InverseDynamics:
-    """Inverse dynamics of a character with external forces at chosen points, in arrays: for what is
-    measured, which needs no derivatives."""
+    """Inverse dynamics of a character with external forces at chosen points, to be measured."""
 
     def __init__(self, character: Character, points: Sequence[BodyPoint] = ()) -> None:
         self._character, self._points = character, points
@@ -136,93 +122,162 @@ class InverseDynamics:
         com_acceleration: FloatArray,
         forces: FloatArray,
     ) -> GeneralisedForces:
-        """Generalised forces of a movement, as `inverse_dynamics` tells them.
+        """Generalised forces of a movement.
 
         q, v, a: (N, n_angles) joint angles, rad, and their derivatives by s. com_acceleration:
-        (N, 3) m/s², forces on the body: (N, P, 3) N; both in world axes. Wrenches are taken about
-        the centre of mass and summed from the leaves inwards (Featherstone 2008, ch. 5.3).
+        (N, 3) m/s², forces on the body: (N, P, 3) N; both in world axes.
         """
-        character, masses = self._character, self._momentum.masses
-        posed = forward_kinematics(character, q)
-        carried, moment = self._momentum.of_bodies(posed, v, a)
-        shared = (masses * carried).sum(axis=0) / character.mass
-        fall = np.array([0.0, 0.0, character.gravity])[:, None]
-        force = masses * (carried - shared + com_acceleration.T + fall)
-        moment += cross(instants_last(posed.body_coms), force)
-        if self._points:
-            arms, pushes = (instants_last(v) for v in (posed.points(self._points), forces))
-            bodies = [point.body for point in self._points]
-            np.subtract.at(force, bodies, pushes)
-            np.subtract.at(moment, bodies, cross(arms, pushes))
-        force, moment = self._momentum.outward(force), self._momentum.outward(moment)
-        at_joints = moment - cross(instants_last(posed.centres), force)
-        axes, bodies_of = instants_last(posed.axes), character.body_of_angle
+        posed = forward_kinematics(self._character, q)
+        movement = Movement(posed, v, a, com_acceleration, forces)
+        needed = needed_wrench(self._momentum, self._points, movement)
+        at_joints = needed.turn - cross(instants_last(posed.centres), needed.move)
+        axes, bodies_of = instants_last(posed.axes), self._character.body_of_angle
         torques = (axes * at_joints[bodies_of]).sum(axis=1)
-        return GeneralisedForces(force[0].T, moment[0].T, torques[3:].T)
+        return GeneralisedForces(needed.move[0].T, needed.turn[0].T, torques[3:].T)
 
 
-def inverse_dynamics(
-    character: Character,
-    points: Sequence[BodyPoint],
-    q: ca.SX,
-    v: ca.SX,
-    a: ca.SX,
-    com_acceleration: ca.SX,
-    forces: ca.SX,
-    *,
-    orthogonal: bool = False,
-) -> ca.SX:
-    """(6 + n_angles - 3,) residual force and moment at the root, then joint torques, N, N·m.
+@dataclass(frozen=True)
+class TorqueDerivatives:
+    """Derivatives (N, m, ...) of m torques: by angles, speeds and accelerations (n_angles), by the
+    centre of mass's acceleration (3) and by external forces (P, 3)."""
 
-    Newton-Euler per body, wrenches summed from the leaves inwards (Featherstone 2008, ch. 5.3,
-    backward pass). q, v, a: (n_angles,) rad, s. com_acceleration: (3,) m/s², forces: (3, P) N on
-    the body at `points`; both in world axes. The root's moment is about the centre of mass.
-    orthogonal: see `moment_components`.
+    by_angle: FloatArray
+    by_speed: FloatArray
+    by_acceleration: FloatArray
+    by_com_acceleration: FloatArray
+    by_force: FloatArray
+
+
+class JointTorques:
+    """Torques of a character's joints, N·m, along the axes of some of their angles.
+
+    angles: (m,) none of the root's. orthogonal: of a joint with three angles the third torque is
+    about the axis across the first two, not about the third angle's own, which near gimbal lock is
+    parallel to the first and tells nothing of a moment across it.
     """
-    frames = body_frames(character, q, v, a)
-    moving = [point_motion(f, ca.SX(b.com)) for f, b in zip(frames, character.bodies, strict=True)]
-    shares = [body.mass / character.mass for body in character.bodies]
-    com = sum((s * m[0] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
-    com_drift = sum((s * m[2] for s, m in zip(shares, moving, strict=True)), ca.SX.zeros(3))
-    wrenches: list[_Wrench] = []  # that each body and all beyond it need, about its joint
-    for frame, body, (x, _, acceleration) in zip(frames, character.bodies, moving, strict=True):
-        force = body.mass * (
-            com_acceleration - com_drift + acceleration + ca.SX([0.0, 0.0, character.gravity])
+
+    def __init__(
+        self,
+        character: Character,
+        points: Sequence[BodyPoint],
+        angles: IntArray,
+        *,
+        orthogonal: bool = False,
+    ) -> None:
+        self._character, self._points = character, points
+        self._angles = angles
+        self._momentum = MomentumRate(character)
+        self._body = character.body_of_angle[angles]
+        across = [self._is_last_of_three(angle) for angle in angles.tolist()]
+        self._across = np.flatnonzero(across) if orthogonal else np.zeros(0, int)
+
+    def _is_last_of_three(self, angle: int) -> bool:
+        joint = self._character.joints[self._character.body_of_angle[angle]]
+        return bool(joint.axes.dofs == 3 and angle == joint.dofs.stop - 1)
+
+    @cached_property
+    def _turned(self) -> BoolArray:
+        """(m, n_angles) whether an angle turns a torque's axis."""
+        angles = np.arange(self._character.n_angles)
+        last = self._angles.copy()  # the first angle of its joint that does not
+        last[self._across] -= 1
+        path = self._character.path_matrix[self._body] > 0.0
+        return np.asarray(path & (angles < last[:, None]))
+
+    @cached_property
+    def _beyond(self) -> BoolArray:
+        """(m, n_angles) whether an angle moves some of what hangs on a torque's axis alone."""
+        path = self._character.path_matrix[self._character.body_of_angle] > 0.0
+        return np.asarray(path[:, self._angles].T & ~self._turned)
+
+    def value(self, movement: Movement) -> FloatArray:
+        """(N, m) N·m."""
+        needed = needed_wrench(self._momentum, self._points, movement).some(self._body)
+        R = self._axes(movement.pose)
+        return np.asarray((R.turn * needed.turn + R.move * needed.move).sum(axis=1).T)
+
+    def derivatives(self, movement: Movement) -> TorqueDerivatives:
+        """By all that a movement is made of."""
+        batches = range(0, len(movement.speeds), BATCH)
+        found = [self._derivatives(movement.at(slice(i, i + BATCH))) for i in batches]
+        names = [each.name for each in fields(TorqueDerivatives)]
+        return TorqueDerivatives(
+            *(np.concatenate([getattr(each, name) for each in found]) for name in names)
         )
-        inertia = frame.R @ ca.SX(body.inertia) @ frame.R.T
-        spin = inertia @ frame.alpha + ca.cross(frame.omega, inertia @ frame.omega)
-        wrenches.append(_Wrench(frame.x, force, spin + ca.cross(x - frame.x, force)))
-    for p, point in enumerate(points):
-        held = wrenches[point.body]
-        at = point_motion(frames[point.body], ca.SX(point.place))[0]
-        push = _Wrench(at, -forces[:, p], ca.SX.zeros(3))
-        wrenches[point.body] = _sum(held, push)
-    torques = ca.SX.zeros(character.n_angles)
-    for i in reversed(range(1, len(character.joints))):
-        joint = character.joints[i]
-        R = frames[joint.parent].R @ ca.SX(joint.axes.before)
-        moment, angles = wrenches[i].moment, q[joint.dofs]
-        torques[joint.dofs] = moment_components(R, angles, moment, orthogonal=orthogonal)
-        wrenches[joint.parent] = _sum(wrenches[joint.parent], wrenches[i])
-    return ca.vertcat(wrenches[0].force, wrenches[0].about(com), torques[3:])
+
+    def _derivatives(self, movement: Movement) -> TorqueDerivatives:
+        """With a torque's axis R, an angle's S, and F, I, B of what hangs on each: an angle beyond
+        the axis changes the wrench there, which gives R . dF; a nearer one turns the axis too, and
+
+            by a: I R . S     by v: 2 (I R . S' + B'R . S)     by q: I R . S'' + 2 B'R . S'
+
+        Every angle changes the acceleration that all bodies share. Weights and external forces act
+        at places that turn, and do not turn themselves.
+        """
+        momentum, owner = self._momentum, self._character.body_of_angle
+        moving = momentum.expanded(movement.pose, movement.speeds, movement.accelerations)
+        S, rate, second = moving.axes, moving.rate, moving.second
+        R, lift = self._axes(movement.pose), _lift(self._character, movement)[None]
+        masses = momentum.outward(momentum.masses)
+        given = ExternalForces.of(self._points, movement).each(momentum.outward)
+
+        held = moving.sums.some(self._body)
+        kept, swept = held.impulse(R, masses[self._body]), held.swept_back(R)
+        turning = given.some(self._body).turned(R) + cross(kept.move, lift)
+
+        sums, mass = moving.sums.some(owner), masses[owner]
+        by_a = sums.impulse(S, mass)
+        by_v = sums.impulse(rate, mass).plus(sums.sweep(S.turn))
+        by_q = sums.wrench(S).plus(sums.impulse(second, mass))
+        by_q = by_q.plus(sums.sweep(2.0 * rate.turn))
+        moved = given.some(owner).turned(S) + cross(by_a.move, lift)
+
+        far, move = _side(R.turn, R.move), _side(kept.move)
+
+        def by(near: FloatArray, axes: FloatArray, outer: Spatial, turn: FloatArray) -> FloatArray:
+            found = (near @ axes.swapaxes(1, 2)) * self._turned
+            found += (far @ _side(turn, outer.move).swapaxes(1, 2)) * self._beyond
+            shared = move @ (_side(outer.move) / self._character.mass).swapaxes(1, 2)
+            return np.asarray(found - shared)
+
+        return TorqueDerivatives(
+            by(
+                _side(kept.turn, kept.move, 2.0 * swept, turning),
+                _side(second.turn, second.move, rate.turn, S.turn),
+                by_q,
+                by_q.turn + moved,
+            ),
+            2.0
+            * by(
+                _side(kept.turn, kept.move, swept),
+                _side(rate.turn, rate.move, S.turn),
+                by_v,
+                by_v.turn,
+            ),
+            by(_side(kept.turn, kept.move), _side(S.turn, S.move), by_a, by_a.turn),
+            move,
+            self._by_force(movement.pose, R),
+        )
+
+    def _axes(self, pose: Pose) -> Spatial:
+        """(m, 3, N) what a turn about each torque's axis does at the centre of mass."""
+        axes = instants_last(pose.axes)
+        turn = axes[self._angles]
+        if len(self._across):
+            last = self._angles[self._across]
+            turn[self._across] = cross(axes[last - 2], axes[last - 1])
+        return Spatial(turn, cross(instants_last(pose.centres)[self._body], turn))
+
+    def _by_force(self, pose: Pose, R: Spatial) -> FloatArray:
+        """(N, m, P, 3): a force takes over what turns its point along."""
+        if not self._points:
+            return np.zeros((len(pose.axes), len(self._angles), 0, 3))
+        turn, move = _side(R.turn)[:, :, None], _side(R.move)[:, :, None]
+        reached = self._character.path_matrix[[p.body for p in self._points]][:, self._angles].T
+        swung = np.cross(turn, pose.points(self._points)[:, None]) + move
+        return np.asarray(-reached[..., None] * swung)
 
 
-def moment_components(R: ca.SX, q: ca.SX, moment: ca.SX, *, orthogonal: bool) -> ca.SX:
-    """(dofs,) components of a joint's moment (3,) about the axes of its angles q (dofs,), rad.
-
-    R: (3, 3) the joint's frame before it turns, in the moment's axes. orthogonal: the third about
-    the axis across the first two, not about the third angle's, which near gimbal lock is parallel
-    to the first and tells nothing of a moment across it.
-    """
-    axes = []
-    for k in range(q.shape[0]):
-        axes.append(R[:, k])
-        R = times_axis_rotation(R, k, q[k])
-    if orthogonal and len(axes) == 3:
-        axes[2] = ca.cross(axes[0], axes[1])
-    return ca.vertcat(*(ca.dot(axis, moment) for axis in axes))
-
-
-def _sum(held: _Wrench, added: _Wrench) -> _Wrench:
-    """Sum of two wrenches, about the first one's point."""
-    return _Wrench(held.x, held.force + added.force, held.moment + added.about(held.x))
+def _side(*parts: FloatArray) -> FloatArray:
+    """(N, K, 3 n) of n parts (K, 3, N), side by side."""
+    return np.ascontiguousarray(np.concatenate(parts, axis=1).transpose(2, 0, 1))

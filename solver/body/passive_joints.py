@@ -24,13 +24,12 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..data.constants import UP
 from ..numerics.batch_function import BatchFunction
 from ..numerics.rotations import perpendicular, rotation_matrix, unit
 from .anatomy import Part
 from .character import Body, Character
-from .inverse_dynamics import moment_components, times_axis_rotation
 
 MEASURED_MASS = 70.0  # kg, of the body that the figures below are for
 
@@ -79,6 +78,28 @@ def passive_torques(character: Character, q: ca.SX, v: ca.SX, *, orthogonal: boo
     return torques
 
 
+class PassiveTorques:
+    """Passive torques at some angles (m,), N·m, about orthogonal axes, and their derivatives."""
+
+    def __init__(self, character: Character, angles: IntArray) -> None:
+        n = self._n = character.n_angles
+        x = ca.SX.sym("x", 2 * n)
+        torques = passive_torques(character, x[:n], x[n:], orthogonal=True)[angles.tolist()]
+        self._value = BatchFunction("passive", x, [torques])
+        self._by = BatchFunction("passive_by", x, [ca.jacobian(torques, x)])
+
+    def value(self, q: FloatArray, v: FloatArray) -> FloatArray:
+        """(T, m) at joint angles (T, n_angles), rad, and their derivatives by s."""
+        (found,) = self._value(np.concatenate([q, v], axis=1))
+        return found
+
+    def derivatives(self, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(T, m, n_angles) by angles and by speeds."""
+        (found,) = self._by(np.concatenate([q, v], axis=1))
+        by = np.swapaxes(found, 1, 2)
+        return by[:, :, : self._n], by[:, :, self._n :]
+
+
 def evaluate_passive_torques(
     character: Character, q: FloatArray, v: FloatArray, *, orthogonal: bool = False
 ) -> FloatArray:
@@ -99,3 +120,28 @@ def neutral_rotation(body: Body) -> FloatArray:
     sine = float(np.linalg.norm(across))
     axis = across / sine if sine > 1e-9 else perpendicular(along)
     return rotation_matrix(np.arctan2(sine, -float(along @ UP)) * axis)
+
+
+def times_axis_rotation(R: ca.SX, axis: int, angle: ca.SX) -> ca.SX:
+    """R (3, 3) times the rotation by `angle`, rad, about coordinate axis 0, 1 or 2."""
+    c, s = ca.cos(angle), ca.sin(angle)
+    columns = [R[:, 0], R[:, 1], R[:, 2]]
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    columns[i], columns[j] = R[:, i] * c + R[:, j] * s, R[:, j] * c - R[:, i] * s
+    return ca.horzcat(*columns)
+
+
+def moment_components(R: ca.SX, q: ca.SX, moment: ca.SX, *, orthogonal: bool) -> ca.SX:
+    """(dofs,) components of a joint's moment (3,) about the axes of its angles q (dofs,), rad.
+
+    R: (3, 3) the joint's frame before it turns, in the moment's axes. orthogonal: the third about
+    the axis across the first two, not about the third angle's, which near gimbal lock is parallel
+    to the first and tells nothing of a moment across it.
+    """
+    axes = []
+    for k in range(q.shape[0]):
+        axes.append(R[:, k])
+        R = times_axis_rotation(R, k, q[k])
+    if orthogonal and len(axes) == 3:
+        axes[2] = ca.cross(axes[0], axes[1])
+    return ca.vertcat(*(ca.dot(axis, moment) for axis in axes))

@@ -38,7 +38,7 @@ from ..transcription.motion import (
     split_spans,
 )
 from ..transcription.ride import Ride
-from ..transcription.torque_constraint import TorqueFunction, joint_torques
+from ..transcription.torque_constraint import joint_torques
 from ..transcription.transcription import Transcription
 from .transcribe import initial_guess, recorded_target, transcribe
 
@@ -187,14 +187,9 @@ class Fit(SolvedMotion):
         return {}
 
     @cached_property
-    def torques(self) -> TorqueFunction:
-        """Torque function of every joint."""
-        return joint_torques(self.motion.transcription)
-
-    @cached_property
     def torque_metric(self) -> BlockBanded:
         """Metric of changes of the fit's torques; see objectives.torque_metric."""
-        return torque_metric(self.motion, self.torques)
+        return torque_metric(self.motion, joint_torques(self.motion.transcription))
 
 
 def fit(

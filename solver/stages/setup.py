@@ -172,10 +172,8 @@ class Setup:
 
     @cached_property
     def torques(self) -> TorqueFunction:
-        """Torque function of every joint; the fit's own where it serves."""
-        t, old = self.start.transcription, self.fit.motion.transcription
-        same = t.points is old.points and t.character is old.character
-        return self.fit.torques if same else joint_torques(t)
+        """Torque function of every joint."""
+        return joint_torques(self.start.transcription)
 
 
 def requested(fit: Fit, problem: MotionProblem) -> Requested:

@@ -8,22 +8,18 @@ only in which joints' torques are bounded or weighed (docs/design.md says why).
 
 from collections.abc import Sequence
 
-import casadi as ca
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.character import Character
-from ..body.inverse_dynamics import inverse_dynamics
+from ..body.inverse_dynamics import JointTorques, Movement
 from ..body.kinematics import BodyPoint
-from ..body.passive_joints import passive_torques
+from ..body.passive_joints import PassiveTorques
 from ..data.constants import STANDARD_GRAVITY
 from ..data.row_kinds import RowKind
-from ..numerics.batch_function import BatchFunction
 from .rows import ROOT_ANGLES
 from .sampling import Channel, ChannelJacobian, State
 from .transcription import Transcription
-
-ROOT_FORCES = 3  # rows of inverse dynamics before the moments
 
 
 class TorqueFunction:
@@ -31,7 +27,7 @@ class TorqueFunction:
 
     angles: (m,) indices of joint angles, none of the root's. points: where contact forces act.
     of_muscles: without the share that passive tissue gives (body/passive_joints.py), and about
-    orthogonal axes, so that a bound on each bounds the moment (inverse_dynamics.py).
+    orthogonal axes, so that a bound on each bounds the moment (body/inverse_dynamics.py).
     """
 
     kind = RowKind.TORQUE
@@ -44,43 +40,40 @@ class TorqueFunction:
         *,
         of_muscles: bool = False,
     ) -> None:
-        n = character.n_angles
         self.angles = np.asarray(angles, dtype=int)
-        self._n, self._n_points = n, len(points)
-        q, v, a = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("a", n)
-        fall = ca.SX.sym("fall", 3)
-        forces = ca.SX.sym("forces", 3, len(points))
-        weight = character.mass * STANDARD_GRAVITY
-        pushes = weight * forces
-        every = inverse_dynamics(character, points, q, v, a, fall, pushes, orthogonal=of_muscles)
-        torques = every[(self.angles + ROOT_FORCES).tolist()] / weight
-        if of_muscles:
-            passive = passive_torques(character, q, v, orthogonal=True)
-            torques -= passive[self.angles.tolist()] / weight
-        x = ca.vertcat(q, v, a, fall, ca.vec(forces))
-        self._value = BatchFunction("torques", x, [torques])
-        self._both = BatchFunction("torques_by", x, [torques, ca.jacobian(torques, x)])
+        self._character, self._points = character, points
+        self._torques = JointTorques(character, points, self.angles, orthogonal=of_muscles)
+        self._weight = character.mass * STANDARD_GRAVITY
+        self._tissue = PassiveTorques(character, self.angles) if of_muscles else None
 
     def value(self, state: State) -> FloatArray:
         """(U, m) body weights x m."""
-        (torques,) = self._value(self._inputs(state))
-        return torques
+        torques = self._torques.value(self._movement(state))
+        if self._tissue is not None:
+            torques -= self._tissue.value(state.angles(), state.angles(1))
+        return torques / self._weight
 
     def jacobians(self, state: State) -> list[ChannelJacobian]:
         """By angles, angular velocities, accelerations, the centre of mass's, and forces."""
-        n = self._n
-        matrix = np.swapaxes(self._both(self._inputs(state))[1], 1, 2)
+        found = self._torques.derivatives(self._movement(state))
+        by_angles = [found.by_angle, found.by_speed, found.by_acceleration]
+        if self._tissue is not None:
+            tissue = self._tissue.derivatives(state.angles(), state.angles(1))
+            for each, passive in zip(by_angles, tissue, strict=False):
+                each -= passive
         jacobians = [
-            ChannelJacobian(Channel.ANGLES, k, matrix[:, :, k * n : (k + 1) * n]) for k in range(3)
+            ChannelJacobian(Channel.ANGLES, k, each / self._weight)
+            for k, each in enumerate(by_angles)
         ]
-        jacobians.append(ChannelJacobian(Channel.COM, 2, matrix[:, :, 3 * n : 3 * n + 3]))
-        if self._n_points:
-            jacobians.append(ChannelJacobian(Channel.FORCES, 0, matrix[:, :, 3 * n + 3 :]))
+        jacobians.append(ChannelJacobian(Channel.COM, 2, found.by_com_acceleration / self._weight))
+        if self._points:
+            by_force = found.by_force.reshape(*found.by_force.shape[:2], -1)  # of body weights
+            jacobians.append(ChannelJacobian(Channel.FORCES, 0, by_force))
         return jacobians
 
-    def _inputs(self, state: State) -> FloatArray:
-        parts = [state.angles(0), state.angles(1), state.angles(2), state.com(2)]
-        return np.concatenate([*parts, state.forces.reshape(len(parts[0]), -1)], axis=1)
+    def _movement(self, state: State) -> Movement:
+        forces = self._weight * state.forces
+        return Movement(state.pose, state.angles(1), state.angles(2), state.com(2), forces)
 
 
 def joint_torques(transcription: Transcription) -> TorqueFunction:

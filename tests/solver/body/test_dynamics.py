@@ -8,17 +8,16 @@ import mujoco
 import numpy as np
 import pytest
 from hangtime.devtools.checks.mujoco_check import inverse_dynamics, root_wrench
+from hangtime.devtools.peers.newton_euler import inverse_dynamics as newton_euler
+from hangtime.devtools.peers.newton_euler import momentum_rate
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import Body, Character, Joint
 from hangtime.solver.body.dynamics import MomentFunction
-from hangtime.solver.body.inverse_dynamics import (
-    InverseDynamics,
-    moment_components,
-    momentum_rate,
-)
+from hangtime.solver.body.inverse_dynamics import InverseDynamics, JointTorques, Movement
 from hangtime.solver.body.joint_axes import JointAxes
 from hangtime.solver.body.kinematics import BodyPoint, forward_kinematics, point_velocity
+from hangtime.solver.body.passive_joints import moment_components
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.row_kinds import RowKind
@@ -111,6 +110,32 @@ def test_inverse_dynamics_of_random_trees_is_mujocos(seed: int) -> None:
     assert relative(ours.root_moment, root_moment) < 1e-9
     order = hinge_order(character) - 3
     assert relative(ours.torques[:, order], theirs[:, 6:]) < 1e-9
+
+
+@pytest.mark.parametrize("orthogonal", [False, True])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_derivatives_of_torques_are_those_of_expressions(seed: int, orthogonal: bool) -> None:
+    character, random = random_tree(seed), np.random.default_rng(100 + seed)
+    n = character.n_angles
+    points = [BodyPoint(int(random.integers(9)), 0.2 * random.normal(size=3)) for _ in range(3)]
+    angles = random.permutation(np.arange(3, n))[: n // 2]
+    x = ca.SX.sym("x", 3 * n + 12)
+    q, v, a, com, forces = ca.vertsplit(x, [0, n, 2 * n, 3 * n, 3 * n + 3, 3 * n + 12])
+    every = newton_euler(
+        character, points, q, v, a, com, ca.reshape(forces, 3, 3), orthogonal=orthogonal
+    )
+    wanted = every[(angles + 3).tolist()]
+    at = random.normal(size=(INSTANTS, 3 * n + 12))
+    value, by = BatchFunction("torques", x, [wanted, ca.jacobian(wanted, x)])(at)
+    q, v, a, com, forces = np.split(at, [n, 2 * n, 3 * n, 3 * n + 3], axis=1)
+    pose = forward_kinematics(character, q)
+    movement = Movement(pose, v, a, com, forces.reshape(-1, 3, 3))
+    torques = JointTorques(character, points, angles, orthogonal=orthogonal)
+    assert torques.value(movement) == pytest.approx(value, abs=1e-11 * np.abs(value).max())
+    found = torques.derivatives(movement)
+    parts = [found.by_angle, found.by_speed, found.by_acceleration, found.by_com_acceleration]
+    ours = np.concatenate([*parts, found.by_force.reshape(INSTANTS, len(angles), 9)], axis=2)
+    assert ours == pytest.approx(by.swapaxes(1, 2), abs=1e-11 * np.abs(by).max())
 
 
 @pytest.mark.parametrize("seed", SEEDS)
