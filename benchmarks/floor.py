@@ -27,7 +27,7 @@ RIDGE = 100.0  # weight of the rows beside the metric, as in our own steps
 def our_iteration(task: Task) -> FloatArray:
     """The rows, the factor and the step; (K, n_block)."""
     rows = task.rows(task.start)
-    return LinearisedProblem(task.transcription, rows, task.metric).step(rows.value)[0]
+    return LinearisedProblem(task.transcription, rows, task.metric).step(rows.value).d
 
 
 def pinocchio_model(character: Character) -> pinocchio.Model:

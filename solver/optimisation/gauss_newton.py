@@ -36,7 +36,7 @@ def minimise(
         rows = feasible.rows(x)
         gradient, hessian = objective.expand(x)
         linearised = feasible.linearise(rows, hessian, last)
-        d, _ = linearised.step(rows.value, gradient)
+        d = linearised.step(rows.value, gradient).d
         last = linearised.remains
         violation = linearised.violation(rows.value)
         begin = (value, min(1.0, 2.0 * max(length, MIN_STEP_LENGTH)))
@@ -111,5 +111,5 @@ def _corrected(
         if not violation < before:  # diverges, or is not a number any more
             return None
         before = violation
-        x = x + linearised.step(values)[0]
+        x = x + linearised.step(values).d
     return None

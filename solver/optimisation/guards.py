@@ -76,7 +76,7 @@ def in_the_way(feasible: FeasibleSet, metric: BlockBanded, x: FloatArray) -> set
     costs, as a millimetre and a tenth of a degree have no common unit.
     """
     rows = feasible.rows(x)
-    _, multipliers = feasible.linearise(rows, metric).step(rows.value)
+    multipliers = feasible.linearise(rows, metric).step(rows.value).multipliers
     pull = np.abs(multipliers * rows.tolerance) * rows.guards
     owners = feasible.transcription.owners
     hardest = (pull > 0.0) & (pull >= HARD_PULL * pull.max())

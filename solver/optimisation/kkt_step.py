@@ -96,6 +96,16 @@ class _SpanRows:
 
 
 @dataclass(frozen=True)
+class KktStep:
+    """d: (K, n_block) of the unknowns. change: (R,) of the rows' values by it, to first order.
+    multipliers: (R,) of the rows in units of ROW_SCALES."""
+
+    d: FloatArray
+    change: FloatArray
+    multipliers: FloatArray
+
+
+@dataclass(frozen=True)
 class Remains:
     """What a linearised problem leaves to the next one with the same rows.
 
@@ -247,10 +257,8 @@ class LinearisedProblem:
         gradient: FloatArray | None = None,
         multipliers: FloatArray | None = None,
         sweeps: int = MAX_SWEEPS,
-    ) -> tuple[FloatArray, FloatArray]:
-        """Step d (K, n_block) and Lagrange multipliers (R,) of the rows in units of ROW_SCALES.
-
-        Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
+    ) -> KktStep:
+        """Augmented Lagrangian: repeat d = -(W + rho J'J)^-1 (g + J'(y + rho r)) within the bounds,
         y += rho (r + J d), until the linearised equalities hold a thousand times better than
         before, or well within their tolerances. Rows that bounds leave little room settle slowly,
         which Anderson acceleration mends. value: (R,). gradient: g (K, n_block), None for the
@@ -268,7 +276,8 @@ class LinearisedProblem:
         residual = r
         enough = SWEEP_REST * self._scaled(self._tolerance, self._equal)
         enough = np.maximum(enough, SWEEP_REDUCTION * float(np.abs(residual).max()))
-        z, accelerated = self._scaled(value, self._free), Anderson()
+        at, accelerated = self._scaled(value, self._free), Anderson()
+        z = at
         for sweep in range(sweeps):
             lagrangian_gradient = windows.transposed(y + PENALTY * residual, self._blocks)
             if sweep:
@@ -283,10 +292,11 @@ class LinearisedProblem:
                 y = y + PENALTY * residual
                 break
             y = accelerated.next(y, PENALTY * residual)
-        found = np.zeros(len(value))
-        found[self._equal] = y[windows.where]
-        found[self._free] = self._bounded.multipliers
-        return d if self._basis is None else d @ self._basis.T, found
+        found, change = np.zeros(len(value)), np.zeros(len(value))
+        found[self._equal], found[self._free] = y[windows.where], self._bounded.multipliers
+        change[self._equal], change[self._free] = (residual - r)[windows.where], z - at
+        d = d if self._basis is None else d @ self._basis.T
+        return KktStep(d, change * self._scale, found)
 
     def _bound_values(self, d: FloatArray) -> FloatArray:
         """(R_bounds,) product B_x d."""

@@ -36,9 +36,10 @@ def project(
         rows = feasible.rows(x)
         gradient, hessian = objective.expand(x)
         linearised = feasible.linearise(rows, hessian, last)
-        d, multipliers = linearised.step(rows.value, gradient, multipliers)
+        step = linearised.step(rows.value, gradient, multipliers)
+        multipliers = step.multipliers
         merit = _L1Merit.of(feasible, objective, linearised, multipliers)
-        x, length = _backtrack(merit, merit.combined(value, rows.value), x, d)
+        x, length = _backtrack(merit, merit.combined(value, rows.value), x, step.d)
         worst = linearised.worst_owner(rows.value)
         steps.append(Step(stage, linearised.violation(rows.value), length, worst))
         if progress is not None:
@@ -81,7 +82,7 @@ class _L1Merit:
 
     def correction(self, x: FloatArray) -> FloatArray:
         """The shortest step (K, n_block) from x to the rows as they were linearised."""
-        return self.linearised.step(self.feasible.values(x))[0]
+        return self.linearised.step(self.feasible.values(x)).d
 
     def __call__(self, x: FloatArray) -> float:
         return self.combined(self.objective.value(x), self.feasible.values(x))

@@ -211,7 +211,7 @@ class _ChordIterate:
         fresh = slow or self._stale or known
         linearised = self._linearise() if fresh or self._linearised is None else self._linearised
         before, worst = self.violation, linearised.worst_owner(self._value)
-        d, _ = linearised.step(self._value)
+        d = linearised.step(self._value).d
         turn = float(np.abs(d[:, self._feasible.transcription.layout.angles]).max())
         longest = self._max_turn / turn if turn > self._max_turn else 1.0
         trial = _shorten(

@@ -69,7 +69,7 @@ def find_durations(
     if not linearised.violation(value) < MAX_RATIO * before:
         return None
     # By metres alone the least change twirls a neck by 70 degrees at the end of a clip.
-    x = reference + start.priced.step(timed.values(reference))[0]
+    x = reference + start.priced.step(timed.values(reference)).d
     return TimedMotion(timed.feasible.motion(x), problem.stretches(timed.s))
 
 
@@ -85,12 +85,12 @@ def _step(
     gradient: W (x - x0), (K, n_block).
     """
     x, s, value = at
-    still = linearised.step(value, gradient)[0]
+    still = linearised.step(value, gradient).d
     moves = []
     for unit in np.eye(len(s)):
         aside = problem.timed(s + DERIVATIVE_STEP * unit)
         slope = (aside.values(x) - value) / DERIVATIVE_STEP
-        moves.append((linearised.step(value + PROBE * slope, gradient)[0] - still) / PROBE)
+        moves.append((linearised.step(value + PROBE * slope, gradient).d - still) / PROBE)
     pulls = [metric.times(move) for move in moves]
     schur = np.array([[float((pull * move).sum()) for move in moves] for pull in pulls])
     slopes = [

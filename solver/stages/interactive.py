@@ -204,8 +204,8 @@ class Follower:
         stale = False
         for _ in range(MOST_STEPS):
             before = linearised.violation(value)
-            d, _ = linearised.step(value + self._secant.along(way), sweeps=SWEEPS)
-            expected, x = value + linearised.times(d), x + d
+            step = linearised.step(value + self._secant.along(way), sweeps=SWEEPS)
+            expected, x = value + step.change, x + step.d
             value = feasible.values(x)
             after = linearised.violation(value)
             if not after < DIVERGED_VIOLATION:

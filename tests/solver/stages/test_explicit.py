@@ -134,7 +134,7 @@ def test_torques_weighed_in_the_step_change_less() -> None:
         setup = set_up(fit, asked(requests))
         t = setup.start.transcription
         linearised = LinearisedProblem(t, t.rows(setup.start.x, setup.target_places), setup.metric)
-        step, _ = linearised.step(linearised.rows.value)
+        step = linearised.step(linearised.rows.value).d
         moved.append(float((step * fit.torque_metric.times(step)).sum()))
     assert moved[1] < moved[0]
 
