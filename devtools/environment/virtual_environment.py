@@ -97,7 +97,10 @@ def complete(env: VirtualEnvironment, wanted: list[Requirements], python: str) -
         make(env, python)
     for each in pending:
         command = [env.python, "-m", "pip", "install", "--no-input", *each.options]
-        command += ["--disable-pip-version-check", "-r", str(REQUIREMENTS / each.file)]
+        # Modules are compiled as they are loaded: all at once took half of the time, and most of
+        # bpy's and MuJoCo's are never.
+        command += ["--disable-pip-version-check", "--no-compile"]
+        command += ["-r", str(REQUIREMENTS / each.file)]
         run_quietly(f"Installing {each.label}", command, env.log)
         if each.blender:
             libraries.ensure(env.python, env.log)
