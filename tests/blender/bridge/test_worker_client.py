@@ -182,6 +182,7 @@ def test_a_request_that_is_dropped_costs_neither_worker_nor_fit(
     assert "fit" not in {progress.stage for progress in told}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no processes are stopped here")
 def test_a_process_that_was_stopped_once_it_had_answered_is_replaced(
     worker: Worker, jump: Recording, monkeypatch: pytest.MonkeyPatch

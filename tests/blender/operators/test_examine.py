@@ -153,12 +153,14 @@ def test_missing_frames_are_not_put_into_a_strip(lacking) -> None:
 @pytest.mark.parametrize(
     "stored", ['{"missing": [3]}', "骨", "3", '{"mend": ["more"]}', '{"shear": 2.0}']
 )
-def test_repairs_that_cannot_be_read_are_told_until_it_is_examined_anew(
-    examined, stored, capfd
-) -> None:
-    examined.hangtime.repairs = stored
+def test_repairs_that_cannot_be_read_stop_the_analysis(damaged, stored) -> None:
+    damaged.hangtime.repairs = stored
     with pytest.raises(RuntimeError, match="repairs cannot be read"):
         bpy.ops.hangtime.analyze()
+
+
+def test_repairs_that_cannot_be_read_are_told_until_it_is_examined_anew(examined, capfd) -> None:
+    examined.hangtime.repairs = "3"
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
     assert "could not be read and are left out" in capfd.readouterr().out
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}

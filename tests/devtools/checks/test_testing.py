@@ -29,6 +29,7 @@ def test_dies():
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
 def test_a_test_that_hangs_is_named_with_the_stacks_of_its_processes(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
@@ -42,6 +43,7 @@ def test_a_test_that_hangs_is_named_with_the_stacks_of_its_processes(
     assert "test_hangs took more" in capfd.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_suite_that_hangs_tells_its_test(tmp_path: Path) -> None:
     hangs = "import time\ndef test_hangs():\n    time.sleep(600.0)"
     said = lost(tmp_path, hangs, Limits(4.0, 99.0))
