@@ -40,6 +40,8 @@ def put_in(
     end = span_of(shown)[1]
     show(armature, made)
     play_to_end(current_scene(), end, span_of(made)[1])
+    if shown != recorded and not shown.users:  # nothing was made of what was filled before
+        bpy.data.actions.remove(shown)
     settings = settings_of(armature)
     for name in ("first_frame", "last_frame"):
         recorded_at = _recorded(getattr(settings, name), before)
@@ -51,7 +53,7 @@ def _copied(
 ) -> bpy.types.Action:
     made = alone(recorded)
     made.name = NAME.format(recorded.name)
-    recorded.use_fake_user = True
+    recorded.use_fake_user, made.use_fake_user = True, False
     action_settings(made).unfilled = recorded
     if made.use_frame_range:
         made.frame_start = _filled(made.frame_start, missing)

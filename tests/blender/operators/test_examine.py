@@ -133,6 +133,7 @@ def test_missing_frames_are_put_into_a_copy(jump, request) -> None:
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     assert bpy.ops.hangtime.repair(kind="dropped frames") == {"FINISHED"}
     assert lacking.animation_data.action == recorded
+    assert list(bpy.data.actions) == [recorded]
     assert settings.last_frame == 326
     assert applied(settings) == Repairs()
 

@@ -274,3 +274,17 @@ def test_rows_that_contradict_each_other_still_give_a_finite_step(seed: int) -> 
     empty = np.zeros_like(problem.G)
     problem.G = empty  # no step can change anything
     assert np.isfinite(settled(problem, problem.step())).all()
+
+
+def test_of_too_many_rows_the_worst_are_met(monkeypatch) -> None:
+    """The program stays small enough to be solved; the others are left for the next step."""
+    problem = Problem(3, 6, 8)
+    monkeypatch.setattr(bounded_qp, "MOST_ROWS", 2)
+    off = np.abs(violation(problem.z, problem.lower, problem.upper))
+    worst = np.argsort(-off)[:2]
+    assert np.count_nonzero(off) > 2
+    bounded = problem.step()
+    reached = problem.z + problem.times(settled(problem, bounded))
+    left = np.abs(violation(reached, problem.lower, problem.upper))
+    assert left[worst] == pytest.approx(0.0, abs=1e-5)
+    assert set(np.flatnonzero(bounded.multipliers)) <= set(worst)
