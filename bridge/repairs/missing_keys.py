@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ...solver.data.faults import NotPutIn
+from ...solver.data.faults import NotBetweenFrames, NotPutIn
 from ...solver.doctor.local_poses import lagrange
 from ...solver.doctor.repairs import MissingFrames
 from ..accessors import assigned_action, current_scene, play_to_end, source_of
@@ -25,7 +25,8 @@ def put_in(
     before: tuple[MissingFrames, ...],
 ) -> None:
     """Has the armature perform its recording with these frames put in instead of those before;
-    with none, as it was recorded. The range that is chosen keeps to its poses. Raises NotPutIn."""
+    with none, as it was recorded. The range that is chosen keeps to its poses. Raises NotPutIn and
+    NotBetweenFrames, having changed nothing."""
     shown = recorded_action(armature)
     if shown is None:
         return
@@ -36,6 +37,10 @@ def put_in(
     recorded: bpy.types.Action | None = action_settings(shown).unfilled
     if recorded is None:
         recorded, before = shown, ()
+    first, last = span_of(recorded)
+    for gap in missing:
+        if not first <= gap.after < last:
+            raise NotBetweenFrames(gap.after, first, last)
     made = _copied(armature, recorded, missing) if missing else recorded
     end = span_of(shown)[1]
     show(armature, made)
@@ -82,12 +87,12 @@ def _put_into(curve: bpy.types.FCurve, missing: tuple[MissingFrames, ...]) -> No
         around = values[near]
         if "rotation_euler" in curve.data_path:
             around = np.unwrap(around)
-        sound = np.array([at[k] + (gap.count if at[k] > gap.after else 0) for k in near], int)
-        first = _filled(gap.after, missing)
-        for step in range(1, gap.count + 1):
-            used, weights = lagrange(sound, gap.after + step)
+        sound = np.array([_filled(at[k], missing) for k in near], int)
+        first = int(_filled(gap.after, missing)) + 1
+        for frame in range(first, first + gap.count):
+            used, weights = lagrange(sound, frame)
             added.append(float(weights @ around[np.searchsorted(sound, used)]))
-            frames.append(first + step)
+            frames.append(frame)
     for name in ("co", "handle_left", "handle_right"):
         keys[name][:, 0] += np.array([_filled(frame, missing) - frame for frame in at])
     more = fcurves.linear_keys(keys, np.array(frames), np.array(added))

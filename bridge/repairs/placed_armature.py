@@ -22,7 +22,7 @@ MARK = "hangtime_repairs"  # of the empty, whatever the artist calls it
 
 
 def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
-    """Has these repairs count instead of those before. Raises NotPutIn."""
+    """Has these repairs count instead of those before. Raises NotPutIn, NotBetweenFrames."""
     before = applied(settings_of(armature))
     if repairs.missing != before.missing:
         put_in(armature, repairs.missing, before.missing)

@@ -14,8 +14,9 @@ from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
 from hangtime.operators.headless.stages import Stages
+from hangtime.solver.data.faults import NotBetweenFrames
 from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.tests.helpers.clips import begun_at_rest, mocap_path, without_frames
 
 CLIP = "forward_jump_116cm.bvh"
@@ -75,3 +76,18 @@ def test_missing_frames_are_put_in_as_without_blender(tmp_path: Path, capsys) ->
         wanted = right.window(*problem.frames)
         np.testing.assert_array_equal(mended.window(*problem.frames).frames, wanted.frames)
         assert np.abs(mended.window(*problem.frames).heads - wanted.heads).max() < 2e-3
+
+
+def test_frames_after_the_last_one_are_not_put_in_here_either() -> None:
+    repairs = Repairs(missing=(MissingFrames(9999, 4),))
+    with pytest.raises(NotBetweenFrames):
+        load(Clip(mocap_path(CLIP)), MotionProblem(), Stages(StringIO()), repairs)
+
+
+def test_gaps_side_by_side_are_filled_as_without_blender() -> None:
+    """Each is filled by the poses around both."""
+    repairs = Repairs(missing=(MissingFrames(150, 4), MissingFrames(151, 2)))
+    problem = MotionProblem(frames=(100.0, 290.0))
+    plain = read_clip(mocap_path(CLIP), problem, repairs).recording.window(*problem.frames)
+    here = load(Clip(mocap_path(CLIP)), problem, Stages(StringIO()), repairs).subject.recording
+    assert np.abs(here.window(*problem.frames).heads - plain.heads).max() < 2e-3
