@@ -107,6 +107,10 @@ class FollowedDrag(PolledOperator):
         ends = event.type == "LEFTMOUSE" and event.value == self._confirming
         if ends or (event.type in CONFIRM and pressed):
             return self._end()
+        if event.type == "INBETWEEN_MOUSEMOVE":
+            # The worker goes on with where the mouse is, which follows: with the first of these it
+            # would go on with where it was before the last drawing.
+            return {"RUNNING_MODAL"}
         keyed = pressed and self.press(event)
         if keyed or (event.type == "MOUSEMOVE" and self._press.drags(event)):
             self.pull(context, event)
