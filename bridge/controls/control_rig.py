@@ -91,6 +91,8 @@ def found_controls(
     looked = yield from in_slices(at, partial(_looks, posing, parents), showing)
     looks = [look for part in looked for look in part]
     groups = used_groups(posing, [(look.responses, look.effects) for look in looks])
+    if not groups:  # they move something, but nothing that hangs together
+        raise NoControls(bodies)
     return _rig(posing, looks, groups)
 
 

@@ -125,5 +125,5 @@ class _Solved:
 
     @property
     def worst(self) -> float:
-        """Share that is missed of what is wanted and missed most."""
-        return float(np.sqrt(np.linalg.eigvalsh(self.missed)[-1]))
+        """Share that is missed of what is wanted and missed most; of nothing, none."""
+        return float(np.sqrt(np.linalg.eigvalsh(self.missed).max(initial=0.0)))

@@ -19,6 +19,7 @@ from hangtime.bridge.controls.control_rig import (
     found_controls,
 )
 from hangtime.bridge.controls.driven import is_driven
+from hangtime.bridge.controls.needed import Effects, needed
 from hangtime.bridge.controls.refusals import unled
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
@@ -245,3 +246,11 @@ def test_a_constraint_on_a_finger_diverts_nothing(jump: bpy.types.Object) -> Non
     assert written.controls is None
     higher = record(jump, moved.frames).heads[:, columns[0]]
     np.testing.assert_allclose(higher, places, atol=1e-4)
+
+
+def test_of_controls_that_do_nothing_that_hangs_together_none_is_needed() -> None:
+    """Found by the campaign (seed 3, case 5255). One stretches two bones, wherever these are."""
+    wanted = np.eye(12)[:9]
+    apart = np.eye(12)[9:10]
+    assert needed([[0]], [Effects(apart, wanted)]) == []
+    assert needed([[0]], [Effects(wanted[:1], wanted)]) == [0]
