@@ -7,16 +7,14 @@ The step without bounds is known from one banded factor of A = W + rho J'J. Boun
 
 so only the rows that are, or become, violated enter (row generation), and the program is as small
 as their number. With A = L L', columns of L^-1 G' are made by groups of rows that are near in time,
-as far as they reach: rows far apart do not couple, and work grows with the clip and no faster. Of
-the solvers that CasADi ships, DAQP (Arnström 2022) was the fastest (benchmarks/qp_solvers.py).
+as far as they reach: rows far apart do not couple, and work grows with the clip and no faster.
 """
 
 from collections.abc import Callable
 
-import casadi as ca
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
 from ..numerics.block_banded import LocalColumns
 from ..numerics.tied_factor import Factor
 from ..transcription.rows import violation
@@ -34,8 +32,8 @@ class BoundedStep:
     """Bound corrections of steps on one factor of A, by row generation.
 
     columns(rows) gives G' of rows (m,). begins: (R,) block in which each row's column begins.
-    bounds: lower, upper (R,). tolerance: (R,). working: (R,) initial working set. multipliers:
-    (R,), of the last correction.
+    bounds: lower, upper (R,). tolerance: (R,). sides: (R,) initial working set, 1 for rows at their
+    upper bounds, -1 at their lower ones, 0 between. multipliers: (R,), of the last correction.
     """
 
     def __init__(
@@ -45,7 +43,7 @@ class BoundedStep:
         begins: IntArray,
         bounds: tuple[FloatArray, FloatArray],
         tolerance: FloatArray,
-        working: BoolArray,
+        sides: FloatArray,
     ) -> None:
         self._factor, self._columns, self._begins = factor, columns, begins
         self.lower, self.upper = bounds
@@ -54,12 +52,12 @@ class BoundedStep:
         self._rows = np.zeros(0, dtype=int)
         self._halves: list[LocalColumns] = []  # L^-1 G' of these rows, by groups
         self._stiffness = np.zeros((0, 0))  # G A^-1 G' (m, m)
-        self._initial = working
+        self._sides = sides.copy()  # that the next program begins with
 
     @property
-    def working(self) -> BoolArray:
-        """(R,) working set: the rows that are at a bound."""
-        return np.asarray(self.multipliers != 0.0)
+    def sides(self) -> FloatArray:
+        """(R,) working set, as above."""
+        return np.sign(self.multipliers)
 
     def correct(
         self, half: FloatArray, z: FloatArray, times: Callable[[FloatArray], FloatArray]
@@ -69,8 +67,8 @@ class BoundedStep:
 
         half: L^-1 b (K, n). times: G d for (K, n).
         """
-        if not len(self._rows) and self._initial.any():
-            self._add(np.flatnonzero(self._initial))
+        if not len(self._rows) and self._sides.any():
+            self._add(np.flatnonzero(self._sides))
         for _ in range(1 + MAX_ROUNDS):
             left = half
             if len(self._rows):
@@ -82,12 +80,14 @@ class BoundedStep:
                 left = half - self._pull(u)
             d = self._factor.backward(left)
             reached = z + times(d)
-            off = np.abs(violation(reached, self.lower, self.upper)) / self._tolerance
+            beyond = violation(reached, self.lower, self.upper)
+            off = np.abs(beyond) / self._tolerance
             off[self._rows] = 0.0
             worst = np.argsort(-off, kind="stable")[: MOST_ROWS - len(self._rows)]
             more = np.sort(worst[off[worst] > 1.0])
             if not len(more):
                 break
+            self._sides[more] = np.sign(beyond[more])
             self._add(more)
         return d, reached
 
@@ -116,44 +116,14 @@ class BoundedStep:
         return np.concatenate([each.transposed_times(half) for each in self._halves])
 
     def _solve(self, z: FloatArray) -> FloatArray | None:
-        """The program's multipliers (m,), of its rows' values z (m,); None where no solver finds
-        them."""
+        """The program's multipliers (m,), of its rows' values z (m,); None where rounding keeps
+        them from being found."""
         rows = self._rows
         # The rows give a little (SOFT); their last multipliers make up for it.
         base = z + self._soft * self.multipliers[rows]
         lower, upper = self.lower[rows] - base, self.upper[rows] - base
         stiffness = self._stiffness + np.diag(self._soft)
-        u = multipliers_by_active_set(stiffness, lower, upper, self.multipliers[rows])
-        if u is None:
-            u = solve_dual_qp(np.linalg.cholesky(stiffness), lower, upper)
-            if not np.isfinite(u).all():
-                return None
-        self.multipliers[rows] = u
+        u = multipliers_by_active_set(stiffness, lower, upper, self._sides[rows])
+        if u is not None:
+            self.multipliers[rows], self._sides[rows] = u, np.sign(u)
         return u
-
-
-def solve_dual_qp(root: FloatArray, lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Multipliers (m,) of min 1/2 |w|^2 subject to lower <= root w <= upper, root (m, m).
-
-    NaN where DAQP does not find them, as after its limit of iterations. Raises LinAlgError where
-    rows or bounds are not finite.
-    """
-    m = len(root)
-    # DAQP's tolerances are absolute: rows of length 1, and a violation of 1 to begin with.
-    row = 1.0 / np.linalg.norm(root, axis=1)
-    lower, upper = row * lower, row * upper
-    size = max(float(lower.max()), float(-upper.min()))
-    if not (np.isfinite(size) and np.isfinite(root).all()):  # DAQP has an error of its own for it
-        raise np.linalg.LinAlgError("rows or bounds are not finite")
-    if size <= 0.0:
-        return np.zeros(m)
-    solver = ca.conic(
-        "step",
-        "daqp",
-        {"h": ca.Sparsity.diag(m), "a": ca.Sparsity.dense(m, m)},
-        {"error_on_fail": False},
-    )
-    found = solver(h=ca.DM.eye(m), a=row[:, None] * root, lba=lower / size, uba=upper / size)
-    if not solver.stats()["success"]:
-        return np.full(m, np.nan)
-    return np.asarray(np.asarray(found["lam_a"]).ravel() * row * size)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ..arrays import FloatArray, IntArray
 from ..data.row_kinds import RowKind
 from ..numerics.block_banded import BlockBanded, CholeskyFactor, LocalColumns
 from ..numerics.splines import ORDER
@@ -109,11 +109,11 @@ class KktStep:
 class Remains:
     """What a linearised problem leaves to the next one with the same rows.
 
-    working: (R,) working set of its last step, the rows that were at their bounds. matrix: storage;
+    sides: (R,) working set of its last step (bounded_qp.py). matrix: storage;
     once the next one has been made in it, the problem itself is no more.
     """
 
-    working: BoolArray
+    sides: FloatArray
     matrix: BlockBanded
 
 
@@ -146,7 +146,7 @@ class LinearisedProblem:
             ties = transcription.seam.columns(self._blocks)
             ties = ties if basis is None else np.einsum("knr,nb->kbr", ties, basis)
             self._factor = TiedFactor.of(self._factor, ties)
-        self._bound(transcription, rows, None if last is None else last.working)
+        self._bound(transcription, rows, None if last is None else last.sides)
 
     def _system(self, into: BlockBanded | None = None) -> BlockBanded:
         """W + rho J'J."""
@@ -168,8 +168,8 @@ class LinearisedProblem:
         """The same with other guard rows, which are the last: they need no new factor."""
         twin = copy(self)
         kept = ~self.rows.guards
-        working = np.concatenate([self._working[kept], np.zeros(len(guards.value), dtype=bool)])
-        twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), working)
+        sides = np.concatenate([self._sides[kept], np.zeros(len(guards.value))])
+        twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), sides)
         return twin
 
     def renewed(self) -> "LinearisedProblem":
@@ -179,7 +179,7 @@ class LinearisedProblem:
         twin._bound(self._transcription, self.rows, None)
         return twin
 
-    def _bound(self, transcription: Transcription, rows: Rows, working: BoolArray | None) -> None:
+    def _bound(self, transcription: Transcription, rows: Rows, sides: FloatArray | None) -> None:
         """Sets the rows, all equalities being those of the factor, and the bounds' program."""
         self._transcription, self.rows = transcription, rows
         self._scale, self._tolerance = by_kind(rows.kind, ROW_SCALES), rows.tolerance
@@ -187,7 +187,7 @@ class LinearisedProblem:
         first = transcription.basis.first_coefficient
         bounds = _SpanRows.of(rows.some(self._free), self._scale[self._free], first, self._basis)
         self._bounds = bounds
-        was = np.zeros(len(self._free), bool) if working is None else working[self._free]
+        was = np.zeros(len(self._free)) if sides is None else sides[self._free]
         self._bounded = BoundedStep(
             self._factor,
             bounds.columns,
@@ -200,14 +200,14 @@ class LinearisedProblem:
     @property
     def remains(self) -> Remains:
         """For the next problem with the same rows."""
-        return Remains(self._working, self._matrix)
+        return Remains(self._sides, self._matrix)
 
     @property
-    def _working(self) -> BoolArray:
-        """(R,) working set: the rows that the last step has at a bound."""
-        working = np.zeros(len(self.rows.value), dtype=bool)
-        working[self._free] = self._bounded.working
-        return working
+    def _sides(self) -> FloatArray:
+        """(R,) working set of the last step."""
+        sides = np.zeros(len(self.rows.value))
+        sides[self._free] = self._bounded.sides
+        return sides
 
     def times(self, d: FloatArray) -> FloatArray:
         """(R,) first-order change of the rows' values by a change d (K, n_block) of the unknowns,
