@@ -35,7 +35,8 @@ from .performance import Performance, contact_points, find_contacts, perform, sn
 from .take import take_of
 
 MIN_CLIP_DURATION = 0.3  # s
-MAX_FRAME_TIME = 1.0  # s; Blender's slowest rate
+ROUNDING = 1e-6  # of a frame's time
+MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
 
 
 @dataclass(frozen=True)
@@ -136,18 +137,19 @@ def build_figure(recording: Recording, problem: MotionProblem) -> tuple[Recordin
     seconds = float(recording.times[-1]) if len(recording.times) else 0.0
     if seconds < MIN_CLIP_DURATION:
         raise ClipTooShort(seconds, MIN_CLIP_DURATION)
-    require_dense(recording)
+    require_dense(recording, MAX_FRAME_TIME)
     character = build_character(
         recording, mass=problem.mass, table=problem.mass_table, chosen=problem.bones
     )
     return recording, character
 
 
-def require_dense(recording: Recording) -> None:
-    """Work grows with a clip's seconds, and frames so rare tell nothing. Raises FramesFarApart."""
+def require_dense(recording: Recording, longest: float) -> None:
+    """Work grows with a clip's seconds, and frames so rare tell nothing. longest: s from one frame
+    to the next. Raises FramesFarApart."""
     apart = 1.0 / recording.rate
-    if apart > MAX_FRAME_TIME:
-        raise FramesFarApart(apart, MAX_FRAME_TIME)
+    if apart > longest * (1.0 + ROUNDING):
+        raise FramesFarApart(apart, longest)
 
 
 def _frame(recording: Recording, time: float) -> float:

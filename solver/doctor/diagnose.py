@@ -25,6 +25,7 @@ from .upright import find_up
 
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
 FEWEST_FRAMES = 5  # which have a fourth difference
+SLOWEST = 1.0  # s from frame to frame, Blender's slowest rate: a wrong one is told, and its remedy
 USUAL_MASS_BY_SQUARE = 22.0  # kg/m²
 
 
@@ -120,7 +121,7 @@ def _require_length(recording: Recording) -> None:
     """What is shorter tells nothing. Raises ClipTooShort, FramesFarApart."""
     if len(recording.frames) < FEWEST_FRAMES:
         raise ClipTooShort(float(recording.times[-1]), MIN_CLIP_DURATION)
-    require_dense(recording)
+    require_dense(recording, SLOWEST)
 
 
 def _find_bind_pose(recording: Recording) -> Finding | None:

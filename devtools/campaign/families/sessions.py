@@ -168,10 +168,10 @@ def _mode(case: HostileCase) -> None:
     armature = _armature()
     if armature is not None:
         layer = present(bpy.context.view_layer)
+        mode = case.pick(MODES)
         if armature.name in layer.objects:  # it may be in another scene
             layer.objects.active = armature
-        mode = case.pick(MODES)
-        _tried(lambda: OPERATORS.object.mode_set(mode=mode))
+            _tried(lambda: OPERATORS.object.mode_set(mode=mode))
 
 
 def _other_scene(case: HostileCase) -> None:

@@ -314,6 +314,16 @@ def test_frames_of_hours_are_refused_in_words() -> None:
         analyse(slow, MotionProblem())
 
 
+def test_frames_too_rare_for_a_hop_are_no_motion_but_have_a_diagnosis() -> None:
+    """Found by the campaign (seed 4, case 6975): at one frame a second a hop lasts half a minute,
+    of which a fit took four."""
+    clip = jump()
+    rare = replace(clip, times=0.2 * clip.rate * clip.times)
+    assert diagnose(rare).findings
+    with pytest.raises(FramesFarApart):
+        analyse(rare, MotionProblem())
+
+
 def test_lengths_beyond_all_numbers_are_said_not_to_be_computable() -> None:
     """As one damaged byte of a file may make them."""
     clip = jump().part(slice(0, 20))
