@@ -16,9 +16,10 @@ def interpolate(times: FloatArray, samples: FloatArray, at: FloatArray) -> Float
     first = np.clip(np.searchsorted(times, at, side="right") - 2, 0, count - 4)
     index = first[:, None] + np.arange(4)
     t = times[index]
-    weights = np.ones_like(t)
-    for i in range(4):
-        for j in range(4):
-            if i != j:
-                weights[:, i] *= (at - t[:, j]) / (t[:, i] - t[:, j])
+    apart = t[:, :, None] - t[:, None, :]
+    apart[:, range(4), range(4)] = 1.0
+    off = (at[:, None] - t).T
+    first, last = off[0] * off[1], off[2] * off[3]
+    others = np.stack([off[1] * last, off[0] * last, first * off[3], first * off[2]], axis=1)
+    weights = others / apart.prod(axis=2)
     return np.asarray(np.einsum("nk,nk...->n...", weights, samples[index]))

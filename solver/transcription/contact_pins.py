@@ -182,21 +182,11 @@ class Pins:
         self, basis: SplineBasis, layout: Layout, contacts: Sequence[PointContact]
     ) -> None:
         self.layout = layout
-        slack = 1e-9
-        pinned = np.array(
-            [
-                (basis.breaks >= c.contact.start - slack) & (basis.breaks <= c.contact.end + slack)
-                for c in contacts
-            ],
-            dtype=bool,
-        ).reshape(len(contacts), len(basis.breaks))
-        ends = np.array(
-            [
-                np.isclose(basis.breaks, c.contact.start) | np.isclose(basis.breaks, c.contact.end)
-                for c in contacts
-            ],
-            dtype=bool,
-        ).reshape(pinned.shape)
+        slack, breaks = 1e-9, basis.breaks
+        span = np.array([(c.contact.start, c.contact.end) for c in contacts]).reshape(-1, 2)
+        start, end = span[:, :1], span[:, 1:]
+        pinned = (breaks >= start - slack) & (breaks <= end + slack)
+        ends = np.isclose(breaks, start) | np.isclose(breaks, end)
         used = np.flatnonzero(pinned.any(axis=0))
         self.times = basis.breaks[used]
         self.spans = basis.spans(self.times)
