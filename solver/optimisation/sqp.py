@@ -32,6 +32,7 @@ MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 STALL_WINDOW = 6  # steps in which the violation has to halve
 NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
+RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
 GUARDS_JOIN = 1e2  # times the tolerances; from further off steps that keep guards may lead astray
 
 
@@ -157,11 +158,14 @@ def restore(
     """Feasibility restoration: minimum-norm steps until all rows hold (thesis 4.4).
 
     metric: W, fixed. x: (K, n_block). A line search on the summed squared violation guards the
-    steps (thesis eq. 4.6). While steps gain an order of magnitude, the next one uses the same
-    Jacobian and factor, which costs a third of a new one (chord steps). enough: the violation at
-    which it ends, of a motion that other steps go on from. max_turn: rad, of a joint in one step.
-    wider: asked where the rows nearly hold, and where they hold, for a set with more guard rows to
-    go on in, or the same; with more rows the next step has a new Jacobian.
+    steps (thesis eq. 4.6). Near the end a whole step is taken though it raises that, for Newton's
+    own steps end where shortened ones creep; if the one after it does not make up for it, both are
+    taken back (the watchdog technique of Chamberlain, Powell, Lemarechal and Pedersen 1982). While
+    steps gain an order of magnitude, the next one uses the same Jacobian and factor, which costs a
+    third of a new one (chord steps). enough: the violation at which it ends, of a motion that other
+    steps go on from. max_turn: rad, of a joint in one step. wider: asked where the rows nearly
+    hold, and where they hold, for a set with more guard rows to go on in, or the same; with more
+    rows the next step has a new Jacobian.
     """
     iterate, near = _ChordIterate(feasible, metric, x, max_turn), GUARDS_JOIN
     steps: list[Step] = []
@@ -175,6 +179,7 @@ def restore(
             status = Status.SOLVED
             break
         if len(steps) >= max_steps:
+            iterate.take_back()
             break
         step = iterate.advance(stage)
         if step is None:
@@ -202,10 +207,13 @@ class _ChordIterate:
         self._linearised: LinearisedProblem | None = None
         self._before = np.inf  # violation before the last step
         self._stale = self._chord = False
+        self._watched: _Watched | None = None
+        self._watching = True
         self._guards = int(rows.guards.sum())  # which are the last
 
     def advance(self, stage: str) -> Step | None:
-        """Takes a step; None where a chord step was shortened, so that a new Jacobian is due."""
+        """Takes a step; None where a chord step was shortened, so that a new Jacobian is due, or
+        where steps were taken back."""
         slow = self._linearised is None or not self._gains()
         known = self._rows is not None and not self._nearly_there()
         fresh = slow or self._stale or known
@@ -214,16 +222,40 @@ class _ChordIterate:
         d = linearised.step(self._value).d
         turn = float(np.abs(d[:, self._feasible.transcription.layout.angles]).max())
         longest = self._max_turn / turn if turn > self._max_turn else 1.0
+        watched = fresh and longest == 1.0 and self._watching and self._watched is None
+        start = _Watched(self.x, self._value, before, self._before)
         trial = _shorten(
-            self._feasible, linearised, self.x, d, self._value, longest=longest, whole=slow
+            self._feasible,
+            linearised,
+            self.x,
+            d,
+            self._value,
+            longest=longest,
+            known=slow,
+            watched=watched,
         )
         self.x, self._value, self._rows = trial.x, trial.value, trial.rows
         self.violation = linearised.violation(trial.value)
+        if self._watched is not None:
+            if not self.violation < RECOVERED * self._watched.violation:
+                self.take_back()
+                return None
+            self._watched = None
+        elif trial.raises:
+            self._watched = start
         self._stale = trial.length < 1.0 and not fresh
         if self._stale:
             return None
         self._before, self._chord = before, not fresh
         return Step(stage, before, trial.length, worst)
+
+    def take_back(self) -> None:
+        """Goes back to before a watched step, if the last was one; no more are watched."""
+        if self._watched is None:
+            return
+        back, self._watched, self._watching = self._watched, None, False
+        self.x, self._value, self.violation = back.x, back.value, back.violation
+        self._before, self._rows, self._stale = back.before, None, True
 
     def _gains(self) -> bool:
         """Whether the last step gained so much that the next may keep its Jacobian: for many more,
@@ -251,6 +283,7 @@ class _ChordIterate:
         self._value = np.concatenate([self._value[kept], guards.value])
         joined = worst_violation(guards)
         self._guards, self._stale = len(guards.value), joined > MAX_CHORD_GUARDED
+        self._watched = None  # these rows are others
         self.violation, self._before = max(self.violation, joined), np.inf
 
     def _linearise(self) -> LinearisedProblem:
@@ -269,13 +302,26 @@ def _stagnant(steps: list[Step]) -> bool:
 
 
 @dataclass(frozen=True)
+class _Watched:
+    """Where a step that raises the violation began: unknowns, the rows' values, their violation,
+    and that before the step that led there."""
+
+    x: FloatArray
+    value: FloatArray
+    violation: float
+    before: float
+
+
+@dataclass(frozen=True)
 class _Trial:
-    """Trial point: unknowns, the rows' values, step length, and the rows if they are known."""
+    """Trial point: unknowns, the rows' values, step length, and the rows if they are known.
+    raises: whether it is no better than where it began."""
 
     x: FloatArray
     value: FloatArray
     length: float
     rows: Rows | None
+    raises: bool = False
 
 
 def _shorten(
@@ -286,23 +332,31 @@ def _shorten(
     value: FloatArray,
     *,
     longest: float,
-    whole: bool,
+    known: bool,
+    watched: bool,
 ) -> _Trial:
     """Backtracking line search on the summed squared violation; length 0 if nothing lowers it.
 
     Near the end, where what is left of different rows has different units, lowering the worst
-    violation counts as well. longest: the first length. whole: whether the next step will want the
-    Jacobian there, so that the longest step is tried with it.
+    violation counts as well. longest: the first length. known: whether the next step will want the
+    Jacobian there, so that the longest step is tried with it. watched: whether a whole step near
+    the end may lower nothing.
     """
     before, worst = linearised.merit(value), linearised.violation(value)
     length = longest
     while length > MIN_RESTORATION_LENGTH:
         trial = x + length * d
-        rows = feasible.rows(trial) if whole and length == longest else None
+        rows = feasible.rows(trial) if known and length == longest else None
         left = feasible.values(trial) if rows is None else rows.value
         enough = 1.0 - 0.1 * length
         near = worst < NEARLY_FEASIBLE and linearised.violation(left) < enough * worst
         if near or linearised.merit(left) < enough * before:
             return _Trial(trial, left, length, rows)
+        if (
+            watched
+            and length == longest
+            and max(worst, linearised.violation(left)) < NEARLY_FEASIBLE
+        ):
+            return _Trial(trial, left, length, rows, raises=True)
         length *= 0.5
     return _Trial(x, value, 0.0, None)

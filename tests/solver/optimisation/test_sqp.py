@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.status import Status
-from hangtime.solver.optimisation.sqp import restore
+from hangtime.solver.optimisation.sqp import NEARLY_FEASIBLE, restore
 from hangtime.solver.stages.setup import set_up
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 
@@ -44,3 +44,18 @@ def test_no_step_turns_a_joint_further_than_it_may() -> None:
     )
     turns = [float(np.abs(b - a)[:, angles].max()) for a, b in pairwise(ways)]
     assert max(turns) == pytest.approx(0.3)
+
+
+def test_a_step_that_raises_the_violation_is_taken_back_where_none_may_follow() -> None:
+    """Near the end one may, if the next makes up for it: far from any motion some do."""
+    setup = set_up(fitted_hop(), MotionProblem())
+    feasible = setup.feasible_set(setup.start.transcription)
+    x, angles = setup.start.x.copy(), feasible.transcription.layout.angles
+    x[:, angles] += 0.1 * np.random.default_rng(0).normal(size=x[:, angles].shape)
+    off = [step.violation for step in restore(feasible, setup.metric, x, stage="test").steps]
+    raised = [i for i, (a, b) in enumerate(pairwise(off)) if b > a and a < NEARLY_FEASIBLE]
+    assert raised
+    for i in raised:
+        found = restore(feasible, setup.metric, x, stage="test", max_steps=i + 1)
+        assert found.violation == pytest.approx(off[i])
+        assert feasible.violation(found.x) == pytest.approx(off[i])
