@@ -7,12 +7,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import bpy
 import hangtime
 import numpy as np
 
-from ....bridge.accessors import current_action, current_scene, present, source_of
+from ....bridge.accessors import attached, current_action, current_scene, present, source_of
 from ....bridge.action_slots import all_curves
 from ....bridge.files.import_clip import import_clip
 from ....bridge.properties.settings import settings_of
@@ -47,10 +48,16 @@ def recorded_file(clip: Path, first: int, last: int) -> bpy.types.Object:
 
 
 def marked() -> dict[str, bytes]:
-    """The keys of the marked actions that are there, by their marks; results bear their
-    recording's."""
-    own = [a for a in bpy.data.actions if a.get(MARK) and source_of(a) is None]
+    """The keys of the marked actions that are there, by their marks; what was made from them bears
+    their marks too, even once they are deleted."""
+    own = [a for a in bpy.data.actions if a.get(MARK) and not _made(a)]
     return {str(a[MARK]): _keys(a) for a in own}
+
+
+def _made(action: bpy.types.Action) -> bool:
+    """Whether it is a result, or a recording with frames put in."""
+    kept: Any = attached(action)
+    return bool(kept.own_key) or kept.unfilled is not None or source_of(action) is not None
 
 
 def _keys(action: bpy.types.Action) -> bytes:
