@@ -179,7 +179,6 @@ def restore(
             status = Status.SOLVED
             break
         if len(steps) >= max_steps:
-            iterate.take_back()
             break
         step = iterate.advance(stage)
         if step is None:
@@ -190,6 +189,8 @@ def restore(
         if iterate.violation > enough and (step.length == 0.0 or _stagnant(steps)):
             status = Status.STALLED
             break
+    if status is not Status.SOLVED:
+        iterate.take_back()
     return feasible.outcome(iterate.x, status, steps, iterate.violation)
 
 
@@ -231,7 +232,7 @@ class _ChordIterate:
             d,
             self._value,
             longest=longest,
-            known=slow,
+            with_jacobian=slow,
             watched=watched,
         )
         self.x, self._value, self._rows = trial.x, trial.value, trial.rows
@@ -332,21 +333,21 @@ def _shorten(
     value: FloatArray,
     *,
     longest: float,
-    known: bool,
+    with_jacobian: bool,
     watched: bool,
 ) -> _Trial:
     """Backtracking line search on the summed squared violation; length 0 if nothing lowers it.
 
     Near the end, where what is left of different rows has different units, lowering the worst
-    violation counts as well. longest: the first length. known: whether the next step will want the
-    Jacobian there, so that the longest step is tried with it. watched: whether a whole step near
+    violation counts as well. longest: the first length. with_jacobian: whether the next step will
+    want it there, so that the longest step is tried with it. watched: whether a whole step near
     the end may lower nothing.
     """
     before, worst = linearised.merit(value), linearised.violation(value)
     length = longest
     while length > MIN_RESTORATION_LENGTH:
         trial = x + length * d
-        rows = feasible.rows(trial) if known and length == longest else None
+        rows = feasible.rows(trial) if with_jacobian and length == longest else None
         left = feasible.values(trial) if rows is None else rows.value
         enough = 1.0 - 0.1 * length
         near = worst < NEARLY_FEASIBLE and linearised.violation(left) < enough * worst
