@@ -73,7 +73,8 @@ class Outcome:
 
 
 Progress = Callable[[Step, Motion], None]
-"""Callback after each step, with the motion that it led to; what it raises ends the solve."""
+"""Callback after each step, with the motion that stays if it is the last; what it raises ends the
+solve."""
 
 
 class Stopped(Exception):
@@ -185,7 +186,7 @@ def restore(
             continue
         steps.append(step)
         if progress is not None:
-            progress(step, feasible.motion(iterate.x))
+            progress(step, feasible.motion(iterate.kept))
         if iterate.violation > enough and (step.length == 0.0 or _stagnant(steps)):
             status = Status.STALLED
             break
@@ -249,6 +250,11 @@ class _ChordIterate:
             return None
         self._before, self._chord = before, not fresh
         return Step(stage, before, trial.length, worst)
+
+    @property
+    def kept(self) -> FloatArray:
+        """(K, n_block) unknowns that stay if no step follows."""
+        return self.x if self._watched is None else self._watched.x
 
     def take_back(self) -> None:
         """Goes back to before a watched step, if the last was one; no more are watched."""

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.status import Status
 from hangtime.solver.optimisation.sqp import NEARLY_FEASIBLE, restore
@@ -52,10 +53,15 @@ def test_a_step_that_raises_the_violation_is_taken_back_where_none_may_follow() 
     feasible = setup.feasible_set(setup.start.transcription)
     x, angles = setup.start.x.copy(), feasible.transcription.layout.angles
     x[:, angles] += 0.1 * np.random.default_rng(0).normal(size=x[:, angles].shape)
-    off = [step.violation for step in restore(feasible, setup.metric, x, stage="test").steps]
+    told: list[FloatArray] = []
+    whole = restore(
+        feasible, setup.metric, x, stage="test", progress=lambda _, motion: told.append(motion.x)
+    )
+    off = [step.violation for step in whole.steps]
     raised = [i for i, (a, b) in enumerate(pairwise(off)) if b > a and a < NEARLY_FEASIBLE]
     assert raised
     for i in raised:
         found = restore(feasible, setup.metric, x, stage="test", max_steps=i + 1)
         assert found.violation == pytest.approx(off[i])
         assert feasible.violation(found.x) == pytest.approx(off[i])
+        assert np.array_equal(told[i], found.x)  # where a solve that is stopped then ends
