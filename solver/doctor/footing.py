@@ -17,7 +17,7 @@ LOW = 0.03  # m above the floor: a foot that stands
 SLOW = 0.15  # m/s, up or down
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
-ALIKE = 0.5  # of the drift, by which the half that agree best differ from it
+ALIKE = 0.75  # of the drift, by which half of all speeds differ from it at most; noise leaves more
 LEAST_STANCE = 0.3  # s
 FLICKER_GAP = 0.12  # s; a foot cannot leave its place and come back in less
 FLICKER_PLACE = 0.03  # m
@@ -59,7 +59,7 @@ def _sliding(performance: Performance) -> Finding | None:
         nearest = np.argsort(apart, kind="stable")[: (len(speeds) + 1) // 2]
         middle = np.median(speeds[nearest], axis=0)
     speed = float(np.linalg.norm(middle))
-    differ = float(np.median(np.linalg.norm(speeds[nearest] - middle, axis=1)))
+    differ = float(np.median(np.linalg.norm(speeds - middle, axis=1)))
     if speed < DRIFT or differ > ALIKE * speed:
         return None
     x, y = map(float, middle)

@@ -217,6 +217,15 @@ def test_height_and_drift_are_told_and_taken_out(damage: Damage, metres: float) 
     assert apart(repaired(damaged.recording, found.remedy), damaged.original) < metres
 
 
+@pytest.mark.parametrize("seed", [4, 5])
+def test_noise_of_a_runs_short_stances_is_no_drift(seed: int) -> None:
+    """Half of a dozen frames may slide alike by chance; its remedy moved the body by 0.7 m."""
+    damaged = noisy(6.0, 2.0).do(load_recording("run_3.bvh"), np.random.default_rng(100 + seed))
+    kinds = [finding.kind for finding in diagnose(damaged.recording).findings]
+    assert FindingKind.NOISE in kinds
+    assert FindingKind.SLIDING not in kinds
+
+
 def test_the_rest_pose_is_left_out_before_all_else() -> None:
     damaged = begun_at_rest(3).of(jump())
     diagnosis = diagnose(damaged.recording)
