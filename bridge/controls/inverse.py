@@ -3,6 +3,7 @@ the rig does, measured by trying, so that whatever lies between controls and bod
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,10 @@ SLOW = 0.25  # share of the error that a step may leave before the rig is tried 
 DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1.0
 LESS, MORE = 5.0, 6.0  # by which damping goes down after a gain, and up after none
 LONGEST, MOST = 0.5, 0.1  # rad of one step, and change of size
-LOST = 0.005  # m of error at which a frame is solved from other starts as well
+# m of error above which a frame is solved from other starts as well: above the first too, where it
+# is as many times what the frame before was left with, for what a rig cannot do it cannot for long.
+SUSPECT, LOST = 0.002, 0.005
+MORE_LEFT = 1.5
 # m of error up to which what was tried before is good enough to end by: it is off by the share by
 # which the rig answers otherwise here, some hundredths, of an error that is small itself.
 SLIGHT = 0.002
@@ -59,6 +63,12 @@ class _Look:
     def size(self) -> float:
         """Of the error, m."""
         return float(np.linalg.norm(self.error))
+
+    @property
+    def by_body(self) -> FloatArray:
+        """(2, B) m, of the error: by how much heads and turns are off, these times LEVER."""
+        lacks = self.error[: -len(self.bases)].reshape(2, -1, 3)
+        return np.asarray(np.linalg.norm(lacks, axis=2))
 
 
 def _offset(animated: FloatArray, offsets: FloatArray) -> FloatArray:
@@ -97,12 +107,13 @@ class Inverse:
         self._change = np.zeros_like(self._offsets)  # of the offsets at the last frame
         self._influences = Influences(posing.armature)
         self._acted: BoolArray | None = None
+        self._met: Posed | None = None  # at the last frame that was met
+        self._left = 0.0  # m of error, at the last frame
         self.tries = 0
 
     def solve(self, t: int) -> Inverted:
         """Solve the frame of index t: from what the one before needed, or from that changed once
-        more as it was changed there, whichever is nearer; where that leads nowhere, from the take,
-        or from controls snapped to where their bodies should be."""
+        more as it was changed there, whichever is nearer; where that leads nowhere, from others."""
         self._posing.go_to(float(self._targets.frames[t]))
         animated = self._posing.bases()
         self._try_where_switched(animated)
@@ -110,53 +121,75 @@ class Inverse:
         looks = [self._look(animated, start, t) for start in (self._offsets, ahead)]
         nearer = looks[1].size < looks[0].size
         offsets, best = self._solved(animated, ahead if nearer else self._offsets, t)
-        for start in (self._taken, self._snapped):
-            if best.size > LOST:
-                other = self._solved(animated, start(animated, t), t)
-                if other[1].size < best.size:
-                    offsets, best = other
-        self._change = _difference(self._offsets, offsets) if best.size < LOST else 0.0 * offsets
+        enough = min(max(SUSPECT, MORE_LEFT * self._left), LOST)
+        for start in self._other_starts(animated, offsets, best, t):
+            if best.size <= enough:
+                break
+            other = self._solved(animated, start, t)
+            if other[1].size < best.size:
+                offsets, best = other
+        met = best.size < LOST
+        self._change = _difference(self._offsets, offsets) if met else np.zeros_like(offsets)
+        self._met, self._left = best.posed if met else self._met, best.size
         self._offsets = offsets
-        lacks = best.error[: -len(offsets)].reshape(2, -1, 3)
-        return Inverted(
-            best.bases,
-            np.linalg.norm(lacks[0], axis=1),
-            np.linalg.norm(lacks[1], axis=1) / LEVER,
-        )
+        off, turned = best.by_body
+        return Inverted(best.bases, off, turned / LEVER)
 
-    def _taken(self, animated: FloatArray, _t: int) -> FloatArray:
-        return np.zeros((len(animated), 7))
+    def _other_starts(
+        self, animated: FloatArray, offsets: FloatArray, found: _Look, t: int
+    ) -> Iterator[FloatArray]:
+        """Offsets to begin with where those (C, 7) that were found miss: with the controls that
+        move what is off beside their bodies, as at the last frame that was met; with all controls
+        beside their bodies, as in the take, and as then; and none."""
+        off, take = found.by_body.max(axis=0) > SUSPECT, np.zeros_like(offsets)
+        taken, every = self._look(animated, take, t).posed, np.ones_like(off)
+        met = self._met or taken
+        yield self._beside(animated, offsets, t, off, met)
+        yield self._beside(animated, self._offsets, t, every, taken)
+        if found.size > LOST:
+            yield self._beside(animated, self._offsets, t, every, met)
+            yield take
 
-    def _snapped(self, animated: FloatArray, t: int) -> FloatArray:
-        """Offsets that put each control which can be shifted where it is, in the take, beside the
-        body that it leads: a straight limb says of no small change which way its pole is to go."""
-        wanted, offsets = self._targets, self._offsets.copy()
-        take, dofs = self._look(animated, self._taken(animated, t), t).posed, self._responses.dofs
+    def _beside(
+        self, animated: FloatArray, offsets: FloatArray, t: int, bodies: BoolArray, seen: Posed
+    ) -> FloatArray:
+        """Offsets with each control which can be shifted, and moves one of the bodies (B,), beside
+        the body that it leads, as it is seen there: a straight limb says of no small change which
+        way its pole is to go, nor, where its end is out of reach, that this is to come nearer."""
+        wanted, offsets = self._targets, offsets.copy()
+        dofs = self._responses.dofs
         for control in sorted({dof.control for dof in dofs if dof.shifts}):
             body = self._led(control)
-            if body is None:
+            if body is None or not (self._moved(control) & bodies).any():
                 continue
             posed = self._look(animated, offsets, t).posed
             frame = posed.frames[control]
-            turn = wanted.rotations[t, body] @ proper(take.bodies[body, :3, :3]).T
-            arm = take.controls[control, :3, 3] - take.bodies[body, :3, 3]
+            turn = wanted.rotations[t, body] @ proper(seen.bodies[body, :3, :3]).T
+            arm = seen.controls[control, :3, 3] - seen.bodies[body, :3, 3]
             there = np.append(wanted.heads[t, body] + turn @ arm, 1.0)
             place = np.linalg.solve(posed.places[control], there)
             offsets[control, 3:6] = place[:3] - animated[control, :3, 3]
             if any(dof.control == control and dof.freedom is Freedom.TURN for dof in dofs):
-                turned = proper(frame[:3, :3]).T @ turn @ proper(take.controls[control, :3, :3])
+                turned = proper(frame[:3, :3]).T @ turn @ proper(seen.controls[control, :3, :3])
                 offsets[control, :3] = rotation_vector(proper(animated[control, :3, :3]).T @ turned)
         return offsets
 
     def _led(self, control: int) -> int | None:
         """The first body that turns with a control in full, or else is moved by it."""
-        dofs, follow = self._responses.dofs, self._responses.follow
-        own = [d for d, dof in enumerate(dofs) if dof.control == control]
-        turns = [d for d in own if dofs[d].freedom is Freedom.TURN]
+        dofs = self._responses.dofs
+        turns = [d for d in self._own(control) if dofs[d].freedom is Freedom.TURN]
         amounts = np.linalg.norm(self._responses.turns[turns], axis=2)
         full = (np.abs(amounts - 1.0) < FULL).all(0) & bool(turns)
-        found = np.flatnonzero(full if full.any() else follow[own].any(0))
+        found = np.flatnonzero(full if full.any() else self._moved(control))
         return int(found[0]) if len(found) else None
+
+    def _moved(self, control: int) -> BoolArray:
+        """(B,) whether a control moves each body."""
+        return np.asarray(self._responses.follow[self._own(control)].any(axis=0))
+
+    def _own(self, control: int) -> list[int]:
+        """The dofs of a control."""
+        return [d for d, dof in enumerate(self._responses.dofs) if dof.control == control]
 
     def _try_where_switched(self, animated: FloatArray) -> None:
         """At the first frame, and where other constraints act than before and so other controls do:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -166,6 +167,26 @@ def test_a_rig_made_by_hand_with_feet_and_poles_is_posed_through_these() -> None
     assert not {"thigh.L", "shin.L", "foot.L"} & posed.bases.keys()
     assert posed.off.max() < 1e-4
     assert np.degrees(posed.turned.max()) < 0.05
+
+
+@pytest.mark.parametrize("lower", [0.0, 0.002, 0.01])
+def test_a_leg_that_was_pulled_straight_is_bent_again(lower: float) -> None:
+    """While its foot's control is out of reach no small pull along the leg does anything."""
+    rig = ik_rig()
+    hips = rig.pose.bones["hips"]
+    bent, straight, wanted = -0.1, 0.08, -lower
+    for frame, height in enumerate((bent, straight, wanted), start=1):
+        hips.location.y = height
+        hips.keyframe_insert("location", frame=frame)
+    track = moved_take(rig, 3)
+    as_wanted = replace(
+        track,
+        frames=track.frames[:2],
+        rotations=track.rotations[[0, 2]],
+        root_head=track.root_head[[0, 2]] + [[0.0, 0.0, 0.0], [0.0, 0.0, straight - wanted]],
+    )
+    posed = inverted(rig, as_wanted)
+    assert posed.off.max() < 1e-3
 
 
 @pytest.mark.parametrize("local", [True, False])
