@@ -10,10 +10,9 @@ import tomllib
 from hashlib import sha256
 from pathlib import Path
 
-from .environment.virtual_environment import REQUIREMENTS, ROOT
-from .wheel import BuildError, build_wheel
+from .environment.virtual_environment import ROOT
+from .wheel import BuildError, build_wheel, pins
 
-PINS = REQUIREMENTS / "casadi.txt"
 MOST_BYTES = 200_000_000  # of a zip that extensions.blender.org takes
 
 
@@ -51,30 +50,37 @@ def build(out: Path) -> list[Path]:
 
 
 def fetch(wheel: Path) -> None:
-    """Have the unmodified wheel at that path, its hash among the pinned ones.
+    """Have the unmodified wheel at that path, its hash among its package's pinned ones.
 
     A wheel for several platforms joined by dots is stored under the first one's name alone:
     Blender's builder does not read the joined form.
     """
     if wheel.is_file() and pinned(wheel):
         return
-    platform = wheel.stem.rpartition("-")[2]
+    platform, package = wheel.stem.rpartition("-")[2], distribution(wheel)
     print(f"Fetching {wheel.name} ...", flush=True)
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-input", "--no-deps"]
     command += ["--disable-pip-version-check", "--only-binary", ":all:", "--platform", platform]
     command += ["--implementation", "cp", "--python-version", "3.11", "--abi", "abi3"]
-    command += ["--require-hashes", "-r", str(PINS)]
+    command += ["--abi", "none", "--require-hashes"]
     wheel.parent.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=wheel.parent) as scratch:
-        run([*command, "-d", scratch])
+        requirement = Path(scratch, "requirement.txt")
+        requirement.write_text(pins()[package], encoding="utf-8")
+        run([*command, "-r", str(requirement), "-d", scratch])
         found = list(Path(scratch).glob("*.whl"))
         if len(found) != 1 or not pinned(found[0]):
             raise BuildError(f"No wheel with a pinned hash came for {platform}: {found}.")
         found[0].replace(wheel)
 
 
+def distribution(wheel: Path) -> str:
+    return wheel.name.partition("-")[0].replace("_", "-")
+
+
 def pinned(wheel: Path) -> bool:
-    return f"--hash=sha256:{sha256(wheel.read_bytes()).hexdigest()}" in PINS.read_text()
+    digest = sha256(wheel.read_bytes()).hexdigest()
+    return f"--hash=sha256:{digest}" in pins()[distribution(wheel)].split()
 
 
 def builder(*arguments: str) -> None:

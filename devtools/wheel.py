@@ -5,6 +5,7 @@ wheel the package is laid out as in the extension, so relative imports mean the 
 """
 
 import ast
+import json
 import os
 import shutil
 import subprocess
@@ -15,7 +16,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
-from .environment.virtual_environment import ROOT
+from .environment.virtual_environment import REQUIREMENTS, ROOT
 
 BEGIN = ROOT / "batch"
 MANIFEST = "blender_manifest.toml"  # tells the version at run time too
@@ -33,7 +34,7 @@ version = "{version}"
 description = "Adapts recorded jumps by physics: batches on machines without Blender"
 license = "GPL-3.0-or-later"
 requires-python = ">=3.11"
-dependencies = ["numpy>=1.26", "{casadi}"]
+dependencies = {dependencies}
 
 [project.optional-dependencies]
 dask = ["distributed>=2025.1"]
@@ -56,9 +57,8 @@ def build_wheel(out: Path) -> Path:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, target)
         version = tomllib.loads((ROOT / MANIFEST).read_text("utf-8"))["version"]
-        pins = (ROOT / "requirements" / "casadi.txt").read_text().splitlines()
-        casadi = next(line.split()[0] for line in pins if line.startswith("casadi"))
-        project = PROJECT.format(version=version, casadi=casadi)
+        dependencies = ["numpy>=1.26", *(pin.split()[0] for pin in pins().values())]
+        project = PROJECT.format(version=version, dependencies=json.dumps(dependencies))
         (folder / "pyproject.toml").write_text(project, encoding="utf-8")
         command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-input", "--no-deps"]
         command += ["--disable-pip-version-check", "-w", scratch, scratch]
@@ -69,6 +69,13 @@ def build_wheel(out: Path) -> Path:
         made = next(folder.glob("*.whl"))
         out.mkdir(parents=True, exist_ok=True)
         return Path(shutil.copyfile(made, out / made.name))  # pip's own is for its owner alone
+
+
+def pins() -> dict[str, str]:
+    """By package the line of requirements that pins its wheels, with a hash for each platform."""
+    text = (REQUIREMENTS / "wheels.txt").read_text(encoding="utf-8").replace("\\\n", "")
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    return {line.partition("==")[0]: line for line in lines}
 
 
 def wheel_files() -> list[Path]:

@@ -71,13 +71,18 @@ def own_build() -> Build:
     """Of this process."""
     import casadi
     import numpy
+    import scipy_openblas32
 
     found = (path for name in COMPUTED_BY for path in (PACKAGE / name).rglob("*.py"))
     code = {
         path.relative_to(PACKAGE).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in found
     }
-    libraries = {"numpy": numpy.__version__, "CasADi": casadi.CasadiMeta.version()}
+    libraries = {
+        "numpy": numpy.__version__,
+        "CasADi": casadi.CasadiMeta.version(),
+        "OpenBLAS": scipy_openblas32.__version__,
+    }
     return Build(version(), code, libraries)
 
 

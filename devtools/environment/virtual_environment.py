@@ -36,7 +36,9 @@ class Requirements:
     blender: bool = False
 
 
-CASADI = Requirements("casadi.txt", "CasADi (90 MB)", ("--no-deps", "--require-hashes"))
+WHEELS = Requirements(
+    "wheels.txt", "CasADi and OpenBLAS (100 MB)", ("--no-deps", "--require-hashes")
+)
 # Environments without Blender: its numpy is not the peers', and a farm's machines have none.
 PEERS = Requirements("benchmark.txt", "the benchmark's peers (400 MB to fetch, 1.3 GB on disk)")
 FARM = Requirements("farm.txt", "the farms' engines (50 MB to fetch, 200 MB on disk)")
@@ -85,7 +87,7 @@ def prepare_without_blender(
 ) -> VirtualEnvironment:
     """An environment of its own for PEERS or FARM. Raises SetUpError."""
     env = VirtualEnvironment(CACHE / f"python{blender.python}-{Path(wanted.file).stem}")
-    complete(env, [wanted, CASADI], python)
+    complete(env, [wanted, WHEELS], python)
     return env
 
 
@@ -109,10 +111,10 @@ def complete(env: VirtualEnvironment, wanted: list[Requirements], python: str) -
 
 
 def requirements_of(blender: Blender, tools: bool) -> list[Requirements]:
-    """Blender's module, CasADi, and with `tools` what tests and checks need."""
+    """Blender's module, our wheels, and with `tools` what tests and checks need."""
     own = f"blender-{blender.version}.txt"
     label = f"Blender {blender.version} as a Python module (about 400 MB to fetch, 1 GB on disk)"
-    found = [Requirements(own, label, blender=True), CASADI]
+    found = [Requirements(own, label, blender=True), WHEELS]
     if tools:
         keep = ("--constraint", str(REQUIREMENTS / own))
         found.append(Requirements("dev.txt", "the tools of tests and checks (90 MB)", keep))

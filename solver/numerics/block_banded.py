@@ -1,4 +1,4 @@
-"""Cholesky factorisation of block-banded SPD matrices, by numpy or OpenBLAS.
+"""Cholesky factorisation of block-banded SPD matrices, by OpenBLAS.
 
 Splines make every matrix of the method banded in time: coefficients four apart do not meet. So
 the unknowns are ordered by time in K blocks of n, and a block row holds at most `band` blocks
@@ -15,7 +15,7 @@ from .openblas import openblas, product
 
 BANDWIDTH = 3
 NEGLIGIBLE = 1e-8  # of a column's length
-SMALL = 20  # unknowns; a triangle of less than twice as many is inverted as it is
+LOOK = 8  # blocks, after which a substitution looks whether it may end
 
 
 class BlockBanded:
@@ -105,14 +105,13 @@ class BlockBanded:
         size, share = root.reshape(-1, 1), 1.0 / root
         columns = self._columns.reshape(count + band, (band + 1) * n, n)
         blas = openblas()
-        eliminate = _eliminate if blas is None else blas.eliminate
         for k in range(min(band, count)):
             _to_unit_diagonal(columns[k], share, k)
         for k in range(count):
             # What is used together stays in the processor's cache.
             if k + band < count:
                 _to_unit_diagonal(columns[k + band], share, k + band)
-            eliminate(columns, k)
+            blas.eliminate(columns, k)
             columns[k, n:] *= size[(k + 1) * n : (k + 1 + band) * n]
             columns[k, :n] *= share[k]
         return CholeskyFactor(columns[:count])
@@ -123,29 +122,6 @@ def _to_unit_diagonal(column: FloatArray, share: FloatArray, k: int) -> None:
     n = column.shape[1]
     column *= share[k : k + len(column) // n].reshape(-1, 1)
     column *= share[k]
-
-
-def _eliminate(columns: FloatArray, k: int) -> None:
-    """What `OpenBlas.eliminate` does, by numpy."""
-    n = columns.shape[2]
-    inverse = triangular_inverse(np.linalg.cholesky(columns[k, :n]))
-    columns[k, :n], panel = inverse, columns[k, n:] @ inverse.T
-    columns[k, n:], update = panel, panel @ panel.T
-    for j in range(len(panel) // n):
-        columns[k + 1 + j, : len(panel) - j * n] -= update[j * n :, j * n : (j + 1) * n]
-
-
-def triangular_inverse(lower: FloatArray) -> FloatArray:
-    """Inverse of a lower triangle (n, n) by its halves: numpy's own knows of no triangles, and
-    takes twice as long."""
-    half = len(lower) // 2
-    if half < SMALL:
-        return np.asarray(np.linalg.inv(lower))
-    inverse = np.zeros(lower.shape)
-    inverse[:half, :half] = first = triangular_inverse(lower[:half, :half])
-    inverse[half:, half:] = last = triangular_inverse(lower[half:, half:])
-    np.matmul(last, lower[half:, :half] @ -first, out=inverse[half:, :half])
-    return inverse
 
 
 @dataclass(frozen=True)
@@ -201,12 +177,9 @@ class CholeskyFactor:
 
     def forward(self, b: FloatArray) -> FloatArray:
         """Forward substitution L^-1 b, b (K, n) or (K, n, m)."""
-        x, n, below = self._padded(b), b.shape[1], self._below
-        for k, column in enumerate(self.columns):
-            first, last = k * n, (k + 1) * n
-            x[first:last] = column[:n] @ x[first:last]
-            x[last : last + below] -= column[n:] @ x[first:last]
-        return np.asarray(x[: len(b) * n].reshape(b.shape))
+        x = self._padded(b)
+        openblas().forward(self.columns, x)
+        return np.asarray(x[: -self._below].reshape(b.shape))
 
     def forward_locally(self, b: LocalColumns) -> LocalColumns:
         """Forward substitution as far as any column has more than NEGLIGIBLE of its length.
@@ -214,31 +187,27 @@ class CholeskyFactor:
         What is far off in time hardly couples. Each block follows from the `band` before it: where
         these are negligible, so is what follows.
         """
-        n, below, given = self.shape[1], self._below, len(b.values)
-        ahead = np.zeros((below, b.values.shape[2]))  # what is left to the next blocks
-        found: list[FloatArray] = []
-        squared, quiet = np.zeros(b.values.shape[2]), 0
-        for k, column in enumerate(self.columns[b.first :]):
-            found.append(product(column[:n], ahead[:n] + b.values[k] if k < given else ahead[:n]))
-            ahead[:-n], ahead[-n:] = ahead[n:], 0.0
-            ahead -= product(column[n:], found[-1])
-            added = (found[-1] ** 2).sum(axis=0)
-            squared += added
-            quiet = quiet + 1 if (added <= NEGLIGIBLE**2 * squared).all() else 0
-            if k >= given and quiet * n >= below:
+        n, below, m = self.shape[1], self._below, b.values.shape[2]
+        x = b.values.reshape(-1, m)
+        squared, done, columns = np.zeros(m), 0, self.columns[b.first :]
+        while done < len(columns):
+            until = min(max(done + LOOK, len(b.values)), len(columns))
+            x = np.concatenate([x, np.zeros((until * n + below - len(x), m))])
+            openblas().forward(columns[done:until], x[done * n :])
+            squared += (x[done * n : until * n] ** 2).sum(axis=0)
+            tail = (x[until * n - below : until * n] ** 2).sum(axis=0)
+            done = until
+            if (tail <= NEGLIGIBLE**2 * squared).all():
                 break
-        return LocalColumns(b.first, np.stack(found))
+        return LocalColumns(b.first, x[: done * n].reshape(done, n, m))
 
     def backward(self, b: FloatArray) -> FloatArray:
         """Back substitution L^-T b, b (K, n) or (K, n, m)."""
-        x, n, below = self._padded(b), b.shape[1], self._below
-        for k in reversed(range(len(b))):
-            first, last, column = k * n, (k + 1) * n, self.columns[k]
-            x[first:last] -= column[n:].T @ x[last : last + below]
-            x[first:last] = column[:n].T @ x[first:last]
-        return np.asarray(x[: len(b) * n].reshape(b.shape))
+        x = self._padded(b)
+        openblas().backward(self.columns, x)
+        return np.asarray(x[: -self._below].reshape(b.shape))
 
     def _padded(self, b: FloatArray) -> FloatArray:
-        """(K n + band n, m) or without m: the right side, then zeros."""
-        rows = b.reshape(-1, *b.shape[2:])
-        return np.concatenate([rows, np.zeros((self._below, *b.shape[2:]))])
+        """((K + band) n, m), m one where there is none: the right side, then zeros."""
+        rows = b.reshape(b.shape[0] * b.shape[1], -1)
+        return np.concatenate([rows, np.zeros((self._below, rows.shape[1]))])

@@ -1,24 +1,21 @@
-"""The OpenBLAS in CasADi's wheel, for a numpy that was built without a tuned BLAS.
+"""OpenBLAS by ctypes: the dense products and factors, of the wheel scipy-openblas32.
 
-Debian's numpy has the reference BLAS, Blender's may have none: with these a factor takes four to
-eight times as long. Which of the two computes depends on the installation alone; results agree to
-rounding. BLAS knows arrays by rows, LAPACK by columns only: its upper triangle is our lower one.
+What numpy was built with is chance: Blender's and Debian's have no tuned BLAS, and pip's may be
+older than the processor, which it then takes for one of 2004. BLAS knows arrays by rows, LAPACK by
+columns only: its upper triangle is our lower one.
 """
 
 import ctypes
 from enum import IntEnum
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from ..arrays import FloatArray
 
-FILES = ("libcasadi-tp-openblas.so.0", "libcasadi-tp-openblas.dll")  # wheels for macOS have none
-TUNED = ("openblas", "accelerate", "mkl", "blis")
+LIBRARY = "libscipy_openblas"
 
 
 class Blas(IntEnum):
@@ -30,6 +27,7 @@ class Blas(IntEnum):
     TRANSPOSED = 112
     LOWER = 122
     NON_UNIT = 131
+    LEFT = 141
     RIGHT = 142
 
 
@@ -37,18 +35,18 @@ class OpenBlas:
     """Dense products and factors of doubles, on one thread."""
 
     def __init__(self, file: Path) -> None:
-        # Python's lock is held in its calls: it was built without locks of its own.
+        # Python's lock is held in its calls, most of which are shorter than letting it go.
         library = ctypes.PyDLL(str(file))
-        library.openblas_set_num_threads(1)
-        self._gemm, self._syrk = library.cblas_dgemm, library.cblas_dsyrk
-        self._trsm, self._potrf = library.cblas_dtrsm, library.LAPACKE_dpotrf_work
-        self._trtri = library.LAPACKE_dtrtri_work
+        library.scipy_openblas_set_num_threads(1)
+        self._gemm, self._syrk = library.scipy_cblas_dgemm, library.scipy_cblas_dsyrk
+        self._trsm, self._potrf = library.scipy_cblas_dtrsm, library.scipy_LAPACKE_dpotrf_work
+        self._trtri, self._trmm = library.scipy_LAPACKE_dtrtri_work, library.scipy_cblas_dtrmm
         int_, char = ctypes.c_int, ctypes.c_char
         matrix: list[Any] = [ctypes.c_void_p, int_]
         scaled: list[Any] = [ctypes.c_double, *matrix]
         self._gemm.argtypes = [*[int_] * 6, *scaled, *matrix, *scaled]
         self._syrk.argtypes = [*[int_] * 5, *scaled, *scaled]
-        self._trsm.argtypes = [*[int_] * 7, *scaled, *matrix]
+        self._trsm.argtypes = self._trmm.argtypes = [*[int_] * 7, *scaled, *matrix]
         self._potrf.argtypes = [int_, char, int_, *matrix]
         self._trtri.argtypes = [int_, char, char, int_, *matrix]
 
@@ -92,6 +90,36 @@ class OpenBlas:
                 *(Blas.ROWS, *product, rest, n, n, -1.0), row + block, n, row, n, 1.0, to + block, n
             )
 
+    def forward(self, columns: FloatArray, x: FloatArray) -> None:
+        """Forward substitution by columns that were eliminated, in place.
+
+        columns: (K, (1 + band) n, n), contiguous. x: ((K + band) n, m), contiguous.
+        """
+        n, m, column, below, row = _substitution(columns, x)
+        triangle = (Blas.ROWS, Blas.LEFT, Blas.LOWER, Blas.PLAIN, Blas.NON_UNIT, n, m, 1.0)
+        panel = (Blas.ROWS, Blas.PLAIN, Blas.PLAIN, below, m, n, -1.0)
+        for _ in range(len(columns)):
+            self._trmm(*triangle, column, n, row, m)
+            after = row + 8 * n * m
+            self._gemm(*panel, column + 8 * n * n, n, row, m, 1.0, after, m)
+            column, row = column + columns.strides[0], after
+
+    def backward(self, columns: FloatArray, x: FloatArray) -> None:
+        """Back substitution, likewise."""
+        n, m, column, below, row = _substitution(columns, x)
+        triangle = (Blas.ROWS, Blas.LEFT, Blas.LOWER, Blas.TRANSPOSED, Blas.NON_UNIT, n, m, 1.0)
+        panel = (Blas.ROWS, Blas.TRANSPOSED, Blas.PLAIN, n, m, below, -1.0)
+        for k in reversed(range(len(columns))):
+            at, to = column + k * columns.strides[0], row + 8 * k * n * m
+            self._gemm(*panel, at + 8 * n * n, n, to + 8 * n * m, m, 1.0, to, m)
+            self._trmm(*triangle, at, n, to, m)
+
+
+def _substitution(columns: FloatArray, x: FloatArray) -> tuple[int, int, int, int, int]:
+    """Unknowns of a block, right sides, address of the columns, rows of a panel, address of x."""
+    n, m = columns.shape[2], x.shape[1]
+    return n, m, columns.ctypes.data, columns.shape[1] - n, x.ctypes.data
+
 
 def _layout(matrix: FloatArray) -> tuple[Blas, int, int]:
     """By rows or columns, address, and how many numbers one lies from the next."""
@@ -103,28 +131,15 @@ def _layout(matrix: FloatArray) -> tuple[Blas, int, int]:
     raise ValueError("neither rows nor columns are contiguous")
 
 
-def bundled() -> OpenBlas | None:
-    """That of CasADi; None where CasADi was built without, or with another than we know."""
-    files = (Path(ca.__file__).with_name(name) for name in FILES)
-    file = next((file for file in files if file.is_file()), None)
-    if file is None:
-        return None
-    try:
-        return OpenBlas(file)
-    except (OSError, AttributeError):  # does not load, or lacks a function: numpy is only slower
-        return None
-
-
 @cache
-def openblas() -> OpenBlas | None:
-    """That of CasADi, None where numpy has a tuned one itself."""
-    config = import_module("numpy.__config__")
-    told = getattr(config, "CONFIG", {}).get("Build Dependencies", {}).get("blas", {}).get("name")
-    older = [value for name, value in vars(config).items() if name.endswith("opt_info")]  # < 1.26
-    return None if any(each in f"{told} {older}".lower() for each in TUNED) else bundled()
+def openblas() -> OpenBlas:
+    """The process's own. Raises ImportError or OSError where the wheel is missing or broken."""
+    import scipy_openblas32  # loaded where it computes alone, never in Blender's own process
+
+    folder = Path(scipy_openblas32.get_lib_dir())
+    return OpenBlas(next(file for file in folder.glob(f"{LIBRARY}*") if file.suffix != ".lib"))
 
 
 def product(a: FloatArray, b: FloatArray) -> FloatArray:
     """a @ b of matrices whose rows or columns are contiguous."""
-    blas = openblas()
-    return np.asarray(a @ b) if blas is None else blas.product(a, b)
+    return openblas().product(a, b)

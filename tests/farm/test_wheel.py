@@ -20,12 +20,13 @@ def test_a_cell_is_solved_by_the_installed_wheel(tmp_path: Path, solved: dict[st
     others.touch()
     assert wheel.stat().st_mode == others.stat().st_mode, "workers of other users install it"
     environment = tmp_path / "environment"
-    # numpy and CasADi are those of these tests: to fetch them anew would tell nothing more.
+    # The libraries are those of these tests: to fetch them anew would tell nothing more.
     venv.EnvBuilder(with_pip=True).create(environment)
     site = next((environment / "lib").glob("python*/site-packages"))
     own = next(path for path in sys.path if path.endswith("site-packages"))
-    for name in ("numpy", "numpy.libs", "casadi", *(p.name for p in Path(own).glob("*dist-info"))):
-        if name.partition("-")[0].partition(".")[0] in ("numpy", "casadi"):
+    borrowed = ("numpy", "casadi", "scipy_openblas32")
+    for name in (*borrowed, "numpy.libs", *(p.name for p in Path(own).glob("*dist-info"))):
+        if name.partition("-")[0].partition(".")[0] in borrowed:
             (site / name).symlink_to(Path(own) / name)
     python = environment / "bin" / "python"
     install = [python, "-m", "pip", "install", "--quiet", "--no-index", wheel]

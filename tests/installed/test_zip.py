@@ -38,7 +38,7 @@ SHIPPED = {
     "ui",
     "wheels",
 }
-ABSENT = ("casadi", "scipy", "mujoco")
+ABSENT = ("casadi", "scipy", "mujoco")  # scipy_openblas32 too
 OUTPUTS = {"adapted.blend", "adapted.fbx", "sheet.png", "report.json", "trajectory.npz"}
 
 ANOTHER = """
@@ -72,11 +72,11 @@ bpy.ops.extensions.package_install_files(
     filepath=sys.argv[1], repo="user_default", enable_on_install=True)
 """
 REPORT_ORIGINS = """
-import casadi, numpy
+import casadi, numpy, scipy_openblas32
 enabled = "bl_ext.user_default.hangtime" in bpy.context.preferences.addons
 print("ANSWER", json.dumps(
     {"casadi": casadi.__file__, "version": casadi.__version__, "numpy": numpy.__file__,
-     "enabled": enabled}), flush=True)
+     "openblas": scipy_openblas32.__file__, "enabled": enabled}), flush=True)
 os._exit(0)
 """
 INSTALL_ANOTHER = """
@@ -135,20 +135,20 @@ def run_installed(python: Path, user: Path, script: str, *arguments: str) -> dic
 @pytest.mark.parametrize(
     "name", ["linux-x64", "linux-arm64", "windows-x64", "macos-arm64", "macos-x64"]
 )
-def test_a_zip_holds_the_extension_and_its_one_wheel(zips: dict[str, Path], name: str) -> None:
+def test_a_zip_holds_the_extension_and_its_wheels(zips: dict[str, Path], name: str) -> None:
     with zipfile.ZipFile(zips[name]) as archive:
         members = [Path(m) for m in archive.namelist()]
     assert {m.parts[0] for m in members} <= SHIPPED
     assert {"LICENSE", "__init__.py", "blender_manifest.toml"} <= {str(m) for m in members}
     wheels = [m.name for m in members if m.suffix == ".whl"]
-    assert [w.split("-")[0] for w in wheels] == ["casadi"]
+    assert [w.split("-")[0] for w in wheels] == ["casadi", "scipy_openblas32"]
     code = {".py", ".toml", ".md", ".whl", ""}
     page = {".html", ".css", ".js", ".png"}  # of a batch
     assert code >= {m.suffix for m in members if m.parts[0] != "batch"}
     assert code | page >= {m.suffix for m in members}
 
 
-def test_casadi_comes_from_the_extension(
+def test_casadi_and_openblas_come_from_the_extension(
     zips: dict[str, Path], bare_python: Path, tmp_path: Path
 ) -> None:
     user = tmp_path / "user"
@@ -156,6 +156,7 @@ def test_casadi_comes_from_the_extension(
     assert answer["enabled"], answer["said"]
     assert answer["version"] == "3.8.2"
     assert Path(answer["casadi"]).is_relative_to(user)
+    assert Path(answer["openblas"]).is_relative_to(user)
     assert not Path(answer["numpy"]).is_relative_to(user), "numpy is Blender's own"
 
 

@@ -7,7 +7,6 @@ from hangtime.solver.numerics.block_banded import (
     BANDWIDTH,
     BlockBanded,
     LocalColumns,
-    triangular_inverse,
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -71,15 +70,6 @@ def test_squares_of_rows_are_added_where_their_window_is() -> None:
         dense[2 * k : 2 * k + 8, 2 * k : 2 * k + 8] += J.T @ J
     x = random.normal(size=(7, 2))
     assert banded.times(x).ravel() == pytest.approx(dense @ x.ravel(), abs=1e-10)
-
-
-@pytest.mark.parametrize("size", [1, 39, 40, 69, 163])
-def test_a_triangle_times_its_inverse_is_one(size: int) -> None:
-    random = np.random.default_rng(size)
-    half = random.normal(size=(size, size + 5))
-    lower = np.linalg.cholesky(half @ half.T / size)
-    inverse = triangular_inverse(lower)
-    assert inverse @ lower == pytest.approx(np.eye(size), abs=1e-9)
 
 
 def test_many_right_sides_are_solved_at_once() -> None:

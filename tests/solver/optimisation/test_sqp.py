@@ -59,8 +59,10 @@ def test_a_step_that_raises_the_violation_is_taken_back_where_none_may_follow() 
     )
     off = [step.violation for step in whole.steps]
     raised = [i for i, (a, b) in enumerate(pairwise(off)) if b > a and a < NEARLY_FEASIBLE]
-    assert raised
-    for i in raised:
+    # Others lower what is left of all rows, though not of the worst.
+    watched = [i for i in raised if feasible.violation(told[i]) == pytest.approx(off[i])]
+    assert watched
+    for i in watched:
         found = restore(feasible, setup.metric, x, stage="test", max_steps=i + 1)
         assert found.violation == pytest.approx(off[i])
         assert feasible.violation(found.x) == pytest.approx(off[i])
