@@ -14,9 +14,11 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from .block_banded import BlockBanded
 
 DEGREE = 3
 ORDER = DEGREE + 1
+BLOCK = 8  # coefficients that a projection solves for together
 THIRD_DERIVATIVE_WEIGHT = 1e-9  # regularises splines through samples that jump between contacts
 
 
@@ -106,11 +108,15 @@ class SplineBasis:
         smooth: weight of the squared third derivative (a P-spline's penalty), just enough to
         settle spans that hold too few samples.
         """
-        B = self.matrix(times)
-        middles = 0.5 * (self.breaks[:-1] + self.breaks[1:])
-        third = self.matrix(middles, 3) * np.diff(self.breaks)[:, None] ** 3
-        normal = B.T @ B + smooth * len(times) * third.T @ third
-        return np.asarray(np.linalg.solve(normal, B.T @ samples))
+        spans, middles = self.spans(times), 0.5 * (self.breaks[:-1] + self.breaks[1:])
+        values, third = self.evaluate(times, 0, spans), self.evaluate(middles, 3)
+        third *= np.diff(self.breaks)[:, None] ** 3
+        squares = smooth * len(times) * third[:, :, None] * third[:, None]  # (n_spans, 4, 4)
+        np.add.at(squares, spans, values[:, :, None] * values[:, None])
+        right = np.zeros((self.n_coefficients, samples.shape[1]))
+        columns = self.first_coefficient[spans][:, None] + np.arange(ORDER)
+        np.add.at(right, columns, values[..., None] * samples[:, None])
+        return _solve(self.first_coefficient, squares, right)
 
     def insert_knots(self, finer: "SplineBasis", coefficients: FloatArray) -> FloatArray:
         """Knot insertion: (n, m) coefficients of the same curve on a finer basis.
@@ -135,6 +141,21 @@ class SplineBasis:
             + p2 / 2.0 * (u * v + v * w + u * w) / 3.0
             + p3 / 6.0 * u * v * w
         )
+
+
+def _solve(first: IntArray, windows: FloatArray, right: FloatArray) -> FloatArray:
+    """x of A x = right (K, n), A the sum of windows (S, 4, 4), from first (S,) on."""
+    blocks, rest = -(-len(right) // BLOCK), -len(right) % BLOCK
+    system = BlockBanded(blocks, BLOCK, 1)
+    below = np.tril_indices(ORDER)  # a factor asks for no more
+    row, column = (first[:, None] + each for each in below)
+    at = (row // BLOCK - column // BLOCK, column // BLOCK, row % BLOCK, column % BLOCK)
+    np.add.at(system.lower, at, windows[:, below[0], below[1]])
+    filling = np.arange(BLOCK - rest, BLOCK)
+    system.lower[0, -1, filling, filling] = 1.0
+    padded = np.concatenate([right, np.zeros((rest, right.shape[1]))])
+    x = system.factor(overwrite=True).solve(padded.reshape(blocks, BLOCK, -1))
+    return np.asarray(x.reshape(padded.shape)[: len(right)])
 
 
 def _basis_functions(

@@ -31,6 +31,7 @@ MAX_SWEEPS = 8
 SWEEP_REDUCTION = 1e-3  # of the equality residual, at which sweeps end
 SWEEP_REST = 0.25  # of a tolerance, at which sweeps end too: closer, weak rows cost long ways
 RIDGE = 1e-8  # of the diagonal
+AT_ONCE = 1000  # rows that are sorted; all at once would be a copy of them all
 MERIT_DEAD_BAND = 0.5  # of a bound's tolerance, which the merit function ignores
 
 
@@ -45,20 +46,26 @@ class _SpanRows:
     where: tuple[IntArray, IntArray]  # of each row: its span, its place there
 
     @staticmethod
-    def of(rows: Rows, scale: FloatArray, first: IntArray, basis: FloatArray | None) -> "_SpanRows":
-        """Sorts rows, in units of scale (R,), by span."""
-        order = np.argsort(rows.span, kind="stable")
-        counts = np.bincount(rows.span, minlength=len(first))
+    def of(
+        rows: Rows, chosen: IntArray, scale: FloatArray, first: IntArray, basis: FloatArray | None
+    ) -> "_SpanRows":
+        """Sorts the chosen rows (m,), in units of scale (m,), by span."""
+        span = rows.span[chosen]
+        order = np.argsort(span, kind="stable")
+        counts = np.bincount(span, minlength=len(first))
         before = np.concatenate([[0], np.cumsum(counts)])
         place = np.empty(len(order), dtype=int)
-        place[order] = np.arange(len(order)) - before[rows.span[order]]
-        jacobian = rows.jacobian if basis is None else rows.jacobian @ basis
-        n = jacobian.shape[2]
+        place[order] = np.arange(len(order)) - before[span[order]]
+        n = rows.jacobian.shape[2] if basis is None else basis.shape[1]
         J = np.zeros((len(first), counts.max(initial=0), ORDER * n))
-        J[rows.span, place] = jacobian.reshape(len(order), ORDER * n)
+        for start in range(0, len(chosen), AT_ONCE):
+            some = slice(start, start + AT_ONCE)
+            jacobian = rows.jacobian[chosen[some]]
+            jacobian = jacobian if basis is None else jacobian @ basis
+            J[span[some], place[some]] = jacobian.reshape(len(jacobian), ORDER * n)
         other = scale != 1.0  # few; all rows once more would be a copy of them all
-        J[rows.span[other], place[other]] /= scale[other, None]
-        return _SpanRows(J, counts, first, n, (rows.span, place))
+        J[span[other], place[other]] /= scale[other, None]
+        return _SpanRows(J, counts, first, n, (span, place))
 
     def times(self, d: FloatArray) -> FloatArray:
         """(S, R) product J d, of d (K, n)."""
@@ -139,7 +146,7 @@ class LinearisedProblem:
         self._equal = np.flatnonzero(rows.equal)
         scale = by_kind(rows.kind[self._equal], ROW_SCALES)
         first = transcription.basis.first_coefficient
-        self._equalities = _SpanRows.of(rows.some(self._equal), scale, first, basis)
+        self._equalities = _SpanRows.of(rows, self._equal, scale, first, basis)
         self._matrix = self._system(None if last is None else last.matrix)
         self._factor: Factor = self._factored()
         if transcription.seam is not None:
@@ -185,7 +192,7 @@ class LinearisedProblem:
         self._scale, self._tolerance = by_kind(rows.kind, ROW_SCALES), rows.tolerance
         self._free = np.flatnonzero(~rows.equal)
         first = transcription.basis.first_coefficient
-        bounds = _SpanRows.of(rows.some(self._free), self._scale[self._free], first, self._basis)
+        bounds = _SpanRows.of(rows, self._free, self._scale[self._free], first, self._basis)
         self._bounds = bounds
         was = np.zeros(len(self._free)) if sides is None else sides[self._free]
         self._bounded = BoundedStep(
