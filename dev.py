@@ -39,6 +39,7 @@ import sys
 from devtools.environment import pythons, virtual_environment
 from devtools.environment.problem import SetUpError
 from devtools.environment.virtual_environment import FARM, PEERS, Requirements
+from solver.kept_memory import KEPT_MEMORY
 from solver.one_thread import ONE_THREAD
 
 # command: module of the package, arguments before the user's, whether it needs dev.txt, or what it
@@ -97,8 +98,9 @@ def main(argv: list[str]) -> int:
     except SetUpError as problem:
         print(problem, file=sys.stderr)
         return 2
-    # Several threads of linear algebra add up in another order, which ends in another motion.
-    variables = env.variables() | ONE_THREAD
+    # Several threads of linear algebra add up in another order, which ends in another motion; and
+    # what is measured here has memory as the worker in Blender has.
+    variables = env.variables() | ONE_THREAD | KEPT_MEMORY
     launcher = os.path.join(virtual_environment.ROOT, "devtools", "package.py")
     code = subprocess.call([env.python, launcher, module, *leading, *rest], env=variables)
     return code if code >= 0 else 128 - code  # a signal, the way shells count it
