@@ -5,7 +5,6 @@ the unknowns are ordered by time in K blocks of n, and a block row holds at most
 left of its diagonal: three, or four where neighbouring spans are compared with each other.
 """
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +34,11 @@ class BlockBanded:
         """Block half-bandwidth: blocks left of the diagonal."""
         return len(self.lower) - 1
 
+    @property
+    def _stacked(self) -> FloatArray:
+        """(K + band, (band + 1) n, n) block columns."""
+        return self._columns.reshape(len(self._columns), -1, self._columns.shape[3])
+
     def copy(self, band: int | None = None, into: "BlockBanded | None" = None) -> "BlockBanded":
         """Deep copy, optionally with a wider band. into: one of the same shape to be overwritten,
         for memory that is new costs as much as the copy."""
@@ -57,15 +61,12 @@ class BlockBanded:
                 block = self.lower[row - column][:, part, part]
                 block[first + column] += windows[:, row, :, column, :]
 
-    def add_squares(self, first: IntArray, rows: Iterable[FloatArray]) -> None:
-        """Assembly: adds J'J of each window's rows J (R, w n) at block rows first (S,), w at most
-        band + 1. What is added together lies together."""
-        n = self.lower.shape[2]
-        for k, J in zip(first.tolist(), rows, strict=True):
-            wide = J.shape[1]
-            for j in range(wide // n):
-                column = self._columns[k + j].reshape(-1, n)
-                column[: wide - j * n] += product(J[:, j * n :].T, J[:, j * n : (j + 1) * n])
+    def add_squares(
+        self, first: IntArray, J: FloatArray, counts: IntArray, weight: float = 1.0
+    ) -> None:
+        """Assembly: adds weight J'J of each window's first counts (S,) rows of J (S, R, w n) at
+        block rows first (S,), w at most band + 1."""
+        openblas().add_squares(self._stacked, first, J, counts, weight)
 
     def congruent(self, change: FloatArray) -> "BlockBanded":
         """Congruence T' A T, block by block, with T (n, k), a basis of every block's unknowns."""
@@ -101,10 +102,8 @@ class BlockBanded:
         diagonal = np.diagonal(self.lower[0], axis1=1, axis2=2)
         if not (diagonal > 0.0).all():
             raise np.linalg.LinAlgError("the matrix is not positive definite")
-        root = np.concatenate([np.sqrt(diagonal), np.ones((band, n))])  # (K + band, n)
-        size, share = root.reshape(-1, 1), 1.0 / root
-        columns = self._columns.reshape(count + band, (band + 1) * n, n)
-        blas = openblas()
+        share = np.concatenate([1.0 / np.sqrt(diagonal), np.ones((band, n))])  # (K + band, n)
+        columns, blas = self._stacked, openblas()
         for k in range(min(band, count)):
             _to_unit_diagonal(columns[k], share, k)
         for k in range(count):
@@ -112,9 +111,7 @@ class BlockBanded:
             if k + band < count:
                 _to_unit_diagonal(columns[k + band], share, k + band)
             blas.eliminate(columns, k)
-            columns[k, n:] *= size[(k + 1) * n : (k + 1 + band) * n]
-            columns[k, :n] *= share[k]
-        return CholeskyFactor(columns[:count])
+        return CholeskyFactor(columns[:count], share[:count])
 
 
 def _to_unit_diagonal(column: FloatArray, share: FloatArray, k: int) -> None:
@@ -155,10 +152,12 @@ class LocalColumns:
 
 @dataclass(frozen=True)
 class CholeskyFactor:
-    """Block Cholesky factor L. columns: (K, (1 + band) n, n), the inverse of each diagonal block
-    and the blocks below it, zeros beyond the last row."""
+    """Block Cholesky factor L = S C. columns: (K, (1 + band) n, n), of C the inverse of each
+    diagonal block, in its lower triangle, and the blocks below it, zeros beyond the last row.
+    share: (K, n), the diagonal of S^-1."""
 
     columns: FloatArray
+    share: FloatArray
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -178,6 +177,7 @@ class CholeskyFactor:
     def forward(self, b: FloatArray) -> FloatArray:
         """Forward substitution L^-1 b, b (K, n) or (K, n, m)."""
         x = self._padded(b)
+        x[: -self._below] *= self.share.reshape(-1, 1)
         openblas().forward(self.columns, x)
         return np.asarray(x[: -self._below].reshape(b.shape))
 
@@ -188,7 +188,8 @@ class CholeskyFactor:
         these are negligible, so is what follows.
         """
         n, below, m = self.shape[1], self._below, b.values.shape[2]
-        x = b.values.reshape(-1, m)
+        share = self.share[b.first : b.first + len(b.values)]
+        x = (b.values * share[..., None]).reshape(-1, m)
         squared, done, columns = np.zeros(m), 0, self.columns[b.first :]
         while done < len(columns):
             until = min(max(done + LOOK, len(b.values)), len(columns))
@@ -205,7 +206,7 @@ class CholeskyFactor:
         """Back substitution L^-T b, b (K, n) or (K, n, m)."""
         x = self._padded(b)
         openblas().backward(self.columns, x)
-        return np.asarray(x[: -self._below].reshape(b.shape))
+        return np.asarray((x[: -self._below] * self.share.reshape(-1, 1)).reshape(b.shape))
 
     def _padded(self, b: FloatArray) -> FloatArray:
         """((K + band) n, m), m one where there is none: the right side, then zeros."""

@@ -82,9 +82,7 @@ class _SpanRows:
 
     def add_normal(self, system: BlockBanded, weight: float) -> None:
         """Adds weight * J'J."""
-        root = np.sqrt(weight)
-        spans = zip(self.J, self.counts.tolist(), strict=True)
-        system.add_squares(self.first, (root * J[:count] for J, count in spans))
+        system.add_squares(self.first, self.J, self.counts, weight)
 
     @property
     def begins(self) -> IntArray:

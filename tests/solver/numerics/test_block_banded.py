@@ -63,11 +63,11 @@ def test_squares_of_rows_are_added_where_their_window_is() -> None:
     """Some windows have fewer rows, or none; the matrix has a wider band than they."""
     random = np.random.default_rng(9)
     first = np.array([0, 2, 3])
-    rows = [random.normal(size=(count, WINDOW * 2)) for count in (3, 0, 11)]
+    rows, counts = random.normal(size=(3, 11, WINDOW * 2)), np.array([3, 0, 11])
     banded, dense = BlockBanded(7, 2, BANDWIDTH + 1), np.zeros((14, 14))
-    banded.add_squares(first, rows)
-    for k, J in zip(first, rows, strict=True):
-        dense[2 * k : 2 * k + 8, 2 * k : 2 * k + 8] += J.T @ J
+    banded.add_squares(first, rows, counts, 3.0)
+    for k, J, count in zip(first, rows, counts, strict=True):
+        dense[2 * k : 2 * k + 8, 2 * k : 2 * k + 8] += 3.0 * J[:count].T @ J[:count]
     x = random.normal(size=(7, 2))
     assert banded.times(x).ravel() == pytest.approx(dense @ x.ravel(), abs=1e-10)
 
