@@ -47,8 +47,14 @@ class BlockBanded:
             BlockBanded(blocks, size, self.band if band is None else band) if into is None else into
         )
         twin.lower[: self.band + 1] = self.lower
+        twin.lower[self.band + 1 :] = 0.0
         twin._columns[blocks:] = 0.0
         return twin
+
+    def cleared(self) -> "BlockBanded":
+        """Itself with zeros, for memory that is new costs more."""
+        self._columns[:] = 0.0
+        return self
 
     def add_windows(self, first: IntArray, windows: FloatArray, part: slice = slice(None)) -> None:
         """Assembly: adds dense (S, w, n, w, n) windows at block rows first (S,).

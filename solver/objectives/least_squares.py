@@ -260,9 +260,12 @@ class WeightedObjective:
         """The objective at unknowns (K, n_block)."""
         return sum(term.scale * term.value(x) for term in self.terms)
 
-    def expand(self, x: FloatArray) -> tuple[FloatArray, BlockBanded]:
-        """Gradient (K, n_block) and damped Gauss-Newton Hessian at x (K, n_block)."""
-        hessian = self.damping(x).copy(band=ORDER)
+    def expand(
+        self, x: FloatArray, into: BlockBanded | None = None
+    ) -> tuple[FloatArray, BlockBanded]:
+        """Gradient (K, n_block) and damped Gauss-Newton Hessian at x (K, n_block). into: an earlier
+        Hessian of its own, to be overwritten."""
+        hessian = self.damping(x).copy(band=ORDER, into=into)
         gradient = np.zeros_like(x)
         for term in self.terms:
             term.expand(x, gradient, hessian)

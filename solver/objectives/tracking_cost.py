@@ -197,10 +197,14 @@ class TrackingCost:
     def _marker_weight(self) -> float:
         return (self.weights.position + self.weights.shape) / len(self.points)
 
-    def expand(self, x: FloatArray) -> tuple[FloatArray, BlockBanded]:
-        """Gradient (K, n_block) and Gauss-Newton Hessian at x (K, n_block)."""
+    def expand(
+        self, x: FloatArray, into: BlockBanded | None = None
+    ) -> tuple[FloatArray, BlockBanded]:
+        """Gradient (K, n_block) and Gauss-Newton Hessian at x (K, n_block). into: an earlier
+        Hessian of its own, to be overwritten."""
         t = self.transcription
-        gradient, matrix = np.zeros_like(x), BlockBanded(*x.shape)
+        gradient = np.zeros_like(x)
+        matrix = BlockBanded(*x.shape) if into is None else into.cleared()
         forces = t.layout.forces
         gradient[:, forces] = self._force_metric.times(self._force_error(x))
         matrix.lower[:, :, forces, forces] = self._force_metric.lower

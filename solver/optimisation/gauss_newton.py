@@ -4,6 +4,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.status import Status
+from ..numerics.block_banded import BlockBanded
 from .kkt_step import LinearisedProblem, Remains
 from .sqp import FeasibleSet, Objective, Outcome, Progress, Step
 
@@ -31,10 +32,11 @@ def minimise(
     steps: list[Step] = []
     value = objective.value(x)
     last: Remains | None = None
+    hessian: BlockBanded | None = None
     violation, length = 0.0, 1.0
     for _ in range(max_steps):
         rows = feasible.rows(x)
-        gradient, hessian = objective.expand(x)
+        gradient, hessian = objective.expand(x, hessian)
         linearised = feasible.linearise(rows, hessian, last)
         d = linearised.step(rows.value, gradient).d
         last = linearised.remains
@@ -43,7 +45,7 @@ def minimise(
         found = _corrected_step(feasible, objective, linearised, x, d, begin)
         length = found[2] if found else 0.0
         steps.append(Step(stage, violation, length, linearised.worst_owner(rows.value)))
-        del hessian, linearised  # as large as all else together: not two at a time
+        del linearised  # as large as all else together: not two at a time
         if found is None:
             break
         before, (x, value, _) = value, found

@@ -172,9 +172,9 @@ class LinearisedProblem:
     def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":
         """The same with other guard rows, which are the last: they need no new factor."""
         twin = copy(self)
-        kept = ~self.rows.guards
-        sides = np.concatenate([self._sides[kept], np.zeros(len(guards.value))])
-        twin._bound(transcription, Rows.join([self.rows.some(kept), guards]), sides)
+        kept = self.rows.unguarded
+        sides = np.concatenate([self._sides[: len(kept.value)], np.zeros(len(guards.value))])
+        twin._bound(transcription, Rows.join([kept, guards]), sides)
         return twin
 
     def renewed(self) -> "LinearisedProblem":

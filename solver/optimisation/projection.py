@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.status import Status
+from ..numerics.block_banded import BlockBanded
 from .kkt_step import LinearisedProblem, Remains
 from .sqp import NEARLY_FEASIBLE, FeasibleSet, Objective, Outcome, Progress, Step
 
@@ -32,9 +33,10 @@ def project(
     multipliers: FloatArray | None = None
     value, violation = objective.value(x), np.inf
     last: Remains | None = None
+    hessian: BlockBanded | None = None
     for _ in range(max_steps):
         rows = feasible.rows(x)
-        gradient, hessian = objective.expand(x)
+        gradient, hessian = objective.expand(x, hessian)
         linearised = feasible.linearise(rows, hessian, last)
         step = linearised.step(rows.value, gradient, multipliers)
         multipliers = step.multipliers
@@ -49,7 +51,7 @@ def project(
         violation = linearised.violation(feasible.values(x))
         near = violation < NEARLY_FEASIBLE
         last = linearised.remains
-        del hessian, linearised, merit  # as large as all else together: not two at a time
+        del linearised, merit  # as large as all else together: not two at a time
         if length == 0.0 or (near and little):
             status = Status.SOLVED
             break

@@ -91,8 +91,11 @@ class Objective(Protocol):
     def value(self, x: FloatArray) -> float:
         """The objective at unknowns (K, n_block)."""
 
-    def expand(self, x: FloatArray) -> tuple[FloatArray, BlockBanded]:
-        """Its gradient (K, n_block) and a positive definite approximation of its Hessian."""
+    def expand(
+        self, x: FloatArray, into: BlockBanded | None = None
+    ) -> tuple[FloatArray, BlockBanded]:
+        """Its gradient (K, n_block) and a positive definite approximation of its Hessian. into: an
+        earlier one, which may be overwritten."""
 
 
 @dataclass(frozen=True)
@@ -285,7 +288,7 @@ class _ChordIterate:
         if self._linearised is not None:
             self._linearised = self._linearised.widened(t, guards)
         if self._rows is not None:
-            self._rows = Rows.join([self._rows.some(~self._rows.guards), guards])
+            self._rows = Rows.join([self._rows.unguarded, guards])
         kept = np.arange(len(self._value)) < len(self._value) - self._guards
         self._value = np.concatenate([self._value[kept], guards.value])
         joined = worst_violation(guards)

@@ -133,8 +133,8 @@ class Rows:
             np.repeat(np.broadcast_to(slack, len(spans)), each),
         )
 
-    def some(self, which: BoolArray | IntArray) -> "Rows":
-        """Subset by (R,) flags or by indices."""
+    def some(self, which: BoolArray | IntArray | slice) -> "Rows":
+        """Subset by (R,) flags, by indices, or by a slice, which is no copy."""
         return Rows(*[getattr(self, field.name)[which] for field in fields(Rows)])
 
     @property
@@ -146,6 +146,11 @@ class Rows:
     def guards(self) -> BoolArray:
         """(R,) flags of the guard rows."""
         return np.asarray(by_kind(self.kind, {kind: 0.0 for kind in RowKind if kind.guards}) == 0.0)
+
+    @property
+    def unguarded(self) -> "Rows":
+        """Those without the guard rows, which must be the last."""
+        return self.some(slice(len(self.value) - int(self.guards.sum())))
 
     @property
     def tolerance(self) -> FloatArray:

@@ -59,6 +59,16 @@ def test_windows_may_skip_blocks() -> None:
     assert banded.times(x).ravel() == pytest.approx(dense @ x.ravel(), abs=1e-10)
 
 
+def test_a_copy_overwrites_all_of_a_wider_matrix() -> None:
+    banded, dense = random_matrix(2, 6, 2)
+    used = BlockBanded(6, 2, BANDWIDTH + 1)
+    used.lower[:] = 7.0
+    x = np.random.default_rng(3).normal(size=(6, 2))
+    for twin in (banded.copy(band=BANDWIDTH + 1, into=used), banded.copy(into=banded.copy())):
+        assert twin.times(x).ravel() == pytest.approx(dense @ x.ravel(), abs=1e-10)
+    assert not used.cleared().times(x).any()
+
+
 def test_squares_of_rows_are_added_where_their_window_is() -> None:
     """Some windows have fewer rows, or none; the matrix has a wider band than they."""
     random = np.random.default_rng(9)
