@@ -16,7 +16,7 @@ import numpy as np
 from ...solver.data.contacts import Contact, ContactSchedule, Interval, Phase, PhaseKind, numbered
 from ...solver.data.faults import EmptyRange, UnreadableRepairs
 from ...solver.data.problem import AddedContact, ContactEdit, MassTable, MotionProblem, Pin
-from ...solver.data.recording import Recording, Skin, digest
+from ...solver.data.recording import POSE_TOLERANCE, Recording, Skin, digest
 from ...solver.data.requests import Clear, Requests
 from ...solver.data.scene import CLEARANCE, SceneObject
 from ...solver.data.solver_options import HumanRanges, ShapeSource
@@ -62,14 +62,25 @@ def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, fl
     return float(within[0]), float(within[-1])
 
 
-def analysis_key(settings: HangtimeSettings, recording: Recording) -> str:
+def analysis_key(
+    settings: HangtimeSettings, recording: Recording, grid: float = POSE_TOLERANCE
+) -> str:
     """What an analysis is of: the recording, the range where there are frames beyond it, and
-    whether it is a loop's, and its repairs. Raises BadRecipe."""
-    span, key = span_of(settings, recording), digest(recording)
+    whether it is a loop's, and its repairs. grid: of its poses; to their last bit they would be
+    others on another computer. Raises BadRecipe."""
+    span, key = span_of(settings, recording), digest(recording, grid)
     whole = span == (recording.frames[0], recording.frames[-1])
     key = key if whole else f"{key} {span[0]:g} {span[1]:g}"
     key = key if loop_options(settings) is None else f"{key} loop"
     return f"{key}\n{settings.repairs}" if settings.repairs else key
+
+
+def analysis_is_of(settings: HangtimeSettings, recording: Recording) -> bool:
+    """Whether this is what was analysed. Earlier versions kept the key of every bit."""
+    return any(
+        settings.analysed == analysis_key(settings, recording, grid)
+        for grid in (POSE_TOLERANCE, 0.0)
+    )
 
 
 def repaired_since(settings: HangtimeSettings) -> bool:

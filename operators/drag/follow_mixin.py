@@ -6,7 +6,7 @@ import bpy
 
 from ...bridge.accessors import present
 from ...bridge.armature.incremental import Incremental
-from ...bridge.constraints.motion_problem import analysis_key, problem_of
+from ...bridge.constraints.motion_problem import analysis_is_of, problem_of
 from ...bridge.properties.settings import settings_of
 from ...bridge.scene.members import present_members
 from ...bridge.worker_client import shared
@@ -196,8 +196,7 @@ class FollowedDrag(PolledOperator):
             return None
         there = {(m.name, m.role) for m in present_members(settings, present(context.scene))}
         same = {(thing.name, thing.role) for thing in asked.scene.objects} == there
-        analysed = analysis_key(settings, asked.recording) == settings.analysed
-        return asked if same and analysed else None
+        return asked if same and analysis_is_of(settings, asked.recording) else None
 
     def _hear(self, message: Progress | Answer) -> None:
         self._told = True

@@ -12,6 +12,7 @@ from ...bridge.armature.actions import (
 from ...bridge.armature.incremental import Incremental
 from ...bridge.constraints.bone_mapping import chosen_parts
 from ...bridge.constraints.motion_problem import (
+    analysis_is_of,
     analysis_key,
     problem_of,
     span_of,
@@ -177,7 +178,7 @@ def ask_for(context: bpy.types.Context) -> Incremental[Asked]:
     armature = required_armature(context)
     settings = settings_of(armature)
     recording = yield from read_wanted(armature)
-    if analysis_key(settings, recording) != settings.analysed:
+    if not analysis_is_of(settings, recording):
         raise ChangedMeanwhile(armature.name, while_solving=False)
     options = result_options(settings)
     require_return_after(options, span_of(settings, recording)[1])

@@ -12,7 +12,7 @@ from ...bridge.armature.actions import recorded_action
 from ...bridge.armature.incremental import Incremental
 from ...bridge.armature.traces_store import keep
 from ...bridge.constraints.bone_mapping import evidence_of, find_parts, missing_parts
-from ...bridge.constraints.motion_problem import analysis_key, problem_of, span_of, write_analysis
+from ...bridge.constraints.motion_problem import analysis_is_of, problem_of, span_of, write_analysis
 from ...bridge.properties.settings import (
     HangtimeSettings,
     action_settings,
@@ -143,7 +143,7 @@ class UpdateOperator(Adapting, bpy.types.Operator):
     def task(self, context: bpy.types.Context) -> Task:
         armature = required_armature(context)
         recording = yield from read_wanted(armature)
-        if analysis_key(settings_of(armature), recording) != settings_of(armature).analysed:
+        if not analysis_is_of(settings_of(armature), recording):
             yield from analysis(context)
             present(session().solving).again()
         return (yield from super().task(context))

@@ -120,15 +120,20 @@ class PoseTrack:
     root_head: FloatArray
 
 
-def digest(recording: Recording) -> str:
-    """SHA-256, hexadecimal, of name, bones, rest pose, frames, times and poses."""
+def digest(recording: Recording, grid: float = 0.0) -> str:
+    """SHA-256, hexadecimal, of name, bones, rest pose, frames, times and poses. grid: to which
+    these are rounded, 0 not at all: their last bits are the processor's."""
+
+    def content_of(values: FloatArray) -> bytes:
+        return (np.round(values / grid) + 0.0 if grid else values).tobytes()  # no -0.0
+
     content = hashlib.sha256(recording.name.encode())
     for bone in recording.bones:
         content.update(f"\0{bone.name}\0{bone.parent}".encode())
         for rest in (bone.head, bone.tail, bone.rotation):
-            content.update(rest.tobytes())
+            content.update(content_of(rest))
     for samples in (recording.frames, recording.times, recording.heads, recording.rotations):
-        content.update(samples.tobytes())
+        content.update(content_of(samples))
     return content.hexdigest()
 
 

@@ -195,6 +195,7 @@ def test_a_process_that_was_stopped_once_it_had_answered_is_replaced(
     pid = worker.pid
     assert pid is not None
     os.kill(pid, signal.SIGSTOP)
+    os.waitpid(pid, os.WUNTRACED)  # until then it may still hear
     worker.drop()
     time.sleep(0.3)
     answer = worker.ask(RequestKind.ANALYSE, jump, MotionProblem(frames=SPAN)).wait()
