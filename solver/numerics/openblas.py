@@ -150,7 +150,8 @@ def openblas() -> OpenBlas:
     import scipy_openblas32  # loaded where it computes alone, never in Blender's own process
 
     folder = Path(scipy_openblas32.get_lib_dir())
-    return OpenBlas(next(file for file in folder.glob(f"{LIBRARY}*") if file.suffix != ".lib"))
+    files = (file for file in folder.glob(f"{LIBRARY}*") if file.suffix != ".lib")
+    return OpenBlas(next(files, folder / LIBRARY))
 
 
 def product(a: FloatArray, b: FloatArray) -> FloatArray:

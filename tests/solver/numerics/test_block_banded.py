@@ -82,6 +82,17 @@ def test_squares_of_rows_are_added_where_their_window_is() -> None:
     assert banded.times(x).ravel() == pytest.approx(dense @ x.ravel(), abs=1e-10)
 
 
+def test_unknowns_of_very_different_size_keep_their_digits() -> None:
+    """A force's and an angle's differ by 1e9."""
+    banded, dense = random_matrix(4, 9, 6)
+    scale = np.tile(10.0 ** np.linspace(-4.5, 4.5, 6), 9)
+    for j in range(BANDWIDTH + 1):
+        banded.lower[j] *= scale[:6, None] * scale[:6]
+    x = np.random.default_rng(5).normal(size=54)
+    found = banded.factor().solve(((dense @ x) * scale).reshape(9, 6)).ravel()
+    assert found * scale == pytest.approx(x, rel=1e-9)
+
+
 def test_many_right_sides_are_solved_at_once() -> None:
     banded, dense = random_matrix(4, 7, 3)
     b = np.random.default_rng(6).normal(size=(7, 3, 5))
