@@ -21,7 +21,7 @@ PATHS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle
 
 def build(layout: Layout, actor: Actor) -> bpy.types.Object:
     """The rig in an empty scene of its own, at the actor's frames and rate."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     scene = present(bpy.context.scene)
     scene.render.fps, scene.render.fps_base = round(RATE), 1.0
     scene.frame_start, scene.frame_end = int(actor.frames[0]), int(actor.frames[-1])

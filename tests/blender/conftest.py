@@ -12,6 +12,13 @@ if TYPE_CHECKING:
     import bpy
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _factory_settings() -> None:
+    """Whatever who runs the tests prefers."""
+    bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
 @pytest.fixture(scope="session")
 def _enabled() -> Iterator[None]:
     """Once, so that one worker and its fits serve all tests, as they do in an artist's session."""
