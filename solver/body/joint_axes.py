@@ -28,6 +28,9 @@ MAX_MIDDLE_SINE = np.sin(
 PRIOR_TURNS = (0.1, 0.05, -0.1, -0.05)  # rad, of the two expected axes in turn
 CLEARLY = 0.9  # of the error of one pair of axes: another is no better than that by rounding
 PRIOR_NOISE = 1e-6  # rad², likewise where both errors are nothing
+MAX_ALTERNATIONS = 50
+SETTLED = 1e-10  # rad, by which an axis still moves
+ROUNDING = 1e-9  # of a sine, which computed otherwise is another
 
 
 @dataclass(frozen=True)
@@ -101,15 +104,32 @@ def ball_axes(
 
 
 def _search(R: FloatArray, parent: FloatArray, child: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The pair (u, w) of smallest `middle_sine`, by exhaustion over directions in two frames."""
+    """The pair (u, w) of smallest `middle_sine`, by exhaustion over directions in two frames.
+
+    A pair that some of the samples leave worse than all of them leave another is not looked at
+    further.
+    """
     sample = R[:: max(1, len(R) // 80)]
     first, last = (_half_sphere(180) @ frame.T for frame in (parent, child))
     turned = np.einsum("tij,wj->twi", sample, last)
-    worst = np.zeros((len(first), len(last)))
+    some = np.zeros(len(sample), dtype=bool)
+    some[::5] = True
+    least = _middle_sines(first, turned[some])
+    i, j = np.unravel_index(int(np.argmin(least)), least.shape)
+    may = least <= float(np.abs(turned[:, j] @ first[i]).max()) + ROUNDING
+    rows, columns = (np.flatnonzero(may.any(axis=axis)) for axis in (1, 0))
+    rest = _middle_sines(first[rows], turned[~some][:, columns])
+    worst = np.maximum(least[np.ix_(rows, columns)], rest)
+    i, j = np.unravel_index(int(np.argmin(worst)), worst.shape)
+    return first[rows[i]], last[columns[j]]
+
+
+def _middle_sines(first: FloatArray, turned: FloatArray) -> FloatArray:
+    """(U, W) `middle_sine` of first axes (U, 3) and last ones turned at T samples (T, W, 3)."""
+    worst = np.zeros((len(first), turned.shape[1]))
     for block in turned:
         np.maximum(worst, np.abs(first @ block.T), out=worst)
-    i, j = np.unravel_index(int(np.argmin(worst)), worst.shape)
-    return first[i], last[j]
+    return worst
 
 
 def _half_sphere(count: int) -> FloatArray:
@@ -130,7 +150,7 @@ def hinge_axes(R: FloatArray, expected: FloatArray) -> JointAxes:
     turns = rotation_vector(np.swapaxes(mean[None], -1, -2) @ R)
     spread = turns.T @ turns / len(turns) + 0.05**2 * np.outer(expected, expected)
     axis = np.linalg.eigh(spread)[1][:, -1]
-    axis = axis if axis @ expected >= 0 else -axis
+    axis = _towards(expected, axis)
     second = perpendicular(axis)
     after = np.stack([axis, second, np.cross(axis, second)])
     return JointAxes(1, mean @ after.T, after)
@@ -148,17 +168,20 @@ def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Jo
     prior = mean @ rotation_matrix(turns)
     poses = np.concatenate([R, prior])
     weight = np.concatenate([np.full(len(R), 1 / len(R)), np.full(len(prior), 0.1 / len(prior))])
+    # The sum of squares is a form of u u' and v v'.
+    form = np.einsum("t,tik,tjl->ijkl", weight, poses, poses, optimize=True).reshape(9, 9)
     best: tuple[float, FloatArray, FloatArray] | None = None
     for fixed, carried in (expected, expected[::-1]):
         u, v = mean @ fixed, carried
-        for _ in range(50):
-            moved = poses @ v
-            u = np.linalg.eigh(np.einsum("t,ti,tj->ij", weight, moved, moved))[1][:, 0]
-            back = np.swapaxes(poses, -1, -2) @ u
-            v = np.linalg.eigh(np.einsum("t,ti,tj->ij", weight, back, back))[1][:, 0]
+        for _ in range(MAX_ALTERNATIONS):
+            was = v
+            u = _smallest(form @ np.outer(v, v).ravel())
+            v = _smallest(np.outer(u, u).ravel() @ form)
+            if np.abs(np.cross(was, v)).max() < SETTLED:
+                break
         error = float(weight @ ((poses @ v) @ u) ** 2)
         if best is None or error < CLEARLY * best[0] - PRIOR_NOISE:
-            best = (error, u, v)
+            best = (error, _towards(mean @ fixed, u), _towards(carried, v))
     assert best is not None
     _, u, v = best
     v_parent = mean @ v
@@ -169,6 +192,16 @@ def universal_axes(R: FloatArray, expected: tuple[FloatArray, FloatArray]) -> Jo
     row = unit(first_row)
     after = np.stack([row, v, np.cross(row, v)])
     return JointAxes(2, before, after)
+
+
+def _towards(expected: FloatArray, axis: FloatArray) -> FloatArray:
+    """An axis (3,) in that of its two senses which is nearer to the expected one."""
+    return axis if axis @ expected >= 0 else -axis
+
+
+def _smallest(form: FloatArray) -> FloatArray:
+    """(3,) eigenvector of the smallest eigenvalue of a symmetric form (9,)."""
+    return np.asarray(np.linalg.eigh(form.reshape(3, 3))[1][:, 0])
 
 
 def residual_angle(axes: JointAxes, R: FloatArray) -> float:
