@@ -41,14 +41,16 @@ def project(
         step = linearised.step(rows.value, gradient, multipliers)
         multipliers = step.multipliers
         merit = _L1Merit.of(feasible, objective, linearised, multipliers)
-        x, length = _backtrack(merit, merit.combined(value, rows.value), x, step.d)
+        start = _Trial(x, value, rows.value)
+        trial, length = _backtrack(merit, start, step.d)
+        x = trial.x
         worst = linearised.worst_owner(rows.value)
         steps.append(Step(stage, linearised.violation(rows.value), length, worst))
         if progress is not None:
             progress(steps[-1], feasible.motion(x))
-        before, value = value, objective.value(x)
+        before, value = value, trial.objective
         little = abs(before - value) < MIN_PROJECTION_DECREASE * before
-        violation = linearised.violation(feasible.values(x))
+        violation = linearised.violation(trial.rows)
         near = violation < NEARLY_FEASIBLE
         last = linearised.remains
         del linearised, merit  # as large as all else together: not two at a time
@@ -56,6 +58,15 @@ def project(
             status = Status.SOLVED
             break
     return feasible.outcome(x, status, steps, violation)
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """Unknowns (K, n_block), the objective there, and the rows' values (R,)."""
+
+    x: FloatArray
+    objective: float
+    rows: FloatArray
 
 
 @dataclass(frozen=True)
@@ -78,33 +89,31 @@ class _L1Merit:
         penalty = 2.0 * float(np.abs(multipliers).max()) + 1e-9
         return _L1Merit(feasible, objective, linearised, penalty)
 
-    def combined(self, value: float, rows: FloatArray) -> float:
-        """The merit of an objective's value and the rows' values (R,)."""
-        return value + self.penalty * self.linearised.l1_violation(rows)
+    def at(self, x: FloatArray) -> _Trial:
+        """The trial point x (K, n_block)."""
+        return _Trial(x, self.objective.value(x), self.feasible.values(x))
 
-    def correction(self, x: FloatArray) -> FloatArray:
-        """The shortest step (K, n_block) from x to the rows as they were linearised."""
-        return self.linearised.step(self.feasible.values(x)).d
+    def corrected(self, trial: _Trial) -> _Trial:
+        """After the shortest step from a trial point to the rows as they were linearised."""
+        return self.at(trial.x + self.linearised.step(trial.rows).d)
 
-    def __call__(self, x: FloatArray) -> float:
-        return self.combined(self.objective.value(x), self.feasible.values(x))
+    def __call__(self, trial: _Trial) -> float:
+        return trial.objective + self.penalty * self.linearised.l1_violation(trial.rows)
 
 
-def _backtrack(
-    merit: _L1Merit, before: float, x: FloatArray, d: FloatArray
-) -> tuple[FloatArray, float]:
-    """Backtracking line search from x along d (K, n_block); x itself and 0 if nothing lowers it.
+def _backtrack(merit: _L1Merit, start: _Trial, d: FloatArray) -> tuple[_Trial, float]:
+    """Backtracking line search along d (K, n_block); the start itself and 0 if nothing lowers it.
 
     A trial point that fails gets a second-order correction (Nocedal & Wright, 18.3): rows curve,
     and without it good steps are refused (the Maratos effect).
     """
-    length = 1.0
+    length, before = 1.0, merit(start)
     while length > MIN_PROJECTION_LENGTH:
-        trial = x + length * d
+        trial = merit.at(start.x + length * d)
         if merit(trial) < before:
             return trial, length
-        corrected = trial + merit.correction(trial)
+        corrected = merit.corrected(trial)
         if merit(corrected) < before:
             return corrected, length
         length *= 0.5
-    return x, 0.0
+    return start, 0.0
