@@ -9,7 +9,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..drawing.cache import ContentCache
-from .context.layer import Layer, xyz
+from .context.layer import IDENTITY, Layer, xyz
 from .geometry.shapes import Label, Shape, merged, placed
 
 T = TypeVar("T")
@@ -54,7 +54,9 @@ class PictureCache(Generic[T]):
         shapes, labels = [], []
         for layer in layers:
             made, named = self._layers.get(layer.part, layer.content, partial(build, layer))
-            matrix = np.array(layer.matrix.copy(), float)  # numpy cannot look into frozen ones
-            shapes += [placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in made]
+            if layer.matrix != IDENTITY:
+                matrix = np.array(layer.matrix.copy(), float)  # numpy cannot look into frozen ones
+                made = tuple(placed(shape, matrix[:3, :3], matrix[:3, 3]) for shape in made)
+            shapes += made
             labels += [replace(n, place=xyz(layer.matrix @ Vector(n.place))) for n in named]
         return self._upload(merged(shapes)), tuple(labels)

@@ -76,6 +76,15 @@ def test_bodies_span_their_bones_and_look_outwards() -> None:
     assert np.linalg.norm(made.points - Z, axis=1).min() > 0.1
 
 
+def test_bodies_have_the_colours_of_their_own_bones() -> None:
+    heads, tails = np.array([Z, X, Y]), np.array([Z, 2 * X, Y + 0.3 * Z])  # the first has no length
+    faint = np.array([RED, (*RED[:3], 0.5), (*RED[:3], 0.25)])
+    made = solids.bodies(heads, tails, faint)
+    for head, opacity in ((X, 0.5), (Y, 0.25)):
+        at = np.linalg.norm(made.points - head, axis=1).argmin()
+        assert made.colours[at, 3] == pytest.approx(opacity)
+
+
 def test_rings_are_circles_about_their_centres() -> None:
     made = shapes.rings([X, Y], [0.1, 0.2], [RED, RED])
     first, second = np.split(made.points, 2)

@@ -9,7 +9,7 @@ from ....bridge.shapes.limits import directions
 from ....bridge.shapes.mesh import grid_faces
 from ....bridge.shapes.solids import superellipsoid
 from ....bridge.shapes.vectors import across, cross
-from ....solver.arrays import FloatArray
+from ....solver.arrays import BoolArray, FloatArray
 from .shapes import AIRY, Faces, Look, Points, Shape, painted, shades, triangles_of
 
 BALL_AROUND, BALL_ALONG = 12, 7  # faces
@@ -67,7 +67,7 @@ def _copies(look: Look, points: FloatArray, colours: Points, triangles: Faces) -
 
 def arrows(starts: ArrayLike, vectors: ArrayLike, radius: float, colour: ArrayLike) -> Shape:
     """Arrows from starts (N, 3), each as long as its vector (N, 3)."""
-    foot, ahead, length = _directed(starts, vectors)
+    foot, ahead, length, _ = _directed(starts, vectors)
     if not len(foot):
         return none()
     wide, behind, far, out, forth = ARROW_PROFILE.T
@@ -88,19 +88,21 @@ def _arrow_triangles() -> Faces:
 def bodies(
     heads: ArrayLike,
     tails: ArrayLike,
-    colour: ArrayLike,
+    colours: ArrayLike,
     *,
     size: float = 1.0,
     plump: float = 1.0,
     look: Look = Look.GHOST,
 ) -> Shape:
-    """Bones as long pointed solids, from heads to tails (N, 3).
+    """Bones as long pointed solids, from heads to tails (N, 3), in one colour or in one each (N, 4).
 
     size: the figure's, of which 1 is a grown person in these units. plump: times as thick.
     """
-    head, ahead, length = _directed(heads, np.subtract(tails, heads))
+    head, ahead, length, seen = _directed(heads, np.subtract(tails, heads))
     if not len(head):
         return none(look)
+    colour = np.asarray(colours, dtype=float)
+    colour = colour if colour.ndim == 1 else colour[seen]
     out = _around(ahead, BODY_AROUND)
     wide = plump * np.clip(WIDTH * length, THIN * size, THICK * size)
     rim = (head + WAIST * length * ahead)[:, None] + wide[:, None] * out
@@ -119,13 +121,16 @@ def _spindle() -> Faces:
     return np.concatenate([lower, np.stack([k + 1, after, tail], axis=1)])
 
 
-def _directed(starts: ArrayLike, vectors: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Starts (N, 3), unit vectors (N, 3) and lengths (N, 1) of those that have a direction."""
+def _directed(
+    starts: ArrayLike, vectors: ArrayLike
+) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Starts (N, 3), unit vectors (N, 3) and lengths (N, 1) of those that have a direction, and
+    which they are."""
     start = np.asarray(starts, dtype=float).reshape(-1, 3)
     along = np.asarray(vectors, dtype=float).reshape(-1, 3)
     length = np.linalg.norm(along, axis=1, keepdims=True)
     seen = length[:, 0] > SHORTEST_SOLID
-    return start[seen], along[seen] / length[seen], length[seen]
+    return start[seen], along[seen] / length[seen], length[seen], seen
 
 
 def _around(ahead: FloatArray, count: int) -> FloatArray:

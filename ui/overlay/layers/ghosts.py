@@ -40,10 +40,12 @@ def row(view: ViewContext, shown: ShownMotion, part: Part) -> Layer:
 
     def build() -> Iterator[Shape]:
         at = about(frames, core, view.rate) if core is not None else instants(frames, step)
-        for instant in telling(shown.traces.heads, at, TELLING * size):
-            faint = faded(colour, colour[3] * nearness(float(frames[instant]), core, view.rate))
-            heads, tails = shown.traces.heads[instant], shown.traces.tails[instant]
-            yield solids.bodies(heads, tails, faint, size=size, plump=plump)
+        at = telling(shown.traces.heads, at, TELLING * size)
+        near = [nearness(frame, core, view.rate) for frame in frames[at].tolist()]
+        heads, tails = (ends[at] for ends in (shown.traces.heads, shown.traces.tails))
+        faint = np.repeat([faded(colour, colour[3] * share) for share in near], heads.shape[1], 0)
+        heads, tails = (ends.reshape(-1, 3) for ends in (heads, tails))
+        yield solids.bodies(heads, tails, faint, size=size, plump=plump)
 
     return Layer(part, content, build, shown.matrix)
 
