@@ -28,9 +28,18 @@ def axis_rotation(axis: int, angle: FloatArray | float) -> FloatArray:
 
 
 def rotation_vector(R: FloatArray) -> FloatArray:
-    """(..., 3) rotation vectors, rad, of (..., 3, 3) rotations: the logarithm, angle in [0, pi].
+    """(..., 3) rotation vectors, rad, of (..., 3, 3) rotations: the logarithm, angle in [0, pi]."""
+    q = quaternion(R)
+    sine = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
+    angle = 2 * np.arctan2(sine, q[..., :1])
+    scale = np.where(sine > 1e-9, angle / np.maximum(sine, 1e-12), 2.0)
+    return np.asarray(scale * q[..., 1:])
 
-    By way of the quaternion of largest component (Shepperd 1978).
+
+def quaternion(R: FloatArray) -> FloatArray:
+    """(..., 4) unit quaternions w, x, y, z of (..., 3, 3) rotations, w not below 0.
+
+    From the largest component (Shepperd 1978).
     """
     # The largest component keeps this safe at every angle, pi included.
     trace = np.trace(R, axis1=-2, axis2=-1)
@@ -49,11 +58,7 @@ def rotation_vector(R: FloatArray) -> FloatArray:
     best = np.argmax(np.diagonal(q, axis1=-2, axis2=-1), axis=-1)
     quat = np.take_along_axis(q, best[..., None, None], axis=-2)[..., 0, :]
     quat = quat / np.linalg.norm(quat, axis=-1, keepdims=True)
-    quat = np.where(quat[..., :1] < 0, -quat, quat)
-    sine = np.linalg.norm(quat[..., 1:], axis=-1, keepdims=True)
-    angle = 2 * np.arctan2(sine, quat[..., :1])
-    scale = np.where(sine > 1e-9, angle / np.maximum(sine, 1e-12), 2.0)
-    return np.asarray(scale * quat[..., 1:])
+    return np.where(quat[..., :1] < 0, -quat, quat)
 
 
 def rotation_matrix(vector: FloatArray) -> FloatArray:

@@ -128,9 +128,9 @@ class SolidWorld:
     def _look(self, motion: Motion) -> Penetrations:
         placed = placed_at(motion, _grid(motion.duration, self.spacing))
         instants, items = self.surfaces.near(placed)
-        deep = self.surfaces.closest(placed, instants, items).distance < -MOST_NEW
-        instants, items = instants[deep], items[deep]
         now = self.surfaces.closest(placed, instants, items)
+        deep = now.distance < -MOST_NEW
+        instants, items, now = instants[deep], items[deep], now.some(deep)
         lower, side = self._before(placed.times[instants], items)
         over = lower - now.from_side(side, placed.pose, instants).distance
         found = Penetrations(self.names, items, placed.times[instants], over, lower, side)

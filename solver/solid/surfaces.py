@@ -6,12 +6,13 @@ them with what their Jacobian needs. Meshes are in mesh_surface.py, ways out of 
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import accumulate
 from typing import Protocol
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..body.kinematics import Pose
 from ..scene.object_motion import ObjectMotion
 from .segments import closest_shares
@@ -60,6 +61,16 @@ class Closest:
     at: FloatArray
     apart: FloatArray
 
+    def some(self, which: IntArray | BoolArray) -> "Closest":
+        """Of some of the items."""
+        return Closest(
+            self.distance[which],
+            self.normal[which],
+            self.bodies[which],
+            self.at[which],
+            self.apart[which],
+        )
+
     def side(self, pose: Pose, instants: IntArray) -> FloatArray:
         """(N, 3) the normals in the second bodies' frames: on which side the first one is."""
         turns = pose.rotations[instants, self.bodies[:, 1]]
@@ -102,17 +113,45 @@ class OwnLimbs:
     names: tuple[str, ...]
 
     def near(self, placed: Placed) -> tuple[IntArray, IntArray]:
-        """By spheres around the capsules."""
+        """Exactly those that are in each other."""
         start, end = self.shapes.ends(placed.pose)
-        middle = 0.5 * (start + end)
-        reach = 0.5 * np.linalg.norm(self.shapes.end - self.shapes.start, axis=1)
-        reach = (reach + self.shapes.radius)[self.pairs].sum(axis=1)
+        along = end - start
+        instants, items = self._meeting_spheres(start + 0.5 * along)
+        pairs = self.pairs[items]
+        (p, q), (u, v) = ([each[instants, pairs[:, k]] for k in (0, 1)] for each in (start, along))
+        s, t = closest_shares(p, u, q, v)
+        gap = p + s[:, None] * u - q - t[:, None] * v
+        meet = np.einsum("mi,mi->m", gap, gap) < self.shapes.radius[pairs].sum(axis=1) ** 2
+        return instants[meet], items[meet]
+
+    def _meeting_spheres(self, middle: FloatArray) -> tuple[IntArray, IntArray]:
+        """Instants (M,) and items (M,) of capsules whose spheres about their middles (N, C, 3) m
+        meet."""
+        # (N, C, C), of all with all: to gather the pairs would take longer.
+        apart = middle @ np.swapaxes(-2.0 * middle, 1, 2)
+        square = (middle**2).sum(axis=2)
+        apart += square[:, :, None]
+        apart += square[:, None]
+        instants, first, second = np.nonzero(apart < self._reach)
+        return instants, self._item[first, second]
+
+    @cached_property
+    def _reach(self) -> FloatArray:
+        """(C, C) m², within which the spheres of a pair meet; nothing for what is no pair."""
+        half = 0.5 * np.linalg.norm(self.shapes.end - self.shapes.start, axis=1)
+        reach = np.full(self._item.shape, -np.inf)
         first, second = self.pairs.T
-        product = middle @ np.swapaxes(middle, 1, 2)  # (N, C, C): no array of vectors a pair
-        square = np.einsum("nii->ni", product)
-        apart = square[:, first] + square[:, second] - 2.0 * product[:, first, second]
-        instants, items = np.nonzero(apart < reach**2)
-        return instants, items
+        reach[first, second] = (half + self.shapes.radius)[self.pairs].sum(axis=1) ** 2
+        return reach
+
+    @cached_property
+    def _item(self) -> IntArray:
+        """(C, C) items of the pairs."""
+        count = len(self.shapes.radius)
+        item = np.zeros((count, count), dtype=int)
+        first, second = self.pairs.T
+        item[first, second] = np.arange(len(self.pairs))
+        return item
 
     def closest(self, placed: Placed, instants: IntArray, items: IntArray) -> Closest:
         """Between the closest points of the axes, less the radii."""

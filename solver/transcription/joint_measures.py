@@ -15,7 +15,7 @@ from ..body.anatomy import Part
 from ..body.character import Body, Character, Joint
 from ..body.human_limits import MIN_BEND_SINE
 from ..data.row_kinds import RowKind
-from ..numerics.rotations import perpendicular, rotation_vector, unit
+from ..numerics.rotations import perpendicular, quaternion, unit
 from .sampling import Channel, ChannelJacobian, State
 
 ON_AXIS = 1e-9  # sine of the angle from an axis that has no direction across
@@ -165,9 +165,8 @@ class TwistAngle(JointMeasure):
         return np.asarray(by / (w**2 + s**2)[:, None])
 
     def _quaternion(self, R: FloatArray) -> tuple[FloatArray, FloatArray]:
-        turn = rotation_vector(R @ self.zero.T)
-        angle = np.linalg.norm(turn, axis=1)
-        return np.cos(0.5 * angle), 0.5 * np.sinc(angle / (2.0 * np.pi))[:, None] * turn
+        q = quaternion(R @ self.zero.T)
+        return q[:, 0], q[:, 1:]
 
 
 # ---------------------------------------------------------------- of a character's joints

@@ -51,7 +51,7 @@ class PictureCache(Generic[T]):
         self._pictures.clear()
 
     def _picture(self, layers: Sequence[Layer]) -> Picture[T]:
-        shapes, labels = [], []
+        shapes, labels = list[Shape](), list[Label]()
         for layer in layers:
             made, named = self._layers.get(layer.part, layer.content, partial(build, layer))
             if layer.matrix != IDENTITY:

@@ -94,7 +94,7 @@ def bodies(
     plump: float = 1.0,
     look: Look = Look.GHOST,
 ) -> Shape:
-    """Bones as long pointed solids, from heads to tails (N, 3), in one colour or in one each (N, 4).
+    """Bones as long pointed solids, from heads to tails (N, 3), in one colour or each its (N, 4).
 
     size: the figure's, of which 1 is a grown person in these units. plump: times as thick.
     """
