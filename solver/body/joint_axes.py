@@ -116,8 +116,8 @@ def _search(R: FloatArray, parent: FloatArray, child: FloatArray) -> tuple[Float
     some[::5] = True
     least = _middle_sines(first, turned[some])
     i, j = np.unravel_index(int(np.argmin(least)), least.shape)
-    may = least <= float(np.abs(turned[:, j] @ first[i]).max()) + ROUNDING
-    rows, columns = (np.flatnonzero(may.any(axis=axis)) for axis in (1, 0))
+    beyond = least > float(np.abs(turned[:, j] @ first[i]).max()) + ROUNDING
+    rows, columns = (np.flatnonzero(~beyond.all(axis=axis)) for axis in (1, 0))
     rest = _middle_sines(first[rows], turned[~some][:, columns])
     worst = np.maximum(least[np.ix_(rows, columns)], rest)
     i, j = np.unravel_index(int(np.argmin(worst)), worst.shape)

@@ -15,6 +15,7 @@ from .openblas import openblas, product
 BANDWIDTH = 3
 NEGLIGIBLE = 1e-8  # of a column's length
 LOOK = 8  # blocks, after which a substitution looks whether it may end
+REACH = 64  # blocks that there is room for at once; most substitutions need as many
 
 
 class BlockBanded:
@@ -199,7 +200,8 @@ class CholeskyFactor:
         squared, done, columns = np.zeros(m), 0, self.columns[b.first :]
         while done < len(columns):
             until = min(max(done + LOOK, len(b.values)), len(columns))
-            x = np.concatenate([x, np.zeros((until * n + below - len(x), m))])
+            if len(x) < until * n + below:
+                x = np.concatenate([x, np.zeros((REACH * n + below, m))])
             openblas().forward(columns[done:until], x[done * n :])
             squared += (x[done * n : until * n] ** 2).sum(axis=0)
             tail = (x[until * n - below : until * n] ** 2).sum(axis=0)

@@ -46,11 +46,10 @@ class PlaceTrajectory:
 
     def velocity(self, times: FloatArray) -> FloatArray:
         """(U, 3) velocities at instants (U,) s, m/s."""
-        first, last = self.times[0], self.times[-1]
-        before, after = (
-            np.clip(times + step, first, last) for step in (-VELOCITY_STEP, VELOCITY_STEP)
-        )
-        return np.asarray((self.at(after) - self.at(before)) / (after - before)[:, None])
+        both = np.stack([times - VELOCITY_STEP, times + VELOCITY_STEP])
+        both = both.clip(self.times[0], self.times[-1])
+        before, after = self.at(both.ravel()).reshape(2, -1, 3)
+        return np.asarray((after - before) / (both[1] - both[0])[:, None])
 
 
 def interpolate_places(times: FloatArray, places: FloatArray, at: FloatArray) -> FloatArray:

@@ -166,7 +166,7 @@ class TwistAngle(JointMeasure):
 
     def _quaternion(self, R: FloatArray) -> tuple[FloatArray, FloatArray]:
         q = quaternion(R @ self.zero.T)
-        return q[:, 0], q[:, 1:]
+        return q[:, 0].copy(), q[:, 1:]  # side by side: see rotations.py
 
 
 # ---------------------------------------------------------------- of a character's joints
