@@ -34,7 +34,6 @@ STALL_WINDOW = 6  # steps in which the violation has to halve
 NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
 RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
 GUARDS_JOIN = 1e2  # times the tolerances; from further off steps that keep guards may lead astray
-GUARDS_AGAIN = 20.0  # likewise, for more of them: later they cost a step more, sooner a look
 
 
 @dataclass(frozen=True)
@@ -169,15 +168,15 @@ def restore(
     steps gain an order of magnitude, the next one uses the same Jacobian and factor, which costs a
     third of a new one (chord steps). enough: the violation at which it ends, of a motion that other
     steps go on from. max_turn: rad, of a joint in one step. wider: asked where the rows nearly
-    hold (GUARDS_JOIN), and from then on where they do more nearly (GUARDS_AGAIN), for a set with
-    more guard rows to go on in, or the same; with more rows the next step has a new Jacobian.
+    hold, and where they hold, for a set with more guard rows to go on in, or the same; with more
+    rows the next step has a new Jacobian.
     """
     iterate, near = _ChordIterate(feasible, metric, x, max_turn), GUARDS_JOIN
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
         if wider is not None and iterate.violation <= near:
-            before, feasible, near = feasible, wider(feasible, iterate.x), GUARDS_AGAIN
+            before, feasible, near = feasible, wider(feasible, iterate.x), enough
             if feasible is not before:
                 iterate.widen(feasible)
         if iterate.violation <= enough:
