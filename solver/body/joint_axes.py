@@ -110,7 +110,7 @@ def _search(R: FloatArray, parent: FloatArray, child: FloatArray) -> tuple[Float
     further.
     """
     sample = R[:: max(1, len(R) // 80)]
-    first, last = (_half_sphere(180) @ frame.T for frame in (parent, child))
+    first, last = (half_sphere(180) @ frame.T for frame in (parent, child))
     turned = np.einsum("tij,wj->twi", sample, last)
     some = np.zeros(len(sample), dtype=bool)
     some[::5] = True
@@ -132,7 +132,7 @@ def _middle_sines(first: FloatArray, turned: FloatArray) -> FloatArray:
     return worst
 
 
-def _half_sphere(count: int) -> FloatArray:
+def half_sphere(count: int) -> FloatArray:
     """(count, 3) directions spread evenly over a half sphere (a Fibonacci spiral), poles first."""
     k = np.arange(count) + 0.5
     z = 1 - k / count

@@ -6,7 +6,9 @@ from hangtime.solver.arrays import FloatArray
 from hangtime.solver.body.joint_axes import (
     JointAxes,
     ball_axes,
+    half_sphere,
     hinge_axes,
+    middle_sine,
     residual_angle,
     universal_axes,
 )
@@ -63,6 +65,22 @@ def test_tumbling_stays_clear_of_gimbal_lock(name: str, turned: int) -> None:
     R = frame @ TUMBLES[name]
     angles = check_ball(ball_axes(R), R, 60.0)
     assert np.abs(angles[-1] - angles[0]).max() > np.pi  # whole turns add up, none is lost
+
+
+@pytest.mark.parametrize("name", [*TUMBLES, "moderate", "hardly any"])
+def test_the_pair_found_is_the_best_of_all(name: str) -> None:
+    sizes = {"moderate": 1.2, "hardly any": 0.05}
+    R = TUMBLES.get(name)
+    if R is None:
+        random = np.random.default_rng(0)
+        angles = [smooth_angles(random, sizes[name]) for _ in range(3)]
+        R = rotation_matrix(np.stack(angles, axis=1))
+    R = R[::3]  # few enough that the search looks at all
+    axes, directions = ball_axes(R), half_sphere(180)
+    found = middle_sine(R, axes.before[:, 0], axes.after[2])
+    turned = np.swapaxes(R @ directions.T, 1, 2)  # (T, W, 3)
+    best = np.max([np.abs(directions @ each.T) for each in turned], axis=0).min()
+    assert found == pytest.approx(best, abs=1e-9)
 
 
 def test_preferred_axes_stand_while_they_serve() -> None:

@@ -83,13 +83,13 @@ def test_distances_are_mujocos() -> None:
     np.testing.assert_allclose(found.distance, theirs, atol=2e-6)
 
 
-def test_all_that_is_deep_is_near() -> None:
+def test_what_is_deep_is_found_and_nothing_else() -> None:
     placed = placed_at(folded(), TIMES)
     instants, items = every(placed)
     deep = surfaces().closest(placed, instants, items).distance < 0.0
     near = set(zip(*(each.tolist() for each in surfaces().near(placed)), strict=True))
-    assert set(zip(instants[deep].tolist(), items[deep].tolist(), strict=True)) <= near
-    assert len(near) < 0.5 * len(items)
+    assert near == set(zip(instants[deep].tolist(), items[deep].tolist(), strict=True))
+    assert near
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -97,7 +97,9 @@ def test_the_jacobian_is_the_distances_derivative(seed: int) -> None:
     motion = folded()
     t = motion.transcription
     placed = placed_at(motion, TIMES)
-    instants, items = surfaces().near(placed)
+    instants, items = every(placed)
+    near = surfaces().closest(placed, instants, items).distance < 0.05  # rows keep them apart, too
+    instants, items = instants[near], items[near]
     nothing = np.zeros(len(items))
     where = Penetrations(
         surfaces().names, items, TIMES[instants], nothing, nothing, np.zeros((len(items), 3))
