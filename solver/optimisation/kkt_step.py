@@ -24,9 +24,9 @@ from .bounded_qp import BoundedStep
 
 # Velocities are weighed against positions by the time in which they would move as far.
 ROW_SCALES = {RowKind.PIN_SPEED: 30.0}
-# With ten times as much rounding leaves a step few digits in the directions that cost least, with a
-# tenth of it the sweeps of weak rows do not end in time.
-PENALTY = 3e3
+# Ten times as much saves no more steps and takes digits in the directions that cost least; with a
+# tenth the sweeps of weak rows do not end in time.
+PENALTY = 2e4
 MAX_SWEEPS = 8
 SWEEP_REDUCTION = 1e-3  # of the equality residual, at which sweeps end
 SWEEP_REST = 0.25  # of a tolerance, at which sweeps end too: closer, weak rows cost long ways

@@ -33,7 +33,9 @@ MIN_RESTORATION_LENGTH = 0.005
 STALL_WINDOW = 6  # steps in which the violation has to halve
 NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
 RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
-GUARDS_JOIN = 1e2  # times the tolerances; from further off steps that keep guards may lead astray
+# Times the tolerances: from further off steps that keep guards may lead astray; and once more, nearer,
+# for what joins where all the rest holds costs steps of its own.
+GUARDS_JOIN = (1e2, 2e1)
 
 
 @dataclass(frozen=True)
@@ -167,16 +169,18 @@ def restore(
     taken back (the watchdog technique of Chamberlain, Powell, Lemarechal and Pedersen 1982). While
     steps gain an order of magnitude, the next one uses the same Jacobian and factor, which costs a
     third of a new one (chord steps). enough: the violation at which it ends, of a motion that other
-    steps go on from. max_turn: rad, of a joint in one step. wider: asked where the rows nearly
-    hold, and where they hold, for a set with more guard rows to go on in, or the same; with more
-    rows the next step has a new Jacobian.
+    steps go on from. max_turn: rad, of a joint in one step. wider: asked twice where the rows
+    nearly hold, and where they hold, for a set with more guard rows to go on in, or the same; with
+    more rows the next step has a new Jacobian.
     """
-    iterate, near = _ChordIterate(feasible, metric, x, max_turn), GUARDS_JOIN
+    iterate = _ChordIterate(feasible, metric, x, max_turn)
+    join, asked = [enough, *reversed(GUARDS_JOIN)], None  # asked: x, where nothing new can join
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
-        if wider is not None and iterate.violation <= near:
-            before, feasible, near = feasible, wider(feasible, iterate.x), enough
+        if wider is not None and iterate.x is not asked and iterate.violation <= join[-1]:
+            before, feasible, asked = feasible, wider(feasible, iterate.x), iterate.x
+            join = join[: max(len(join) - 1, 1)]
             if feasible is not before:
                 iterate.widen(feasible)
         if iterate.violation <= enough:
