@@ -13,7 +13,7 @@ from ...solver.data.recording import Recording
 from ...solver.data.scaling import scaled_recording
 from ...solver.doctor.figure import figure_of
 from ...solver.doctor.finding import FindingKind
-from ...solver.doctor.local_poses import LocalPoses
+from ...solver.doctor.local_poses import LocalPoses, angles_between
 from ...solver.doctor.repair import turned
 from ...solver.doctor.repairs import Repairs, UpAxis
 from ...solver.numerics.interpolation import interpolate
@@ -103,6 +103,48 @@ def spiked(degrees: float) -> Damage:
         return Damaged(local.posed(recording), recording)
 
     return Damage(f"spikes of {degrees:g}°", FindingKind.SPIKE, do)
+
+
+def burst(frames: int) -> Damage:
+    """An arm off by 50° on some frames."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        local, bone = LocalPoses.of(recording), _bone(recording, Part.UPPER_ARM)
+        first = int(rng.integers(12, len(recording.frames) - frames - 12))
+        axis = rng.normal(size=3)
+        turn = rotation_matrix(np.radians(50.0) * axis / np.linalg.norm(axis))
+        own = local.rotations[first : first + frames, bone]
+        local.rotations[first : first + frames, bone] = own @ turn
+        return Damaged(local.posed(recording), recording)
+
+    return Damage(f"spike of 50°, {frames} frames", FindingKind.SPIKE, do)
+
+
+def joined(metres: float) -> Damage:
+    """The whole body elsewhere from some frame on, as where two takes were joined."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        quarter = len(recording.frames) // 4
+        heads = recording.heads.copy()
+        heads[int(rng.integers(quarter, 3 * quarter)) :] += metres * np.array([0.8, 0.6, 0.0])
+        return Damaged(replace(recording, heads=heads), recording)
+
+    return Damage(f"jump of {metres:g} m", FindingKind.JUMP, do)
+
+
+def exchanged(frames: int) -> Damage:
+    """Left and right thigh exchanged on some frames, as video capture mistakes them, from where
+    they differ most."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        local, thighs = LocalPoses.of(recording), figure_of(recording).of(Part.THIGH)
+        turns = local.rotations[:, thighs]
+        apart = angles_between(turns[:, 0], turns[:, 1])
+        first = 12 + int(np.argmax(apart[12 : -frames - 12]))
+        local.rotations[first : first + frames, thighs] = turns[first : first + frames, ::-1]
+        return Damaged(local.posed(recording), recording)
+
+    return Damage(f"thighs exchanged, {frames} frames", FindingKind.JUMP, do)
 
 
 def flipped(frames: int) -> Damage:
@@ -259,6 +301,9 @@ DAMAGES = (
     *map(lain, (UpAxis.Y, UpAxis.X)),
     *map(begun_at_rest, (1, 5)),
     *map(spiked, (20.0, 45.0, 120.0)),
+    *map(burst, (2, 5)),
+    *map(joined, (0.1, 0.4)),
+    exchanged(30),
     *map(flipped, (2, 12)),
     *map(held, (1, 6)),
     *map(dropped, (1, 4)),

@@ -12,17 +12,21 @@ from ..body.character import build_character
 from ..data.faults import ClipTooShort, computable
 from ..data.recording import Recording, Skin
 from ..skeleton.bind_pose import bind_frames
-from .falls import find_leaps, find_scale, refined
+from .falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale, refined
 from .figure import figure_of
 from .finding import Finding, FindingKind
 from .footing import find_footing
+from .frames.flips import find_flips
+from .frames.jumps import find_jumps
+from .frames.missing import find_dropped, find_held
+from .frames.spikes import find_spikes
 from .lengths import find_lengths
-from .noise import find_noise
+from .noise import REACH, find_noise
 from .repair import placed_skin, repaired
 from .repairs import Repairs
-from .single_frames import find_dropped, find_flips, find_held, find_spikes
 from .upright import find_up
 
+GAPS = (FindingKind.DROPPED_FRAMES, FindingKind.JUMP)
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
 FEWEST_FRAMES = 5  # which have a fourth difference
 SLOWEST = 1.0  # s from frame to frame, Blender's slowest rate: a wrong one is told, and its remedy
@@ -77,6 +81,9 @@ def diagnose(
     dropped = find_dropped(recording)
     if dropped is not None:
         found.append(dropped)  # and not cured: what else is found is told by the frames that are
+    jumps = find_jumps(recording, figure, count - len(recording.frames))
+    if jumps is not None and not _are_at(jumps, _places(found, FindingKind.DROPPED_FRAMES)):
+        found.append(jumps)
     for find in (find_lengths, find_noise):
         recording = cured(recording, find(recording, figure))
 
@@ -86,17 +93,19 @@ def diagnose(
         return perform(placed, character, placed_skin(skin, repairs))
 
     performance = performed(Repairs())
-    scale = find_scale(performance)
+    trusted = _trusted(found)
+    scale = find_scale(performance, trusted)
     if scale is not None:
         performance = performed(_remedy(scale))
         if scale.kind is FindingKind.SIZE:
             # Where soles begin and how high feet are lifted is told best at the right size.
-            scale = refined(scale, performance)
+            scale = refined(scale, performance, trusted)
             performance = performed(_remedy(scale))
         found.append(scale)
     height = performance.character.height
     leaps = find_leaps(performance, count - len(recording.frames))
-    if leaps is not None and not _are_gaps(leaps, found):
+    near = LEAP_WINDOW * recording.rate
+    if leaps is not None and not _are_at(leaps, _places(found, *GAPS), near):
         found.append(leaps)
     found += find_footing(performance)
     fitting = None
@@ -110,11 +119,24 @@ def _remedy(finding: Finding | None) -> Repairs:
     return (finding and finding.remedy) or Repairs()
 
 
-def _are_gaps(leaps: Finding, found: list[Finding]) -> bool:
-    """Whether the body leaps nowhere but over frames that were found to be missing."""
-    dropped = (finding for finding in found if finding.kind is FindingKind.DROPPED_FRAMES)
-    gaps = [span for finding in dropped for span in finding.frames]
-    return all(any(a <= end and start <= b for start, end in gaps) for a, b in leaps.frames)
+def _trusted(found: list[Finding]) -> Trusted:
+    """The falls that tell the clock; of what was smoothed those that are longer than its window."""
+    noisy = any(finding.kind is FindingKind.NOISE for finding in found)
+    fewest = 2 * REACH + 1 if noisy else FEWEST
+    return Trusted(fewest, _places(found, FindingKind.HELD_FRAMES, *GAPS))
+
+
+def _places(found: list[Finding], *kinds: FindingKind) -> Spans:
+    """Where something of these kinds was found."""
+    return tuple(span for finding in found if finding.kind in kinds for span in finding.frames)
+
+
+def _are_at(finding: Finding, places: Spans, near: float = 0.0) -> bool:
+    """Whether nothing of a finding is elsewhere. near: frames, by which it may miss them."""
+    return all(
+        any(a - near <= end and start <= b + near for start, end in places)
+        for a, b in finding.frames
+    )
 
 
 def _require_length(recording: Recording) -> None:

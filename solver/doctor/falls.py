@@ -23,6 +23,9 @@ FEWEST = 6  # frames of a fall
 SHORTEST = 0.06  # s, at the recording's own clock, or as much as that many frames
 ROUGH = 0.03  # of the fall's height, rms, by which it may miss a parabola, and
 ROUGH_BY = 0.002  # of the figure's height
+VAGUE = (
+    0.1  # of the acceleration: its standard deviation by what misses the parabola, as white noise
+)
 OFF = 0.12  # of a scale of time; a run's short flights are 5 % off in honest recordings
 USUAL_NEAR, PRECISE_FALL = 0.035, 0.35  # a fall of 0.35 s tells the rate to 3.5 %, half of it 7 %
 # A wrong size is mostly a wrong unit: metres, centimetres, millimetres, inches, feet.
@@ -47,8 +50,29 @@ class Falls:
     frames: tuple[tuple[float, float], ...]
 
 
-def falls_of(performance: Performance) -> Falls | None:
-    """The falls of a recording; None where there are none that are parabolas."""
+Spans = tuple[tuple[float, float], ...]
+"""First and last scene frames of each."""
+
+
+@dataclass(frozen=True)
+class Trusted:
+    """Which falls tell a clock. fewest: frames of one. but: where frames are held or missing, so
+    that they are not the clock's."""
+
+    fewest: int = FEWEST
+    but: Spans = ()
+
+    def holds(self, count: int, span: tuple[float, float]) -> bool:
+        """Whether one of so many frames, from the first to the last of a span, does."""
+        first, last = span
+        return count >= self.fewest and not any(a <= last and first <= b for a, b in self.but)
+
+
+ALL = Trusted()
+
+
+def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
+    """The falls of a recording that are trusted; None where there are none that are parabolas."""
     points, floor = contact_points(performance)
     feet = [point.track[:, 2] for point in points.values() if point.kind is not PointKind.HAND]
     height = performance.character.height
@@ -57,14 +81,16 @@ def falls_of(performance: Performance) -> Falls | None:
     found, spans = [], []
     for first, last in runs(up):
         cut_off = first == 0 or last == len(up) - 1
-        if cut_off or last - first + 1 < FEWEST or times[last] - times[first] < SHORTEST:
+        span = float(frames[first]), float(frames[last])
+        short = times[last] - times[first] < SHORTEST
+        if cut_off or short or not trusted.holds(last - first + 1, span):
             continue
         clock, path = times[first : last + 1] - times[first], com[first : last + 1]
         curve = np.polyfit(clock, path, 2)
         missed = float(np.sqrt(np.mean((path - np.polyval(curve, clock)) ** 2)))
         if curve[0] < 0.0 and missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4):
             found.append((_acceleration(clock, path), float(clock[-1])))
-            spans.append((float(frames[first]), float(frames[last])))
+            spans.append(span)
     if not found:
         return None
     accelerations, durations = np.array(found).T
@@ -83,9 +109,9 @@ def _acceleration(clock: FloatArray, path: FloatArray) -> float:
     return -float(np.polyfit(middles, np.diff(path) / np.diff(clock), 1)[0])
 
 
-def find_scale(performance: Performance) -> Finding | None:
+def find_scale(performance: Performance, trusted: Trusted = ALL) -> Finding | None:
     """A wrong scale of time or of size: whose it is the figure's height tells."""
-    height, falls = performance.character.height, falls_of(performance)
+    height, falls = performance.character.height, falls_of(performance, trusted)
     person = HEIGHTS[0] < height < HEIGHTS[1]
     if falls is None:
         if person:
@@ -105,13 +131,13 @@ def find_scale(performance: Performance) -> Finding | None:
     return Finding(FindingKind.SIZE, height, "m", falls.frames, "", sized, timed)
 
 
-def refined(size: Finding, resized: Performance) -> Finding:
+def refined(size: Finding, resized: Performance, trusted: Trusted = ALL) -> Finding:
     """A finding of a wrong size with a factor that makes the fall right, by the falls of the
     recording as its remedy leaves it, or else with that of a wrong unit, where it is as near."""
     if size.remedy is None:
         return size
     scale, near = size.remedy.scale, OFF
-    falls, height = falls_of(resized), resized.character.height
+    falls, height = falls_of(resized, trusted), resized.character.height
     if falls is not None:
         factor = STANDARD_GRAVITY / falls.acceleration
         if HEIGHTS[0] < height * factor < HEIGHTS[1]:

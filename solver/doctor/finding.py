@@ -22,6 +22,7 @@ class FindingKind(Enum):
     TIME_SCALE = "time scale"
     SIZE = "size"
     MASS = "mass"
+    JUMP = "jump"
     LEAP = "leap"
     FLOOR = "floor"
     SLIDING = "sliding"

@@ -15,11 +15,13 @@ from ..data.scaling import scaled_recording
 from ..skeleton.bind_pose import bind_frames
 from ..skeleton.mirror import mirrored
 from .figure import Figure, figure_of
+from .frames.flips import unflipped
+from .frames.missing import held_frames
+from .frames.spikes import unsound_spikes
 from .lengths import kept_lengths
 from .local_poses import LocalPoses
 from .noise import smoothed
 from .repairs import MissingFrames, Repairs
-from .single_frames import held_frames, unflipped, unsound_spikes
 from .upright import turn_upright
 
 

@@ -33,8 +33,8 @@ MIN_RESTORATION_LENGTH = 0.005
 STALL_WINDOW = 6  # steps in which the violation has to halve
 NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
 RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
-# Times the tolerances: from further off steps that keep guards may lead astray; and once more, nearer,
-# for what joins where all the rest holds costs steps of its own.
+# Times the tolerances: from further off steps that keep guards may lead astray; and once more,
+# nearer, for what joins where all the rest holds costs steps of its own.
 GUARDS_JOIN = (1e2, 2e1)
 
 

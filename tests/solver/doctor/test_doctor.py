@@ -8,10 +8,13 @@ import pytest
 from hangtime.devtools.doctor.damages import (
     Damage,
     begun_at_rest,
+    burst,
     dropped,
+    exchanged,
     flipped,
     gap,
     held,
+    joined,
     lain,
     noisy,
     raised,
@@ -39,11 +42,14 @@ from hangtime.solver.doctor.feet import FootFaultKind, find_feet
 from hangtime.solver.doctor.figure import Figure, figure_of
 from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.doctor.footing import find_footing
+from hangtime.solver.doctor.frames.flips import find_flips
+from hangtime.solver.doctor.frames.jumps import find_jumps
+from hangtime.solver.doctor.frames.missing import find_dropped, find_held
+from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.lengths import find_lengths
 from hangtime.solver.doctor.noise import find_noise
 from hangtime.solver.doctor.repair import as_asked, filled, repaired
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
-from hangtime.solver.doctor.single_frames import find_dropped, find_flips, find_held, find_spikes
 from hangtime.solver.doctor.upright import find_up
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
@@ -71,6 +77,7 @@ def of_poses(recording: Recording) -> list[Finding]:
     for find in (
         *(partial(each, figure=figure()) for each in (find_flips, find_spikes)),
         *(find_held, find_dropped),
+        partial(find_jumps, figure=figure()),
         *(partial(each, figure=figure()) for each in (find_lengths, find_noise)),
     ):
         if (finding := find(recording)) is not None:
@@ -87,6 +94,9 @@ def test_a_clean_recording_has_no_findings() -> None:
     "damage",
     [
         *map(spiked, (20.0, 120.0)),
+        *map(burst, (2, 5)),
+        joined(0.1),
+        exchanged(30),
         held(6),
         stretched(0.05),
         noisy(3.0, 1.0),
@@ -148,13 +158,14 @@ def test_a_spike_is_told_with_its_bone_and_frame() -> None:
     ("damage", "cm"),
     [
         (spiked(120.0), 0.05),
+        (burst(5), 0.1),
         (flipped(12), 0.1),
         (held(6), 0.05),
         (stretched(0.15), 0.15),
         (gap(1), 0.01),
         (gap(6), 0.1),
     ],
-    ids=["spikes", "flips", "held frames", "bone lengths", "a missing frame", "a gap"],
+    ids=["spikes", "a burst", "flips", "held frames", "bone lengths", "a missing frame", "a gap"],
 )
 def test_the_remedy_brings_the_original_back(damage: Damage, cm: float) -> None:
     damaged = damage.of(jump())

@@ -1,0 +1,1 @@
+"""Frames that do not belong to those around them."""

@@ -1,0 +1,75 @@
+"""Poses that are held amid a movement, and frames that are missing."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...arrays import BoolArray, FloatArray
+from ...data.problem import Mend
+from ...data.recording import Recording
+from ..finding import Finding, FindingKind
+from ..local_poses import runs, spans
+from ..repairs import MissingFrames, Repairs
+
+HELD = 1e-5  # m and entries of a matrix; a pose that changes by less is held
+MOVING = 1e-3  # m, of the farthest joint from a frame to the next, beside a pose that is held
+LONGEST_HELD = 0.25  # s; a longer one is a pause
+DROPPED = (0.8, 10.5)  # further than the frames beside: by one to ten missing frames
+ALIKE = 0.15  # of a step, by which it may differ from its neighbours' way
+
+
+def held_frames(recording: Recording) -> BoolArray:
+    """(T,) frames in which a body that moves before and after has the pose of the frame before."""
+    steps = _steps(recording)
+    turned = np.abs(np.diff(recording.rotations, axis=0)).max(axis=(1, 2, 3))
+    still = (steps < HELD) & (turned < HELD)
+    out = np.zeros(len(recording.frames), bool)
+    for first, last in runs(still):
+        inside = first > 0 and last < len(steps) - 1
+        short = (last - first + 1) / recording.rate <= LONGEST_HELD
+        if inside and short and min(steps[first - 1], steps[last + 1]) > MOVING:
+            out[first + 1 : last + 2] = True
+    return out
+
+
+def find_held(recording: Recording) -> Finding | None:
+    """Poses that are held, or doubled, amid a movement."""
+    held = held_frames(recording)
+    if not held.any():
+        return None
+    remedy = Repairs(mend=(Mend.HELD_FRAMES,))
+    count = float(held.sum())
+    return Finding(FindingKind.HELD_FRAMES, count, "frames", spans(recording, held), "", remedy)
+
+
+def find_dropped(recording: Recording) -> Finding | None:
+    """Steps of the whole body as long as two to eleven of those beside them: frames are missing."""
+    moves = np.diff(recording.heads, axis=0).reshape(len(recording.frames) - 1, -1)
+    if len(moves) < 3:
+        return None
+    usual = 0.5 * (moves[:-2] + moves[2:])
+    own = moves[1:-1]
+    square = np.maximum(np.einsum("ti,ti->t", usual, usual), 1e-12)
+    times = np.einsum("ti,ti->t", own, usual) / square
+    rest = np.linalg.norm(own - times[:, None] * usual, axis=1)
+    alike = rest < ALIKE * np.linalg.norm(own, axis=1)
+    whole = (times - 1.0 > DROPPED[0]) & (times - 1.0 < DROPPED[1])
+    fast = np.abs(usual).max(axis=1) > MOVING
+    counts = np.zeros(len(recording.frames), int)  # before each frame
+    counts[2:-1] = np.where(whole & alike & fast, np.round(times - 1.0), 0)
+    after = np.flatnonzero(counts)
+    if len(after) == 0:
+        return None
+    missing = tuple(MissingFrames(round(recording.frames[t - 1]), int(counts[t])) for t in after)
+    return Finding(
+        FindingKind.DROPPED_FRAMES,
+        float(counts.sum()),
+        "frames",
+        spans(recording, counts > 0),
+        remedy=Repairs(missing=missing),
+    )
+
+
+def _steps(recording: Recording) -> FloatArray:
+    """(T - 1,) m, by which the joint that moves most does so from a frame to the next."""
+    return np.asarray(np.linalg.norm(np.diff(recording.heads, axis=0), axis=2).max(axis=1))
