@@ -168,6 +168,15 @@ def control_poses(
 
     parts = yield from in_slices(track.frames, look, showing)
     solved = [each for part in parts for each in part]
+
+    def look_again(frames: FloatArray) -> list[tuple[int, Inverted]]:
+        with posing.kept():
+            return [(t, inverse.solve_again(t)) for t in (index[float(f)] for f in frames)]
+
+    unmet = track.frames[inverse.unmet()]
+    for part in (yield from in_slices(unmet, look_again, showing)) if len(unmet) else ():
+        for t, found in part:
+            solved[t] = found
     bases = np.stack([each.bases for each in solved])
     return ControlPoses(
         {name: bases[:, c] for c, name in enumerate(rig.controls)},

@@ -96,6 +96,11 @@ def _difference(before: FloatArray, after: FloatArray) -> FloatArray:
     return changes
 
 
+def _enough(beside: float) -> float:
+    """Error, m, that a frame may be left with beside one that was left with so much."""
+    return min(max(SUSPECT, MORE_LEFT * beside), LOST)
+
+
 class Inverse:
     """Solves frames one after the other; each begins with what the one before needed."""
 
@@ -109,6 +114,7 @@ class Inverse:
         self._acted: BoolArray | None = None
         self._met: Posed | None = None  # at the last frame that was met
         self._left = 0.0  # m of error, at the last frame
+        self._needed: dict[int, tuple[FloatArray, _Look]] = {}  # at each frame, by index
         self.tries = 0
 
     def solve(self, t: int) -> Inverted:
@@ -121,7 +127,7 @@ class Inverse:
         looks = [self._look(animated, start, t) for start in (self._offsets, ahead)]
         nearer = looks[1].size < looks[0].size
         offsets, best = self._solved(animated, ahead if nearer else self._offsets, t)
-        enough = min(max(SUSPECT, MORE_LEFT * self._left), LOST)
+        enough = _enough(self._left)
         for start in self._other_starts(animated, offsets, best, t):
             if best.size <= enough:
                 break
@@ -132,8 +138,35 @@ class Inverse:
         self._change = _difference(self._offsets, offsets) if met else np.zeros_like(offsets)
         self._met, self._left = best.posed if met else self._met, best.size
         self._offsets = offsets
-        off, turned = best.by_body
-        return Inverted(best.bases, off, turned / LEVER)
+        return self._noted(t, offsets, best)
+
+    def unmet(self) -> list[int]:
+        """Indices of the frames that were left with more than the next one, the last one first."""
+        left = {t: found.size for t, (_, found) in self._needed.items()}
+        lost = (t for t in left if t + 1 in left and left[t] > _enough(left[t + 1]))
+        return sorted(lost, reverse=True)
+
+    def solve_again(self, t: int) -> Inverted:
+        """Solve the frame of index t, which was not met, once more from what the next one needed,
+        and from there with all controls beside their bodies as then: where a limb is straight, what
+        was before does not tell which way it bends afterwards."""
+        self._posing.go_to(float(self._targets.frames[t]))
+        animated = self._posing.bases()
+        self._try_where_switched(animated)
+        offsets, best = self._needed[t]
+        after, then = self._needed[t + 1]
+        every = np.ones(best.by_body.shape[1], dtype=bool)
+        for start in (after, self._beside(animated, after, t, every, then.posed)):
+            other = self._solved(animated, start, t)
+            if other[1].size < best.size:
+                offsets, best = other
+        return self._noted(t, offsets, best)
+
+    def _noted(self, t: int, offsets: FloatArray, found: _Look) -> Inverted:
+        """What a frame needs, which is kept."""
+        self._needed[t] = offsets, found
+        off, turned = found.by_body
+        return Inverted(found.bases, off, turned / LEVER)
 
     def _other_starts(
         self, animated: FloatArray, offsets: FloatArray, found: _Look, t: int

@@ -16,8 +16,8 @@ from ...solver.doctor.repair import repaired
 from .damages import Damage
 
 # What a clip truly has, undamaged, is no false alarm: the dancer's hips rise by 0.12 m in 50 ms and
-# stop at once.
-OWN_FAULTS = {"rokoko_jesse_dance": (FindingKind.LEAP,)}
+# stop at once, which at 30 Hz is a jump.
+OWN_FAULTS = {"rokoko_jesse_dance": (FindingKind.LEAP, FindingKind.JUMP)}
 
 
 @dataclass(frozen=True)
