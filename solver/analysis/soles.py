@@ -21,6 +21,7 @@ DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
 STANDING_HEIGHT_BAND = 0.02  # m; how much the height of a standing foot varies
 MIN_STANDING_FRAMES = 4
+LOW_SHARE = 10  # percent of a clip, at least, in which each foot of a runner is down
 FEWEST = 30  # points of skin that tell a foot's shape
 OUTSIDE = 0.02  # share of them that lie further out than its sole's ends
 HEEL_OF_SOLE = 0.67  # of the way from ankle to the heel's end; where plates see it press
@@ -170,7 +171,8 @@ def _sole(foot: FootTracks, flat: BoolArray) -> _Sole | None:
 def _standing(times: FloatArray, foot: FootTracks) -> tuple[BoolArray, float]:
     """Mask (T,) of the frames in which the foot stands flat, and the ball's median height then, m.
 
-    A runner's foot never quite stands: then the slowest and lowest frames are taken.
+    A runner's foot never quite stands: then the slowest and lowest frames are taken. One on a
+    treadmill stands while it moves with the belt, and is slow where it turns back in the air.
     """
     ankle, ball = foot.ankle[:, 2], foot.ball[:, 2]
     speed = _speed(times, foot.ankle) + _speed(times, foot.ball)
@@ -181,6 +183,12 @@ def _standing(times: FloatArray, foot: FootTracks) -> tuple[BoolArray, float]:
     if flat.sum() < MIN_STANDING_FRAMES:
         flat = np.zeros(len(times), dtype=np.bool_)
         flat[np.argsort(speed + (ankle + ball) / 0.1)[:MIN_STANDING_FRAMES]] = True
+    carried = np.abs(np.gradient(ball, times)) < MAX_STANDING_SPEED
+    carried &= ball < np.percentile(ball, LOW_SHARE) + STANDING_HEIGHT_BAND
+    if carried.sum() >= MIN_STANDING_FRAMES:
+        carried &= ankle < np.percentile(ankle[carried], 20) + STANDING_HEIGHT_BAND
+        if np.median(ball[carried]) < np.median(ball[flat]) - 2.0 * STANDING_HEIGHT_BAND:
+            flat = carried
     return flat, float(np.median(ball[flat]))
 
 

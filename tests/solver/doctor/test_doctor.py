@@ -228,6 +228,35 @@ def test_height_and_drift_are_told_and_taken_out(damage: Damage, metres: float) 
     assert apart(repaired(damaged.recording, found.remedy), damaged.original) < metres
 
 
+@pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
+def test_a_run_on_a_treadmill_stands_on_the_floor(name: str) -> None:
+    """Feet that go with the belt are not slow; those that turn back in the air are."""
+    recording = load_recording(name)
+    com = perform(recording, build_character(recording)).com
+    pace = (com[-1] - com[0]) / recording.times[-1] * np.array([1.0, 1.0, 0.0])
+    heads = recording.heads - (recording.times[:, None] * pace)[:, None]
+    kinds = {f.kind for f in diagnose(replace(recording, heads=heads)).findings}
+    assert FindingKind.SLIDING in kinds
+    assert FindingKind.FLOOR not in kinds
+
+
+def test_a_clock_is_not_told_by_falls_in_which_frames_are_held() -> None:
+    """Two frames doubled in a flight of 0.2 s make it longer, as a slower clock would."""
+    hop = load_recording("131_03_hop.bvh")
+    aloft = np.searchsorted(hop.times, [1.70, 1.76])
+    rows = np.sort(np.append(np.arange(len(hop.frames)), aloft))
+    at = np.arange(len(rows))
+    doubled = replace(
+        hop,
+        frames=hop.frames[0] + at,
+        times=at / hop.rate,
+        heads=hop.heads[rows],
+        rotations=hop.rotations[rows],
+    )
+    kinds = [finding.kind for finding in diagnose(doubled).findings if not finding.kind.note]
+    assert kinds == [FindingKind.HELD_FRAMES]
+
+
 @pytest.mark.parametrize("seed", [4, 5])
 def test_noise_of_a_runs_short_stances_is_no_drift(seed: int) -> None:
     """Half of a dozen frames may slide alike by chance; its remedy moved the body by 0.7 m."""
