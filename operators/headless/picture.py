@@ -14,7 +14,7 @@ from ...bridge.picture.render import draw_sheet
 from ...bridge.picture.sheet import Limb, SheetRow, View
 from ...solver.arrays import FloatArray
 from ...solver.body.anatomy import Part
-from ...solver.body.character import Body
+from ...solver.body.character import Character
 from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.problem import MotionProblem, OffsetAxes, Pin
 from ...solver.stages.implicit import Adaptation
@@ -24,6 +24,7 @@ FEET = (Part.FOOT, Part.TOE)
 BESIDE_HANDS = 0.3  # m, how far a bar reaches beyond the hands that hold it
 TRAVELS = 0.3  # m, less is no direction
 SIDEWAYS = 0.1  # m, from where on a change is hardly seen from the side
+APART = 1.05  # halves of a pelvis, as long as it is drawn; a joint farther off leaves a gap
 
 
 def draw(
@@ -80,11 +81,10 @@ def instants(motion: Motion, rate: float = 120.0) -> FloatArray:
 def recorded_row(adaptation: Adaptation) -> SheetRow:
     """The recording with the contacts found in it."""
     performance, schedule = adaptation.fit.performance, adaptation.fit.schedule
-    bodies = performance.character.bodies
     return SheetRow(
         f"Recording: {performance.recording.name}",
         performance.times,
-        tuple(limbs(bodies, performance.rotations, performance.centres)),
+        tuple(limbs(performance.character, performance.rotations, performance.centres)),
         performance.com,
         np.array([c.place for c in schedule.contacts]).reshape(-1, 3),
         key_times(adaptation.fit.motion, schedule.phases),
@@ -104,7 +104,7 @@ def adapted_row(adaptation: Adaptation, title: str, marks: Sequence[Mark] = ()) 
     return SheetRow(
         title,
         times,
-        tuple(limbs(t.character.bodies, posed.rotations, posed.centres + com[:, None])),
+        tuple(limbs(t.character, posed.rotations, posed.centres + com[:, None])),
         com,
         np.array([hold.place for hold in feet]).reshape(-1, 3),
         key_times(motion, phases),
@@ -151,12 +151,21 @@ def bars(holds: Sequence[ContactHold]) -> Iterator[Bar]:
             yield Bar(middle - reach, middle + reach, span=span)
 
 
-def limbs(bodies: Iterable[Body], rotations: FloatArray, centres: FloatArray) -> Iterable[Limb]:
-    """Every body's box at (T, B) rotations and joint centres, m, world."""
-    for i, body in enumerate(bodies):
+def limbs(character: Character, rotations: FloatArray, centres: FloatArray) -> Iterable[Limb]:
+    """Every body's box at (T, B) rotations and joint centres, m, world; the pelvis reaches to the
+    spine's joint, which on some figures is a hand's breadth above it."""
+    for i, body in enumerate(character.bodies):
+        along, half = body.box_rotation[:, 2], 0.5 * body.box_size[2]
+        ends = np.array([-half, half])
+        for joint, other in zip(character.joints, character.bodies, strict=True):
+            if joint.parent == i and body.part is Part.PELVIS and other.part is Part.SPINE:
+                there = float(along @ (joint.offset - body.box_centre))
+                if abs(there) > APART * half:
+                    ends = np.array([min(-half, there), max(half, there)])
+        size = np.append(body.box_size[:2], ends[1] - ends[0])
         turn = rotations[:, i]
-        middle = centres[:, i] + turn @ body.box_centre
-        yield Limb(body.name, body.box_size, middle, turn @ body.box_rotation)
+        middle = centres[:, i] + turn @ (body.box_centre + ends.mean() * along)
+        yield Limb(body.name, size, middle, turn @ body.box_rotation)
 
 
 def key_times(motion: Motion, phases: Iterable[Phase]) -> tuple[float, ...]:
