@@ -10,8 +10,9 @@ from typing import get_type_hints
 
 import hangtime.solver
 import pytest
-from hangtime.operators.words import messages
-from hangtime.operators.words.messages import OUTCOMES, TEMPLATES, sentence
+from hangtime.operators.words import templates
+from hangtime.operators.words.messages import sentence
+from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES
 from hangtime.solver.data.faults import (
     BadRecipe,
     Fault,
@@ -66,7 +67,7 @@ def test_every_fault_has_its_own_words(kind: type[Fault]) -> None:
 
 
 def templates_of(kind: type[Fault]) -> tuple[str, ...]:
-    return (templates,) if isinstance(templates := TEMPLATES[kind], str) else templates
+    return (words,) if isinstance(words := TEMPLATES[kind], str) else words
 
 
 def test_nothing_but_faults_has_a_template() -> None:
@@ -75,16 +76,16 @@ def test_nothing_but_faults_has_a_template() -> None:
 
 @pytest.mark.parametrize("kind", all_faults(), ids=lambda kind: kind.__name__)
 def test_every_template_can_be_filled(kind: type[Fault]) -> None:
-    fault, templates = made(kind), templates_of(kind)
-    for template in templates:
+    fault, known = made(kind), templates_of(kind)
+    for template in known:
         named = [name for _, name, _, _ in Formatter().parse(template) if name is not None]
         assert all(hasattr(fault, name.partition("[")[0]) for name in named), template
-        words = sentence(fault, lambda text, t=template: t if text in templates else text)
+        words = sentence(fault, lambda text, t=template: t if text in known else text)
         assert "{" not in words
 
 
 def test_every_template_is_one_literal_for_translators() -> None:
-    body = ast.parse(inspect.getsource(messages)).body
+    body = ast.parse(inspect.getsource(templates)).body
     tables = [each.value for each in body if isinstance(each, ast.Assign | ast.AnnAssign)]
     built = ast.JoinedStr, ast.BinOp, ast.Call
     assert not [node for table in tables for node in ast.walk(table) if isinstance(node, built)]
@@ -100,7 +101,7 @@ def test_what_is_left_is_translated_as_well() -> None:
     fault = NoSolution(Status.STALLED, (pin,), reached=0.25)
     seen: list[str] = []
     sentence(fault, lambda template: seen.append(template) or template)
-    assert seen[1:] == [OUTCOMES[Status.STALLED], messages.MISSED[RowKind.PIN]]
+    assert seen[1:] == [OUTCOMES[Status.STALLED], MISSED[RowKind.PIN]]
 
 
 def test_a_fault_without_words_is_noticed() -> None:

@@ -1,0 +1,301 @@
+"""What is said of every fault, solver status and violation: templates, to be translated.
+
+A template names attributes of its fault in braces; formats with names are those of `_Formatter` in
+messages.py.
+"""
+
+from ...solver.data import faults
+from ...solver.data.faults import Fault
+from ...solver.data.row_kinds import RowKind
+from ...solver.data.status import Status
+
+OUTCOMES = {
+    Status.SOLVED: "Solved: the motion obeys physics and everything asked for holds.",
+    Status.STALLED: "No motion was found that obeys physics and holds all that is asked for. "
+    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
+    Status.TOO_MANY_STEPS: "No motion was found within the allowed number of steps. "
+    "Ask for less of what is named here, move pins less, or check the contacts' frames.",
+    Status.MISSED: "The motion obeys physics, but between the solver's instants something asked "
+    "for is missed by more than is promised. Loosen what is named here a little.",
+    Status.STOPPED: "Stopped before everything was met; the motion is as the solver left it.",
+}
+
+# Of several, `_variant` says which.
+TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
+    faults.NoArmature: (
+        "No armature is chosen; select the armature that carries the recording.",
+        "“{object_name}” is or holds no armature; choose one with a recording.",
+    ),
+    faults.NoAction: "The armature “{armature}” has no keyframes; assign it the action that holds "
+    "the recording.",
+    faults.UnreadStrips: "The NLA strips that “{armature}” performs cannot be read: {strips:names} "
+    "{why}. Leave one strip unmuted that plays its action once (any start, any scale), or assign "
+    "the action.",
+    faults.BlendedAction: "The action “{action}” is blended with the NLA strips below it "
+    "({strips:names}), and what they make together has no keys of its own; in the Nonlinear "
+    "Animation editor give the action Blending Replace and Influence 1, or mute these strips.",
+    faults.NoBones: "The armature “{armature}” has no bones; choose the recorded figure's.",
+    faults.ClipTooShort: "Only {seconds:.2f} s of the recording lie in the chosen frames, and a "
+    "jump needs {minimum_s:g} s at least; choose more frames.",
+    faults.FramesFarApart: "The recording's frames lie {seconds:.3g} s apart, and a motion needs "
+    "one every {maximum_s:g} s at least; set the frame rate at which it was recorded.",
+    faults.FramesReversed: "The chosen frames end at {last:g}, before they begin at {first:g}; "
+    "swap them.",
+    faults.NothingRecurs: "Nothing repeats from frame {first:g} to {last:g}: no heel or toe lands "
+    "or leaves, and does so again that many frames later. Choose frames from one landing of a foot "
+    "to its next.",
+    faults.EndsTouchOtherwise: "The motion repeats after {period:g} frames, but near frames "
+    "{first:g} and {last:g} nowhere with the same points on the ground at both ends (at the first: "
+    "{at_first:names}; at the last: {at_last:names}). Choose frames that begin elsewhere, with "
+    "keys for a whole cycle.",
+    faults.CycleTurns: "From the cycle's first to its last frame the body turns by {degrees:.0f}°, "
+    "and only a straight cycle can repeat; choose frames in which it goes straight.",
+    faults.CycleClimbs: "The body is {metres:+.2f} m higher at the cycle's end than at its start, "
+    "and only a cycle on level ground can repeat; choose frames on one level.",
+    faults.NotInLoop: "A loop cannot have {what}; take that away, or switch the loop off.",
+    faults.SeamStanceMoved: "The pin moves “{name}”, which the loop's seam cuts in two, so the two "
+    "parts would not meet; move all of that stance, or begin the loop where that foot is in the "
+    "air.",
+    faults.NoRootBone: "“{armature}” has no bone above the pelvis “{pelvis}” that could carry root "
+    "motion; choose In Place or Hips, or parent the pelvis to a root bone.",
+    faults.NoControls: "The bones {bones:names} follow constraints, and no bone that you can pose "
+    "turns them by itself, so a result could not be written; bake them and mute the constraints, "
+    "or choose other bones under Bones.",
+    faults.DrivenBones: "Drivers pose the bones {bones:names} whatever keys they have, so a result "
+    "could not be written; bake the action and delete these drivers, or choose other bones under "
+    "Bones.",
+    faults.HeldBones: "Constraints pose the bones {bones:names} otherwise than their keys say "
+    "(frame {frame:g}), so a result could not be written; bake the action and mute these "
+    "constraints.",
+    faults.ZeroLengthBone: "The bone “{bone}” has no length, so it cannot carry mass; give it one "
+    "in edit mode, or choose another bone for that part of the body.",
+    faults.MissingPart: (
+        "No bone was found for the {part}; say which bone it is, or add one in edit mode.",
+        "No bone was found for the {part} (no bone “{tried[0]}” is there); say which bone it is, "
+        "or add one in edit mode.",
+        "No bone was found for the {part} (looked for {tried:names}); say which bone it is, or add "
+        "one in edit mode.",
+    ),
+    faults.NotMirrored: (
+        "The clip cannot be mirrored: no bone's name tells its side; name them such as “LeftFoot” "
+        "and “RightFoot”.",
+        "The clip cannot be mirrored: “{bone}” has no “{partner}” in the same place on the other "
+        "side; give the bones of both sides the same names but for the side.",
+        "The clip cannot be mirrored: “{bone}” is on one side of the body, which its name does not "
+        "tell; name it such as “LeftFoot” or “foot.L”, and its partner likewise.",
+    ),
+    faults.MirroredInBlender: "A clip is mirrored without Blender only, whose armature would keep "
+    "its own sides' lengths; take a BVH or AMC clip and the batch's outputs npz and bvh, or take "
+    "“mirrored” away.",
+    faults.BoneTaken: "No bone is left for the {part}, for “{bone}” was chosen for the {by}; "
+    "choose another bone for one of them.",
+    faults.NotJoined: "The bones {bones:names} have no common bone above them, so that legs and "
+    "trunk do not hang together; parent them to one bone in edit mode, or choose others under "
+    "Bones.",
+    faults.NoSpine: "No bone of the spine was found: between “{pelvis}” (pelvis) and “{head}” "
+    "(head) there must be one that the arms hang on; choose other bones for pelvis, head and arms "
+    "under Bones, or parent the arms to a bone of the spine in edit mode.",
+    faults.NonFiniteKey: "The bone “{bone}” has a value at frame {frame:g} that is no number; "
+    "delete or mend that key.",
+    faults.NotBetweenFrames: "Frames are said to be missing after frame {frame:g}, but the "
+    "recording goes from frame {first:g} to {last:g}; name one that another comes after under "
+    "“missing”.",
+    faults.NotPutIn: "Missing frames cannot be put into “{action}”: {why}.",
+    faults.BadScale: "The scale of “{object_name}” is ({scale:numbers}), but it must be the same, "
+    "and above zero, along all three axes; apply the scale or make it even.",
+    faults.UnreadableRepairs: "What this file holds of the recording's repairs cannot be read (a "
+    "script or another version of Hangtime wrote it); press Examine, and repair anew.",
+    faults.UnreadableClip: (
+        "The recording {path}: {problem}; mend the file or export it again from where it came.",
+        "The recording {path}, line {line}: {problem}; mend the file or export it again from where "
+        "it came.",
+    ),
+    faults.ClipNotOpened: "The recording {path} cannot be opened ({problem}); check its name and "
+    "whether it may be read.",
+    faults.UnknownClipFormat: "The recording {path} is no BVH, FBX, AMC or .blend file; import it "
+    "in Blender, and give the .blend file that you save.",
+    faults.BadRecipe: (
+        "Recipe {path}: {problem:ended}",
+        "Recipe {path}, line {line}: {problem:ended}",
+    ),
+    faults.OutputNotWritable: "Nothing can be written to {path} ({problem}); choose another place "
+    "or allow writing there.",
+    faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
+    "no pose holds both, so move one of them or move them together.",
+    faults.NoSolution: (
+        "{reason:outcome}",
+        "{reason:outcome} Furthest off: {worst:missed}.",
+        "{reason:outcome} The best found goes {reached:percent} of the way; furthest off: "
+        "{worst:missed}.",
+    ),
+    faults.NoFit: (
+        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
+        "that begin earlier and end later, or correct the contacts' frames.",
+        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
+        "that begin earlier and end later, or correct the contacts' frames. Furthest off: "
+        "{worst:missed}.",
+        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
+        "that begin earlier and end later, or correct the contacts' frames. The best found goes "
+        "{reached:percent} of the way; furthest off: {worst:missed}.",
+    ),
+    faults.UnseenSupport: (
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall, so something unseen carries it (a box, a rail, a hand); choose frames without it, "
+        "or let what carries it be ground in the panel World. If nothing does, give the scene the "
+        "recording's frame rate.",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall: the feet rest {boxes[0].size[2]:length} above the floor, as on a box. Add it (Add "
+        "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
+        "The body falls as gravity has it at {rate} frames a second, but the scene has "
+        "{scene_rate:.4g} (frames {first:g} to {last:g}); set the scene's frame rate to {rate}.",
+    ),
+    faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
+    "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
+    "motion, or choose a recording that moves over the ground.",
+    faults.OddHeight: "“{armature}” is {metres:.3g} m tall, so gravity does not fit its motion; "
+    "import it again at {factor:plain} times the scale, or scale its object so.",
+    faults.OutsideKeys: "In the chosen frames “{armature}” has no keys; they lie from frame "
+    "{first:g} to {last:g}, so choose frames there.",
+    faults.UnknownContactName: "There is no contact “{name}” in these frames; there are "
+    "{known:names}.",
+    faults.UnknownBone: "“{request}” names the bone “{bone}”, which the armature does not have; "
+    "choose one of its bones.",
+    faults.NotAboveZero: "“{request}” asks for a mass or a factor of {amount:g}; give it one above "
+    "zero.",
+    faults.NotComputable: "What is asked for is too large or too small to compute with; give "
+    "masses, gravity, lengths, times and weights as they are in the world.",
+    faults.BeyondReason: "“{request}” asks for a factor of {amount:g}; give it one of at most "
+    "{most:g}.",
+    faults.UnknownPhaseIn: "“{request}” is about the phase “{phase}”, which the clip does not "
+    "have; it has {known:names}.",
+    faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "
+    "moves; those most like it are {likeliest:names}.",
+    faults.BadTiming: "“{request}” would last {seconds:.3f} s, or lies outside the clip; change "
+    "its frames, phase or duration.",
+    faults.RootHasNoJoint: "“{request}” limits the joint of “{bone}”, but that is the root, which "
+    "has no joint; choose a bone that hangs on another.",
+    faults.NeedsTorques: "“{request}” is about torques, but the reduced dynamics have none; choose "
+    '"automatic" or "standard" dynamics.',
+    faults.NothingTouches: (
+        "“{request}” is about nothing, which does not touch then; name contacts, points or bones "
+        "that the analysis lists.",
+        "“{request}” is about {touching:names}, which does not touch then; name contacts, points "
+        "or bones that the analysis lists.",
+    ),
+    faults.WrongAngle: "“{request}” names an angle that the joint of “{bone}” does not have; it "
+    "has {count}, counted from 0.",
+    faults.FreePoint: "“{request}” is pushed by the world but held in no direction; hold it in one "
+    "at least, or let it be no part of the environment.",
+    faults.TakenName: "“{request}” is called like a contact that was found; give it a name of its "
+    "own.",
+    faults.TimedTwice: "“{request}” is the second to say how long “{phase}” takes; keep one.",
+    faults.OutOfReach: "“{request}” is {metres:length} from “{other}”, with {seconds:.2f} s "
+    "between them: nobody goes so far in that time. Move it nearer, give it more time, or switch "
+    "Human Ranges off for a figure that is no human.",
+    faults.NoBoneChosen: "“{request}” is about no bone yet; choose one, or switch it off.",
+    faults.NoPhaseChosen: "“{request}” holds in a phase, but none is chosen; there are "
+    "{known:names}.",
+    faults.EmptyRange: "“{request}” ends at frame {last:g}, before it begins at frame {first:g}; "
+    "swap them.",
+    faults.ReturnTooEarly: "The take is to be back by frame {frame:g}, but is adapted until frame "
+    "{last:g}; choose a later frame.",
+    faults.NoNewSlot: "The result cannot be a new slot of “{action}”: {why}. Choose New "
+    "Action under Written As.",
+    faults.SameUsdNames: "“{first_bone}” and “{second_bone}” would be one name in a USD file, "
+    "which has letters, digits and underscores alone; rename one, or export as FBX or glTF.",
+    faults.SeveralTakes: "A USD file holds one take, and several are chosen ({takes:names}); "
+    "export them one by one, or all together as FBX or glTF.",
+    faults.CrossedBounds: "“{request}” asks for at least {at_least:.4g} {unit} and at most "
+    "{at_most:.4g} {unit}, which nothing is; raise the one or lower the other.",
+    faults.AsksNothing: "“{request}” asks for nothing; switch on one of its options, or it off.",
+    faults.NoDirection: "“{request}” has an axis that points nowhere; give it a direction.",
+    faults.NamedTwice: "“{request}” is the name of two constraints, body changes or contacts; "
+    "rename one, so that the report can tell them apart.",
+    faults.NameMissing: "A constraint ({kind}) has no name; give it one in the list.",
+    faults.WorkerDied: "The solver stopped without an answer ({detail}); nothing was changed. Try "
+    "again, and report it if it happens twice.",
+    faults.ChangedMeanwhile: (
+        "Nothing was done, because the armature “{armature}” or its keys changed since the "
+        "analysis; press Analyze again.",
+        "The result was thrown away, because the armature “{armature}” or its keys changed since "
+        "the analysis; press Analyze again.",
+    ),
+    faults.BadDimensions: "The figure cannot be reduced to {given} dimensions; choose from 1 to "
+    "{most}, or leave them out to have them chosen.",
+    faults.UnknownReductionBone: "Row {row} of the reduction's matrix names “{bone}”, whose joint "
+    "cannot be tied to others; those that can are {known:names}.",
+    faults.WrongWeights: "Row {row} of the reduction's matrix gives “{bone}” a list of {given} "
+    "weights, but its joint has {needed} angles; give one weight each.",
+    faults.DependentRows: "Of the {rows} rows of the reduction's matrix only {rank} say something "
+    "that the others do not; leave out the empty and the repeated ones.",
+    faults.UnknownPhase: "The pin “{pin}” names the phase “{phase}”, on which nothing touches the "
+    "ground; there are {known:names}.",
+    faults.GroundNotThere: "The pin “{pin}” stands on “{object}” from frame {needed[0]:.1f} to "
+    "{needed[1]:.1f} ({phase}), but its motion is known from frame {known[0]:g} to {known[1]:g} "
+    "only; key it for all of these frames, or pin another phase.",
+    faults.JerkyGround: "“{object}”, on which the pin “{pin}” stands, jumps at frame {frame:.0f} "
+    "({acceleration:.0f} m/s²), and nobody could stay on it; smooth its keys there.",
+    faults.UnknownContact: "The pin “{pin}” names “{what}”, which does not touch in its phase; "
+    "what touches is {known:names}.",
+    faults.PinLetGo: "The pin “{pin}” moves {contacts:names}, which cannot be held beside the "
+    "recording's other contacts, so the fit let go of what it moves; correct these contacts' "
+    "frames, or pin others.",
+    faults.NoFaces: "The object “{thing}” has no faces, so nothing can stand on it or run into it; "
+    "choose a mesh with faces.",
+    faults.NotFinite: "The object “{thing}” has a vertex or a place that is no number; mend its "
+    "mesh, its modifiers or its animation.",
+    faults.InsideOut: "The faces of “{thing}” look inwards, so its inside would be the world; "
+    "recalculate its normals (edit mode, Mesh > Normals > Recalculate Outside), or swap the order "
+    "of its faces' corners.",
+    faults.NoThickness: "“{thing}” is pressed flat, its faces on each other, so that it has no "
+    "inside; give it some thickness, or choose a plane in its place.",
+    faults.StandsIn: "“{contact}” stands in “{thing}”, {metres:length} below its surface; let its "
+    "stance stand on it (On, in the panel Contacts), or move one of them.",
+    faults.StandsBelow: "The recording stands {metres:length} below the top of “{thing}”, in it; "
+    "lower the object so far, or raise the armature.",
+    faults.NoRoom: "Nothing fits between “{contact}” and “{thing}”: {free:length} are free above "
+    "it, and a leg alone takes {needed:length}; move the object, or the stance.",
+    faults.TooManyFaces: "The object “{thing}” has {count} triangles, and {most} are the most; "
+    "choose a simpler mesh in its place, or put a Decimate modifier on it.",
+    faults.SameObjectName: "Two objects of the scene are called “{thing}”; rename one, so that the "
+    "report can tell them apart.",
+    faults.UnknownObject: (
+        "“{request}” names the object “{thing}”, but the scene has none; add it as an object.",
+        "“{request}” names the object “{thing}”, which the scene does not have; it has "
+        "{known:names}.",
+    ),
+    faults.NotGround: "“{request}” stands on “{thing}”, which is an obstacle; make it ground, or "
+    "stand on something else.",
+    faults.NoFaceThere: "“{request}” stands on “{thing}”, but “{contact}” would be beside it: none "
+    "of its faces is above or below; move the pin over it, or the object under the pin.",
+    faults.OverTheEdge: "“{request}” stands on “{thing}”, but “{contact}” hangs over the edge of "
+    "its face by {metres:length}; move the pin so far, or turn it.",
+    faults.TooSteep: "“{request}” stands on “{thing}” where it is {slope:.0f}° steep, and "
+    "“{contact}” holds with a friction of {friction:g} at most; ask for more friction, or stand "
+    "where it is flatter.",
+    faults.ObjectGone: "“{thing}” is not in the scene any more; remove it from the list in the "
+    "panel World, or switch it off.",
+}
+PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
+
+ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"
+AWAY = "“{name}” stays {amount:millimetres} from its place"
+AT_ITS_END = "{name} as far as its range goes"
+MISSED = {  # of a constraint, by its type
+    RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
+    RowKind.MOMENT: "in {name}, the body would have to push off thin air ({amount:.3g} BW·m)",
+    RowKind.PIN: AWAY,
+    RowKind.PIN_SPEED: "“{name}” still slides at {amount:.3g} m/s",
+    RowKind.POINT: AWAY,
+    RowKind.BEND: ANGLE_MISSED,
+    RowKind.CONE: ANGLE_MISSED,
+    RowKind.TWIST: ANGLE_MISSED,
+    RowKind.ORIENTATION: ANGLE_MISSED,
+    RowKind.POSE: ANGLE_MISSED,
+    RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} of the body's weight",
+    RowKind.FRICTION: "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
+    RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} of the body's weight",
+    RowKind.SOLID: "{name} stays in by {amount:millimetres}",
+    RowKind.RANGE: "{name} {amount:.3g}° beyond its range",
+    RowKind.TORQUE: "“{name}” needs {amount:.3g} N·m more than its limit",
+}
