@@ -12,6 +12,7 @@ import importlib.util
 import os
 import shutil
 import sys
+import traceback
 from pathlib import Path
 from types import ModuleType
 from typing import NoReturn
@@ -50,7 +51,19 @@ def main(argv: list[str]) -> int:
     return int(importlib.import_module(f"{NAME}.{argv[0]}").main(argv[1:]))
 
 
+def told(argv: list[str]) -> int:
+    """The exit code of `main`, 1 after the traceback of what it lets through: left to Python, this
+    would end in the ordinary exit that `leave` is there to avoid."""
+    try:
+        return main(argv)
+    except KeyboardInterrupt:
+        return 130
+    except Exception:
+        traceback.print_exc()
+        return 1
+
+
 if __name__ == "__main__":
     # This folder must not shadow packages of the same names as its modules.
     sys.path[:] = [p for p in sys.path if Path(p or ".").resolve() != ROOT / "devtools"]
-    leave(main(sys.argv[1:]))
+    leave(told(sys.argv[1:]))

@@ -14,7 +14,7 @@ from ...solver.data.faults import ClipNotOpened
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
-from ...solver.doctor.repair import filled, mended, placed, trimmed, turned
+from ...solver.doctor.repair import check_trim, filled, mended, placed, trimmed, turned
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 
@@ -57,7 +57,7 @@ def read_clip(
 ) -> ReadClip:
     """The problem's frames of a clip, and what lies about them; without frames all after a bind
     pose. What the file does not tell and is not given is guessed. Raises as `read_file`,
-    MissingPart and NotBetweenFrames."""
+    MissingPart, NotBetweenFrames and NothingLeft."""
     clip = read_file(path, rate)
     axis = up or guess_up(clip)
     metres = unit or clip.unit or guess_unit(clip, axis)
@@ -66,6 +66,7 @@ def read_clip(
     recording = _by_depth(to_recording(replace(clip, name=path.stem), metres, axis))
     mend = repairs or Repairs()
     recording = filled(recording, mend.missing)
+    check_trim(mend, len(recording.frames))
     still = replace(mend, drift=Repairs().drift)
     if still != Repairs():
         recording = placed(turned(recording, still), still)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil, floor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
-from ...solver.doctor.repair import trimmed
+from ...solver.doctor.repair import check_trim, trimmed
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
@@ -89,6 +90,7 @@ def load(
             after = float(recording.frames[count]), float(recording.frames[-1])
             problem = replace(problem, frames=after)
         if repairs is not None:
+            check_trim(repairs, _frame_count(armature))
             if count == 0 and problem.frames is None and repairs.trim:
                 recording = trimmed(recording, repairs)
             problem = replace(problem, mend=repairs.mend, drift=repairs.drift)
@@ -169,6 +171,14 @@ def _skin(armature: bpy.types.Object, recording: Recording) -> SkinReading:
     from ...bridge.scene.skin import read_skin
 
     return complete(read_skin(armature, recording.frames))
+
+
+def _frame_count(armature: bpy.types.Object) -> int:
+    """How many frames the whole recording has."""
+    from ...bridge.accessors import current_action, present, shown_range
+
+    start, end = shown_range(armature, present(current_action(armature)))
+    return floor(end) - ceil(start) + 1
 
 
 def _recorded_frames(

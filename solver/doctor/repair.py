@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..data.faults import NotBetweenFrames
+from ..data.faults import NotBetweenFrames, NothingLeft
 from ..data.problem import Mend, MotionProblem
 from ..data.recording import Recording, Skin
 from ..data.scaling import scaled_recording
@@ -30,7 +30,7 @@ def repaired(
 ) -> Recording:
     """The recording with all repairs. chosen: bones by parts of the body, as in a problem.
 
-    Raises MissingPart, NotBetweenFrames.
+    Raises MissingPart, NotBetweenFrames, NothingLeft.
     """
     whole = filled(turned(recording, repairs), repairs.missing)
     return placed(mended(trimmed(whole, repairs), repairs, chosen), repairs)
@@ -107,8 +107,15 @@ def filled(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recordin
     return LocalPoses.of(longer).filled(bones).posed(longer)
 
 
+def check_trim(repairs: Repairs, frames: int) -> None:
+    """Whether some of a recording's frames are left. Raises NothingLeft."""
+    if repairs.trim >= frames:
+        raise NothingLeft(repairs.trim, frames)
+
+
 def trimmed(recording: Recording, repairs: Repairs) -> Recording:
-    """Without the frames at the beginning that are left out."""
+    """Without the frames at the beginning that are left out. Raises NothingLeft."""
+    check_trim(repairs, len(recording.frames))
     kept = recording.part(slice(repairs.trim, None))
     return replace(kept, times=kept.times - kept.times[:1])
 

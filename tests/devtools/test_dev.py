@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from hangtime.devtools import package
 from hangtime.devtools.checks import summary
 from hangtime.devtools.environment import libraries, pythons
 from hangtime.devtools.environment.problem import SetUpError
@@ -68,3 +69,16 @@ def test_a_skip_for_want_of_data_is_no_allowed_one(
     told, total = capsys.readouterr().out.splitlines()
     assert told.endswith("a.xml: tests.t.clip: the recordings are not here")
     assert total == "0 passed, 0 failed, 2 skipped"
+
+
+def test_what_no_command_expects_ends_in_a_code_as_well(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Left to Python, some versions of bpy never end after it."""
+
+    def fail(_: list[str]) -> int:
+        raise IndexError("no frame 0")
+
+    monkeypatch.setattr(package, "main", fail)
+    assert package.told([]) == 1
+    assert "IndexError: no frame 0" in capsys.readouterr().err

@@ -26,6 +26,7 @@ from .recordings import NoBones as NoBones
 from .recordings import NonFiniteKey as NonFiniteKey
 from .recordings import NoSpine as NoSpine
 from .recordings import NotBetweenFrames as NotBetweenFrames
+from .recordings import NothingLeft as NothingLeft
 from .recordings import NotJoined as NotJoined
 from .recordings import NotMirrored as NotMirrored
 from .recordings import NotPutIn as NotPutIn

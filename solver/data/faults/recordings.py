@@ -71,6 +71,14 @@ class NotBetweenFrames(Fault):
 
 
 @dataclass
+class NothingLeft(Fault):
+    """As many frames as the recording has, or more, are to be left out at its beginning."""
+
+    trim: int
+    frames: int
+
+
+@dataclass
 class NotPutIn(Fault):
     """Missing frames cannot be put into an action. why: a reason, to be said after its name."""
 

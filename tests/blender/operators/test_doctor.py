@@ -14,7 +14,7 @@ from hangtime.bridge.recipe.problem import parse_recipe
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
 from hangtime.operators.headless.stages import Stages
-from hangtime.solver.data.faults import NotBetweenFrames
+from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.tests.helpers.clips import begun_at_rest, mocap_path, without_frames
@@ -82,6 +82,17 @@ def test_frames_after_the_last_one_are_not_put_in_here_either() -> None:
     repairs = Repairs(missing=(MissingFrames(9999, 4),))
     with pytest.raises(NotBetweenFrames):
         load(Clip(mocap_path(CLIP)), MotionProblem(), Stages(StringIO()), repairs)
+
+
+@pytest.mark.parametrize("frames", [None, (100.0, 290.0)])
+def test_a_recording_of_which_nothing_is_left_is_refused_here_and_without_blender(frames) -> None:
+    """Where frames are named, too, which leave the trim without a meaning."""
+    repairs, problem = Repairs(trim=100_000), MotionProblem(frames=frames)
+    with pytest.raises(NothingLeft) as told:
+        load(Clip(mocap_path(CLIP)), problem, Stages(StringIO()), repairs)
+    with pytest.raises(NothingLeft) as plain:
+        read_clip(mocap_path(CLIP), problem, repairs)
+    assert told.value == plain.value
 
 
 def test_gaps_side_by_side_are_filled_as_without_blender() -> None:

@@ -33,6 +33,7 @@ from hangtime.solver.data.faults import (
     FramesFarApart,
     NotBetweenFrames,
     NotComputable,
+    NothingLeft,
 )
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
@@ -140,6 +141,15 @@ def test_frames_after_the_last_one_are_not_missing() -> None:
     last = round(jump().frames[-1])
     with pytest.raises(NotBetweenFrames):
         filled(jump(), (MissingFrames(last, 2),))
+
+
+@pytest.mark.parametrize("more", [0, 1000])
+def test_leaving_out_every_frame_is_refused(more: int) -> None:
+    frames = len(jump().frames)
+    assert len(repaired(jump(), Repairs(trim=frames - 1)).frames) == 1
+    with pytest.raises(NothingLeft) as told:
+        repaired(jump(), Repairs(trim=frames + more))
+    assert told.value.frames == frames
 
 
 def test_a_spike_is_told_with_its_bone_and_frame() -> None:
