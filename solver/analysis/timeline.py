@@ -13,11 +13,12 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, Interval, Phase
-from ..data.faults import BadTiming, TimedTwice, UnknownPhaseIn
+from ..data.faults import BadTiming, TimedTwice, TooMuchTime, UnknownPhaseIn
 from ..data.requests import Hold, Moment, PhaseTiming, When
 
 MIN_PHASE_DURATION = 0.03  # s
 HOLD_EASING_TIME = 0.2  # s; half-width of the moving average around a hold
+MOST_ADDED = 30.0  # s; a solve of so much more takes half a minute and over a GB
 TIME_DECIMALS = 9  # instants, s, are rounded to, so that those that are one stay one
 
 
@@ -162,7 +163,7 @@ def timeline(
 ) -> Timeline:
     """Time warp from new phase durations and held frames.
 
-    schedule: of the recording. Raises UnknownPhaseIn, BadTiming, TimedTwice.
+    schedule: of the recording. Raises UnknownPhaseIn, BadTiming, TimedTwice, TooMuchTime.
     """
     phases = {phase.name: phase for phase in schedule.phases}
     wanted: dict[str, float] = {}
@@ -184,6 +185,10 @@ def timeline(
         if not 0.0 < at <= schedule.duration or hold.seconds < MIN_PHASE_DURATION:
             raise BadTiming(hold.name, hold.seconds)
         stops.setdefault(at, []).append(hold)
+    _check_added(
+        [(wanted[t.phase] - phases[t.phase].end + phases[t.phase].start, t.name) for t in timings]
+        + [(hold.seconds, hold.name) for hold in holds]
+    )
     corners = sorted({*edges, *stops})
     old, new, named = [0.0], [0.0], []
     for start, end in pairwise(corners):
@@ -200,6 +205,16 @@ def timeline(
         if any(hold.ends for hold in stops.get(end, [])):
             break
     return Timeline(np.array(old), np.array(new), tuple(named), first_frame, rate)
+
+
+def _check_added(gains: Sequence[tuple[float, str]]) -> None:
+    """Whether a solve has room for what is added: s, by the names of those that ask for it.
+
+    Raises TooMuchTime, of the one that adds most.
+    """
+    seconds = sum(gain for gain, _ in gains)
+    if seconds > MOST_ADDED:
+        raise TooMuchTime(max(gains)[1], seconds, MOST_ADDED)
 
 
 def _known(name: str, phase: str, phases: dict[str, Phase]) -> Phase:

@@ -64,6 +64,7 @@ from .requests import SeveralTakes as SeveralTakes
 from .requests import StillBone as StillBone
 from .requests import TakenName as TakenName
 from .requests import TimedTwice as TimedTwice
+from .requests import TooMuchTime as TooMuchTime
 from .requests import UnknownBone as UnknownBone
 from .requests import UnknownContact as UnknownContact
 from .requests import UnknownPhase as UnknownPhase

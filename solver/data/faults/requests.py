@@ -164,6 +164,15 @@ class TimedTwice(RequestFault):
 
 
 @dataclass
+class TooMuchTime(RequestFault):
+    """Requests make the motion longer by so many seconds than it was recorded; this one by most of
+    them. most: s that may be added."""
+
+    seconds: float
+    most: float
+
+
+@dataclass
 class OutOfReach(RequestFault):
     """A request's place is `metres` from that of `other`, `seconds` earlier or later: nobody can
     go so far in that time."""

@@ -7,7 +7,7 @@ import pytest
 from hangtime.solver.analysis.timeline import Stretch, Timeline, TimeWarp, active_interval, timeline
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval
-from hangtime.solver.data.faults import BadTiming, UnknownPhaseIn
+from hangtime.solver.data.faults import BadTiming, TooMuchTime, UnknownPhaseIn
 from hangtime.solver.data.requests import ALWAYS, Hold, Moment, PhaseTiming, When
 from hypothesis import given
 from hypothesis import strategies as st
@@ -185,6 +185,27 @@ def test_a_hold_is_a_phase_by_its_name() -> None:
 
 
 # -- faults ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("timings", "holds"),
+    [
+        ((), (Hold("short", frame(0.3), 0.5), Hold("H", frame(0.5), 1000.0))),
+        ((PhaseTiming("H", "flight 1", factor=1000.0),), (Hold("short", frame(0.3), 0.5),)),
+        ((PhaseTiming("H", "flight 1", seconds=20.0),), (Hold("twin", frame(0.3), 11.0),)),
+    ],
+)
+def test_more_time_than_a_solve_has_room_for_is_refused(
+    timings: tuple[PhaseTiming, ...], holds: tuple[Hold, ...]
+) -> None:
+    """By the one that adds most of it: a thousand seconds took all memory of a machine."""
+    with pytest.raises(TooMuchTime) as caught:
+        made(timings=timings, holds=holds)
+    assert caught.value.request == "H"
+
+
+def test_half_a_minute_may_be_added() -> None:
+    assert made(holds=(Hold("H", frame(0.5), 29.0),)).duration == pytest.approx(DURATION + 29.0)
 
 
 def test_unknown_phases_are_named_with_those_there_are() -> None:
