@@ -103,7 +103,7 @@ solid = false                   # limbs and floor may go through each other
 shapes = "bones"                # the body is as thick as its mass; default: as the skinned mesh
 human = false                   # joints may go beyond what a person's can; or "hard": never
 wider = 10                      # degrees, by which joints may go further than a person's
-longest_span = 0.1              # s between knots; torque_span: of the torques
+longest_span = 0.1              # s between knots, from 0.015 on; torque_span: of the torques
 [solution.objectives]           # weights, of the explicit solution
 "torque smoothness" = 1         # power, torque output, mass displacement, angle displacement,
 closeness = 1                   # angle smoothness, total change

@@ -1,6 +1,7 @@
 """Solver options of a recipe: method, objectives and reduction. Keys: see requests.py."""
 
 from ...solver.data.solver_options import (
+    MIN_SPAN,
     Dynamics,
     HumanRanges,
     Method,
@@ -11,12 +12,13 @@ from ...solver.data.solver_options import (
     SolverOptions,
 )
 from ..recipe_syntax.items import Kind, Values, angle, choice, flag, number, one, whole
-from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Table, listed
+from ..recipe_syntax.table import NOT_NEGATIVE, NumberRange, Table, listed
 
 Rows = tuple[tuple[tuple[str, tuple[float, ...]], ...], ...]
 
 COUNT = NumberRange("a whole number above zero", lambda value: value > 0.0 and value.is_integer())
 PART_OF_ALL = NumberRange("above 0 and at most 1", lambda value: 0.0 < value <= 1.0)
+A_SPAN = NumberRange(f"at least {MIN_SPAN:g} s", lambda value: value >= MIN_SPAN)
 CHOSEN_BY_HAND = (ReductionKind.MATRIX, ReductionKind.MIRROR_LEGS)
 
 
@@ -100,8 +102,8 @@ SOLUTION = Kind(
         choice("shapes", ShapeSource),
         one("human", _human, _human_words),
         angle("wider", NOT_NEGATIVE),
-        number("longest_span", ABOVE_ZERO),
-        number("torque_span", ABOVE_ZERO),
+        number("longest_span", A_SPAN),
+        number("torque_span", A_SPAN),
         one("objectives", _objectives, _weights),
         one("reduction", _read_reduction, REDUCTION.write),
     ),

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+MIN_SPAN = 0.015  # s between knots; shorter ones say nothing more and fill all memory
+
 
 class Dynamics(Enum):
     """Dynamics formulation: whose equations of motion are in the problem (thesis 3.2).

@@ -13,6 +13,7 @@ from ..body.kinematics import BodyPoint, forward_kinematics
 from ..data.constants import STANDARD_GRAVITY
 from ..data.contacts import ContactSchedule
 from ..data.recording import Recording
+from ..data.solver_options import MIN_SPAN
 from ..numerics.interpolation import interpolate
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, SplineBasis, dense_instants, phase_breaks
 from ..objectives.cost_to_go import EndTarget
@@ -24,7 +25,6 @@ from ..unseen.support_force import harness, support_force
 
 CANDIDATE_SPANS = (0.04, 0.03, 0.025)  # s, longest knot spans to choose from
 SPLINE_FIT_TOLERANCE = 0.004  # m, rms spline-fit error of a joint centre
-MIN_SPAN = 0.015  # s, between breaks
 EDGE_SPAN = 0.02  # s; the span before a landing and after a lift-off, in which feet stop and start
 MIN_LOAD = 0.25  # of the weight, with which the direction of the contact force is known
 MAX_SLOPE = 0.5  # of that direction; runners and jumpers on force plates use 0.25 to 0.6

@@ -30,6 +30,7 @@ from hangtime.solver.data.requests import (
     When,
 )
 from hangtime.solver.data.solver_options import (
+    MIN_SPAN,
     Dynamics,
     HumanRanges,
     Method,
@@ -44,6 +45,7 @@ from hypothesis import strategies as st
 NAMES = st.text(min_size=1, max_size=8).filter(str.strip)
 NUMBERS = st.floats(-1e6, 1e6)
 POSITIVE = st.floats(1e-3, 1e3)
+SPANS = st.floats(MIN_SPAN, 1e3)
 NOT_NEGATIVE = st.floats(0.0, 1e3)
 VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
 DIRECTIONS = VECTORS.filter(any)
@@ -160,8 +162,8 @@ SOLUTIONS = st.builds(
         lambda weights: tuple(weights.items())
     ),
     reduction=st.none() | REDUCTIONS,
-    longest_span=st.none() | POSITIVE,
-    torque_span=st.none() | POSITIVE,
+    longest_span=st.none() | SPANS,
+    torque_span=st.none() | SPANS,
     keep_times=st.booleans(),
     solid=st.booleans(),
     shapes=st.sampled_from(ShapeSource),
