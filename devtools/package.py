@@ -58,9 +58,9 @@ def told(argv: list[str]) -> int:
         return main(argv)
     except KeyboardInterrupt:
         return 130
-    except Exception:
+    except Exception:  # noqa: BLE001 - whatever it is
         traceback.print_exc()
-        return 1
+    return 1
 
 
 if __name__ == "__main__":
