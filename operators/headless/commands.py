@@ -15,9 +15,10 @@ from ...bridge.recipe.problem import PARTS, Recipe, parse_recipe, read_recipe_te
 from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
+from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
-from ..words.doubt_text import doubts_of
+from ..words.doubt_text import doubts_of, floor_doubts
 from ..words.headline import headline
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
@@ -151,7 +152,7 @@ def adapt(options: argparse.Namespace) -> None:
         require_return_after(wanted, float(loaded.subject.recording.frames[-1]))
         require_place(loaded, wanted, recipe.loop)
         require_exported(loaded, options.out, export)
-        _ask_about(problem, loaded)
+        _ask_about(problem, loaded, recipe.repairs)
         placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
         result = solve(loaded.subject.with_objects(placed), stages)
         outputs = Outputs(loaded, wanted, keys, result, outbox, stages, recipe.loop, export)
@@ -175,7 +176,7 @@ def analyze(options: argparse.Namespace) -> None:
         asked = parse_recipe(read_recipe_text(options.recipe), str(options.recipe))
     problem = overridden(asked.problem, options)
     loaded = load(_clip(options, None), problem, Stages(sys.stdout), asked.repairs)
-    _ask_about(problem, loaded)
+    _ask_about(problem, loaded, asked.repairs)
     print()
     print(analysis_text(loaded.subject.analysis, loaded.origin), end="")
     target: Path | None = options.write_recipe
@@ -189,7 +190,7 @@ def analyze(options: argparse.Namespace) -> None:
         print(f"\nWritten:\n  {target}")
 
 
-def _ask_about(problem: MotionProblem, loaded: LoadedClip) -> None:
+def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | None) -> None:
     """Prints what is hardly meant, and whose shapes are a mesh's, before anything takes its time.
 
     problem: as it was asked for.
@@ -202,6 +203,8 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip) -> None:
         print(line)
     frames = subject.recording.frames
     doubts = doubts_of(problem, subject.height, frames[:0] if problem.loop else frames)
+    floor, feet = (repairs or Repairs()).floor, subject.schedule.floor_m
+    doubts += floor_doubts(floor, feet, on_objects=bool(subject.stood_on))
     for doubt in doubts:
         print(f"Warning: {doubt}", file=sys.stderr)
 

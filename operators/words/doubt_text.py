@@ -14,6 +14,7 @@ MOST_CARRIED = 1.0  # body masses; a weightlifter moves more, but does not jump 
 MOST_GRAVITY = 25.0  # m/s², Jupiter's
 LONGEST, SHORTEST = 4.0, 0.25  # times a phase's duration
 A_FRAME = 1.0
+SOLES = 0.1  # m, that the highest platform shoes put between foot and floor
 
 
 def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list[str]:
@@ -27,6 +28,20 @@ def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list
         *_of_build(problem.mass, problem.height or height),
         *_of_loads(problem),
         *_of_timings(problem),
+    ]
+
+
+def floor_doubts(stated: float, feet: float, *, on_objects: bool) -> list[str]:
+    """A line where a recording was put on a floor on which its feet do not stand.
+
+    stated: m, the height that became 0; 0 says nothing. feet: m, at which they stand after that.
+    on_objects: whether they stand on objects of the scene, which may be anywhere.
+    """
+    if stated == 0.0 or on_objects or abs(feet) <= SOLES:
+        return []
+    return [
+        f"“floor = {stated:g}” is not where the feet are: they stand at {stated + feet:.2f} m. State "
+        "that height, or none"
     ]
 
 

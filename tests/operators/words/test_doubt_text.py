@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.operators.words.doubt_text import doubts_of
+from hangtime.operators.words.doubt_text import doubts_of, floor_doubts
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.requests import AddedMass, BodyChange, PhaseTiming, Requests
 
@@ -52,3 +52,20 @@ def test_amounts_that_nobody_means_are_told(problem: MotionProblem, words: str) 
 
 def test_a_child_with_a_man_s_mass_is_told_by_its_measured_height() -> None:
     assert "1.20 m" in doubts_of(USUAL, 1.2, FRAMES)[0]
+
+
+@pytest.mark.parametrize("stated", [5.0, 1e6, -0.5, 300.0])
+def test_a_floor_on_which_no_foot_stands_is_told_with_where_they_stand(stated: float) -> None:
+    (told,) = floor_doubts(stated, 0.02 - stated, on_objects=False)
+    assert f"floor = {stated:g}" in told
+    assert "stand at 0.02 m" in told
+
+
+@pytest.mark.parametrize(
+    ("stated", "feet", "on_objects"),
+    [(0.0, 0.4, False), (0.12, 0.0, False), (0.12, -0.08, False), (-0.4, 0.4, True)],
+)
+def test_a_floor_within_soles_or_below_objects_is_not_asked_about(
+    stated: float, feet: float, on_objects: bool
+) -> None:
+    assert floor_doubts(stated, feet, on_objects=on_objects) == []
