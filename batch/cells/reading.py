@@ -17,6 +17,7 @@ from ...solver.data.reports.recording import Origin
 from ...solver.doctor.repair import check_trim, filled, mended, placed, trimmed, turned
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
+from ...solver.worker.stated_scale import check_scale
 
 _EPSILON = 1e-4  # frames, by which a bound may miss a whole one
 
@@ -57,7 +58,7 @@ def read_clip(
 ) -> ReadClip:
     """The problem's frames of a clip, and what lies about them; without frames all after a bind
     pose. What the file does not tell and is not given is guessed. Raises as `read_file`,
-    MissingPart, NotBetweenFrames and NothingLeft."""
+    MissingPart, NotBetweenFrames, NothingLeft and OddScale."""
     clip = read_file(path, rate)
     axis = up or guess_up(clip)
     metres = unit or clip.unit or guess_unit(clip, axis)
@@ -70,6 +71,7 @@ def read_clip(
     still = replace(mend, drift=Repairs().drift)
     if still != Repairs():
         recording = placed(turned(recording, still), still)
+    check_scale(recording, problem, mend.scale)
     recording = _about(recording, problem, 1.0 / (clip.frame_time * mend.time_scale))
     count = bind_frames(recording) if problem.frames is None else 0
     if count:

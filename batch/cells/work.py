@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -14,19 +14,18 @@ from ...bridge.recipe.problem import Recipe
 from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...bridge.rows.choices import FileFormat
 from ...operators.headless.clip import Clip, LoadedClip, load
+from ...operators.headless.doubts import doubts_about
 from ...operators.headless.explained import explained
 from ...operators.headless.outbox import Outbox
 from ...operators.headless.outputs import Outputs, require_exported, require_place
 from ...operators.headless.stages import Stages
 from ...operators.words.doctor_text import diagnosis_text, finding_sentence
-from ...operators.words.doubt_text import doubts_of, floor_doubts
 from ...operators.words.headline import headline, nearness
 from ...solver.data.faults import BadRecipe, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import Requests
 from ...solver.doctor.diagnose import diagnose
-from ...solver.doctor.repairs import Repairs
 from ...solver.results.report import fit_quality
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
 from ..planning.blender_need import needs_blender, require_blender
@@ -83,7 +82,7 @@ def adapt_cell(
         require_place(loaded.scene, wanted, recipe.loop)
         for form in forms:
             require_exported(loaded.scene, outbox.folder, replace(export, format=form))
-    for line in _doubts(recipe, loaded.subject):
+    for line in doubts_about(recipe.problem, recipe.repairs, loaded.subject):
         stages.out.write(f"Warning: {line}\n")
     placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
     result = solve(loaded.subject.with_objects(placed), stages, fits)
@@ -206,10 +205,3 @@ def changed(path: str) -> str:
         f"{path} has changed since the batch was planned, or is gone; give the batch's command "
         "again, which plans it as it is then."
     )
-
-
-def _doubts(recipe: Recipe, subject: Subject) -> Iterator[str]:
-    asked, frames = recipe.problem, subject.recording.frames
-    yield from doubts_of(asked, subject.height, frames[:0] if asked.loop else frames)
-    floor, feet = (recipe.repairs or Repairs()).floor, subject.schedule.floor_m
-    yield from floor_doubts(floor, feet, on_objects=bool(subject.stood_on))

@@ -3,7 +3,7 @@
 clip = "hop.bvh"                # optional, relative to the recipe
 frames = [140, 260]             # scene frames, optional
 mass = 70.0                     # kg
-height = 1.69                   # m, optional
+height = 1.69                   # m, 0.3 to 3, optional
 mass_table = "thesis"           # or "de leva"
 unseen_support = "show"         # fits and tells where something unseen carries; or "refuse"
 mirrored = false                # left does what right did; pins and contacts change sides as well
@@ -57,6 +57,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ...solver.body.anatomy import SIDED_PARTS
+from ...solver.data.constants import STATURES
 from ...solver.data.faults import (
     BadDimensions,
     BadRecipe,
@@ -64,6 +65,7 @@ from ...solver.data.faults import (
     DependentRows,
     Fault,
     MissingPart,
+    OddScale,
     SceneFault,
     UnknownContactName,
     UnknownReductionBone,
@@ -73,7 +75,7 @@ from ...solver.data.problem import MassTable, MotionProblem, Unseen
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.mirror import swapped
 from ..recipe_syntax.source_lines import KeyPath
-from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, Source, Table
+from ..recipe_syntax.table import ABOVE_ZERO, NOT_NEGATIVE, NumberRange, Source, Table
 from ..recipe_syntax.toml_text import entries, sections
 from ..recipe_syntax.values import recipe_values
 from .contacts import ADDED, CONTACT, PIN
@@ -100,6 +102,10 @@ TOP_KEYS = (
     OBJECT,
     *REQUEST_KEYS,
     RESULT.header,
+)
+STATURE = NumberRange(
+    f"from {STATURES[0]:g} to {STATURES[1]:g} m, as people are",
+    lambda value: STATURES[0] <= value <= STATURES[1],
 )
 REDUCTION = ("solution", "reduction")
 CULPRITS = ("pin", "request", "name", "second", "first")  # fields of faults that name a record
@@ -155,7 +161,7 @@ def recipe_of(values: dict[str, Any], source: Source) -> Recipe:
     problem = MotionProblem(
         frames=_frames(table),
         mass=_mass(table),
-        height=table.number("height", ABOVE_ZERO),
+        height=table.number("height", STATURE),
         mass_table=table.choice("mass_table", MassTable) or MotionProblem.mass_table,
         bones=_bones(table.table("bones", PARTS, "part of the body")),
         contacts=CONTACT.read_all(table),
@@ -194,6 +200,8 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
         case UnknownContactName():
             contacts = enumerate(values.get("contact", ()))
             return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
+        case OddScale():
+            return [(RECORDING.header, "scale")]
         case MissingPart():
             return [("bones", fault.by if isinstance(fault, BoneTaken) else fault.part)]
         case UnknownReductionBone() | WrongWeights():

@@ -6,25 +6,28 @@ missing = { 57 = 4, 103 = 1 }   # after frame 57 four frames are missing: they a
 trim = 1                        # frames left out at the beginning
 repair = ["flips", "spikes", "held frames", "bone lengths", "noise"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly
-scale = 0.625                   # lengths times this
-drift = [0.1, 0.0]              # m/s along the floor, x and y, that is taken out
+scale = 0.625                   # lengths times this, which makes a person of 0.3 to 3 m
+drift = [0.1, 0.0]              # m/s along the floor, x and y, that is taken out; 15 at most
 floor = 0.12                    # m; the height that becomes 0
 """
 
 from __future__ import annotations
 
 import re
+from math import hypot
 
 from ...solver.data.problem import Mend
 from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
 from ..recipe_syntax.items import Item, Kind, Values, choice, number, whole
 from ..recipe_syntax.table import ABOVE_ZERO, NumberRange, Table
 
+FASTEST_DRIFT = 15.0  # m/s; treadmills go to 12
 WHOLE = re.compile(r"-?\d+")
 SOME = NumberRange(
     f"a whole number from 1 to {MOST_MISSING}",
     lambda value: 1.0 <= value <= MOST_MISSING and value.is_integer(),
 )
+SCALE = NumberRange("from 0.0001 to 10000", lambda value: 1e-4 <= value <= 1e4)  # any unit's
 COUNT = NumberRange("a whole number, 0 or more", lambda value: value >= 0.0 and value.is_integer())
 
 
@@ -44,6 +47,9 @@ def _write_missing(repairs: Repairs) -> Values:
 
 def _read_drift(table: Table) -> Values:
     drift = table.pair("drift", "[x, y]")
+    if drift is not None and hypot(*drift) > FASTEST_DRIFT:
+        fastest = f"at most {FASTEST_DRIFT:g} m/s"
+        table.refuse("drift", f'"drift" must be {fastest}, not {hypot(*drift):g}')
     return {} if drift is None else {"drift": drift}
 
 
@@ -73,7 +79,7 @@ RECORDING = Kind(
         whole("trim", COUNT),
         Item(("repair",), _read_mend, _write_mend),
         number("time_scale", ABOVE_ZERO),
-        number("scale", ABOVE_ZERO),
+        number("scale", SCALE),
         Item(("drift",), _read_drift, _write_drift),
         number("floor"),
     ),

@@ -15,6 +15,7 @@ from ...solver.doctor.repair import check_trim, trimmed
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
+from ...solver.worker.stated_scale import check_scale
 from .quiet import quiet
 from .stages import Stages
 
@@ -91,6 +92,7 @@ def load(
             problem = replace(problem, frames=after)
         if repairs is not None:
             check_trim(repairs, _frame_count(armature))
+            check_scale(recording, problem, repairs.scale)
             if count == 0 and problem.frames is None and repairs.trim:
                 recording = trimmed(recording, repairs)
             problem = replace(problem, mend=repairs.mend, drift=repairs.drift)

@@ -11,17 +11,17 @@ from pathlib import Path
 from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.objects import placed_objects
-from ...bridge.recipe.problem import PARTS, Recipe, parse_recipe, read_recipe_text
+from ...bridge.recipe.problem import PARTS, STATURE, Recipe, parse_recipe, read_recipe_text
 from ...bridge.recipe.result import ResultOptions, require_return_after
 from ...solver.data.faults import BadRecipe, Fault, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
-from ..words.doubt_text import doubts_of, floor_doubts
 from ..words.headline import headline
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
+from .doubts import doubts_about
 from .explained import CANCELLED, NO_SOLUTION, WRONG_INPUT, explained
 from .outbox import Outbox, not_writable
 from .outputs import Outputs, require_exported, require_place
@@ -90,7 +90,7 @@ def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
     each.add_argument("--first", type=_number, metavar="FRAME", help="first frame")
     each.add_argument("--last", type=_number, metavar="FRAME", help="last frame")
     each.add_argument("--mass", type=_positive, metavar="KG", help="mass (default: 70)")
-    each.add_argument("--height", type=_positive, metavar="M", help="the performer's true height")
+    each.add_argument("--height", type=_stature, metavar="M", help="the performer's true height")
     each.add_argument("--unit", type=_positive, metavar="M", help="metres per unit of the file")
     each.add_argument("--up", choices=("Y", "Z"), type=str.upper, help="axis that points up")
     each.add_argument("--rate", type=_positive, metavar="HZ", help="an AMC file's frames a second")
@@ -118,6 +118,13 @@ def _positive(text: str) -> float:
     if number <= 0.0:
         raise argparse.ArgumentTypeError(f"{text} is not above zero")
     return number
+
+
+def _stature(text: str) -> float:
+    height = _number(text)
+    if not STATURE.holds(height):
+        raise argparse.ArgumentTypeError(f"{text} is not {STATURE.words}")
+    return height
 
 
 def _bone(text: str) -> tuple[str, str]:
@@ -201,11 +208,7 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | No
     bodies = [body.name for body in subject.analysis.performance.character.bodies]
     for line in shapes_told(loaded.skin, bodies, subject.fleshed).splitlines():
         print(line)
-    frames = subject.recording.frames
-    doubts = doubts_of(problem, subject.height, frames[:0] if problem.loop else frames)
-    floor, feet = (repairs or Repairs()).floor, subject.schedule.floor_m
-    doubts += floor_doubts(floor, feet, on_objects=bool(subject.stood_on))
-    for doubt in doubts:
+    for doubt in doubts_about(problem, repairs, subject):
         print(f"Warning: {doubt}", file=sys.stderr)
 
 

@@ -6,6 +6,7 @@ from math import isfinite
 from ...solver.arrays import FloatArray
 from ...solver.data.problem import MotionProblem
 from ...solver.data.requests import AddedMass
+from ...solver.doctor.repairs import UpAxis
 
 # Body mass over squared stature, kg/m². Adults above 40 have obesity of the third class; of healthy
 # children the leanest have 13 (WHO).
@@ -31,6 +32,15 @@ def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list
     ]
 
 
+def up_doubts(up: UpAxis, *, lies: bool) -> list[str]:
+    """A line where a figure lies, or stands on its head, that was to be turned upright. up: what
+    became Z; Z says nothing."""
+    if up is UpAxis.Z or not lies:
+        return []
+    advice = "State the axis that points from feet to head as it was read, or none"
+    return [f"With “up = {up.value}” the figure does not stand upright. {advice}"]
+
+
 def floor_doubts(stated: float, feet: float, *, on_objects: bool) -> list[str]:
     """A line where a recording was put on a floor on which its feet do not stand.
 
@@ -39,10 +49,8 @@ def floor_doubts(stated: float, feet: float, *, on_objects: bool) -> list[str]:
     """
     if stated == 0.0 or on_objects or abs(feet) <= SOLES:
         return []
-    return [
-        f"“floor = {stated:g}” is not where the feet are: they stand at {stated + feet:.2f} m. State "
-        "that height, or none"
-    ]
+    there = f"they stand at {stated + feet:.2f} m"
+    return [f"“floor = {stated:g}” is not where the feet are: {there}. State that height, or none"]
 
 
 def _of_frames(problem: MotionProblem, there: FloatArray) -> Iterator[str]:

@@ -31,6 +31,7 @@ from .recordings import NotJoined as NotJoined
 from .recordings import NotMirrored as NotMirrored
 from .recordings import NotPutIn as NotPutIn
 from .recordings import OddHeight as OddHeight
+from .recordings import OddScale as OddScale
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import Treadmill as Treadmill
 from .recordings import UnknownClipFormat as UnknownClipFormat

@@ -226,6 +226,15 @@ class OddHeight(Fault):
 
 
 @dataclass
+class OddScale(Fault):
+    """The scale that a recording is read with makes nobody of its figure."""
+
+    scale: float
+    metres: float  # its stature then
+    factor: float  # that makes a person of it
+
+
+@dataclass
 class OutsideKeys(Fault):
     """The chosen frames lie beside the recording's, where nothing moves."""
 

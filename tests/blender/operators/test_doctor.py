@@ -10,11 +10,11 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.batch.cells.reading import read_clip
-from hangtime.bridge.recipe.problem import parse_recipe
+from hangtime.bridge.recipe.problem import locate, parse_recipe
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
 from hangtime.operators.headless.stages import Stages
-from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft
+from hangtime.solver.data.faults import NotBetweenFrames, NothingLeft, OddScale
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.tests.helpers.clips import begun_at_rest, mocap_path, without_frames
@@ -93,6 +93,30 @@ def test_a_recording_of_which_nothing_is_left_is_refused_here_and_without_blende
     with pytest.raises(NothingLeft) as plain:
         read_clip(mocap_path(CLIP), problem, repairs)
     assert told.value == plain.value
+
+
+@pytest.mark.parametrize("scale", [0.01, 1000.0])
+def test_a_scale_that_makes_nobody_is_refused_here_and_without_blender(scale) -> None:
+    repairs, problem = Repairs(scale=scale), MotionProblem(frames=(100.0, 290.0))
+    with pytest.raises(OddScale) as told:
+        load(Clip(mocap_path(CLIP)), problem, Stages(StringIO()), repairs)
+    with pytest.raises(OddScale) as plain:
+        read_clip(mocap_path(CLIP), problem, repairs)
+    assert told.value.metres == pytest.approx(plain.value.metres, rel=1e-3)
+    recipe = "\n".join(["[recording]", "trim = 1", f"scale = {scale}"])
+    assert locate(recipe, told.value) == 3
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        (("--height", "0.001"), "0.001 is not from 0.3 to 3 m"),
+        (("--height", "500"), "500 is not from 0.3 to 3 m"),
+    ],
+)
+def test_an_option_that_cannot_be_is_refused_in_words(option, words, capsys) -> None:
+    assert main(["doctor", str(mocap_path(CLIP)), *option]) == 2
+    assert words in capsys.readouterr().err
 
 
 def test_gaps_side_by_side_are_filled_as_without_blender() -> None:

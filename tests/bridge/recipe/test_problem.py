@@ -161,7 +161,7 @@ PROBLEMS = st.builds(
     MotionProblem,
     frames=st.none() | st.tuples(NUMBERS, NUMBERS).filter(lambda f: f[0] < f[1]),
     mass=POSITIVE,
-    height=st.none() | POSITIVE,
+    height=st.none() | st.floats(0.3, 3.0),
     mass_table=st.sampled_from(MassTable),
     unseen=st.sampled_from(Unseen),
     bones=st.dictionaries(st.sampled_from(PARTS), NAMES, max_size=3),
@@ -193,6 +193,8 @@ def test_a_quarter_turn_is_written_as_90() -> None:
     [
         ("forward = 0.3", "foward = 0.3"),
         ("height = 1.69", "Height = 1.69"),
+        ("height = 1.69", "height = 500"),
+        ("height = 1.69", "height = 0.001"),
         ('"left foot" =', '"left fot" ='),
         ("start_frame = 183.5", "start = 183.5"),
         ("up = 0.2", 'up = "high"'),

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hangtime.operators.words.doubt_text import doubts_of, floor_doubts
+from hangtime.operators.words.doubt_text import doubts_of, floor_doubts, up_doubts
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.requests import AddedMass, BodyChange, PhaseTiming, Requests
+from hangtime.solver.doctor.repairs import UpAxis
 
 FRAMES = np.arange(140.0, 331.0)
 USUAL = MotionProblem(frames=(140.0, 330.0), mass=70.0)
@@ -69,3 +70,9 @@ def test_a_floor_within_soles_or_below_objects_is_not_asked_about(
     stated: float, feet: float, on_objects: bool
 ) -> None:
     assert floor_doubts(stated, feet, on_objects=on_objects) == []
+
+
+def test_a_figure_that_was_turned_to_lie_is_told() -> None:
+    (told,) = up_doubts(UpAxis.X, lies=True)
+    assert "up = X" in told
+    assert up_doubts(UpAxis.Z, lies=True) == up_doubts(UpAxis.MINUS_Y, lies=False) == []
