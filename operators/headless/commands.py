@@ -107,9 +107,12 @@ def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
 
 
 def _number(text: str) -> float:
-    number = float(text)
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
     if not math.isfinite(number):
-        raise ValueError(text)
+        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
     return number
 
 

@@ -110,6 +110,8 @@ def test_a_scale_that_makes_nobody_is_refused_here_and_without_blender(scale) ->
 @pytest.mark.parametrize(
     ("option", "words"),
     [
+        (("--first", "abc"), "'abc' is not a finite number"),
+        (("--unit", "nan"), "'nan' is not a finite number"),
         (("--height", "0.001"), "0.001 is not from 0.3 to 3 m"),
         (("--height", "500"), "500 is not from 0.3 to 3 m"),
     ],
