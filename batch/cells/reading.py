@@ -12,7 +12,7 @@ from ...bridge.formats.guess import guess_unit, guess_up
 from ...bridge.formats.motion_clip import MotionClip, UpAxis, to_recording
 from ...solver.data.faults import ClipNotOpened
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import BEYOND, Recording
+from ...solver.data.recording import BEYOND, Recording, require_inside
 from ...solver.data.reports.recording import Origin
 from ...solver.doctor.repair import check_trim, filled, mended, placed, trimmed, turned
 from ...solver.doctor.repairs import Repairs
@@ -58,7 +58,7 @@ def read_clip(
 ) -> ReadClip:
     """The problem's frames of a clip, and what lies about them; without frames all after a bind
     pose. What the file does not tell and is not given is guessed. Raises as `read_file`,
-    MissingPart, NotBetweenFrames, NothingLeft and OddScale."""
+    MissingPart, NotBetweenFrames, NothingLeft, OddScale and OutsideKeys."""
     clip = read_file(path, rate)
     axis = up or guess_up(clip)
     metres = unit or clip.unit or guess_unit(clip, axis)
@@ -101,11 +101,14 @@ def _by_depth(recording: Recording) -> Recording:
 
 
 def _about(recording: Recording, problem: MotionProblem, rate: float) -> Recording:
-    """The problem's frames and BEYOND seconds on both sides, as far as the clip goes; at least one
-    frame, so that what is asked for beyond it is told as too short. rate: Hz."""
+    """The problem's frames and BEYOND seconds on both sides, as far as the clip goes. rate: Hz.
+
+    Raises OutsideKeys.
+    """
     if problem.frames is None:
         return recording
     start, end = float(recording.frames[0]), float(recording.frames[-1])
+    require_inside(problem.frames, recording.name, (start, end))
     first = ceil(max(problem.frames[0], start) - _EPSILON)
     last = max(first, floor(min(problem.frames[1], end) + _EPSILON))
     reach = floor(BEYOND * rate)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import BEYOND, Recording
+from ...solver.data.recording import BEYOND, Recording, require_inside
 from ...solver.data.reports.recording import Origin
 from ...solver.doctor.repair import check_trim, trimmed
 from ...solver.doctor.repairs import Repairs
@@ -186,11 +186,15 @@ def _frame_count(armature: bpy.types.Object) -> int:
 def _recorded_frames(
     armature: bpy.types.Object, problem: MotionProblem
 ) -> tuple[float | None, float | None]:
-    """The problem's frames as far as the recording goes: beyond, Blender holds the last pose."""
+    """The problem's frames as far as the recording goes: beyond, Blender holds the last pose.
+
+    Raises OutsideKeys.
+    """
     from ...bridge.accessors import current_action, shown_range
 
     action = current_action(armature)
     if problem.frames is None or action is None:
         return None, None
     start, end = shown_range(armature, action)
+    require_inside(problem.frames, armature.name, (start, end))
     return max(problem.frames[0], start), min(problem.frames[1], end)

@@ -26,12 +26,11 @@ from ...solver.data.faults import (
     Fault,
     MissingPart,
     OddHeight,
-    OutsideKeys,
     UnseenSupport,
 )
 from ...solver.data.loop import Cycle
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import Recording
+from ...solver.data.recording import Recording, require_inside
 from ...solver.data.reports.constraints import FitNeeds
 from ...solver.data.reports.report import FitQuality
 from ...solver.data.scene import SceneRole
@@ -158,10 +157,9 @@ def analysis(context: bpy.types.Context) -> Task:
     bind = _leave_out_bind_pose(settings, recording)
     if bind:
         recording = yield from read_wanted(armature)
-    first, last = shown_range(armature, present(recorded_action(armature)))
+    recorded = shown_range(armature, present(recorded_action(armature)))
     span = span_of(settings, recording)
-    if span[0] >= last or span[1] <= first:
-        raise OutsideKeys(armature.name, first, last)
+    require_inside(span, armature.name, recorded)
     find_parts(armature)
     yield None
     for missing in missing_parts(settings):

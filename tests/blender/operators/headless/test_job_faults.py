@@ -7,9 +7,12 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
+from hangtime.batch.cells.reading import read_clip
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.operators.headless import commands
 from hangtime.operators.headless.cli import main
+from hangtime.solver.data.faults import OutsideKeys
+from hangtime.solver.data.problem import MotionProblem
 from hangtime.tests.blender.helpers.jobs import EDIT, PLAIN, run
 
 
@@ -41,9 +44,15 @@ def test_what_is_wrong_in_a_recipe_is_said_with_its_line(
     assert not (tmp_path / "out").exists()
 
 
-def test_frames_beyond_the_recording_are_too_short(clip: Path, tmp_path: Path, capsys) -> None:
+def test_frames_beyond_the_recording_are_told_with_those_that_it_has(
+    clip: Path, tmp_path: Path, capsys
+) -> None:
     assert run(tmp_path, clip, "frames = [400, 700]\n") == 2
-    assert "0.00 s" in one_line(capsys)
+    assert "from frame 1 to 3" in one_line(capsys)
+    assert main(["doctor", str(clip), "--first", "400"]) == 2
+    assert "from frame 1 to 3" in one_line(capsys)
+    with pytest.raises(OutsideKeys):
+        read_clip(clip, MotionProblem(frames=(400.0, 700.0)))
 
 
 def test_a_truncated_clip_is_said_with_its_line(clip: Path, tmp_path: Path, capsys) -> None:
