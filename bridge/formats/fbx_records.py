@@ -14,6 +14,7 @@ from struct import Struct
 
 from ...solver.data.faults import UnreadableClip
 
+HEAD = 1024  # bytes, in the first line of which a text says that it is an FBX
 MAGIC = b"Kaydara FBX Binary  \0\x1a\0"
 WIDE = 7500  # the version from which counts have 8 bytes
 MOST_PACKED = 1032  # times, by which zlib can make data shorter
@@ -27,14 +28,27 @@ _LENGTH, _ARRAY = Struct("<I"), Struct("<3I")
 
 
 def require_sound(path: Path) -> None:
-    """Raises UnreadableClip where a binary FBX is damaged; what is none is not looked at."""
+    """Raises UnreadableClip where a binary FBX is damaged, or a file is no FBX at all; a text
+    that is one is the importer's affair."""
     with path.open("rb") as file:
-        if file.read(len(MAGIC)) != MAGIC:
+        head = file.read(HEAD)
+        if not head.startswith(MAGIC):
+            _require_text(path, head)
             return
         with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
             fault = _Records(data).fault()
     if fault is not None:
         raise UnreadableClip(str(path), None, f"its {fault}: the file is damaged")
+
+
+def _require_text(path: Path, head: bytes) -> None:
+    """head: the first bytes of a file. Raises UnreadableClip where they are no FBX's in text."""
+    if not head.strip():
+        raise UnreadableClip(str(path), None, "it is empty")
+    if head.lstrip().startswith(b"HIERARCHY"):
+        raise UnreadableClip(str(path), None, "it is a BVH file, which must end with .bvh")
+    if b"FBX" not in head:
+        raise UnreadableClip(str(path), None, "it is no FBX file, whatever its name says")
 
 
 class _Records:

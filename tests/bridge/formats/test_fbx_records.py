@@ -23,6 +23,15 @@ def test_what_is_no_binary_fbx_is_left_to_the_importer(tmp_path: Path) -> None:
     require_sound(path)
 
 
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [(b"", "empty"), (b"\n", "empty"), (b"HIERARCHY\nROOT Hips", "BVH"), (b"\x89PNG", "no FBX")],
+)
+def test_what_is_no_fbx_at_all_is_told(content: bytes, words: str, tmp_path: Path) -> None:
+    with pytest.raises(UnreadableClip, match=words):
+        require_sound(written(tmp_path, content))
+
+
 @pytest.mark.parametrize("place", [END, COUNT, LENGTH])
 @pytest.mark.parametrize("value", [1, 2**31, 2**32 - 1])
 def test_counts_that_cannot_be_are_told(place: int, value: int, tmp_path: Path) -> None:
