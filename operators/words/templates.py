@@ -176,6 +176,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "moves; those most like it are {likeliest:names}.",
     faults.BadTiming: "“{request}” would last {seconds:.3f} s, or lies outside the clip; change "
     "its frames, phase or duration.",
+    faults.NoSuchPoseFrame: "“{request}” takes its pose from frame {frame:g}, but the adapted "
+    "frames are {first:g} to {last:g}; choose a pose frame among these.",
     faults.RootHasNoJoint: "“{request}” limits the joint of “{bone}”, but that is the root, which "
     "has no joint; choose a bone that hangs on another.",
     faults.NeedsTorques: "“{request}” is about torques, but the reduced dynamics have none; choose "

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..data.faults import BadTiming
+from ..data.faults import NoSuchPoseFrame
 from ..data.requests import (
     AngleLimit,
     ConeLimit,
@@ -70,7 +70,7 @@ def twist_limit(request: TwistLimit, context: EvaluationContext) -> Constraint:
 
 
 def pose_constraint(request: PoseRequest, context: EvaluationContext) -> Constraint:
-    """Raises StillBone, RootHasNoJoint, UnknownPhaseIn, BadTiming."""
+    """Raises StillBone, RootHasNoJoint, UnknownPhaseIn, BadTiming, NoSuchPoseFrame."""
     span = context.interval(request.name, request.when)
     function = pose_function(request, context)
     slack = np.full(len(function.which), request.slack)
@@ -81,7 +81,7 @@ def pose_function(request: PoseRequest, context: EvaluationContext) -> JointAngl
     """Joint angles against those of a frame of the fit (None: the same instant), or of rest.
 
     The root's own orientation is no part of a pose; see BodyOrientation. Raises StillBone,
-    RootHasNoJoint, BadTiming.
+    RootHasNoJoint, NoSuchPoseFrame.
     """
     bodies = [context.jointed(request.name, bone) for bone in request.bones]
     bodies = bodies or list(range(1, len(context.character.bodies)))
@@ -93,11 +93,17 @@ def pose_function(request: PoseRequest, context: EvaluationContext) -> JointAngl
     if request.frame is not None:
         at = (request.frame - context.timeline.first_frame) / context.timeline.rate
         if not -1e-6 <= at <= context.reference.duration + 1e-6:
-            raise BadTiming(request.name, 0.0)
+            raise NoSuchPoseFrame(request.name, request.frame, *_adapted_frames(context))
         return _fixed_angles(which, context.reference.angles(np.array([at]))[0, which], context)
     return JointAngles(
         which, lambda times: context.reference.angles(context.reference_times(times))[:, which]
     )
+
+
+def _adapted_frames(context: EvaluationContext) -> tuple[float, float]:
+    """The first and the last one."""
+    first = context.timeline.first_frame
+    return first, float(round(first + context.reference.duration * context.timeline.rate))
 
 
 def _fixed_angles(which: IntArray, posed: FloatArray, context: EvaluationContext) -> JointAngles:

@@ -55,6 +55,7 @@ from .requests import NoBoneChosen as NoBoneChosen
 from .requests import NoDirection as NoDirection
 from .requests import NoNewSlot as NoNewSlot
 from .requests import NoPhaseChosen as NoPhaseChosen
+from .requests import NoSuchPoseFrame as NoSuchPoseFrame
 from .requests import NotAboveZero as NotAboveZero
 from .requests import NothingTouches as NothingTouches
 from .requests import OutOfReach as OutOfReach

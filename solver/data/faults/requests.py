@@ -123,6 +123,15 @@ class BadTiming(RequestFault):
 
 
 @dataclass
+class NoSuchPoseFrame(RequestFault):
+    """A request takes a pose from a frame beside those that are adapted."""
+
+    frame: float
+    first: float
+    last: float
+
+
+@dataclass
 class RootHasNoJoint(RequestFault):
     """A joint's limit or torque was asked of the root bone, which has no joint to a parent."""
 

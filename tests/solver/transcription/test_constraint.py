@@ -8,7 +8,13 @@ from hangtime.solver.body.kinematics import BodyPoint
 from hangtime.solver.constraints.constraint_builder import build_constraints
 from hangtime.solver.constraints.evaluation_context import touches
 from hangtime.solver.constraints.point_constraints import point_axes
-from hangtime.solver.data.faults import BadTiming, RootHasNoJoint, StillBone, UnknownPhaseIn
+from hangtime.solver.data.faults import (
+    BadTiming,
+    NoSuchPoseFrame,
+    RootHasNoJoint,
+    StillBone,
+    UnknownPhaseIn,
+)
 from hangtime.solver.data.requests import (
     ALWAYS,
     AngleLimit,
@@ -295,3 +301,11 @@ def test_times_that_are_not_there_are_named() -> None:
     with pytest.raises(BadTiming) as empty:
         built(Requests(angles=(AngleLimit("knee", "left shank", 0, 1, When(frames=(25, 12))),)))
     assert empty.value.request == "knee"
+
+
+@pytest.mark.parametrize("frame", [-3.0, 9999.0])
+def test_a_pose_of_a_frame_that_is_not_adapted_is_told_with_those_that_are(frame: float) -> None:
+    with pytest.raises(NoSuchPoseFrame) as told:
+        built(Requests(poses=(PoseRequest("pose", LATE, ("right shank",), frame=frame),)))
+    assert (told.value.request, told.value.frame) == ("pose", frame)
+    assert told.value.first < told.value.last < 9999.0
