@@ -14,6 +14,9 @@ from .messages import sentence
 from .report_text import held_at_rest
 
 
+LEAST_WIDTH = 16  # letters of a column
+
+
 def analysis_text(analysis: Analysis, origin: Origin) -> str:
     """Figure, phases and contacts; frames are the scene's."""
     recording, figure = analysis.performance.recording, analysis.performance.character
@@ -32,12 +35,7 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
     lines += ["", f"{'phase':<12}{'frames':>17}{'seconds':>9}"]
     lines += [_phase_line(analysis, phase) for phase in analysis.schedule.phases]
     lines += _unseen(analysis)
-    lines += ["", f"{'contact':<16}{'frames':>17}  {'bone':<16}place (m)"]
-    for contact in analysis.schedule.contacts:
-        span = _span(analysis, contact.start, contact.end)
-        place = ", ".join(f"{x:.3f}" for x in contact.place)
-        on = f" on {contact.on}" if contact.on is not None else ""
-        lines.append(f"{contact.name:<16}{span:>17}  {contact.bone:<16}{place}{on}")
+    lines += ["", *_contact_lines(analysis)]
     return "\n".join(lines) + "\n"
 
 
@@ -46,6 +44,23 @@ def _unseen(analysis: Analysis) -> list[str]:
     told = [sentence(each) for each in analysis.unseen]
     boxes = [box for u in analysis.unseen if isinstance(u, UnseenSupport) for box in u.boxes]
     return ["", *told, *support_texts(boxes)] if told else []
+
+
+def _contact_lines(analysis: Analysis) -> list[str]:
+    """A table of the contacts; its columns are as wide as the longest name in them."""
+    contacts = analysis.schedule.contacts
+    name, bone = (
+        max((len(each) + 1 for each in names), default=0)
+        for names in ([c.name for c in contacts], [c.bone for c in contacts])
+    )
+    name, bone = max(name, LEAST_WIDTH), max(bone, LEAST_WIDTH)
+    lines = [f"{'contact':<{name}}{'frames':>17}  {'bone':<{bone}}place (m)"]
+    for contact in contacts:
+        span = _span(analysis, contact.start, contact.end)
+        place = ", ".join(f"{x:.3f}" for x in contact.place)
+        on = f" on {contact.on}" if contact.on is not None else ""
+        lines.append(f"{contact.name:<{name}}{span:>17}  {contact.bone:<{bone}}{place}{on}")
+    return lines
 
 
 def _phase_line(analysis: Analysis, phase: Phase) -> str:

@@ -1,0 +1,23 @@
+"""The text of an analysis."""
+
+from dataclasses import replace
+
+from hangtime.operators.words.analysis_text import analysis_text
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.tests.helpers.clips import JUMP, load_recording
+
+
+def test_long_names_of_bones_leave_their_column_whole() -> None:
+    """“mixamorig:RightFoot-0.050” is where a bone ran into its place."""
+    recording = load_recording(JUMP)
+    bones = tuple(replace(bone, name=f"mixamorig:{bone.name}") for bone in recording.bones)
+    found = analyse(replace(recording, bones=bones), MotionProblem(frames=(140.0, 330.0)))
+    text = analysis_text(found, Origin("jump.bvh", 1.0, False, "Y", False))
+    table = text[text.index("contact ") :].splitlines()
+    at = table[0].index("bone"), table[0].index("place")
+    for line, contact in zip(table[1:], found.schedule.contacts, strict=True):
+        assert line[: at[0]].strip().startswith(contact.name)
+        assert line[at[0] : at[1]].strip() == contact.bone
+        assert line[at[1] - 1] == " "
