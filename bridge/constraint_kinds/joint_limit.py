@@ -12,11 +12,14 @@ from ..rows.row_parts import RowContext, bone_of, ordered_bound
 from ..rows.stored import angle, boolean
 from ..rows.times import when_of
 
+TURN = 2.0 * pi  # beyond which no joint goes
 LIMIT_FIELDS = {
     "use_lower": boolean("Use At Least", default=True),
-    "lower": angle("At Least", soft_min=-pi, soft_max=pi),
+    "lower": angle("At Least", min=-TURN, max=TURN, soft_min=-pi, soft_max=pi),
     "use_upper": boolean("Use At Most", default=True),
-    "upper": angle("At Most", soft_min=-pi, soft_max=pi, default=radians(140.0)),
+    "upper": angle(
+        "At Most", min=-TURN, max=TURN, soft_min=-pi, soft_max=pi, default=radians(140.0)
+    ),
 }
 
 

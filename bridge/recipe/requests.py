@@ -27,7 +27,7 @@ points = ["Left heel"]          # or bones = [...]; default: everything that tou
 
 [[angle]]                       # how far a joint is bent (when)
 bone = "Shin.L"
-at_least = 10                   # and / or at_most; or fixed = 90
+at_least = 10                   # -360 to 360; and / or at_most; or fixed = 90
 
 [[twist]]                       # how far a bone is turned about itself; keys as for angle (when)
 

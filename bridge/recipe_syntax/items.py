@@ -13,6 +13,7 @@ from .toml_text import degrees, entries
 Values = dict[str, Any]
 Record = TypeVar("Record")
 
+TURNS = NumberRange("from -360 to 360 degrees", lambda value: -360.0 <= value <= 360.0)
 TRAVEL_KEYS = ("forward", "left", "up")
 AGAINST = ("back", "right", "down")  # the other way along each
 TRAVEL_WORDS = (*TRAVEL_KEYS, *AGAINST)
@@ -202,11 +203,11 @@ def _read_touching(table: Table) -> Values:
 
 def _read_limits(table: Table) -> Values:
     table.not_both("fixed", ("at_least", "at_most"))
-    lower, upper = (table.number(key) for key in ("at_least", "at_most"))
+    lower, upper = (table.number(key, TURNS) for key in ("at_least", "at_most"))
     if lower is not None and upper is not None and lower > upper:
         table.refuse("at_most", f'"at_most", {upper:g}, is less than "at_least", {lower:g}')
     if "fixed" in table.values:
-        lower = upper = table.number("fixed")
+        lower = upper = table.number("fixed", TURNS)
     pair = (None if bound is None else math.radians(bound) for bound in (lower, upper))
     return dict(zip(("lower", "upper"), pair, strict=True))
 

@@ -13,7 +13,6 @@ from ...solver.data.reports.recording import Origin
 from .messages import sentence
 from .report_text import held_at_rest
 
-
 LEAST_WIDTH = 16  # letters of a column
 
 

@@ -53,6 +53,8 @@ WRONG = [  # what stands in FULL, and what it is replaced by, whose last line is
     ("at_most = 90", "at_most = 90\nfixed = 45"),
     ("fixed = 45", "fixed = 45\nat_least = 3"),
     ("fixed = 45", 'fixed = "straight"'),
+    ("fixed = 45", "fixed = 500"),
+    ("at_most = 90", "at_most = 361"),
     ("half_angle = 40", "half_angle = 0"),
     ("half_angle = 40", "half_angle = 180"),
     ("axis = [0, 0, -1]", "axis = [0, 0, 0]"),
