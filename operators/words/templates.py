@@ -200,6 +200,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.OutOfReach: "“{request}” is {metres:length} from “{other}”, with {seconds:.2f} s "
     "between them: nobody goes so far in that time. Move it nearer, give it more time, or switch "
     "Human Ranges off for a figure that is no human.",
+    faults.PoseHeld: "“{request}” holds the whole body, which then stands and lands where it did, "
+    "but “{pin}” moves that by {metres:length}; let the pose hold in one phase or fewer bones, or "
+    "give it slack or a weight.",
     faults.NoBoneChosen: "“{request}” is about no bone yet; choose one, or switch it off.",
     faults.NoPhaseChosen: "“{request}” holds in a phase, but none is chosen; there are "
     "{known:names}.",

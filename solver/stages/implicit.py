@@ -74,7 +74,8 @@ def unadapted(fit: Fit) -> Adaptation:
 def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None) -> Adaptation:
     """Adapts a fitted performance to a problem (thesis 4.3, 4.4).
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins, OutOfReach and the requests' own faults.
+    Raises UnknownPhase, UnknownContact, ContradictoryPins, OutOfReach, PoseHeld and the requests'
+    own faults.
     What is not met with the durations that go with the pins, or only where guards are given up, is
     tried with the recorded ones, and the better of both returned; a loop keeps these, for it lasts
     whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve that fails is returned with

@@ -21,6 +21,7 @@ from ..constraints.constraint_builder import build_constraints
 from ..constraints.contact_setup import added_contact, with_added, without_lifted
 from ..constraints.evaluation_context import EvaluationContext
 from ..constraints.far_apart import check_apart
+from ..constraints.held_pose import check_poses
 from ..data.contacts import ContactSchedule, Interval, Phase
 from ..data.faults import NeedsTorques
 from ..data.problem import MotionProblem
@@ -224,7 +225,8 @@ def check_places(
     fitted: Standing,
     target: Standing,
 ) -> None:
-    """Refuses what is too far apart for any body. Raises ContradictoryPins, OutOfReach.
+    """Refuses what is too far apart for any body, or for one whose pose is held. Raises
+    ContradictoryPins, OutOfReach, PoseHeld.
 
     context, start: of the problem; fitted: where its contacts were; target: where they shall be.
     """
@@ -232,6 +234,7 @@ def check_places(
         pinned = pinned_by(problem.pins, fit.schedule)
         moved = replace(start, places=target.places)
         check_apart(problem.requests, context, moved, fitted.places, pinned)
+        check_poses(problem.requests, context, moved, fitted.places, pinned)
 
 
 def set_up(fit: Fit, problem: MotionProblem) -> Setup:

@@ -59,6 +59,7 @@ from .requests import NoSuchPoseFrame as NoSuchPoseFrame
 from .requests import NotAboveZero as NotAboveZero
 from .requests import NothingTouches as NothingTouches
 from .requests import OutOfReach as OutOfReach
+from .requests import PoseHeld as PoseHeld
 from .requests import ReturnTooEarly as ReturnTooEarly
 from .requests import RootHasNoJoint as RootHasNoJoint
 from .requests import SameUsdNames as SameUsdNames

@@ -191,6 +191,15 @@ class OutOfReach(RequestFault):
     seconds: float
 
 
+@dataclass
+class PoseHeld(RequestFault):
+    """A pose holds the whole body through stances that a pin moves against each other, by
+    metres."""
+
+    pin: str
+    metres: float
+
+
 class NoBoneChosen(RequestFault):
     """A request of a kind that is about a bone names none."""
 

@@ -10,6 +10,7 @@ from hangtime.solver.data.faults import (
     Fault,
     NotComputable,
     OutOfReach,
+    PoseHeld,
     StillBone,
     UnknownBone,
     UnknownPhase,
@@ -18,12 +19,14 @@ from hangtime.solver.data.faults import (
 )
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import (
+    ALWAYS,
     AddedMass,
     BodyChange,
     ConeLimit,
     LimbChange,
     PointAxes,
     PointRequest,
+    PoseRequest,
     Requests,
     Shape,
     TorqueLimit,
@@ -144,6 +147,40 @@ def test_what_nobody_can_do_is_said_before_the_fit(
         checked(problem)
     said = vars(found.value)
     assert {said[key] for key in ("first", "second", "request", "other") if key in said} == named
+
+
+def posed(pose: PoseRequest, *pins: Pin) -> MotionProblem:
+    return MotionProblem(frames=FRAMES, pins=pins, requests=Requests(poses=(pose,)))
+
+
+def test_a_body_that_is_held_in_every_pose_lands_where_it_did() -> None:
+    """The steps towards another landing took minutes before they gave up."""
+    with pytest.raises(PoseHeld) as held:
+        checked(posed(PoseRequest("As it is", ALWAYS), Pin("Leap", "ground 2", offset=(0, 0.2, 0))))
+    assert (held.value.request, held.value.pin) == ("As it is", "Leap")
+    assert held.value.metres == pytest.approx(0.2, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("pose", "offset"),
+    [
+        (PoseRequest("in flight", When("flight 1")), (0, 0.2, 0)),
+        (PoseRequest("arm", ALWAYS, ("LeftForeArm",)), (0, 0.2, 0)),
+        (PoseRequest("preferred", ALWAYS, weight=1.0), (0, 0.2, 0)),
+        (PoseRequest("loose", ALWAYS, slack=0.2), (0, 0.2, 0)),
+        (PoseRequest("a sole's", ALWAYS), (0, 0.01, 0)),
+        (PoseRequest("further down", ALWAYS), (0, 0.2, -0.3)),
+    ],
+)
+def test_a_pose_that_leaves_a_motion_is_not_refused(
+    pose: PoseRequest, offset: tuple[float, float, float]
+) -> None:
+    checked(posed(pose, Pin("Leap", "ground 2", offset=offset)))
+
+
+def test_all_stances_may_be_moved_with_a_held_body() -> None:
+    pins = [Pin(name, name, offset=(0.4, 0.2, 0)) for name in ("ground 1", "ground 2")]
+    checked(posed(PoseRequest("As it is", ALWAYS), *pins))
 
 
 def test_a_pin_is_not_blamed_for_places_that_the_recording_has_apart() -> None:
