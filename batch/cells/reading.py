@@ -10,11 +10,12 @@ from ...bridge.formats.acclaim import USUAL_RATE, find_asf, read_acclaim
 from ...bridge.formats.bvh import read_bvh
 from ...bridge.formats.guess import guess_unit, guess_up
 from ...bridge.formats.motion_clip import MotionClip, UpAxis, to_recording
+from ...solver.analysis.take import require_inside
 from ...solver.data.faults import ClipNotOpened
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import BEYOND, Recording, require_inside
+from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
-from ...solver.doctor.repair import check_trim, filled, mended, placed, trimmed, turned
+from ...solver.doctor.examination.repair import check_trim, filled, mended, placed, trimmed, turned
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.stated_scale import check_scale

@@ -25,7 +25,7 @@ from ...solver.data.faults import BadRecipe, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import Requests
-from ...solver.doctor.diagnose import diagnose
+from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.results.report import fit_quality
 from ...solver.worker.pipeline import Subject, measure, no_fit, solve
 from ..planning.blender_need import needs_blender, require_blender

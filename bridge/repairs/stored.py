@@ -8,7 +8,7 @@ from dataclasses import asdict, astuple, replace
 import bpy
 
 from ...solver.data.problem import Mend
-from ...solver.doctor.diagnose import Diagnosis
+from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.feet import FootFault, FootFaultKind
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import MissingFrames, Repairs, UpAxis

@@ -11,10 +11,10 @@ from ...solver.arrays import IntArray
 from ...solver.body.anatomy import Part
 from ...solver.data.recording import Recording
 from ...solver.data.scaling import scaled_recording
+from ...solver.doctor.examination.repair import turned
 from ...solver.doctor.figure import figure_of
 from ...solver.doctor.finding import FindingKind
 from ...solver.doctor.local_poses import LocalPoses, angles_between
-from ...solver.doctor.repair import turned
 from ...solver.doctor.repairs import Repairs, UpAxis
 from ...solver.numerics.interpolation import interpolate
 from ...solver.numerics.rotations import rotation_matrix

@@ -9,10 +9,10 @@ import numpy as np
 from ...solver.analysis.performance import perform
 from ...solver.body.character import build_character
 from ...solver.data.recording import Recording
-from ...solver.doctor.diagnose import diagnose
+from ...solver.doctor.examination.diagnose import diagnose
+from ...solver.doctor.examination.repair import repaired
 from ...solver.doctor.falls import Falls, falls_of
 from ...solver.doctor.finding import FindingKind
-from ...solver.doctor.repair import repaired
 from .damages import Damage
 
 # What a clip truly has, undamaged, is no false alarm: the dancer's hips rise by 0.12 m in 50 ms and

@@ -7,11 +7,12 @@ from math import ceil, floor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...solver.analysis.take import require_inside
 from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import BEYOND, Recording, require_inside
+from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
-from ...solver.doctor.repair import check_trim, trimmed
+from ...solver.doctor.examination.repair import check_trim, trimmed
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure

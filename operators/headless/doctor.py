@@ -9,7 +9,7 @@ from typing import Any
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries, sections
 from ...solver.data.problem import MotionProblem
-from ...solver.doctor.diagnose import Diagnosis, diagnose
+from ...solver.doctor.examination.diagnose import Diagnosis, diagnose
 from ...solver.doctor.finding import Finding
 from ..words.analysis_text import relative
 from ..words.doctor_text import diagnosis_text, finding_sentence, rounded

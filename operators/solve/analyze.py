@@ -22,6 +22,7 @@ from ...bridge.properties.settings import (
 from ...bridge.properties.stances import active_contact
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
+from ...solver.analysis.take import require_inside
 from ...solver.data.faults import (
     Fault,
     MissingPart,
@@ -30,7 +31,7 @@ from ...solver.data.faults import (
 )
 from ...solver.data.loop import Cycle
 from ...solver.data.problem import MotionProblem
-from ...solver.data.recording import Recording, require_inside
+from ...solver.data.recording import Recording
 from ...solver.data.reports.constraints import FitNeeds
 from ...solver.data.reports.report import FitQuality
 from ...solver.data.scene import SceneRole

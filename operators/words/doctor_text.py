@@ -2,7 +2,7 @@
 
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
-from ...solver.doctor.diagnose import Diagnosis
+from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.feet import FootFault
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs

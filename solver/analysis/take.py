@@ -4,11 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..data.faults import OutsideKeys
 from ..data.recording import BEYOND, Recording
 
 HELD = 1e-6  # m; a pose that moves by less from frame to frame is held, not recorded
 JUMP_SPEED = 15.0  # m/s; joints that are this fast at once have jumped, from a T-pose mostly
 JUMP_RATIO = 2.0  # unless they are half as fast within the range: throws, sprints
+
+
+def require_inside(frames: tuple[float, float], name: str, recorded: tuple[float, float]) -> None:
+    """Whether frames reach into those that a recording has. name: what is recorded, to the artist.
+
+    Raises OutsideKeys.
+    """
+    if frames[0] >= recorded[1] or frames[1] <= recorded[0]:
+        raise OutsideKeys(name, *recorded)
 
 
 def take_of(recording: Recording, within: Recording) -> Recording:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from .faults import OutsideKeys
 
 POSE_TOLERANCE = 1e-5  # m and rad; going into edit mode and back moves bones by less
 BEYOND = 0.5  # s, on both sides of the range that is adapted, which a recording may have and tell
@@ -119,15 +118,6 @@ class PoseTrack:
     bones: tuple[str, ...]
     rotations: FloatArray
     root_head: FloatArray
-
-
-def require_inside(frames: tuple[float, float], name: str, recorded: tuple[float, float]) -> None:
-    """Whether frames reach into those that a recording has. name: what is recorded, to the artist.
-
-    Raises OutsideKeys.
-    """
-    if frames[0] >= recorded[1] or frames[1] <= recorded[0]:
-        raise OutsideKeys(name, *recorded)
 
 
 def digest(recording: Recording, grid: float = 0.0) -> str:

@@ -40,7 +40,7 @@ from ..data.scaling import (
 from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
-from ..doctor.repair import as_asked
+from ..doctor.examination.repair import as_asked
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
 from ..optimisation.sqp import Step

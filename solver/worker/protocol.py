@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ..data.reports.report import DragSummary, FitQuality, Report
     from ..data.stance_move import StanceMove
     from ..data.traces import Traces
-    from ..doctor.diagnose import Diagnosis
+    from ..doctor.examination.diagnose import Diagnosis
     from ..doctor.feet import FootFault
     from ..doctor.repairs import Repairs
 

@@ -15,9 +15,9 @@ from ..data.problem import MotionProblem
 from ..data.recording import Recording, digest
 from ..data.reports.recording import Origin
 from ..data.scene import SceneObject
-from ..doctor.diagnose import diagnose
+from ..doctor.examination.diagnose import diagnose
+from ..doctor.examination.repair import as_asked, unplaced, unplaced_skin
 from ..doctor.feet import find_feet
-from ..doctor.repair import as_asked, unplaced, unplaced_skin
 from ..doctor.repairs import Repairs
 from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality

@@ -12,8 +12,8 @@ from ....bridge.formats.motion_clip import MotionClip, to_recording
 from ....bridge.formats.obj import UnreadableMesh, read_obj
 from ....solver.data.problem import MotionProblem
 from ....solver.data.recording import Recording, digest
-from ....solver.doctor.diagnose import diagnose
-from ....solver.doctor.repair import repaired
+from ....solver.doctor.examination.diagnose import diagnose
+from ....solver.doctor.examination.repair import repaired
 from ....solver.worker.pipeline import fit_possible, measure
 from ...environment.virtual_environment import ROOT
 from ...recordings import HELD, HOPS, JUMP, find

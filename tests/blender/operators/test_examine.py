@@ -24,8 +24,8 @@ from hangtime.bridge.repairs.stored import (
 )
 from hangtime.operators.timeline.timeline_bars import rows_of
 from hangtime.solver.data.problem import Mend
+from hangtime.solver.doctor.examination.repair import as_asked, unplaced
 from hangtime.solver.doctor.feet import FootFaultKind
-from hangtime.solver.doctor.repair import as_asked, unplaced
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap_path

@@ -7,7 +7,7 @@ from hangtime.operators.words.doctor_text import (
     finding_sentence,
     remedy_label,
 )
-from hangtime.solver.doctor.diagnose import Diagnosis
+from hangtime.solver.doctor.examination.diagnose import Diagnosis
 from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.doctor.repairs import Repairs
 

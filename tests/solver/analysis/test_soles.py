@@ -11,9 +11,9 @@ from hangtime.solver.body.anatomy import Part, Side
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording, Skin
-from hangtime.solver.doctor.diagnose import diagnose
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.repair import placed_skin, unplaced, unplaced_skin
 from hangtime.solver.doctor.finding import FindingKind
-from hangtime.solver.doctor.repair import placed_skin, unplaced, unplaced_skin
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.tests.helpers.clips import JUMP, load_recording
 

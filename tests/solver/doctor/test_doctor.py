@@ -37,7 +37,8 @@ from hangtime.solver.data.faults import (
 )
 from hangtime.solver.data.problem import Mend, MotionProblem
 from hangtime.solver.data.recording import Recording
-from hangtime.solver.doctor.diagnose import diagnose
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.repair import as_asked, filled, repaired
 from hangtime.solver.doctor.falls import find_leaps, find_scale
 from hangtime.solver.doctor.feet import FootFaultKind, find_feet
 from hangtime.solver.doctor.figure import Figure, figure_of
@@ -49,7 +50,6 @@ from hangtime.solver.doctor.frames.missing import find_dropped, find_held
 from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.lengths import find_lengths
 from hangtime.solver.doctor.noise import find_noise
-from hangtime.solver.doctor.repair import as_asked, filled, repaired
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.solver.doctor.upright import find_up
 from hangtime.tests.helpers.clips import JUMP, load_recording

@@ -6,25 +6,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 
-from ..analysis.analyse import MIN_CLIP_DURATION, require_dense
-from ..analysis.performance import Performance, perform
-from ..body.character import build_character
-from ..data.faults import ClipTooShort, computable
-from ..data.recording import Recording, Skin
-from ..skeleton.bind_pose import bind_frames
-from .falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale, refined
-from .figure import figure_of
-from .finding import Finding, FindingKind
-from .footing import find_footing
-from .frames.flips import find_flips
-from .frames.jumps import find_jumps
-from .frames.missing import find_dropped, find_held
-from .frames.spikes import find_spikes
-from .lengths import find_lengths
-from .noise import REACH, find_noise
+from ...analysis.analyse import MIN_CLIP_DURATION, require_dense
+from ...analysis.performance import Performance, perform
+from ...body.character import build_character
+from ...data.faults import ClipTooShort, computable
+from ...data.recording import Recording, Skin
+from ...skeleton.bind_pose import bind_frames
+from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale, refined
+from ..figure import figure_of
+from ..finding import Finding, FindingKind
+from ..footing import find_footing
+from ..frames.flips import find_flips
+from ..frames.jumps import find_jumps
+from ..frames.missing import find_dropped, find_held
+from ..frames.spikes import find_spikes
+from ..lengths import find_lengths
+from ..noise import REACH, find_noise
+from ..repairs import Repairs
+from ..upright import find_up
 from .repair import placed_skin, repaired
-from .repairs import Repairs
-from .upright import find_up
 
 GAPS = (FindingKind.DROPPED_FRAMES, FindingKind.JUMP)
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40

@@ -7,22 +7,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..data.faults import NotBetweenFrames, NothingLeft
-from ..data.problem import Mend, MotionProblem
-from ..data.recording import Recording, Skin
-from ..data.scaling import scaled_recording
-from ..skeleton.bind_pose import bind_frames
-from ..skeleton.mirror import mirrored
-from .figure import Figure, figure_of
-from .frames.flips import unflipped
-from .frames.missing import held_frames
-from .frames.spikes import unsound_spikes
-from .lengths import kept_lengths
-from .local_poses import LocalPoses
-from .noise import smoothed
-from .repairs import MissingFrames, Repairs
-from .upright import turn_upright
+from ...arrays import FloatArray
+from ...data.faults import NotBetweenFrames, NothingLeft
+from ...data.problem import Mend, MotionProblem
+from ...data.recording import Recording, Skin
+from ...data.scaling import scaled_recording
+from ...skeleton.bind_pose import bind_frames
+from ...skeleton.mirror import mirrored
+from ..figure import Figure, figure_of
+from ..frames.flips import unflipped
+from ..frames.missing import held_frames
+from ..frames.spikes import unsound_spikes
+from ..lengths import kept_lengths
+from ..local_poses import LocalPoses
+from ..noise import smoothed
+from ..repairs import MissingFrames, Repairs
+from ..upright import turn_upright
 
 
 def repaired(

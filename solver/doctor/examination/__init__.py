@@ -1,0 +1,1 @@
+"""What is wrong with a whole recording, and its repair."""
