@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,17 +16,19 @@ from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.scene.skin import read_skin
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_result
+from hangtime.devtools.rigs.actor import CLIP
 from hangtime.devtools.rigs.controls.auto_rig_pro import auto_rig_pro
 from hangtime.devtools.rigs.controls.cases import RATE, cases, performer
-from hangtime.devtools.rigs.controls.measure import slide
+from hangtime.devtools.rigs.controls.measure import EDIT, slide
 from hangtime.devtools.rigs.controls.skin import add_skin, own_vertices, skin_at
 from hangtime.solver.body.anatomy import Part, Side, map_anatomy
 from hangtime.solver.body.character import build_character
 from hangtime.solver.data.contacts import Contact
 from hangtime.solver.data.recording import Bone, PoseTrack, Recording
 from hangtime.solver.data.reports.jumps import TimeMap
-from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.solver.numerics.rotations import axis_rotation, rotation_vector
 from hangtime.solver.solid.flesh import flesh_of
+from hangtime.solver.worker.pipeline import StageClock, measure, solve
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.skins import make_skin
 
@@ -105,3 +108,21 @@ def test_limbs_that_deform_tell_the_shapes_of_the_bodies_that_they_follow() -> N
     found = flesh_of(complete(read_skin(rig, shown.frames)).skin, shown, character)
     limbs = {i for i, body in enumerate(character.bodies) if body.side is not Side.MIDDLE}
     assert limbs <= set(found)
+
+
+@pytest.mark.slow
+def test_limbs_that_are_straight_for_some_frames_are_met() -> None:
+    """The left arm all but straightens in the air; what it needed before leads nowhere then."""
+    case = next(each for each in cases() if each.key == "arp_ik")
+    take = performer()
+    rig = case.build(take)
+    recording = record(rig, take.frames)
+    problem = replace(CLIP.problem(EDIT), frames=(take.frames[0], take.frames[-1]))
+    answer = solve(measure(recording, problem), StageClock())
+    motion = AdaptedMotion(answer.track, answer.times, answer.moved, ResultOptions())
+    write_result(rig, motion, name=EDIT)
+    shown = record(rig, answer.track.frames)
+    columns = [shown.index(bone) for bone in answer.track.bones]
+    apart = np.swapaxes(answer.track.rotations, -1, -2) @ shown.rotations[:, columns]
+    turned = np.linalg.norm(rotation_vector(apart), axis=-1)
+    assert np.degrees(turned.max()) < 1.0
