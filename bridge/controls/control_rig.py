@@ -169,14 +169,12 @@ def control_poses(
     parts = yield from in_slices(track.frames, look, showing)
     solved = [each for part in parts for each in part]
 
-    def look_again(frames: FloatArray) -> list[tuple[int, Inverted]]:
+    def look_again(frames: FloatArray) -> None:
         with posing.kept():
-            return [(t, inverse.solve_again(t)) for t in (index[float(f)] for f in frames)]
+            for t in (index[float(frame)] for frame in frames):
+                solved[t] = inverse.solve_again(t) or solved[t]
 
-    unmet = track.frames[inverse.unmet()]
-    for part in (yield from in_slices(unmet, look_again, showing)) if len(unmet) else ():
-        for t, found in part:
-            solved[t] = found
+    yield from in_slices(track.frames[inverse.unmet()], look_again, showing)
     bases = np.stack([each.bases for each in solved])
     return ControlPoses(
         {name: bases[:, c] for c, name in enumerate(rig.controls)},

@@ -101,6 +101,11 @@ def _enough(beside: float) -> float:
     return min(max(SUSPECT, MORE_LEFT * beside), LOST)
 
 
+def _inverted(found: _Look) -> Inverted:
+    off, turned = found.by_body
+    return Inverted(found.bases, off, turned / LEVER)
+
+
 class Inverse:
     """Solves frames one after the other; each begins with what the one before needed."""
 
@@ -114,7 +119,8 @@ class Inverse:
         self._acted: BoolArray | None = None
         self._met: Posed | None = None  # at the last frame that was met
         self._left = 0.0  # m of error, at the last frame
-        self._needed: dict[int, tuple[FloatArray, _Look]] = {}  # at each frame, by index
+        # Offsets and m of error at each frame, by index; what is seen there would be much more.
+        self._needed: dict[int, tuple[FloatArray, float]] = {}
         self.tries = 0
 
     def solve(self, t: int) -> Inverted:
@@ -138,35 +144,33 @@ class Inverse:
         self._change = _difference(self._offsets, offsets) if met else np.zeros_like(offsets)
         self._met, self._left = best.posed if met else self._met, best.size
         self._offsets = offsets
-        return self._noted(t, offsets, best)
+        self._needed[t] = offsets, best.size
+        return _inverted(best)
 
     def unmet(self) -> list[int]:
         """Indices of the frames that were left with more than the next one, the last one first."""
-        left = {t: found.size for t, (_, found) in self._needed.items()}
+        left = {t: size for t, (_, size) in self._needed.items()}
         lost = (t for t in left if t + 1 in left and left[t] > _enough(left[t + 1]))
         return sorted(lost, reverse=True)
 
-    def solve_again(self, t: int) -> Inverted:
+    def solve_again(self, t: int) -> Inverted | None:
         """Solve the frame of index t, which was not met, once more from what the next one needed,
         and from there with all controls beside their bodies as then: where a limb is straight, what
-        was before does not tell which way it bends afterwards."""
+        was before does not tell which way it bends afterwards. None where that is no nearer."""
+        after, _ = self._needed[t + 1]
+        self._posing.go_to(float(self._targets.frames[t + 1]))
+        then = self._look(self._posing.bases(), after, t + 1).posed
         self._posing.go_to(float(self._targets.frames[t]))
         animated = self._posing.bases()
         self._try_where_switched(animated)
-        offsets, best = self._needed[t]
-        after, then = self._needed[t + 1]
-        every = np.ones(best.by_body.shape[1], dtype=bool)
-        for start in (after, self._beside(animated, after, t, every, then.posed)):
-            other = self._solved(animated, start, t)
-            if other[1].size < best.size:
-                offsets, best = other
-        return self._noted(t, offsets, best)
-
-    def _noted(self, t: int, offsets: FloatArray, found: _Look) -> Inverted:
-        """What a frame needs, which is kept."""
-        self._needed[t] = offsets, found
-        off, turned = found.by_body
-        return Inverted(found.bases, off, turned / LEVER)
+        every = np.ones(len(then.bodies), dtype=bool)
+        starts = after, self._beside(animated, after, t, every, then)
+        found = [self._solved(animated, start, t) for start in starts]
+        offsets, best = min(found, key=lambda each: each[1].size)
+        if best.size >= self._needed[t][1]:
+            return None
+        self._needed[t] = offsets, best.size
+        return _inverted(best)
 
     def _other_starts(
         self, animated: FloatArray, offsets: FloatArray, found: _Look, t: int

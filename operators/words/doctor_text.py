@@ -10,13 +10,13 @@ from ...solver.doctor.repairs import Repairs
 MOST_PLACES = 6
 HEALTHY = "Nothing is wrong with the recording."
 
-# {n}: amount, {unit}, {part}, {where}: "at frame 12" or "in frames 3 to 9, 40"; "" without frames.
-# {clock}, {jump}: how the recording is played, and what jumps how far.
+# {n}: the number, {amount}: with its unit, {part}, {where}: "at frame 12" or "in frames 3 to 9,
+# 40"; "" without frames. {clock}: how the recording is played.
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
     FindingKind.BIND_POSE: "The rest pose is held {where}, and the motion jumps from it.",
     FindingKind.FLIP: "{part} is turned by half a turn {where}.",
-    FindingKind.SPIKE: "Frames are far from those around them, {part} by {n:.0f}{unit}: {where}.",
+    FindingKind.SPIKE: "Frames are far from those around them, {part} by {amount}: {where}.",
     FindingKind.HELD_FRAMES: "The pose of the frame before is held amid a movement {where}.",
     FindingKind.DROPPED_FRAMES: "About {n:.0f} frames are missing: the whole body jumps {where}.",
     FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}.",
@@ -24,8 +24,8 @@ SENTENCES = {
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
     FindingKind.MASS: "{n:.0f} kg do not go with the figure's height.",
-    FindingKind.JUMP: "{jump} {where}, as where two takes were joined, capture mistook something, "
-    "or many frames are missing: choose frames on one side of it.",
+    FindingKind.JUMP: "{part} jumps by {amount} {where}, as where two takes were joined, capture "
+    "mistook something, or many frames are missing: choose frames on one side of it.",
     FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture "
     "does that had lost it: nothing pulls like this.",
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
@@ -73,13 +73,17 @@ def finding_sentence(finding: Finding) -> str:
     """What is wrong and where."""
     told = SENTENCES[finding.kind].format(
         n=finding.amount,
-        unit=finding.unit,
-        part=finding.part,
+        amount=amount_text(finding),
+        part=finding.part or "the whole body",
         where=_where(finding),
         clock=_clock(finding),
-        jump=_jump(finding),
     )
     return told[0].upper() + told[1:]
+
+
+def amount_text(finding: Finding) -> str:
+    """Such as "35°" and "40 cm"."""
+    return f"{finding.amount:.0f}{'' if finding.unit == '°' else ' '}{finding.unit}"
 
 
 def foot_fault_words(fault: FootFault) -> str:
@@ -135,9 +139,3 @@ def _clock(finding: Finding) -> str:
     if scale < 1.0:
         return f"it is played {1.0 / scale:.2f} times too slowly"
     return f"it is played {scale:.2f} times too fast"
-
-
-def _jump(finding: Finding) -> str:
-    if not finding.part:
-        return f"The whole body jumps by {100.0 * finding.amount:.0f} cm"
-    return f"{finding.part} jumps by {finding.amount:.0f}°"

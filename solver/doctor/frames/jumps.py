@@ -30,7 +30,7 @@ def find_jumps(recording: Recording, figure: Figure, before: int = 0) -> Finding
         return None
     local, root = LocalPoses.of(recording), figure.bones[0]
     moved = moved_steps(local, root)
-    places = [(float(moved[t]), "", t) for t in _jumps(moved, PLACE)]
+    places = [(float(100.0 * moved[t]), "", t) for t in _jumps(moved, PLACE)]
     turns = []
     for bone in (b for b, part in figure.parts if part not in STRIKE and b != root):
         turned, name = np.degrees(turned_steps(local, bone)), recording.bones[bone].name
@@ -42,7 +42,7 @@ def find_jumps(recording: Recording, figure: Figure, before: int = 0) -> Finding
     frames = tuple((float(recording.frames[t]), float(recording.frames[t + 1])) for t in steps)
     early = float(recording.times[steps[-1] + 1]) < EARLY
     remedy = Repairs(trim=before + steps[-1] + 1) if early else None
-    return Finding(FindingKind.JUMP, amount, "m" if places else "°", frames, part, remedy)
+    return Finding(FindingKind.JUMP, amount, "cm" if places else "°", frames, part, remedy)
 
 
 def _jumps(uneven: FloatArray, limit: float) -> list[int]:

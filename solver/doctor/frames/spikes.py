@@ -58,7 +58,7 @@ def find_spikes(recording: Recording, figure: Figure) -> Finding | None:
     return Finding(
         FindingKind.SPIKE,
         float(np.degrees(turned[worst]) if turns else 100.0 * moved[worst]),
-        "°" if turns else " cm",
+        "°" if turns else "cm",
         spans(recording, unsound.any(axis=1)),
         recording.bones[worst].name,
         Repairs(mend=(Mend.SPIKES,)),

@@ -34,6 +34,17 @@ def test_a_clock_that_is_wrong_offers_both_remedies() -> None:
     )
 
 
+def test_what_is_off_is_told_by_its_unit_and_whose_it_is() -> None:
+    spike = Finding(FindingKind.SPIKE, 60.2, "°", ((8.0, 9.0),), "Hand.L")
+    assert "Hand.L by 60°: in frames 8 to 9." in finding_sentence(spike)
+    root = Finding(FindingKind.SPIKE, 52.4, "cm", ((8.0, 8.0),), "Hips")
+    assert "Hips by 52 cm: at frame 8." in finding_sentence(root)
+    joined = Finding(FindingKind.JUMP, 40.0, "cm", ((8.0, 9.0),))
+    assert finding_sentence(joined).startswith("The whole body jumps by 40 cm in frames 8 to 9,")
+    thigh = Finding(FindingKind.JUMP, 48.0, "°", ((8.0, 9.0),), "Thigh.R")
+    assert finding_sentence(thigh).startswith("Thigh.R jumps by 48° in frames 8 to 9,")
+
+
 def test_a_clean_recording_is_called_so_though_there_are_notes() -> None:
     note = Finding(FindingKind.ENDS_IN_AIR, 0.1, "s", ((20.0, 30.0),))
     assert diagnosis_text(Diagnosis((note,))).splitlines() == [

@@ -164,6 +164,16 @@ def test_a_spike_is_told_with_its_bone_and_frame() -> None:
     assert found.part in ("LeftArm", "LeftForeArm")
 
 
+def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
+    heads = jump().heads.copy()
+    heads[50] += [0.0, 0.4, 0.0]
+    found = find_spikes(replace(jump(), heads=heads), figure())
+    assert found is not None
+    assert (round(found.amount), found.unit) == (40, "cm")
+    frame = jump().frames[50]
+    assert found.frames == ((frame, frame),)
+
+
 @pytest.mark.parametrize(
     ("damage", "cm"),
     [

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from mathutils import Matrix, Vector
 
 from ....bridge.repairs.stored import finding_of, findings, foot_faults, is_applied
-from ....operators.words.doctor_text import foot_fault_words
+from ....operators.words.doctor_text import amount_text, foot_fault_words
 from ....solver.doctor.finding import FindingKind
 from ...drawing.sketch import Colour
 from ..context.layer import IDENTITY, Layer, Part, xyz
@@ -63,7 +63,7 @@ def _bones(view: ViewContext) -> Iterator[Mark]:
         if matrix is None or not now or is_applied(view.settings, row):
             continue
         kind = finding.kind
-        amount = f" {finding.amount:.0f}{finding.unit}" if kind is FindingKind.SPIKE else ""
+        amount = f" {amount_text(finding)}" if kind is FindingKind.SPIKE else ""
         words = f"{kind.value.capitalize()}{amount}: {finding.part}"
         yield Mark(xyz(matrix.translation), words, palette.FAULT)
 
