@@ -15,9 +15,10 @@ from ..transcription.motion import Motion
 
 ARM = (Part.UPPER_ARM, Part.FOREARM, Part.HAND)
 EASE_IN = 0.25  # s, before the grip
-IK_ITERATIONS = 60
+IK_ITERATIONS = 60  # at most
 MAX_ANGLE_STEP = 0.1  # rad an iteration
 IK_DAMPING = 1e-3  # m²
+SETTLED = 2e-3  # rad, that no angle turns by any more: a guess needs no better
 
 
 def reach_grips(motion: Motion, places: FloatArray) -> Motion:
@@ -61,7 +62,10 @@ def _turn_arm(
         jacobian = jacobian[:, :, chain]
         square = jacobian @ np.swapaxes(jacobian, 1, 2) + IK_DAMPING * np.eye(3)
         turn = np.swapaxes(jacobian, 1, 2) @ np.linalg.solve(square, (place - at)[..., None])
-        moved[:, chain] += np.clip(turn[..., 0], -MAX_ANGLE_STEP, MAX_ANGLE_STEP)
+        step = np.clip(turn[..., 0], -MAX_ANGLE_STEP, MAX_ANGLE_STEP)
+        moved[:, chain] += step
+        if np.abs(step).max() < SETTLED:
+            break
     share = np.clip((times[during] - start) / EASE_IN, 0.0, 1.0)[:, None]
     share = share**2 * (3.0 - 2.0 * share)
     angles[during] += share * (moved - angles[during])

@@ -12,7 +12,7 @@ MAX_STEPS = 12
 MIN_DECREASE = 0.02  # of the objective: what a further step must gain
 MIN_STEP_LENGTH = 0.05
 MAX_CORRECTIONS = 4  # second-order, a trial point
-CORRECTION_TOLERANCE = 20.0  # times the tolerances: near enough to compare objectives
+CORRECTION_TOLERANCE = 5.0  # times the tolerances: near enough to compare objectives
 
 
 def minimise(

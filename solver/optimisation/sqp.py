@@ -31,11 +31,11 @@ MAX_CHORD_GUARDED = 10.0  # tolerances (1 cm, 1 degree) by which guards join, fo
 MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 STALL_WINDOW = 6  # steps in which the violation has to halve
-NEARLY_FEASIBLE = 1e3  # times the tolerances: the end of a solve, which restoration finishes
+NEARLY_FEASIBLE = 200.0  # times the tolerances: the end of a solve, which restoration finishes
 RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
 # Times the tolerances: from further off steps that keep guards may lead astray; and once more,
 # nearer, for what joins where all the rest holds costs steps of its own.
-GUARDS_JOIN = (1e2, 2e1)
+GUARDS_JOIN = (1e2, 1e1)
 
 
 @dataclass(frozen=True)

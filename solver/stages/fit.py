@@ -77,8 +77,6 @@ MAX_GUARDED = 0.01  # m, rms; the ranges of joints may not take a fit further of
 MAX_IMPROVEMENTS = 2  # such steps on the refined knots, near by; most end after two anyway
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
-# Tolerances, of the motions on the way to a fit: within a quarter of what tells a span weak.
-ON_THE_WAY = 5.0
 ADAPT_TOLERANCE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
 
 
@@ -221,7 +219,7 @@ def fit(
     metric = metric_of(feasible.motion(near.x))
     outcomes, last = [near], near
     for _ in range(1 + MAX_PLACE_UPDATES):
-        last = restore(feasible, metric, last.x, stage="fit", enough=ON_THE_WAY, progress=progress)
+        last = restore(feasible, metric, last.x, stage="fit", progress=progress)
         outcomes.append(last)
         if last.status is Status.SOLVED:
             coarse = feasible.motion(last.x)

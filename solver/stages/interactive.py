@@ -40,7 +40,7 @@ SWEEPS = 2  # a step; the next update goes on with what they leave
 MOST_STEPS = 2  # an update; the second where the first leaves more than HELD_VIOLATION
 MAX_DRAG_CHORD_RATIO = 0.5  # of the violation, left by a step at rest; beyond: a stale factor
 MOST_ALIKE = 1.5  # times the last step's way, that a step is compared with it
-DIVERGED_VIOLATION = 1e5  # times the tolerances (1 m)
+DIVERGED_VIOLATION = 2.5e4  # times the tolerances (1 m)
 LOOKING = 4  # updates from one look for guards to the next while a pin is on its way
 LOOKING_WAY = 0.04  # m, that a contact goes meanwhile at most
 RESTING_UPDATES = 12  # at one place, after which a pin is no longer on its way
@@ -49,7 +49,7 @@ FAR = 20.0  # tolerances within its bound (2 cm, 2 degrees), where a guard needs
 ASTRAY = 50.0  # tolerances beyond it (5 cm, 5 degrees), from where no linear step leads out
 MAX_BLOCKED_UPDATES = 8  # in which a solid does not come out, after which it is let be
 SAME_DURATION = 1e-3  # s, by which nobody sees that a phase lasts longer
-HELD_VIOLATION = 100.0  # times the tolerances (1 mm): a motion that serves to go back to
+HELD_VIOLATION = 25.0  # times the tolerances (1 mm): a motion that serves to go back to
 
 
 class Follower:
