@@ -6,13 +6,15 @@ So a result knows what they are in its take, and whoever stops performing it get
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import bpy
 
 from .action_slots import all_curves
+from .hidden_texts import HiddenText, listed, number, whole, word
 
-_UNKEYED = "hangtime_unkeyed"  # of a result, as JSON
 _TRANSFORMS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+_Channels = tuple[tuple[str, str, int, float], ...]  # bone, property, index and value of each
 
 
 def note_unkeyed(owner: bpy.types.Object, result: bpy.types.Action, take: bpy.types.Action) -> None:
@@ -25,7 +27,7 @@ def note_unkeyed(owner: bpy.types.Object, result: bpy.types.Action, take: bpy.ty
         if name in _TRANSFORMS and (curve.data_path, curve.array_index) not in keyed:
             values = getattr(owner.path_resolve(path) if path else owner, name)
             found.append((path, name, curve.array_index, values[curve.array_index]))
-    result[_UNKEYED] = json.dumps(found)
+    result[UNKEYED.name] = json.dumps(found)
 
 
 def put_back(owner: bpy.types.Object, result: bpy.types.Action) -> None:
@@ -34,12 +36,20 @@ def put_back(owner: bpy.types.Object, result: bpy.types.Action) -> None:
     for path, name, index, value in _noted(result):
         try:
             getattr(owner.path_resolve(path) if path else owner, name)[index] = value
-        except ValueError:
+        except (ValueError, AttributeError, IndexError):
             continue
 
 
 def _noted(result: bpy.types.Action) -> list[tuple[str, str, int, float]]:
     """Bone, property, index and value of each channel; none of what is no result."""
-    return [
-        (path, name, at, value) for path, name, at, value in json.loads(result.get(_UNKEYED, "[]"))
-    ]
+    return [*UNKEYED.of(result.get(UNKEYED.name))]
+
+
+def _read_channels(content: Any) -> _Channels:
+    return tuple(
+        (word(path), _TRANSFORMS[_TRANSFORMS.index(name)], whole(at), number(value))
+        for path, name, at, value in map(listed, listed(content))
+    )
+
+
+UNKEYED: HiddenText[_Channels] = HiddenText("hangtime_unkeyed", _read_channels, ())

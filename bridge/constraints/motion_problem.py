@@ -29,6 +29,7 @@ from ..properties.settings import HangtimeSettings
 from ..properties.stances import place
 from ..recipe.problem import parse_recipe
 from ..repairs.stored import applied, of_recording, unreadable
+from ..repairs.unreadable import require_readable
 from ..rows.copying import resized
 from ..rows.phases import phases_of, unseen_frames
 from ..scene.members import ground_members, present_members
@@ -104,13 +105,14 @@ def problem_of(
     with_contacts: whether corrections, pins and surfaces count; an analysis starts without them.
     held: name of a contact that is pinned even where it was found, for of a long take what is
     solved is what pins are about, and a drag's shall be that before the mouse has moved.
-    Raises EmptyRange for a contact that ends before it begins, UnreadableRepairs, BadRecipe, and as
-    `requests_of`.
+    Raises EmptyRange for a contact that ends before it begins, UnreadableRepairs,
+    UnreadableText, BadRecipe, and as `requests_of`.
     """
+    armature: Any = settings.id_data
     if with_contacts:
         _require_ordered(settings)
+        require_readable(armature)
     span = span_of(settings, recording)
-    armature: Any = settings.id_data
     repairs = applied(settings) if of_recording(armature) else Repairs()
     if of_recording(armature) and unreadable(settings):
         raise UnreadableRepairs

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import astuple, dataclass
+from typing import Any
 
 import bpy
 
 from ...solver.data.reports.report import Report
+from ..hidden_texts import HiddenText, listed, number, word
 from .settings import action_settings
 
 IN = " in "  # between the names, as the solver calls what is in what
@@ -41,5 +43,20 @@ def store_overlaps(action: bpy.types.Action, report: Report) -> None:
 def shown_overlaps(action: bpy.types.Action | None, *, adapted: bool) -> tuple[ShownOverlap, ...]:
     """Of the adapted motion, or of the recording that it was made from."""
     stored = action_settings(action).overlaps if action is not None else ""
-    both = json.loads(stored) if stored else ([], [])
-    return tuple(ShownOverlap(*each) for each in both[adapted])
+    return OVERLAPS.of(stored)[adapted]
+
+
+_Both = tuple[tuple[ShownOverlap, ...], tuple[ShownOverlap, ...]]
+
+
+def _read_overlaps(content: Any) -> _Both:
+    recorded, adapted = listed(content)
+    return _of_motion(recorded), _of_motion(adapted)
+
+
+def _of_motion(content: Any) -> tuple[ShownOverlap, ...]:
+    rows = map(listed, listed(content))
+    return tuple(ShownOverlap(word(name), number(mm), number(at)) for name, mm, at in rows)
+
+
+OVERLAPS: HiddenText[_Both] = HiddenText("overlaps", _read_overlaps, ((), ()))

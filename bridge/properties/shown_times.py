@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
 
 import bpy
 import numpy as np
 
 from ...solver.data.reports.jumps import TimeMap
 from ..accessors import current_action
+from ..hidden_texts import HiddenText, listed, number
 from .settings import action_settings
 
 
@@ -33,9 +36,19 @@ def recorded_frame(armature: bpy.types.Object, frame: float) -> float:
 def _corners(armature: bpy.types.Object) -> tuple[list[float], list[float]]:
     """Recorded and adapted frames; the same where the shown action is none that was adapted."""
     action = current_action(armature)
-    times = action_settings(action).times if action is not None else ""
-    recorded, adapted = json.loads(times) if times else ([0.0], [0.0])
+    return TIMES.of(action_settings(action).times if action is not None else "")
+
+
+def _read_times(content: Any) -> tuple[list[float], list[float]]:
+    recorded, adapted = ([number(frame) for frame in listed(each)] for each in listed(content))
+    if len(recorded) != len(adapted) or not recorded:
+        raise ValueError(content)
+    if any(after < before for each in (recorded, adapted) for before, after in pairwise(each)):
+        raise ValueError(content)
     return recorded, adapted
+
+
+TIMES = HiddenText("times", _read_times, ([0.0], [0.0]))
 
 
 def _mapped(frame: float, before: list[float], after: list[float]) -> float:

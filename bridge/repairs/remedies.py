@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import bpy
 
 from ..accessors import present, shown_range
@@ -11,7 +9,7 @@ from ..armature.actions import recorded_action
 from ..properties.settings import settings_of
 from ..rows.finding import HangtimeFinding
 from .placed_armature import repair
-from .stored import applied, repairs_in
+from .stored import FRAMES, applied, repairs_in
 
 
 def use_remedy(
@@ -39,7 +37,7 @@ def _leave_out(armature: bpy.types.Object, row: HangtimeFinding, *, used: bool) 
     if used:
         if not settings.use_range:
             settings.last_frame = int(last)
-        settings.first_frame = int(json.loads(row.frames)[0][-1]) + 1
+        settings.first_frame = int(FRAMES.of(row.frames)[0][-1]) + 1
         settings.use_range = True
         return
     settings.first_frame = int(first)

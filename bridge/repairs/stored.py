@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, astuple, replace
+from collections.abc import Callable
+from dataclasses import asdict, astuple
+from typing import Any
 
 import bpy
 
@@ -11,10 +13,11 @@ from ...solver.data.problem import Mend
 from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.feet import FootFault, FootFaultKind
 from ...solver.doctor.finding import Finding, FindingKind
-from ...solver.doctor.repairs import MissingFrames, Repairs, UpAxis
+from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
 from ..accessors import current_scene, source_of
 from ..armature.actions import recorded_action
 from ..armature.poses import frames_per_second
+from ..hidden_texts import HiddenText, entries, listed, number, spans_text, whole, word
 from ..properties.settings import HangtimeSettings, settings_of
 from ..rows.copying import resized
 from ..rows.finding import HangtimeFinding
@@ -36,20 +39,66 @@ def repairs_to_write(settings: HangtimeSettings) -> Repairs | None:
 
 def unreadable(settings: HangtimeSettings) -> bool:
     """Whether a script, or a version that knows other repairs, stored what cannot be read."""
-    return bool(settings.repairs) and applied(settings) == Repairs()
+    return not REPAIRS.is_ours(settings.repairs)
 
 
 def repairs_in(stored: str) -> Repairs:
     """Repairs in a stored text; those that change nothing in an empty one, and in one that cannot
     be read, which `unreadable` tells."""
-    try:
-        held = {**USUAL, **json.loads(stored or "{}")}
-        mend, (x, y) = tuple(map(Mend, held["mend"])), map(float, held["drift"])
-        missing = tuple(MissingFrames(int(after), int(n)) for after, n in held["missing"])
-        read = {"up": UpAxis(held["up"]), "missing": missing, "mend": mend, "drift": (x, y)}
-        return Repairs(**{**held, **read})
-    except (ValueError, TypeError):
-        return Repairs()
+    return REPAIRS.of(stored)
+
+
+def _read_repairs(content: Any) -> Repairs:
+    read = {name: _READ[name](value) for name, value in entries(content).items()}
+    return Repairs(**read)
+
+
+def _missing(content: Any) -> tuple[MissingFrames, ...]:
+    gaps = [MissingFrames(int(number(after)), whole(n)) for after, n in listed(content)]
+    if not all(1 <= gap.count <= MOST_MISSING for gap in gaps):
+        raise ValueError(content)
+    return tuple(gaps)
+
+
+def _factor(content: Any) -> float:
+    if (factor := number(content)) <= 0.0:
+        raise ValueError(content)
+    return factor
+
+
+def _drift(content: Any) -> tuple[float, float]:
+    x, y = map(number, listed(content))
+    return x, y
+
+
+_READ: dict[str, Callable[[Any], Any]] = {
+    "up": UpAxis,
+    "missing": _missing,
+    "trim": whole,
+    "mend": lambda content: tuple(map(Mend, listed(content))),
+    "time_scale": _factor,
+    "scale": _factor,
+    "drift": _drift,
+    "floor": number,
+}
+REPAIRS = HiddenText("repairs", _read_repairs, Repairs())
+
+
+def _read_feet(content: Any) -> tuple[str, tuple[FootFault, ...]]:
+    repairs, told = listed(content)
+    return word(repairs), tuple(_foot_fault(*each) for each in map(listed, listed(told)))
+
+
+def _foot_fault(
+    kind: Any, point: Any, bone: Any, offset: Any, first: Any, last: Any, amount: Any
+) -> FootFault:
+    x, y, z = map(number, listed(offset))
+    ends = number(first), number(last)
+    return FootFault(FootFaultKind(kind), word(point), word(bone), (x, y, z), *ends, number(amount))
+
+
+FEET: HiddenText[tuple[str, tuple[FootFault, ...]]] = HiddenText("feet", _read_feet, ("", ()))
+FRAMES = spans_text("frames")
 
 
 def text_of(repairs: Repairs) -> str:
@@ -89,14 +138,26 @@ def write_diagnosis(
 
 def findings(settings: HangtimeSettings) -> list[HangtimeFinding]:
     """The rows of what was found."""
-    return [row for row in settings.findings if row.name]
+    return [row for row in settings.findings if row.name and is_finding(row)]
+
+
+def finding_named(settings: HangtimeSettings, kind: str) -> HangtimeFinding | None:
+    """The row of a kind of finding; None where nothing such was found."""
+    return next((row for row in findings(settings) if row.name == kind), None)
+
+
+def is_finding(row: HangtimeFinding) -> bool:
+    """Whether a row is Hangtime's: no script or other version wrote what is no finding."""
+    remedies = [REPAIRS.is_ours(each) for each in (row.remedy, row.other)]
+    known = row.name in {kind.value for kind in FindingKind}
+    placed = bool(FRAMES.of(row.frames)) or not repairs_in(row.remedy).trim
+    return known and FRAMES.is_ours(row.frames) and placed and all(remedies)
 
 
 def finding_of(row: HangtimeFinding) -> Finding:
     """The finding in a row."""
     remedy, other = (repairs_in(each) if each else None for each in (row.remedy, row.other))
-    frames = tuple((first, last) for first, last in json.loads(row.frames or "[]"))
-    kind = FindingKind(row.name)
+    kind, frames = FindingKind(row.name), FRAMES.of(row.frames)
     return Finding(kind, row.amount, row.unit, frames, row.part, remedy, other)
 
 
@@ -106,7 +167,7 @@ def is_applied(settings: HangtimeSettings, row: HangtimeFinding, *, other: bool 
         return bool(abs(settings.mass - row.mass) < 0.5)
     remedy = repairs_in(row.other if other else row.remedy)
     if remedy.trim:
-        last = json.loads(row.frames)[0][-1]
+        last = FRAMES.of(row.frames)[0][-1]
         return bool(settings.use_range and settings.first_frame > last)
     return remedy != Repairs() and applied(settings).includes(remedy)
 
@@ -115,11 +176,8 @@ def foot_faults(settings: HangtimeSettings) -> tuple[FootFault, ...]:
     """The feet's faults; none where the recording was repaired otherwise since."""
     if not settings.feet or settings.examination_stale:
         return ()
-    repairs, told = json.loads(settings.feet)
-    if repairs != settings.repairs:
-        return ()
-    faults = (FootFault(FootFaultKind(kind), *rest) for kind, *rest in told)
-    return tuple(replace(f, offset=(f.offset[0], f.offset[1], f.offset[2])) for f in faults)
+    repairs, faults = FEET.of(settings.feet)
+    return faults if repairs == settings.repairs else ()
 
 
 def rate_unrepaired(settings: HangtimeSettings) -> float:

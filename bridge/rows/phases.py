@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...solver.data.contacts import PhaseKind, gaps
+from ..hidden_texts import spans_text
 from .choices import HOLD
 from .protocols import Settings
 
 SAME = 1e-3  # frames; single precision keeps frames
 TAKE_OFF = "Take-Off"
+UNSEEN = spans_text("unseen")
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ def carried(settings: Settings) -> list[tuple[float, float]]:
 def unseen_frames(settings: Settings) -> list[tuple[float, float]]:
     """First and last scene frame of each interval in which something unseen carries the body; they
     overlap the contacts beside them, whose frames have single precision, by a hair."""
-    return [(first - SAME, last + SAME) for first, last in json.loads(settings.unseen or "[]")]
+    return [(first - SAME, last + SAME) for first, last in UNSEEN.of(settings.unseen)]
 
 
 def clip_ends(settings: Settings) -> tuple[float, float] | None:

@@ -20,6 +20,7 @@ from ..armature.fcurves import slot_identifier
 from ..armature.keys_digest import keys_digest
 from ..armature.played import adopt_strip, in_scene_time, strip_time
 from ..armature.traces_store import forget, put_by, take_up
+from ..hidden_texts import spans_text
 from ..properties.settings import (
     HangtimeAction,
     HangtimeSettings,
@@ -41,6 +42,7 @@ _NOT_ASKED = (  # of the next result
     *("keep_polish", *_OF_RECORDING),
 )
 _NOT_KEPT = ("marks", "adapted", "source", *_OF_RECORDING)
+SPANS = spans_text("spans")
 _LONGEST = 63 - len(" adapted 99")  # bytes of a name of which the rest is ours
 
 
@@ -231,8 +233,7 @@ def note_made(
 
 def adapted_spans(action: bpy.types.Action) -> tuple[tuple[float, float], ...]:
     """First and last frame of each adaptation that a take holds."""
-    stored = action_settings(action).spans
-    return tuple((first, last) for first, last in json.loads(stored)) if stored else ()
+    return SPANS.of(action_settings(action).spans)
 
 
 TAKE_CHANGED = "The take below has changed"

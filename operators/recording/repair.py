@@ -6,7 +6,13 @@ from ...bridge.accessors import armature_data, current_scene, pose_of
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.properties.shown_times import shown_frames
 from ...bridge.repairs.remedies import use_remedy
-from ...bridge.repairs.stored import finding_of, findings, is_applied, repairs_in
+from ...bridge.repairs.stored import (
+    finding_named,
+    finding_of,
+    findings,
+    is_applied,
+    repairs_in,
+)
 from ...bridge.rows.finding import HangtimeFinding
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
@@ -50,7 +56,7 @@ class RepairOperator(MendingOperator, bpy.types.Operator):
 
     def mend(self, armature: bpy.types.Object) -> OperatorResult:
         settings = settings_of(armature)
-        row = settings.findings.get(self.kind)
+        row = finding_named(settings, self.kind)
         if row is None:
             return self.refuse(NOT_FOUND.format(self.kind), "WARNING")
         if not has_remedy(row):
@@ -96,7 +102,7 @@ class ShowFindingOperator(PolledOperator, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> OperatorResult:
         armature = required_armature(context)
         settings = settings_of(armature)
-        row = settings.findings.get(self.kind)
+        row = finding_named(settings, self.kind)
         if row is None:
             return self.refuse(NOT_FOUND.format(self.kind), "WARNING")
         finding = finding_of(row)

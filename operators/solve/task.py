@@ -7,12 +7,13 @@ from typing import TypeVar
 import bpy
 
 from ...bridge.accessors import present
+from ...bridge.repairs.unreadable import unreadable_texts
 from ...bridge.worker_client import shared
 from ...bridge.worker_requests import PendingRequest
 from ...solver.data.faults import Fault
 from ...solver.worker.protocol import Failed, Progress
 from ..operator_types import OperatorResult
-from .common import FaultyOperator, ReadyOperator, chosen_armature, failed
+from .common import FaultyOperator, ReadyOperator, chosen_armature, failed, said
 from .live import editors, redraw_viewports
 from .session import session
 from .solving import SolveState, Solving
@@ -57,7 +58,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                     job.wait()
         except StopIteration as end:
             finished = True
-            self.report({"INFO"}, end.value)
+            self._finish(end.value)
             return {"FINISHED"}
         finally:
             session().solving = None
@@ -94,6 +95,14 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             return {"PASS_THROUGH"} if self._solving.passes(event.type) else {"RUNNING_MODAL"}
         return self._work()
 
+    def _finish(self, told: str) -> None:
+        """The work is done, which is told; and what did not count meanwhile, as it was no text of
+        ours."""
+        self.report({"INFO"}, told)
+        armature = chosen_armature(bpy.context)
+        for fault in unreadable_texts(armature) if armature is not None else ():
+            self.report({"WARNING"}, said(fault))
+
     def _work(self) -> OperatorResult:
         """As many parts as fit into a look."""
         until = perf_counter() + BUDGET
@@ -105,7 +114,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                     break
             goes_on = True
         except StopIteration as end:
-            self.report({"INFO"}, end.value)
+            self._finish(end.value)
             return {"FINISHED"}
         except Fault as fault:
             # the report vanishes when the mouse moves

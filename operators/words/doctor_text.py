@@ -53,6 +53,7 @@ REMEDIES = {
     FindingKind.FLOOR: "Put on the Floor",
     FindingKind.SLIDING: "Hold Still",
 }
+REPAIR = "Repair"
 
 
 def remedy_label(finding: Finding, remedy: Repairs, mass: float, rate: float) -> str:
@@ -66,7 +67,7 @@ def remedy_label(finding: Finding, remedy: Repairs, mass: float, rate: float) ->
         if finding.kind is FindingKind.SIZE:
             return f"Scale to {finding.amount * remedy.scale:.2f} m"
         return f"Scale × {remedy.scale:.3g}"
-    return REMEDIES[finding.kind]
+    return REMEDIES.get(finding.kind, REPAIR)
 
 
 def finding_sentence(finding: Finding) -> str:

@@ -52,6 +52,8 @@ def _variant(fault: Fault) -> int:
             return min(len(fault.tried), 2)
         case faults.UnreadableClip() | faults.BadRecipe():
             return fault.line is not None
+        case faults.UnreadableText():
+            return fault.cure.value
         case faults.NoSolution():
             return (2 if fault.reached else 1) if fault.worst else 0
         case faults.NothingTouches():

@@ -107,6 +107,17 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "and above zero, along all three axes; apply the scale or make it even.",
     faults.UnreadableRepairs: "What this file holds of the recording's repairs cannot be read (a "
     "script or another version of Hangtime wrote it); press Examine, and repair anew.",
+    faults.UnreadableText: (
+        "What Hangtime keeps in the property “{property}” of “{owner}” cannot be read (a "
+        "script, an add-on or another version wrote it), and does not count; press Examine, which "
+        "writes it anew.",
+        "What Hangtime keeps in the property “{property}” of “{owner}” cannot be read (a "
+        "script, an add-on or another version wrote it), and does not count; press Analyze, which "
+        "writes it anew.",
+        "What Hangtime keeps in the property “{property}” of “{owner}” cannot be read (a "
+        "script, an add-on or another version wrote it), and does not count; show the take "
+        "that it was made from, and adapt that again.",
+    ),
     faults.UnreadableClip: (
         "The recording {path}: {problem}; mend the file or export it again from where it came.",
         "The recording {path}, line {line}: {problem}; mend the file or export it again from where "

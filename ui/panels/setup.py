@@ -8,10 +8,12 @@ from ...bridge.accessors import armature_data, present
 from ...bridge.armature.actions import recorded_action
 from ...bridge.constraints.bone_mapping import evidence_of
 from ...bridge.properties.settings import scene_settings, settings_of
+from ...bridge.repairs.unreadable import unreadable_texts
 from ...bridge.rows.kind import Icon
 from ...operators.names import OperatorId
-from ...operators.solve.common import chosen_armature
+from ...operators.solve.common import chosen_armature, said
 from ...solver.skeleton.mapping import Evidence
+from ..drawing.wrapping import wrapped
 from .failure import draw_failure
 from .menus import BonePresetsMenu
 from .sidebar import ArmaturePanel, SidebarPanel, draw_at_work, lines, optional, settings_in, split
@@ -118,3 +120,5 @@ class RecordingPanel(ArmaturePanel):
         if not draw_at_work(layout, OperatorId.ANALYZE):
             layout.operator(OperatorId.ANALYZE, icon="VIEWZOOM")
         draw_failure(layout, context, armature, OperatorId.ANALYZE)
+        for fault in unreadable_texts(armature):
+            lines(layout.box(), wrapped(context, said(fault)), icon="ERROR")

@@ -33,11 +33,13 @@ from .recordings import NotPutIn as NotPutIn
 from .recordings import OddHeight as OddHeight
 from .recordings import OddScale as OddScale
 from .recordings import OutsideKeys as OutsideKeys
+from .recordings import TextCure as TextCure
 from .recordings import Treadmill as Treadmill
 from .recordings import UnknownClipFormat as UnknownClipFormat
 from .recordings import UnknownContactName as UnknownContactName
 from .recordings import UnreadableClip as UnreadableClip
 from .recordings import UnreadableRepairs as UnreadableRepairs
+from .recordings import UnreadableText as UnreadableText
 from .recordings import UnreadStrips as UnreadStrips
 from .recordings import UnseenSupport as UnseenSupport
 from .recordings import ZeroLengthBone as ZeroLengthBone

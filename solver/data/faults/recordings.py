@@ -1,6 +1,7 @@
 """Faults of a recording: the armature, its action, its keys, and what cannot be a person's."""
 
 from dataclasses import dataclass
+from enum import Enum
 
 from ..scene import SupportBox
 from .base import Fault
@@ -160,6 +161,23 @@ class BadScale(Fault):
 @dataclass
 class UnreadableRepairs(Fault):
     """What a file holds of a recording's repairs is none."""
+
+
+class TextCure(Enum):
+    """What writes a text anew that is not Hangtime's. The value is the variant of the words."""
+
+    EXAMINE = 0
+    ANALYZE = 1
+    ADAPT = 2
+
+
+@dataclass
+class UnreadableText(Fault):
+    """A property of an object or an action, in which Hangtime keeps a text, holds another."""
+
+    owner: str
+    property: str
+    cure: TextCure
 
 
 @dataclass

@@ -20,6 +20,7 @@ from hangtime.solver.data.faults import (
     NoSolution,
     RequestFault,
     SceneFault,
+    TextCure,
 )
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scene import SupportBox
@@ -54,6 +55,8 @@ def filled(hint: object) -> object:
         return (1.0, 2.0, 3.0)
     if text.startswith("tuple[str"):
         return ("one", "two")
+    if hint is TextCure:
+        return TextCure.ANALYZE
     return {float: 0.25, bool: True, str: "stalled"}.get(hint, 7 if "int" in text else "stalled")
 
 
