@@ -186,17 +186,17 @@ def dropped(count: int) -> Damage:
     return Damage(f"{count} frames missing", FindingKind.DROPPED_FRAMES, do)
 
 
-def gap(count: int) -> Damage:
-    """Frames missing in one place, as where capture stalls."""
+def gap(count: int, every: int = 1) -> Damage:
+    """Frames missing in one place, as where capture stalls. every: 2 of every second one."""
 
     def do(recording: Recording, rng: np.random.Generator) -> Damaged:
         moving = _moving(recording, rng, len(recording.frames))
-        at = next(t for t in moving if t + count + 4 < len(recording.frames))
-        return _without(
-            recording, np.delete(np.arange(len(recording.frames)), slice(at, at + count))
-        )
+        at = next(t for t in moving if t + every * count + 4 < len(recording.frames))
+        gone = slice(at, at + every * count, every)
+        return _without(recording, np.delete(np.arange(len(recording.frames)), gone))
 
-    return Damage(f"{count} frames missing in a row", FindingKind.DROPPED_FRAMES, do)
+    where = "in a row" if every == 1 else f"{every} apart"
+    return Damage(f"{count} frames missing {where}", FindingKind.DROPPED_FRAMES, do)
 
 
 def _without(recording: Recording, keep: IntArray) -> Damaged:
@@ -308,6 +308,7 @@ DAMAGES = (
     *map(held, (1, 6)),
     *map(dropped, (1, 4)),
     *map(gap, (3, 6)),
+    gap(2, 2),
     *map(sliding, (0.2, 0.5)),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
     noisy(3.0, 1.0),

@@ -103,6 +103,8 @@ def test_a_clean_recording_has_no_findings() -> None:
         noisy(3.0, 1.0),
         dropped(2),
         *map(gap, (3, 6)),
+        gap(2, 2),
+        gap(3, 2),
     ],
     ids=lambda damage: damage.name,
 )
@@ -125,6 +127,25 @@ def test_frames_that_are_missing_in_a_row_are_counted_and_no_other_fault_is_told
     assert found.remedy is not None
     (missing,) = found.remedy.missing
     assert missing.after == frames[97]
+
+
+def test_frames_missing_side_by_side_are_each_counted() -> None:
+    """Frames 40, 42 and 43: a frame is left between them, both steps to which are too long."""
+    keep = np.delete(np.arange(len(jump().frames)), [100, 102, 103])
+    size, first = len(keep), jump().frames[0]
+    less = replace(
+        jump(),
+        frames=jump().frames[:size],
+        times=jump().times[:size],
+        heads=jump().heads[keep],
+        rotations=jump().rotations[keep],
+    )
+    found = find_dropped(less)
+    assert found is not None
+    assert found.remedy == Repairs(
+        missing=(MissingFrames(round(first + 99), 1), MissingFrames(round(first + 100), 2))
+    )
+    assert apart(repaired(less, found.remedy), jump()) < 1e-4
 
 
 def test_frames_that_are_put_in_make_what_follows_later() -> None:
@@ -184,8 +205,18 @@ def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
         (stretched(0.15), 0.15),
         (gap(1), 0.01),
         (gap(6), 0.1),
+        (gap(2, 2), 0.01),
     ],
-    ids=["spikes", "a burst", "flips", "held frames", "bone lengths", "a missing frame", "a gap"],
+    ids=[
+        "spikes",
+        "a burst",
+        "flips",
+        "held frames",
+        "bone lengths",
+        "a missing frame",
+        "a gap",
+        "two gaps",
+    ],
 )
 def test_the_remedy_brings_the_original_back(damage: Damage, cm: float) -> None:
     damaged = damage.of(jump())
