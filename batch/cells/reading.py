@@ -15,7 +15,15 @@ from ...solver.data.faults import ClipNotOpened
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
-from ...solver.doctor.examination.repair import check_trim, filled, mended, placed, trimmed, turned
+from ...solver.doctor.examination.repair import (
+    check_trim,
+    filled,
+    left_after,
+    mended,
+    placed,
+    trimmed,
+    turned,
+)
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.stated_scale import check_scale
@@ -77,9 +85,8 @@ def read_clip(
     count = bind_frames(recording) if problem.frames is None else 0
     if count:
         origin = replace(origin, bind_frames=count)
-        after = float(recording.frames[count]), float(recording.frames[-1])
-        problem = replace(problem, frames=after)
-    elif problem.frames is None and mend.trim:
+        problem = replace(problem, frames=left_after(recording, count, repairs))
+    elif problem.frames is None and mend.trims:
         recording = trimmed(recording, mend)
     recording = placed(mended(recording, mend, problem.bones), Repairs(drift=mend.drift))
     return ReadClip(recording, origin, problem, metres, axis)

@@ -4,6 +4,7 @@
 up = "Y"                        # the axis, as it was read, that is to become Z; "-X" ...
 missing = { 57 = 4, 103 = 1 }   # after frame 57 four frames are missing: they are put in
 trim = 1                        # frames left out at the beginning
+trim_end = 60                   # frames left out at the end
 repair = ["flips", "spikes", "held frames", "bone lengths", "noise"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly
 scale = 0.625                   # lengths times this, which makes a person of 0.3 to 3 m
@@ -77,6 +78,7 @@ RECORDING = Kind(
         choice("up", UpAxis),
         Item(("missing",), _read_missing, _write_missing),
         whole("trim", COUNT),
+        whole("trim_end", COUNT),
         Item(("repair",), _read_mend, _write_mend),
         number("time_scale", ABOVE_ZERO),
         number("scale", SCALE),

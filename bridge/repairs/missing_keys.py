@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import bpy
 import numpy as np
 
@@ -14,6 +16,7 @@ from ..armature import fcurves
 from ..armature.actions import recorded_action, show
 from ..played_strips import played_strip
 from ..properties.settings import action_settings, settings_of
+from .stored import FRAMES, findings
 
 NAME = "{} filled"
 _SUPPORT = np.array([-1, 0, 1, 2])  # keys about a gap, from the one before it on
@@ -25,8 +28,8 @@ def put_in(
     before: tuple[MissingFrames, ...],
 ) -> None:
     """Has the armature perform its recording with these frames put in instead of those before;
-    with none, as it was recorded. The range that is chosen keeps to its poses. Raises NotPutIn and
-    NotBetweenFrames, having changed nothing."""
+    with none, as it was recorded. The range that is chosen, and findings, keep to their poses.
+    Raises NotPutIn and NotBetweenFrames, having changed nothing."""
     shown = recorded_action(armature)
     if shown is None:
         return
@@ -47,10 +50,15 @@ def put_in(
     play_to_end(current_scene(), end, span_of(made)[1])
     if shown != recorded and not shown.users:  # nothing was made of what was filled before
         bpy.data.actions.remove(shown)
+
+    def now(frame: float) -> int:
+        return round(_filled(_recorded(frame, before), missing))
+
     settings = settings_of(armature)
-    for name in ("first_frame", "last_frame"):
-        recorded_at = _recorded(getattr(settings, name), before)
-        setattr(settings, name, round(_filled(recorded_at, missing)))
+    settings.first_frame = now(settings.first_frame)
+    settings.last_frame = now(settings.last_frame)
+    for row in findings(settings):
+        row.frames = json.dumps([tuple(map(now, span)) for span in FRAMES.of(row.frames)])
 
 
 def _copied(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import bpy
 
+from ...solver.doctor.finding import FindingKind
+from ...solver.doctor.stretch import CUTTING, longest_stretch
 from ..accessors import present, shown_range
 from ..armature.actions import recorded_action
 from ..properties.settings import settings_of
 from ..rows.finding import HangtimeFinding
 from .placed_armature import repair
-from .stored import FRAMES, applied, repairs_in
+from .stored import applied, finding_of, findings, repairs_in
 
 
 def use_remedy(
@@ -23,7 +25,7 @@ def use_remedy(
     remedy, rival = repairs_in(row.remedy), repairs_in(row.other)
     if other:
         remedy, rival = rival, remedy
-    if remedy.trim:
+    if remedy.trims:
         _leave_out(armature, row, used=used)
         return
     repairs = applied(settings).without(remedy)
@@ -31,14 +33,24 @@ def use_remedy(
 
 
 def _leave_out(armature: bpy.types.Object, row: HangtimeFinding, *, used: bool) -> None:
-    """Frames at the beginning, by the frame range."""
+    """Frames at the ends, by the frame range: where the artist chose some of those that are kept,
+    these stay. A rest pose stays left out where what is after it is let in again."""
     settings = settings_of(armature)
-    first, last = shown_range(armature, present(recorded_action(armature)))
+    first, last = map(int, shown_range(armature, present(recorded_action(armature))))
+    start, end = first, last
+    if settings.use_range:
+        start, end = settings.first_frame, settings.last_frame
+    cutting = [each for each in map(finding_of, findings(settings)) if each.kind in CUTTING]
+    rest = [each for each in cutting if each.kind is FindingKind.BIND_POSE]
+    is_rest = row.name == FindingKind.BIND_POSE.value
+    after_rest, after_all = (longest_stretch((first, last), each) for each in (rest, cutting))
     if used:
-        if not settings.use_range:
-            settings.last_frame = int(last)
-        settings.first_frame = int(FRAMES.of(row.frames)[0][-1]) + 1
-        settings.use_range = True
-        return
-    settings.first_frame = int(first)
-    settings.use_range = settings.last_frame < int(last)
+        kept = after_rest if is_rest else after_all
+        inside = max(start, round(kept[0])), min(end, round(kept[1]))
+        start, end = inside if inside[0] < inside[1] else map(round, kept)
+    else:
+        left = (first, last) if is_rest else after_rest
+        start = round(left[0]) if start in (after_rest[0], after_all[0]) else start
+        end = round(left[1]) if end in (after_rest[1], after_all[1]) else end
+    settings.first_frame, settings.last_frame = start, end
+    settings.use_range = (start, end) != (first, last)

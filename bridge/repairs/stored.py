@@ -14,6 +14,7 @@ from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.feet import FootFault, FootFaultKind
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
+from ...solver.doctor.stretch import is_clear
 from ..accessors import current_scene, source_of
 from ..armature.actions import recorded_action
 from ..armature.poses import frames_per_second
@@ -75,6 +76,7 @@ _READ: dict[str, Callable[[Any], Any]] = {
     "up": UpAxis,
     "missing": _missing,
     "trim": whole,
+    "trim_end": whole,
     "mend": lambda content: tuple(map(Mend, listed(content))),
     "time_scale": _factor,
     "scale": _factor,
@@ -150,7 +152,7 @@ def is_finding(row: HangtimeFinding) -> bool:
     """Whether a row is Hangtime's: no script or other version wrote what is no finding."""
     remedies = [REPAIRS.is_ours(each) for each in (row.remedy, row.other)]
     known = row.name in {kind.value for kind in FindingKind}
-    placed = bool(FRAMES.of(row.frames)) or not repairs_in(row.remedy).trim
+    placed = bool(FRAMES.of(row.frames)) or not repairs_in(row.remedy).trims
     return known and FRAMES.is_ours(row.frames) and placed and all(remedies)
 
 
@@ -166,9 +168,9 @@ def is_applied(settings: HangtimeSettings, row: HangtimeFinding, *, other: bool 
     if row.mass:
         return bool(abs(settings.mass - row.mass) < 0.5)
     remedy = repairs_in(row.other if other else row.remedy)
-    if remedy.trim:
-        last = FRAMES.of(row.frames)[0][-1]
-        return bool(settings.use_range and settings.first_frame > last)
+    if remedy.trims:
+        span = float(settings.first_frame), float(settings.last_frame)
+        return bool(settings.use_range) and is_clear(span, finding_of(row))
     return remedy != Repairs() and applied(settings).includes(remedy)
 
 

@@ -66,7 +66,7 @@ def examine(name: str, recording: Recording, damage: Damage) -> Examined:
 
 
 def apart(recording: Recording, original: Recording) -> float:
-    """M, rms over joints and frames; frames count from the end, for the first may be left out."""
-    count = min(len(recording.heads), len(original.heads))
-    away = recording.heads[-count:] - original.heads[-count:]
+    """M, rms over joints and the frames that both have, for some at the ends may be left out."""
+    _, ours, theirs = np.intersect1d(recording.frames, original.frames, return_indices=True)
+    away = recording.heads[ours] - original.heads[theirs]
     return float(np.sqrt(np.mean(np.sum(away**2, axis=-1))))

@@ -12,7 +12,7 @@ from ...solver.data.faults import ClipNotOpened, MirroredInBlender, NoArmature
 from ...solver.data.problem import MotionProblem
 from ...solver.data.recording import BEYOND, Recording
 from ...solver.data.reports.recording import Origin
-from ...solver.doctor.examination.repair import check_trim, trimmed
+from ...solver.doctor.examination.repair import check_trim, left_after, trimmed
 from ...solver.doctor.repairs import Repairs
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.worker.pipeline import Subject, measure
@@ -87,15 +87,15 @@ def load(
     with stages.stage("Finding contacts"):
         recording = _read(armature, problem)
         count = bind_frames(recording) if problem.frames is None else 0
-        if count:
-            origin = replace(origin, bind_frames=count)
-            after = float(recording.frames[count]), float(recording.frames[-1])
-            problem = replace(problem, frames=after)
         if repairs is not None:
             check_trim(repairs, _frame_count(armature))
             check_scale(recording, problem, repairs.scale)
-            if count == 0 and problem.frames is None and repairs.trim:
-                recording = trimmed(recording, repairs)
+        if count:
+            origin = replace(origin, bind_frames=count)
+            problem = replace(problem, frames=left_after(recording, count, repairs))
+        elif repairs is not None and problem.frames is None and repairs.trims:
+            recording = trimmed(recording, repairs)
+        if repairs is not None:
             problem = replace(problem, mend=repairs.mend, drift=repairs.drift)
         if problem.mirrored:
             raise MirroredInBlender

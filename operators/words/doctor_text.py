@@ -25,7 +25,7 @@ SENTENCES = {
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
     FindingKind.MASS: "{n:.0f} kg do not go with the figure's height.",
     FindingKind.JUMP: "{part} jumps by {amount} {where}, as where two takes were joined, capture "
-    "mistook something, or many frames are missing: choose frames on one side of it.",
+    "mistook something, or many frames are missing.",
     FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture "
     "does that had lost it: nothing pulls like this.",
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
@@ -38,6 +38,12 @@ SENTENCES = {
 }
 
 
+# Said after it, where there is no remedy.
+ADVICE = {
+    FindingKind.JUMP: " Choose frames on one side of it.",
+    FindingKind.LEAP: " Choose frames without it.",
+}
+
 # Of the buttons. {n}: the remedy's number.
 REMEDIES = {
     FindingKind.UP_AXIS: "Turn Upright",
@@ -48,8 +54,8 @@ REMEDIES = {
     FindingKind.DROPPED_FRAMES: "Put In",
     FindingKind.BONE_LENGTH: "Hold Lengths",
     FindingKind.NOISE: "Smooth",
-    FindingKind.JUMP: "Leave Out",
-    FindingKind.LEAP: "Leave Out",
+    FindingKind.JUMP: "Keep the Longest Part",
+    FindingKind.LEAP: "Keep the Longest Part",
     FindingKind.FLOOR: "Put on the Floor",
     FindingKind.SLIDING: "Hold Still",
 }
@@ -79,7 +85,8 @@ def finding_sentence(finding: Finding) -> str:
         where=_where(finding),
         clock=_clock(finding),
     )
-    return told[0].upper() + told[1:]
+    advice = ADVICE.get(finding.kind, "") if finding.remedy is None else ""
+    return f"{told[0].upper()}{told[1:]}{advice}"
 
 
 def amount_text(finding: Finding) -> str:
@@ -122,6 +129,7 @@ def rounded(repairs: Repairs) -> Repairs:
         float(f"{repairs.scale:.4g}"),
         (round(repairs.drift[0], 4), round(repairs.drift[1], 4)),
         round(repairs.floor, 4),
+        repairs.trim_end,
     )
 
 

@@ -100,8 +100,8 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NotBetweenFrames: "Frames are said to be missing after frame {frame:g}, but the "
     "recording goes from frame {first:g} to {last:g}; name one that another comes after under "
     "“missing”.",
-    faults.NothingLeft: "“trim = {trim}” leaves nothing of the {frames} frames of the recording; "
-    "leave out fewer at its beginning.",
+    faults.NothingLeft: "“trim = {trim}” and “trim_end = {trim_end}” leave nothing of the {frames} "
+    "frames of the recording; leave out fewer at its beginning and end.",
     faults.NotPutIn: "Missing frames cannot be put into “{action}”: {why}.",
     faults.BadScale: "The scale of “{object_name}” is ({scale:numbers}), but it must be the same, "
     "and above zero, along all three axes; apply the scale or make it even.",

@@ -38,7 +38,6 @@ HEIGHTS = (1.1, 2.1)  # m; persons; others are read at a wrong scale
 USUAL_HEIGHT = 1.75  # m
 LEAP = 3.0  # g, downwards, of the centre of mass; honest recordings have 1.0 to 1.8
 LEAP_WINDOW, LEAP_FRAMES = 0.05, 2  # s, on each side, and frames at least
-EARLY = 0.5  # s; a leap that is over by then is left out with what is before it
 
 
 @dataclass(frozen=True)
@@ -150,12 +149,9 @@ def refined(size: Finding, resized: Performance, trusted: Trusted = ALL) -> Find
     return replace(size, remedy=Repairs(scale=scale))
 
 
-def find_leaps(performance: Performance, before: int) -> Finding | None:
+def find_leaps(performance: Performance) -> Finding | None:
     """Where the whole body is jerked downwards as nothing can: capture that lost it and finds it
-    again leaves such jumps. One that ends soon after the beginning is to be left out.
-
-    performance: in its right size and time. before: frames that are left out at its beginning.
-    """
+    again leaves such jumps. performance: in its right size and time."""
     recording, height = performance.recording, performance.com[:, 2]
     reach = max(LEAP_FRAMES, round(LEAP_WINDOW * recording.rate))
     if len(height) <= 2 * reach:
@@ -167,10 +163,7 @@ def find_leaps(performance: Performance, before: int) -> Finding | None:
     if not places:
         return None
     frames = tuple((float(recording.frames[a]), float(recording.frames[b])) for a, b in places)
-    end = places[0][1] + 1
-    early = float(recording.times[end]) < EARLY
-    remedy = Repairs(trim=before + end) if early else None
-    return Finding(FindingKind.LEAP, float(fall.max()), "g", frames, remedy=remedy)
+    return Finding(FindingKind.LEAP, float(fall.max()), "g", frames)
 
 
 def _usual(clock: float, rate: float, longest: float) -> float:

@@ -34,9 +34,9 @@ class Repairs:
     """What to mend, in this order; the defaults leave a recording as it is.
 
     up: what becomes Z. missing: frames that are put in; all others of a recipe count with them.
-    trim: frames left out at the beginning. mend: of the poses. time_scale, scale: factors of
-    durations and of lengths. drift: m/s, along the floor, that is taken out, and floor: m, the
-    height that becomes 0; both after the factors.
+    trim, trim_end: frames left out at the beginning and at the end. mend: of the poses.
+    time_scale, scale: factors of durations and of lengths. drift: m/s, along the floor, that is
+    taken out, and floor: m, the height that becomes 0; both after the factors.
     """
 
     up: UpAxis = UpAxis.Z
@@ -47,6 +47,12 @@ class Repairs:
     scale: float = 1.0
     drift: tuple[float, float] = (0.0, 0.0)
     floor: float = 0.0
+    trim_end: int = 0
+
+    @property
+    def trims(self) -> bool:
+        """Whether frames are left out."""
+        return self.trim > 0 or self.trim_end > 0
 
     @property
     def places(self) -> bool:
@@ -68,16 +74,18 @@ class Repairs:
         return other.without(self) == Repairs()
 
     def joined(self, other: Repairs) -> Repairs:
-        """These, and where the other changes something, what it changes."""
+        """These, and where the other changes something, what it changes; of frames that are left
+        out, all."""
         usual = Repairs()
         mend = {*self.mend, *other.mend}
         return Repairs(
             other.up if other.up is not usual.up else self.up,
             other.missing or self.missing,
-            other.trim or self.trim,
+            max(self.trim, other.trim),
             tuple(each for each in Mend if each in mend),
             other.time_scale if other.time_scale != 1.0 else self.time_scale,
             other.scale if other.scale != 1.0 else self.scale,
             other.drift if other.drift != usual.drift else self.drift,
             other.floor or self.floor,
+            max(self.trim_end, other.trim_end),
         )

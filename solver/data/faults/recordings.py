@@ -73,9 +73,10 @@ class NotBetweenFrames(Fault):
 
 @dataclass
 class NothingLeft(Fault):
-    """As many frames as the recording has, or more, are to be left out at its beginning."""
+    """As many frames as the recording has, or more, are to be left out at its ends."""
 
     trim: int
+    trim_end: int
     frames: int
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
+
+import numpy as np
 
 from ...analysis.analyse import MIN_CLIP_DURATION, require_dense
 from ...analysis.performance import Performance, perform
@@ -23,9 +25,12 @@ from ..frames.spikes import find_spikes
 from ..lengths import find_lengths
 from ..noise import REACH, find_noise
 from ..repairs import Repairs
+from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_up
 from .repair import placed_skin, repaired
 
+PARTING = (FindingKind.JUMP, FindingKind.LEAP)
+LEAST_KEPT = 0.5  # s; of less nobody makes a range
 GAPS = (FindingKind.DROPPED_FRAMES, FindingKind.JUMP)
 MASS_BY_SQUARE = (12.0, 42.0)  # kg/m²; children have 14, the heaviest who jump 40
 FEWEST_FRAMES = 5  # which have a fourth difference
@@ -36,15 +41,21 @@ USUAL_MASS_BY_SQUARE = 22.0  # kg/m²
 @dataclass(frozen=True)
 class Diagnosis:
     """What was found, in the order in which it is repaired. mass: kg, that fits the size; None
-    where the stated one does, or none was."""
+    where the stated one does, or none was. kept: the first and last scene frame that all remedies
+    together leave."""
 
     findings: tuple[Finding, ...]
     mass: float | None = None
+    kept: Span = (-np.inf, np.inf)
 
     @property
     def repairs(self) -> Repairs:
-        """All remedies together."""
-        return reduce(Repairs.joined, (f.remedy for f in self.findings if f.remedy), Repairs())
+        """All remedies together. Frames that are put in count for those left out at both ends, so
+        where they would be left out again none are."""
+        first, last = self.kept
+        every = reduce(Repairs.joined, (f.remedy for f in self.findings if f.remedy), Repairs())
+        inside = tuple(gap for gap in every.missing if first <= gap.after < last)
+        return replace(every, missing=inside)
 
 
 @computable()
@@ -61,7 +72,7 @@ def diagnose(
     """
     _require_length(recording)
     found: list[Finding] = []
-    count = len(recording.frames)
+    frames, rate = recording.frames, recording.rate
 
     def cured(recording: Recording, finding: Finding | None) -> Recording:
         """Keeps a finding; the recording with its remedy."""
@@ -81,7 +92,7 @@ def diagnose(
     dropped = find_dropped(recording)
     if dropped is not None:
         found.append(dropped)  # and not cured: what else is found is told by the frames that are
-    jumps = find_jumps(recording, figure, count - len(recording.frames))
+    jumps = find_jumps(recording, figure)
     if jumps is not None and not _are_at(jumps, _places(found, FindingKind.DROPPED_FRAMES)):
         found.append(jumps)
     for find in (find_lengths, find_noise):
@@ -103,7 +114,7 @@ def diagnose(
             performance = performed(_remedy(scale))
         found.append(scale)
     height = performance.character.height
-    leaps = find_leaps(performance, count - len(recording.frames))
+    leaps = find_leaps(performance)
     near = LEAP_WINDOW * recording.rate
     if leaps is not None and not _are_at(leaps, _places(found, *GAPS), near):
         found.append(leaps)
@@ -112,7 +123,13 @@ def diagnose(
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2
         found.append(Finding(FindingKind.MASS, mass, "kg"))
-    return Diagnosis(tuple(found), fitting)
+    kept = longest_stretch((frames[0], frames[-1]), (f for f in found if f.kind in CUTTING))
+    if kept[1] - kept[0] < LEAST_KEPT * rate:
+        return Diagnosis(tuple(found), fitting)
+    ends = np.searchsorted(frames, kept).tolist()
+    cut = Repairs(trim=ends[0], trim_end=len(frames) - 1 - ends[1])
+    parted = [replace(f, remedy=cut) if f.kind in PARTING else f for f in found]
+    return Diagnosis(tuple(parted), fitting, kept)
 
 
 def _remedy(finding: Finding | None) -> Repairs:

@@ -109,15 +109,28 @@ def filled(recording: Recording, missing: tuple[MissingFrames, ...]) -> Recordin
 
 def check_trim(repairs: Repairs, frames: int) -> None:
     """Whether some of a recording's frames are left. Raises NothingLeft."""
-    if repairs.trim >= frames:
-        raise NothingLeft(repairs.trim, frames)
+    if repairs.trim + repairs.trim_end >= frames:
+        raise NothingLeft(repairs.trim, repairs.trim_end, frames)
 
 
 def trimmed(recording: Recording, repairs: Repairs) -> Recording:
-    """Without the frames at the beginning that are left out. Raises NothingLeft."""
-    check_trim(repairs, len(recording.frames))
-    kept = recording.part(slice(repairs.trim, None))
+    """Without the frames at both ends that are left out. Raises NothingLeft."""
+    count = len(recording.frames)
+    check_trim(repairs, count)
+    kept = recording.part(slice(repairs.trim, count - repairs.trim_end))
     return replace(kept, times=kept.times - kept.times[:1])
+
+
+def left_after(
+    recording: Recording, held: int, repairs: Repairs | None = None
+) -> tuple[float, float]:
+    """First and last frame of what is left where as many frames at the beginning hold the rest
+    pose, and others are left out; of no repairs none are. Raises NothingLeft."""
+    repairs, count = repairs or Repairs(), len(recording.frames)
+    both = replace(repairs, trim=max(held, repairs.trim))
+    check_trim(both, count)
+    kept = recording.frames[both.trim : count - both.trim_end]
+    return float(kept[0]), float(kept[-1])
 
 
 def mended(

@@ -10,7 +10,6 @@ from ...data.recording import Recording
 from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..local_poses import LocalPoses
-from ..repairs import Repairs
 from .steps import around, moved_steps, turned_steps
 
 # Beyond the mean of the steps beside it. In honest recordings of 30 Hz and more the root's are
@@ -20,12 +19,10 @@ TURN = 35.0  # °
 STRIKE = (Part.FOOT, Part.TOE, Part.HAND)
 STANDS_OUT = 4.0  # times what the steps around are off
 FEWEST = 5  # frames
-EARLY = 0.5  # s; a jump that is over by then is left out with what is before it
 
 
-def find_jumps(recording: Recording, figure: Figure, before: int = 0) -> Finding | None:
-    """Where two takes were joined, capture mistook something, or many frames are missing. before:
-    frames that are left out at its beginning."""
+def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
+    """Where two takes were joined, capture mistook something, or many frames are missing."""
     if len(recording.frames) < FEWEST:
         return None
     local, root = LocalPoses.of(recording), figure.bones[0]
@@ -40,9 +37,7 @@ def find_jumps(recording: Recording, figure: Figure, before: int = 0) -> Finding
     amount, part, _ = max(places or turns)  # of the whole body where it jumps, else of a bone
     steps = sorted({t for *_, t in places + turns})
     frames = tuple((float(recording.frames[t]), float(recording.frames[t + 1])) for t in steps)
-    early = float(recording.times[steps[-1] + 1]) < EARLY
-    remedy = Repairs(trim=before + steps[-1] + 1) if early else None
-    return Finding(FindingKind.JUMP, amount, "cm" if places else "°", frames, part, remedy)
+    return Finding(FindingKind.JUMP, amount, "cm" if places else "°", frames, part)
 
 
 def _jumps(uneven: FloatArray, limit: float) -> list[int]:

@@ -10,6 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.batch.cells.reading import read_clip
+from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.bridge.recipe.problem import locate, parse_recipe
 from hangtime.operators.headless.cli import main
 from hangtime.operators.headless.clip import Clip, load
@@ -93,6 +94,21 @@ def test_a_recording_of_which_nothing_is_left_is_refused_here_and_without_blende
     with pytest.raises(NothingLeft) as plain:
         read_clip(mocap_path(CLIP), problem, repairs)
     assert told.value == plain.value
+
+
+def test_frames_at_both_ends_are_left_out_as_without_blender(tmp_path: Path) -> None:
+    """Those that hold the rest pose are among the first."""
+    repairs, problem = Repairs(trim=5, trim_end=30), MotionProblem()
+    for clip in (mocap_path(CLIP), begun_at_rest(mocap_path(CLIP), tmp_path)):
+        count = len(read_bvh(clip).positions)
+        plain = read_clip(clip, problem, repairs)
+        here = load(Clip(clip), problem, Stages(StringIO()), repairs)
+        for asked, recording in (
+            (plain.problem.frames, plain.recording),
+            (here.problem.frames, here.subject.recording),
+        ):
+            ends = asked or (recording.frames[0], recording.frames[-1])
+            assert ends == (6.0, count - 30.0)
 
 
 @pytest.mark.parametrize("scale", [0.01, 1000.0])

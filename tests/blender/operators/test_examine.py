@@ -32,6 +32,7 @@ from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap
 
 SPIKED, TURN, RAISED, SLOWED = 150, 0.8, 0.2, 1.25
 GAP, LACKS = 150, 4  # frames are missing after one
+JOINED = 240
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -270,6 +271,62 @@ def test_frames_at_rest_are_left_out_by_the_range(tmp_path) -> None:
     assert kinds(jump) == ["bind pose"]  # to be left in again
     bpy.ops.hangtime.repair(kind="bind pose")
     assert not jump.hangtime.use_range
+
+
+@pytest.fixture
+def joined(jump: bpy.types.Object) -> bpy.types.Object:
+    """The jump, 0.4 m elsewhere from frame 240 on."""
+    for curve in curves_of(jump):
+        if 'Hips"' in curve.data_path and curve.data_path.endswith("location"):
+            keys = table(curve)
+            keys["co"][keys["co"][:, 0] >= JOINED, 1] += 0.4 / jump.scale.x / np.sqrt(3.0)
+            put(curve, keys)
+    return jump
+
+
+def test_of_a_clip_that_was_joined_the_longest_part_is_kept(joined) -> None:
+    settings = joined.hangtime
+    settings.use_range = False
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert "jump" in kinds(joined)
+    assert bpy.ops.hangtime.repair_all() == {"FINISHED"}
+    assert (settings.use_range, settings.first_frame, settings.last_frame) == (True, 1, JOINED - 1)
+    assert is_applied(settings, settings.findings["jump"])
+    assert bpy.ops.hangtime.repair(kind="jump") == {"FINISHED"}
+    assert not settings.use_range
+
+
+@pytest.mark.parametrize(
+    ("chosen", "left"),
+    [((100, 290), (100, JOINED - 1)), ((JOINED + 5, 320), (JOINED + 5, 320))],
+)
+def test_of_the_frames_that_were_chosen_those_stay_that_can(joined, chosen, left) -> None:
+    """A range on the other side needs no repair."""
+    settings = joined.hangtime
+    settings.use_range = True
+    settings.first_frame, settings.last_frame = chosen
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    if bpy.ops.hangtime.repair_all.poll():
+        bpy.ops.hangtime.repair_all()
+    assert (settings.first_frame, settings.last_frame) == left
+
+
+def test_frames_that_are_put_in_move_what_is_left_out(joined) -> None:
+    settings = joined.hangtime
+    settings.use_range = False
+    for curve in curves_of(joined):
+        keys = table(curve)
+        at = keys["co"][:, 0]
+        keys = {name: column[(at <= GAP) | (at > GAP + LACKS)] for name, column in keys.items()}
+        late = keys["co"][:, 0] > GAP
+        for name in ("co", "handle_left", "handle_right"):
+            keys[name][late, 0] -= LACKS
+        put(curve, keys)
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert {"dropped frames", "jump"} <= set(kinds(joined))
+    assert bpy.ops.hangtime.repair_all() == {"FINISHED"}
+    assert (settings.first_frame, settings.last_frame) == (1, JOINED - 1)
+    assert finding_of(settings.findings["jump"]).frames == ((JOINED - 1, JOINED),)
 
 
 def test_a_trim_makes_the_frame_range(jump) -> None:

@@ -10,7 +10,7 @@ from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 
 MISSING = (MissingFrames(-5, 1), MissingFrames(57, 4))
 MENDS = (Mend.FLIPS, Mend.HELD_FRAMES)
-FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), floor=0.12)
+FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), 0.12, 30)
 
 
 def test_repairs_come_back() -> None:
@@ -28,6 +28,7 @@ def test_a_recipe_that_says_nothing_repairs_nothing() -> None:
     [
         'repair = ["warts"]',
         "trim = 1.5",
+        "trim_end = -1",
         "time_scale = 0",
         "scale = 1e-6",
         "scale = 1e300",

@@ -45,6 +45,15 @@ def test_what_is_off_is_told_by_its_unit_and_whose_it_is() -> None:
     assert finding_sentence(thigh).startswith("Thigh.R jumps by 48° in frames 8 to 9,")
 
 
+def test_of_what_is_cut_everywhere_it_is_advised_to_choose() -> None:
+    cut = Finding(FindingKind.JUMP, 40.0, "cm", ((8.0, 9.0),))
+    assert finding_sentence(cut).endswith("Choose frames on one side of it.")
+    once = Finding(FindingKind.JUMP, 40.0, "cm", ((8.0, 9.0),), remedy=Repairs(trim_end=30))
+    assert "Choose" not in finding_sentence(once)
+    assert remedy_label(once, Repairs(trim_end=30), 0.0, 24.0) == "Keep the Longest Part"
+    assert "remedy: trim_end = 30\n" in diagnosis_text(Diagnosis((once,)))
+
+
 def test_a_clean_recording_is_called_so_though_there_are_notes() -> None:
     note = Finding(FindingKind.ENDS_IN_AIR, 0.1, "s", ((20.0, 30.0),))
     assert diagnosis_text(Diagnosis((note,))).splitlines() == [

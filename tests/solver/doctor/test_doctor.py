@@ -357,14 +357,69 @@ def test_a_leap_of_the_whole_body_is_named_and_left_out() -> None:
     lowered = jump().heads.copy()
     lowered[:12, :, 2] -= 0.12
     leapt = perform(replace(jump(), heads=lowered), character())
-    found = find_leaps(leapt, 1)
+    found = find_leaps(leapt)
     assert found is not None
     assert found.amount > 3.0
     first, last = found.frames[0]
     begun = jump().frames[0]
     assert first - 10 <= begun + 12 <= last + 10
-    assert found.remedy == Repairs(trim=int(last - begun) + 2)
-    assert find_leaps(perform(jump(), character()), 0) is None
+    assert find_leaps(perform(jump(), character())) is None
+
+
+def moved_from(*at: int) -> Recording:
+    """The jump, elsewhere by 0.3 m from each of these indices of frames on."""
+    heads = jump().heads.copy()
+    for index in at:
+        heads[index:] += [0.24, 0.18, 0.0]
+    return replace(jump(), heads=heads)
+
+
+@pytest.mark.parametrize(
+    ("at", "kept"),
+    [((60,), (60, 252)), ((180,), (0, 179)), ((40, 200), (40, 199)), ((200, 230), (0, 199))],
+)
+def test_where_takes_were_joined_the_longest_part_is_kept(at, kept) -> None:
+    diagnosis = diagnose(moved_from(*at))
+    (found,) = diagnosis.findings
+    assert found.kind is FindingKind.JUMP
+    assert found.remedy == Repairs(trim=kept[0], trim_end=252 - kept[1])
+    mended = repaired(moved_from(*at), diagnosis.repairs)
+    assert (mended.frames[0], mended.frames[-1]) == tuple(jump().frames[list(kept)])
+    assert [f for f in diagnose(mended).findings if not f.kind.note] == []
+
+
+def test_of_a_clip_that_is_cut_everywhere_no_part_is_worth_keeping() -> None:
+    (found,) = (f for f in diagnose(moved_from(*range(30, 250, 30))).findings if not f.kind.note)
+    assert found.kind is FindingKind.JUMP
+    assert found.remedy is None
+
+
+def test_what_is_left_out_for_one_fault_is_left_out_for_all() -> None:
+    """The rest pose alone is less than what is before the jump."""
+    heads, rotations = moved_from(60).heads.copy(), jump().rotations.copy()
+    heads[:3] = [bone.head for bone in jump().bones]
+    rotations[:3] = [bone.rotation for bone in jump().bones]
+    diagnosis = diagnose(replace(jump(), heads=heads, rotations=rotations))
+    kinds = [finding.kind for finding in diagnosis.findings if not finding.kind.note]
+    assert kinds == [FindingKind.BIND_POSE, FindingKind.JUMP]
+    assert diagnosis.repairs.trim == 60
+
+
+def test_frames_are_not_put_in_where_they_are_left_out() -> None:
+    """They would count among those that are, which then were too few."""
+    whole = moved_from(180)
+    keep = np.delete(np.arange(len(whole.frames)), [200])
+    less = replace(
+        whole,
+        frames=whole.frames[:-1],
+        times=whole.times[:-1],
+        heads=whole.heads[keep],
+        rotations=whole.rotations[keep],
+    )
+    diagnosis = diagnose(less)
+    kinds = [finding.kind for finding in diagnosis.findings if not finding.kind.note]
+    assert kinds == [FindingKind.DROPPED_FRAMES, FindingKind.JUMP]
+    np.testing.assert_array_equal(repaired(less, diagnosis.repairs).frames, jump().frames[:180])
 
 
 def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:
