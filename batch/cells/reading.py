@@ -77,7 +77,7 @@ def read_clip(
     mend = repairs or Repairs()
     recording = filled(recording, mend.missing)
     check_trim(mend, len(recording.frames))
-    still = replace(mend, drift=Repairs().drift)
+    still = replace(mend, drift=Repairs().drift, rise=0.0)
     if still != Repairs():
         recording = placed(turned(recording, still), still)
     check_scale(recording, problem, mend.scale)
@@ -88,7 +88,9 @@ def read_clip(
         problem = replace(problem, frames=left_after(recording, count, repairs))
     elif problem.frames is None and mend.trims:
         recording = trimmed(recording, mend)
-    recording = placed(mended(recording, mend, problem.bones), Repairs(drift=mend.drift))
+    recording = placed(
+        mended(recording, mend, problem.bones), Repairs(drift=mend.drift, rise=mend.rise)
+    )
     return ReadClip(recording, origin, problem, metres, axis)
 
 

@@ -132,6 +132,7 @@ def problem_of(
         good_enough=_METRES_PER_MM * round(settings.good_enough, 4),
         mend=repairs.mend,
         drift=repairs.drift,
+        rise=repairs.rise,
     )
 
 

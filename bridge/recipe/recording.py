@@ -9,6 +9,7 @@ repair = ["flips", "spikes", "held frames", "bone lengths", "noise"]
 time_scale = 0.8                # durations times this: played 1.25 times too slowly
 scale = 0.625                   # lengths times this, which makes a person of 0.3 to 3 m
 drift = [0.1, 0.0]              # m/s along the floor, x and y, that is taken out; 15 at most
+rise = 0.05                     # m/s upwards, likewise
 floor = 0.12                    # m; the height that becomes 0
 """
 
@@ -29,6 +30,7 @@ SOME = NumberRange(
     lambda value: 1.0 <= value <= MOST_MISSING and value.is_integer(),
 )
 SCALE = NumberRange("from 0.0001 to 10000", lambda value: 1e-4 <= value <= 1e4)  # any unit's
+NEAR_LEVEL = NumberRange("from -5 to 5 m/s", lambda value: abs(value) <= 5.0)
 COUNT = NumberRange("a whole number, 0 or more", lambda value: value >= 0.0 and value.is_integer())
 
 
@@ -83,6 +85,7 @@ RECORDING = Kind(
         number("time_scale", ABOVE_ZERO),
         number("scale", SCALE),
         Item(("drift",), _read_drift, _write_drift),
+        number("rise", NEAR_LEVEL),
         number("floor"),
     ),
     named=False,

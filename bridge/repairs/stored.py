@@ -82,6 +82,7 @@ _READ: dict[str, Callable[[Any], Any]] = {
     "scale": _factor,
     "drift": _drift,
     "floor": number,
+    "rise": number,
 }
 REPAIRS = HiddenText("repairs", _read_repairs, Repairs())
 

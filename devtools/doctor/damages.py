@@ -222,6 +222,16 @@ def sliding(speed: float) -> Damage:
     return Damage(f"drift {speed:g} m/s", FindingKind.SLIDING, do)
 
 
+def rising(speed: float) -> Damage:
+    """The whole body drifts upwards, as capture by video lets it."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        away = recording.times[:, None] * speed * np.array([0.0, 0.0, 1.0])
+        return Damaged(replace(recording, heads=recording.heads + away[:, None]), recording)
+
+    return Damage(f"rise {speed:g} m/s", FindingKind.RISING, do)
+
+
 def raised(metres: float) -> Damage:
     """Off the floor, or in it."""
 
@@ -310,6 +320,7 @@ DAMAGES = (
     *map(gap, (3, 6)),
     gap(2, 2),
     *map(sliding, (0.2, 0.5)),
+    rising(0.1),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
     noisy(3.0, 1.0),
     noisy(6.0, 2.0),

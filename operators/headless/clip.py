@@ -96,7 +96,7 @@ def load(
         elif repairs is not None and problem.frames is None and repairs.trims:
             recording = trimmed(recording, repairs)
         if repairs is not None:
-            problem = replace(problem, mend=repairs.mend, drift=repairs.drift)
+            problem = replace(problem, mend=repairs.mend, drift=repairs.drift, rise=repairs.rise)
         if problem.mirrored:
             raise MirroredInBlender
         read = _skin(armature, recording)

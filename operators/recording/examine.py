@@ -61,6 +61,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
             bones=chosen_parts(settings),
             mend=repairs.mend,
             drift=repairs.drift,
+            rise=repairs.rise,
             skin=skin,
         )
         job = shared().ask(RequestKind.EXAMINE, recording, problem, repairs)

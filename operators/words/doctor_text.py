@@ -10,8 +10,9 @@ from ...solver.doctor.repairs import Repairs
 MOST_PLACES = 6
 HEALTHY = "Nothing is wrong with the recording."
 
-# {n}: the number, {amount}: with its unit, {part}, {where}: "at frame 12" or "in frames 3 to 9,
-# 40"; "" without frames. {clock}: how the recording is played.
+# {n}: the number, {speed} and {way}: of it, without its sign, and upwards or downwards, {amount}:
+# with its unit, {part}, {where}: "at frame 12" or "in frames 3 to 9, 40"; "" without frames.
+# {clock}: how the recording is played.
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
     FindingKind.BIND_POSE: "The rest pose is held {where}, and the motion jumps from it.",
@@ -29,6 +30,7 @@ SENTENCES = {
     FindingKind.LEAP: "The whole body is jerked downwards at up to {n:.1f} g {where}, as capture "
     "does that had lost it: nothing pulls like this.",
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
+    FindingKind.RISING: "The whole body drifts {way} at {speed:.2f} m/s while it stands.",
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
     FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
     FindingKind.UNSEEN_SUPPORT: "Nothing touches, yet the body does not fall {where}: something "
@@ -57,6 +59,7 @@ REMEDIES = {
     FindingKind.JUMP: "Keep the Longest Part",
     FindingKind.LEAP: "Keep the Longest Part",
     FindingKind.FLOOR: "Put on the Floor",
+    FindingKind.RISING: "Hold Level",
     FindingKind.SLIDING: "Hold Still",
 }
 REPAIR = "Repair"
@@ -80,6 +83,8 @@ def finding_sentence(finding: Finding) -> str:
     """What is wrong and where."""
     told = SENTENCES[finding.kind].format(
         n=finding.amount,
+        speed=abs(finding.amount),
+        way="upwards" if finding.amount > 0.0 else "downwards",
         amount=amount_text(finding),
         part=finding.part or "the whole body",
         where=_where(finding),
@@ -130,6 +135,7 @@ def rounded(repairs: Repairs) -> Repairs:
         (round(repairs.drift[0], 4), round(repairs.drift[1], 4)),
         round(repairs.floor, 4),
         repairs.trim_end,
+        round(repairs.rise, 4),
     )
 
 

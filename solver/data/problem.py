@@ -87,10 +87,10 @@ class MotionProblem:
     loop: whether the motion shall repeat; it is then made of the cycle nearest to the frames.
     skin: of the recording's figure, where it has one. unseen: what to do where the recording does
     not show what carries the body. good_enough: m by which a contact that the fit cannot hold
-    exactly may miss its place. mend: repairs of the recording's poses, and drift: m/s along the
-    floor, that is taken out of its way from the first frame on; before anything else. mirrored:
-    whether the recording is then mirrored, across the body at the first frame; pins and contacts
-    are on the mirrored one's.
+    exactly may miss its place. mend: repairs of the recording's poses, and drift and rise: m/s
+    along the floor and upwards, that are taken out of its way from the first frame on; before
+    anything else. mirrored: whether the recording is then mirrored, across the body at the first
+    frame; pins and contacts are on the mirrored one's.
     """
 
     frames: tuple[float, float] | None = None
@@ -109,6 +109,7 @@ class MotionProblem:
     good_enough: float = 5e-4
     mend: tuple[Mend, ...] = ()
     drift: tuple[float, float] = (0.0, 0.0)
+    rise: float = 0.0
     mirrored: bool = False
 
     def known_to_fit(self) -> str:

@@ -23,10 +23,10 @@ class StanceMove:
         """Whether the stance is where it was recorded."""
         return max(abs(self.turn), *(abs(each) for each in self.shift)) < _NO_MOVE
 
-    def from_elsewhere(self, away: tuple[float, float]) -> "StanceMove":
-        """The move that takes to the same place what stands so far away, m along the floor."""
-        pivot = self.pivot[0] + away[0], self.pivot[1] + away[1], self.pivot[2]
-        shift = self.shift[0] - away[0], self.shift[1] - away[1], self.shift[2]
+    def from_elsewhere(self, away: tuple[float, float, float]) -> "StanceMove":
+        """The move that takes to the same place what stands so far away, m."""
+        (x, y, z), (a, b, c), (u, v, w) = self.pivot, away, self.shift
+        pivot, shift = (x + a, y + b, z + c), (u - a, v - b, w - c)
         return replace(self, pivot=pivot, shift=shift)
 
     def scaled(self, factor: float) -> "StanceMove":

@@ -25,6 +25,7 @@ class FindingKind(Enum):
     JUMP = "jump"
     LEAP = "leap"
     FLOOR = "floor"
+    RISING = "rising"
     SLIDING = "sliding"
     FLICKER = "flicker"
     UNSEEN_SUPPORT = "unseen support"

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..analysis.performance import Performance, contact_points, find_contacts
 from ..arrays import FloatArray
+from ..body.anatomy import Part, Side
 from ..data.contacts import ContactSchedule, Interval, PointKind
 from .finding import Finding, FindingKind
 from .repairs import Repairs
@@ -19,6 +20,10 @@ ROUNDS = 8  # of narrowing the speeds to the half that agree best
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
 ALIKE = 0.75  # of the drift, by which half of all speeds differ from it at most; noise leaves more
 LEAST_STANCE = 0.3  # s
+RISE = 0.06  # m/s, of feet that stand; half a second and more of honest ones leave 0.04
+LEAST_LEVEL = 0.5  # s of feet that stand flat, of which so much can be told
+FLAT = 0.06  # m/s, by which both ends of a foot that stands flat differ
+ALIKE_RISE = 0.5  # of the rise, likewise
 FLICKER_GAP = 0.12  # s; a foot cannot leave its place and come back in less
 FLICKER_PLACE = 0.03  # m
 FLICKERS = 3
@@ -53,17 +58,61 @@ def _sliding(performance: Performance) -> Finding | None:
     speeds = _standing_speeds(performance)
     if len(speeds) < LEAST_STANCE * performance.recording.rate:
         return None
+    middle, differ = _agreed(speeds)
+    speed = float(np.linalg.norm(middle))
+    if speed < DRIFT or differ > ALIKE * speed:
+        return None
+    x, y = map(float, middle)
+    return Finding(FindingKind.SLIDING, speed, "m/s", remedy=Repairs(drift=(x, y)))
+
+
+def find_rise(performance: Performance) -> Finding | None:
+    """Feet that all rise, or sink, at the same speed while they stand: the whole body drifts. Who
+    climbs has feet that stand still. performance: in its right size and time."""
+    speeds = _flat_speeds(performance)
+    if len(speeds) < LEAST_LEVEL * performance.recording.rate:
+        return None
+    (rise,), differ = _agreed(speeds[:, None])
+    if abs(rise) < RISE or differ > ALIKE_RISE * abs(rise):
+        return None
+    return Finding(FindingKind.RISING, float(rise), "m/s", remedy=Repairs(rise=float(rise)))
+
+
+def _flat_speeds(performance: Performance) -> FloatArray:
+    """(N,) m/s, upwards, of feet while they neither turn nor go. By their joints: where contact
+    points are hangs on the floor, and of one that rises no height is known."""
+    found = []
+    for side in (Side.LEFT, Side.RIGHT):
+        ankle, ball = (
+            np.gradient(track, performance.times, axis=0) for track in _ends(performance, side)
+        )
+        middle = 0.5 * (ankle + ball)
+        flat = np.linalg.norm(ankle - ball, axis=1) < FLAT
+        flat &= np.linalg.norm(middle[:, :2], axis=1) < SLOW
+        found.append(middle[flat, 2])
+    return np.concatenate(found)
+
+
+def _ends(performance: Performance, side: Side) -> tuple[FloatArray, FloatArray]:
+    """(T, 3) m each, of a foot's ankle and ball; of one without toes of its bone's end."""
+    character, centres = performance.character, performance.centres
+    foot, toe = (character.body(part, side) for part in (Part.FOOT, Part.TOE))
+    assert foot is not None
+    if toe is not None:
+        return centres[:, foot], centres[:, toe]
+    tip = performance.rotations[:, foot] @ character.bodies[foot].tip
+    return centres[:, foot], centres[:, foot] + tip
+
+
+def _agreed(speeds: FloatArray) -> tuple[FloatArray, float]:
+    """The speed (D,), m/s, about which the half of some (N, D) that agree best are, and how far, in
+    the median, all differ from it."""
     middle = np.median(speeds, axis=0)
     for _ in range(ROUNDS):
         apart = np.linalg.norm(speeds - middle, axis=1)
         nearest = np.argsort(apart, kind="stable")[: (len(speeds) + 1) // 2]
         middle = np.median(speeds[nearest], axis=0)
-    speed = float(np.linalg.norm(middle))
-    differ = float(np.median(np.linalg.norm(speeds - middle, axis=1)))
-    if speed < DRIFT or differ > ALIKE * speed:
-        return None
-    x, y = map(float, middle)
-    return Finding(FindingKind.SLIDING, speed, "m/s", remedy=Repairs(drift=(x, y)))
+    return middle, float(np.median(np.linalg.norm(speeds - middle, axis=1)))
 
 
 def _standing_speeds(performance: Performance) -> FloatArray:

@@ -35,8 +35,9 @@ class Repairs:
 
     up: what becomes Z. missing: frames that are put in; all others of a recipe count with them.
     trim, trim_end: frames left out at the beginning and at the end. mend: of the poses.
-    time_scale, scale: factors of durations and of lengths. drift: m/s, along the floor, that is
-    taken out, and floor: m, the height that becomes 0; both after the factors.
+    time_scale, scale: factors of durations and of lengths. drift and rise: m/s, along the
+    floor and upwards, that are taken out, and floor: m, the height that becomes 0; all after the
+    factors.
     """
 
     up: UpAxis = UpAxis.Z
@@ -48,6 +49,7 @@ class Repairs:
     drift: tuple[float, float] = (0.0, 0.0)
     floor: float = 0.0
     trim_end: int = 0
+    rise: float = 0.0
 
     @property
     def trims(self) -> bool:
@@ -88,4 +90,5 @@ class Repairs:
             other.drift if other.drift != usual.drift else self.drift,
             other.floor or self.floor,
             max(self.trim_end, other.trim_end),
+            other.rise or self.rise,
         )

@@ -39,7 +39,7 @@ def edited_part(analysis: Analysis, problem: MotionProblem) -> Analysis:
 def _span(schedule: ContactSchedule, problem: MotionProblem) -> tuple[float, float] | None:
     alone = replace(problem.requests, solution=Requests().solution) == Requests()
     moving = any(thing.moves for thing in problem.scene)
-    mended = bool(problem.mend) or any(problem.drift)
+    mended = bool(problem.mend) or any((*problem.drift, problem.rise))
     corrected = bool(problem.contacts or problem.added)
     if problem.loop or moving or mended or corrected or not alone or not problem.pins:
         return None

@@ -134,12 +134,12 @@ class Subject:
         return scaled_schedule(self.analysis.schedule, 1.0 / self.factor)
 
     @property
-    def drifted(self) -> tuple[float, float]:
-        """How far, m along the floor, the recording is at its end from where it is without drift,
+    def drifted(self) -> tuple[float, float, float]:
+        """How far, m, the recording is at its end from where it is without drift,
         in its own lengths."""
-        x, y = self.problem.drift
+        (x, y), z = self.problem.drift, self.problem.rise
         seconds = float(self.recording.times[-1])
-        return x * seconds, y * seconds
+        return x * seconds, y * seconds, z * seconds
 
     @property
     def shape_changes(self) -> ShapeChanges:

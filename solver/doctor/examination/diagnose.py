@@ -17,7 +17,7 @@ from ...skeleton.bind_pose import bind_frames
 from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale, refined
 from ..figure import figure_of
 from ..finding import Finding, FindingKind
-from ..footing import find_footing
+from ..footing import find_footing, find_rise
 from ..frames.flips import find_flips
 from ..frames.jumps import find_jumps
 from ..frames.missing import find_dropped, find_held
@@ -114,6 +114,10 @@ def diagnose(
             performance = performed(_remedy(scale))
         found.append(scale)
     height = performance.character.height
+    rise = find_rise(performance)
+    if rise is not None:
+        found.append(rise)
+        performance = performed(_remedy(scale).joined(_remedy(rise)))
     leaps = find_leaps(performance)
     near = LEAP_WINDOW * recording.rate
     if leaps is not None and not _are_at(leaps, _places(found, *GAPS), near):

@@ -45,16 +45,17 @@ def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
             recording = trimmed(recording, Repairs(trim=held))
         recording = mended(recording, Repairs(mend=problem.mend), problem.bones)
     first = float(recording.frames[0]) if problem.frames is None else problem.frames[0]
-    if any(problem.drift):
+    velocity = *problem.drift, problem.rise
+    if any(velocity):
         begins = float(np.interp(first, recording.frames, recording.times))
-        recording = _without_drift(recording, recording.times - begins, problem.drift)
+        recording = _without_drift(recording, recording.times - begins, velocity)
     return mirrored(recording, first) if problem.mirrored else recording
 
 
 def _without_drift(
-    recording: Recording, times: FloatArray, drift: tuple[float, float]
+    recording: Recording, times: FloatArray, velocity: tuple[float, float, float]
 ) -> Recording:
-    away = times[:, None] * np.array([*drift, 0.0])
+    away = times[:, None] * np.array(velocity)
     return replace(recording, heads=recording.heads - away[:, None])
 
 
@@ -185,4 +186,4 @@ def placed(recording: Recording, repairs: Repairs) -> Recording:
     lower = np.array([0.0, 0.0, -repairs.floor])
     bones = tuple(replace(b, head=b.head + lower, tail=b.tail + lower) for b in scaled.bones)
     lowered = replace(scaled, bones=bones, times=times, heads=scaled.heads + lower)
-    return _without_drift(lowered, times, repairs.drift)
+    return _without_drift(lowered, times, (*repairs.drift, repairs.rise))

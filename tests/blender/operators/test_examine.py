@@ -10,6 +10,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.fcurves import curves_of, put, table
 from hangtime.bridge.armature.keys_digest import keys_digest
+from hangtime.bridge.armature.read import read_recording
 from hangtime.bridge.constraints.motion_problem import problem_of, repaired_since
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.recipe.problem import parse_recipe
@@ -351,3 +352,31 @@ def test_a_figure_without_feet_is_refused_in_words() -> None:
     rigs.reset()
     with pytest.raises(RuntimeError):
         bpy.ops.hangtime.examine()
+
+
+def test_a_body_that_drifts_upwards_is_held_level_and_goes_on_where_it_was(jump) -> None:
+    """What follows the adapted frames drifts still; it is moved so that nothing jumps."""
+    rise = 0.1
+    for curve in curves_of(jump):
+        if 'Hips"' in curve.data_path and curve.data_path.endswith("location"):
+            hips = jump.data.bones["Hips"].matrix_local.to_3x3()
+            turn = np.linalg.inv(np.array(jump.matrix_world.to_3x3() @ hips))
+            keys = table(curve)
+            seconds = (keys["co"][:, 0] - 1.0) / 120.0
+            keys["co"][:, 1] += rise * seconds * turn[curve.array_index, 2]
+            put(curve, keys)
+    settings = jump.hangtime
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert kinds(jump) == ["rising"]
+    assert finding_of(settings.findings["rising"]).amount == pytest.approx(rise, abs=0.015)
+    assert bpy.ops.hangtime.repair_all() == {"FINISHED"}
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert settings.unseen == ""
+    settings.stances["ground 2"].forward = 0.1
+    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
+    heights = read_recording(jump).heads[:, 0, 2]
+    bends = np.abs(np.diff(heights, 2))[settings.last_frame - 20 :]
+    assert bends.max() < 4e-3  # at 120 frames a second
+    taken_out = rise * (settings.last_frame - settings.first_frame) / 120.0
+    recorded = read_recorded(jump, None, None).heads[-1, 0, 2]
+    assert recorded - heights[-1] == pytest.approx(taken_out, abs=0.02)

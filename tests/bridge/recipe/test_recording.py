@@ -10,7 +10,7 @@ from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 
 MISSING = (MissingFrames(-5, 1), MissingFrames(57, 4))
 MENDS = (Mend.FLIPS, Mend.HELD_FRAMES)
-FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), 0.12, 30)
+FULL = Repairs(UpAxis.MINUS_X, MISSING, 2, MENDS, 0.8, 1.6, (0.1, -0.25), 0.12, 30, -0.05)
 
 
 def test_repairs_come_back() -> None:
@@ -36,6 +36,7 @@ def test_a_recipe_that_says_nothing_repairs_nothing() -> None:
         "drift = [1e6, 0]",
         'up = "W"',
         "drift = [1]",
+        "rise = 50",
         "missing = { soon = 4 }",
         "missing = { 57 = 0 }",
         "missing = [57, 4]",

@@ -18,6 +18,7 @@ from hangtime.devtools.doctor.damages import (
     lain,
     noisy,
     raised,
+    rising,
     sized,
     sliding,
     slowed,
@@ -43,7 +44,7 @@ from hangtime.solver.doctor.falls import find_leaps, find_scale
 from hangtime.solver.doctor.feet import FootFaultKind, find_feet
 from hangtime.solver.doctor.figure import Figure, figure_of
 from hangtime.solver.doctor.finding import Finding, FindingKind
-from hangtime.solver.doctor.footing import find_footing
+from hangtime.solver.doctor.footing import find_footing, find_rise
 from hangtime.solver.doctor.frames.flips import find_flips
 from hangtime.solver.doctor.frames.jumps import find_jumps
 from hangtime.solver.doctor.frames.missing import find_dropped, find_held
@@ -279,6 +280,26 @@ def test_height_and_drift_are_told_and_taken_out(damage: Damage, metres: float) 
     assert apart(repaired(damaged.recording, found.remedy), damaged.original) < metres
 
 
+@pytest.mark.parametrize("speed", [0.1, -0.1])
+def test_a_floor_that_rises_is_told_as_drift_and_held_level(speed: float) -> None:
+    """Without the note of unseen support that the feet leave behind, and at the true heights."""
+    damaged = rising(speed).of(jump())
+    diagnosis = diagnose(damaged.recording)
+    (found,) = diagnosis.findings
+    assert found.kind is FindingKind.RISING
+    assert found.amount == pytest.approx(speed, abs=0.015)
+    assert apart(repaired(damaged.recording, diagnosis.repairs), damaged.original) < 0.02
+
+
+def test_who_steps_up_does_not_drift() -> None:
+    """The feet stand still below, and above."""
+    up = np.clip((jump().times - jump().times[100]) / 0.6, 0.0, 1.0) * np.array(
+        [[0.0], [0.0], [0.4]]
+    )
+    stepped = replace(jump(), heads=jump().heads + up.T[:, None])
+    assert find_rise(perform(stepped, character())) is None
+
+
 @pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
 def test_a_run_on_a_treadmill_stands_on_the_floor(name: str) -> None:
     """Feet that go with the belt are not slow; those that turn back in the air are."""
@@ -436,11 +457,11 @@ def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:
 
 def test_drift_is_taken_out_from_the_first_frame_that_is_asked_for_on() -> None:
     first, last = jump().frames[[0, -1]].tolist()
-    asked = MotionProblem(frames=(first + 60.0, last), drift=(0.24, 0.18))
-    without = as_asked(sliding(0.3).of(jump()).recording, asked)
+    asked = MotionProblem(frames=(first + 60.0, last), drift=(0.24, 0.18), rise=0.1)
+    slid = rising(0.1).of(sliding(0.3).of(jump()).recording).recording
+    without = as_asked(slid, asked)
     apart = without.heads - jump().heads
     np.testing.assert_allclose(apart, np.broadcast_to(apart[0], apart.shape), atol=1e-9)
-    slid = sliding(0.3).of(jump()).recording
     np.testing.assert_allclose(without.heads[60], slid.heads[60], atol=1e-9)
 
 
