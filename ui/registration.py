@@ -10,7 +10,7 @@ from bpy.app.handlers import persistent
 from ..bridge import worker_client
 from ..bridge.accessors import present
 from ..bridge.properties import settings, stances
-from ..bridge.properties.attached_groups import attach_groups
+from ..bridge.properties.attached_groups import attach_groups, release_groups
 from ..operators import names
 from ..operators.drag import limit_operator, pin_operator, turn_stance
 from ..operators.export import export_takes, recipe_export, save_plots
@@ -73,6 +73,7 @@ def register() -> Callable[[], None]:
 
     Returns what takes it all back, in reverse.
     """
+    release_groups()  # of a command that ran in this session before
     with ExitStack() as undo:
         _add_worker(undo)
         for cls in classes():

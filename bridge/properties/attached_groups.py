@@ -7,6 +7,8 @@ import bpy
 from ..accessors import ATTRIBUTE
 from .settings import CARRIERS, CLASSES
 
+_ensured = ExitStack()  # what takes back what `ensure_groups` did
+
 
 def attach_groups(undo: ExitStack) -> None:
     """Lets scenes, objects, actions and bones carry their groups until `undo` is closed; the
@@ -26,4 +28,11 @@ def ensure_groups() -> None:
         return
     for cls in CLASSES:
         bpy.utils.register_class(cls)
-    attach_groups(ExitStack())
+        _ensured.callback(bpy.utils.unregister_class, cls)
+    attach_groups(_ensured)
+
+
+def release_groups() -> None:
+    """Takes back what `ensure_groups` did, so that the extension can be enabled; what files hold
+    stays with them."""
+    _ensured.close()

@@ -16,6 +16,7 @@ import hangtime
 from hangtime.bridge import worker_client
 from hangtime.bridge.accessors import ATTRIBUTE
 from hangtime.bridge.properties import settings
+from hangtime.bridge.properties.attached_groups import ensure_groups
 from hangtime.operators.names import OperatorId
 from hangtime.tests.blender.helpers import rigs
 from hangtime.ui import registration
@@ -55,6 +56,21 @@ def known(name: str) -> bool:
 def handlers() -> dict[str, list[object]]:
     every = {name: getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers)}
     return {name: list(these) for name, these in every.items() if isinstance(these, list)}
+
+
+@pytest.mark.usefixtures("_disabled")
+def test_it_is_enabled_after_a_command_ran_without_it() -> None:
+    """A script may run a command, which reads and writes settings, and enable it afterwards."""
+    ensure_groups()
+    scene = bpy.context.scene
+    armature = bpy.data.objects.new("Jumper", bpy.data.armatures.new("Jumper"))
+    scene.collection.objects.link(armature)
+    armature.hangtime.mass = 63.0
+    hangtime.register()
+    assert armature.hangtime.mass == 63.0
+    assert names_in_blender() == every_name()
+    hangtime.unregister()
+    assert not names_in_blender()
 
 
 @pytest.mark.usefixtures("_disabled")
