@@ -9,6 +9,7 @@ from ...solver.data.status import Status
 from .messages import length, outcome, sentence
 
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
+MOST_GIVEN_UP = 5  # of what is in each other, likewise
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
 Item = CertificateItem
@@ -58,7 +59,13 @@ def _solved(report: Report, *, shown: bool) -> str:
     if not shown:
         said = "Solved, but not with what the recording shows alone"
         return f"{said}, and {lines}." if failed else f"{said}."
-    return f"Solved: everything asked for holds, but {lines}." if failed else outcome(report.status)
+    gone = len(report.given_up)
+    places = "one place" if gone == 1 else f"{gone} places"
+    but = [f"limbs, the floor or joints' ranges gave way in {places}"] if gone else []
+    but += [lines] if failed else []
+    if not but:
+        return outcome(report.status)
+    return f"Solved: everything asked for holds, but {', and '.join(but)}."
 
 
 def nearness(fit: FitQuality) -> str:
@@ -94,11 +101,19 @@ def accepted_lines(needs: FitNeeds) -> list[str]:
 
 
 def given_up_lines(report: Report) -> list[str]:
-    """What is in each other, and the joints that go beyond their range: lines."""
-    return [
+    """What is in each other, and the joints that go beyond their range, the worst first: lines."""
+    ranked = sorted(report.given_up, key=_tolerances, reverse=True)
+    told = [
         f"{_given_up(each)} (frame {each.worst_violation_frame:.0f}), beside what is asked for"
-        for each in report.given_up
+        for each in ranked[:MOST_GIVEN_UP]
     ]
+    more = len(ranked) - len(told)
+    return [*told, f"and {more} more, which the report lists"] if more else told
+
+
+def _tolerances(each: ConstraintReport) -> float:
+    """By how many of its tolerances it goes too far: millimetres and degrees compare."""
+    return each.worst_violation / each.kind.reported(each.kind.tolerance, weight=1.0)
 
 
 def _given_up(each: ConstraintReport) -> str:

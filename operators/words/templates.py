@@ -17,6 +17,9 @@ OUTCOMES = {
     "Ask for less of what is named here, move pins less, or check the contacts' frames.",
     Status.MISSED: "The motion obeys physics, but between the solver's instants something asked "
     "for is missed by more than is promised. Loosen what is named here a little.",
+    Status.NO_BODY: "The motion obeys physics and what was asked for holds, but no body can do it: "
+    "it goes through itself, the floor or an obstacle, or joints far beyond their range. Ask for "
+    "less of what was asked, or elsewhere.",
     Status.STOPPED: "Stopped before everything was met; the motion is as the solver left it.",
 }
 

@@ -10,6 +10,7 @@ class Status(Enum):
     STALLED = "stalled"
     TOO_MANY_STEPS = "too many steps"
     MISSED = "missed between the nodes"
+    NO_BODY = "no body can do it"  # its limbs go through each other, or joints far beyond ranges
     STOPPED = "stopped"  # by the artist, who takes the motion as it stands
 
 

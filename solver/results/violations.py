@@ -9,6 +9,7 @@ from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..data.constants import STANDARD_GRAVITY
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
+from ..data.status import Status
 from ..optimisation.guards import Guard, in_the_way
 from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
@@ -38,7 +39,8 @@ def condition_violations(adaptation: Adaptation) -> list[DenseViolation]:
 
 
 def _of(guard: Guard, adaptation: Adaptation) -> list[DenseViolation]:
-    if not adaptation.solved and not guard.hard:  # of a failure what it failed for is told
+    of_guards = adaptation.outcome.status in (Status.SOLVED, Status.NO_BODY)
+    if not of_guards and not guard.hard:  # of another failure what it failed for is told
         return []
     found, rows = (
         guard.violations(adaptation.motion),

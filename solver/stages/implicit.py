@@ -19,7 +19,7 @@ from ..data.status import Durations, Status
 from ..inverse_kinematics.arm_ik import reach_grips
 from ..optimisation.guards import Guard, guarded, in_the_way, with_guards
 from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
-from ..transcription.constraint import dense_violation, exchange
+from ..transcription.constraint import DenseViolation, dense_violation, exchange
 from ..transcription.contact_pins import tied_places
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
@@ -38,6 +38,8 @@ MAX_GUARD_ROUNDS = 8  # the same where there are guards: one limb makes way for 
 MAX_GUARD_STEPS = 10  # after which what is in the way is given up
 MOST_FURTHER = 0.1  # rad, by which rows may take another joint further beyond its range
 SAME_PLACE = 1e-4  # m
+# What no body can do: more in each other than a forearm is thick, and no joint bends so far beyond.
+NO_BODY = {RowKind.SOLID: 0.1, RowKind.RANGE: 0.25 * np.pi}  # m, rad
 NO_SHORTCOMINGS = 0.0, False, 0.0
 MAX_DENSE_VIOLATION = 3.0  # times a constraint's tolerance: 1 mm, a third of a degree, 0.04 N·m
 
@@ -100,9 +102,11 @@ def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None)
 
 def _shortcomings(found: Adaptation) -> tuple[float, bool, float]:
     """What a motion is judged by, the worst first: the share of the way that is missing, whether it
-    misses a constraint between the nodes, and how far it goes beyond its guards."""
-    missed = found.outcome.status is Status.MISSED
-    return 1.0 - found.reached, missed, _beyond(found.outcome, found.setup, found.setup.guards)
+    misses a constraint between the nodes or is beyond any body, and how far it goes beyond its
+    guards."""
+    missed = found.outcome.status in (Status.MISSED, Status.NO_BODY)
+    beyond = _beyond(_violations(found.outcome, found.setup, found.setup.guards))
+    return 1.0 - found.reached, missed, beyond
 
 
 def _require_closed(setup: Setup) -> None:
@@ -153,6 +157,10 @@ def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | 
         outcomes += better + (close_between_nodes(better[-1], setup, progress) if better else [])
     if misses_a_constraint(outcomes[-1]) or _goes_beyond_hard(outcomes[-1], setup):
         outcomes[-1] = replace(outcomes[-1], status=Status.MISSED)
+    elif any(
+        each.amount > NO_BODY[each.kind] for each in _violations(outcomes[-1], setup, setup.guards)
+    ):
+        outcomes[-1] = replace(outcomes[-1], status=Status.NO_BODY)
     stuck = None if outcomes[-1].solved else outcomes[-1]
     return Adaptation(tuple(outcomes), setup.target_places, fit, setup, stuck, gain=gain)
 
@@ -166,13 +174,18 @@ def misses_a_constraint(outcome: Outcome) -> bool:
 
 def _goes_beyond_hard(outcome: Outcome, setup: Setup) -> bool:
     """Whether a motion does by MAX_DENSE_VIOLATION what a hard guard must keep it from."""
-    return _beyond(outcome, setup, [guard for guard in setup.guards if guard.hard]) > 0.0
+    hard = [guard for guard in setup.guards if guard.hard]
+    return _beyond(_violations(outcome, setup, hard)) > 0.0
 
 
-def _beyond(outcome: Outcome, setup: Setup, guards: Sequence[Guard]) -> float:
-    """By how many tolerances, summed, a motion does by MAX_DENSE_VIOLATION what guards are for."""
+def _violations(outcome: Outcome, setup: Setup, guards: Sequence[Guard]) -> list[DenseViolation]:
+    """What a motion does that guards are for."""
     motion = setup.feasible_set(outcome.transcription).motion(outcome.x)
-    found = [each for guard in guards for each in guard.violations(motion)]
+    return [each for guard in guards for each in guard.violations(motion)]
+
+
+def _beyond(found: list[DenseViolation]) -> float:
+    """By how many tolerances, summed, violations are beyond MAX_DENSE_VIOLATION."""
     over = np.array([each.amount / each.kind.tolerance for each in found])
     return float(over[over > MAX_DENSE_VIOLATION].sum())
 
@@ -225,7 +238,7 @@ def _attempt(
     closed = close_between_nodes(attempt.outcomes[-1], setup, progress)
     attempt = replace(attempt, closed=tuple(closed))
     last = attempt.outcomes[-1]
-    over = _beyond(last, setup, setup.guards)
+    over = _beyond(_violations(last, setup, setup.guards))
     return replace(attempt, over=over, missed=misses_a_constraint(last))
 
 

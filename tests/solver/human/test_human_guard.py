@@ -12,6 +12,7 @@ from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.requests import AngleLimit, OrientationRequest, Requests, Shape, When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
+from hangtime.solver.data.status import Status
 from hangtime.solver.human.human_guard import HumanGuard, recorded_ranges
 from hangtime.solver.human.ranges import joint_ranges
 from hangtime.solver.results.report import report
@@ -89,12 +90,14 @@ def test_a_joint_that_the_artist_limits_is_the_artist_s() -> None:
     assert beyond(adaptation).pop("Left knee bends") > 10.0
 
 
-def nodding(solution: SolverOptions, shapes: tuple[Shape, ...] = ()) -> MotionProblem:
-    """The head is asked to tilt by 90 degrees for a moment, with the chest held as it was."""
+def nodding(
+    solution: SolverOptions, shapes: tuple[Shape, ...] = (), tilt: float = 90.0
+) -> MotionProblem:
+    """The head is asked to tilt by so many degrees for a moment, with the chest held as it was."""
     frame = float(fitted_hop().performance.recording.frames[0]) + 60.0
     when = When(frames=(frame - 1.0, frame + 1.0))
     asked = (
-        OrientationRequest("Nod", "Head", when, tilt=radians(90.0)),
+        OrientationRequest("Nod", "Head", when, tilt=radians(tilt)),
         OrientationRequest("Chest", "Spine1", when),
     )
     return MotionProblem(requests=Requests(orientations=asked, shapes=shapes, solution=solution))
@@ -111,6 +114,16 @@ def test_what_cannot_be_met_is_given_up_and_told_by_name() -> None:
     told = report(adaptation, problem, Origin("hop"))
     name = max(left, key=lambda each: left[each])
     assert any(name in line and "°" in line for line in headline(told))
+
+
+@pytest.mark.slow
+def test_what_no_body_can_do_is_no_success_and_told_by_name() -> None:
+    problem = nodding(SolverOptions(), tilt=170.0)
+    found = adapt(fitted_hop(), problem)
+    assert found.outcome.status is Status.NO_BODY
+    assert not found.solved
+    assert max(beyond(found).values()) > 45.0
+    assert most_telling(found, problem)[0].name.startswith("Neck")
 
 
 @pytest.mark.slow

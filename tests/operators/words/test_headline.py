@@ -1,0 +1,38 @@
+"""The first lines of a solved motion say no more than its report."""
+
+from dataclasses import replace
+
+from hangtime.operators.words.headline import MOST_GIVEN_UP, headline
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.reports.constraints import ConstraintReport
+from hangtime.solver.data.reports.recording import Origin
+from hangtime.solver.data.row_kinds import RowKind
+from hangtime.solver.results.report import report
+from hangtime.solver.stages.implicit import adapt
+from hangtime.tests.helpers.fitted_hop import fitted_hop
+
+
+def told(*given_up: ConstraintReport) -> list[str]:
+    """The headline of the hop as it was recorded, had this been given up."""
+    problem = MotionProblem()
+    made = report(adapt(fitted_hop(), problem), problem, Origin("hop"))
+    return headline(replace(made, conditions=given_up))
+
+
+def test_what_gave_way_is_in_the_first_line_and_the_worst_are_named_first() -> None:
+    limbs = [
+        ConstraintReport(f"Hand in shape {i}", RowKind.SOLID, 10.0 + i, 30.0, met=False)
+        for i in range(MOST_GIVEN_UP)
+    ]
+    bend = ConstraintReport("Left knee bends", RowKind.RANGE, 9.0, 40.0, met=False)  # 78 tolerances
+    lines = told(*limbs, bend)
+    assert f"gave way in {MOST_GIVEN_UP + 1} places" in lines[0]
+    beside = [line.strip() for line in lines if "beside what is asked for" in line]
+    assert beside[0].startswith("Left knee bends 9° beyond its range (frame 40)")
+    assert beside[1].startswith(f"Hand in shape {MOST_GIVEN_UP - 1}")
+    assert len(beside) == MOST_GIVEN_UP
+    assert any(line.strip().startswith("and 1 more") for line in lines)
+
+
+def test_where_nothing_gave_way_nothing_is_said_of_it() -> None:
+    assert not any("gave way" in line or "beside" in line for line in told())
