@@ -21,7 +21,7 @@ from ..environment.virtual_environment import ROOT
 from ..recordings import HELD, read
 from .damages import DAMAGES
 from .limits import figures
-from .measure import Examined, examine, examine_clean
+from .measure import Examined, examine, examine_clean, without_own_faults
 from .table import page, text
 
 PAGE = ROOT / "docs" / "doctor.md"
@@ -81,9 +81,9 @@ def imported(path: Path) -> Recording:
 
 
 def examine_all(name: str, recording: Recording) -> list[Examined]:
-    """A clip as it is, and with each damage."""
+    """A clip as it is, and, without faults of its own, with each damage."""
     last = recording.frames[0] + LONGEST * recording.rate
-    part = recording.window(recording.frames[0], last)
+    part = without_own_faults(name, recording.window(recording.frames[0], last))
     found = [examine_clean(name, recording), *(examine(name, part, each) for each in DAMAGES)]
     missed = ", ".join(each.damage for each in found if not each.found) or "nothing"
     print(f"{name}: missed {missed}", flush=True)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...analysis.analyse import MIN_CLIP_DURATION, require_dense
 from ...analysis.performance import Performance, perform
+from ...arrays import FloatArray
 from ...body.character import build_character
 from ...data.faults import ClipTooShort, computable
 from ...data.recording import Recording, Skin
@@ -114,26 +115,39 @@ def diagnose(
             performance = performed(_remedy(scale))
         found.append(scale)
     height = performance.character.height
-    rise = find_rise(performance)
-    if rise is not None:
-        found.append(rise)
-        performance = performed(_remedy(scale).joined(_remedy(rise)))
     leaps = find_leaps(performance)
     near = LEAP_WINDOW * recording.rate
     if leaps is not None and not _are_at(leaps, _places(found, *GAPS), near):
         found.append(leaps)
+    kept = _kept(found, frames, rate)
+    if kept is not None and any(finding.kind in PARTING for finding in found):
+        found[:] = _parted(found, frames, kept)
+        recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
+        performance = performed(_remedy(scale))
+    rise = find_rise(performance)
+    if rise is not None:
+        found.append(rise)
+        performance = performed(_remedy(scale).joined(_remedy(rise)))
     found += find_footing(performance)
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2
         found.append(Finding(FindingKind.MASS, mass, "kg"))
-    kept = longest_stretch((frames[0], frames[-1]), (f for f in found if f.kind in CUTTING))
-    if kept[1] - kept[0] < LEAST_KEPT * rate:
-        return Diagnosis(tuple(found), fitting)
-    ends = np.searchsorted(frames, kept).tolist()
-    cut = Repairs(trim=ends[0], trim_end=len(frames) - 1 - ends[1])
-    parted = [replace(f, remedy=cut) if f.kind in PARTING else f for f in found]
-    return Diagnosis(tuple(parted), fitting, kept)
+    return Diagnosis(tuple(found), fitting, kept or Diagnosis.kept)
+
+
+def _kept(found: list[Finding], frames: FloatArray, rate: float) -> Span | None:
+    """The longest part of all frames (T,) that is worth keeping; None where none is."""
+    whole = float(frames[0]), float(frames[-1])
+    kept = longest_stretch(whole, (f for f in found if f.kind in CUTTING))
+    return kept if kept[1] - kept[0] >= LEAST_KEPT * rate else None
+
+
+def _parted(found: list[Finding], frames: FloatArray, kept: Span) -> list[Finding]:
+    """The findings, with the remedy of those that part the frames (T,): all but what is kept."""
+    first, last = np.searchsorted(frames, kept).tolist()
+    cut = Repairs(trim=first, trim_end=len(frames) - 1 - last)
+    return [replace(f, remedy=cut) if f.kind in PARTING else f for f in found]
 
 
 def _remedy(finding: Finding | None) -> Repairs:

@@ -426,6 +426,27 @@ def test_what_is_left_out_for_one_fault_is_left_out_for_all() -> None:
     assert diagnosis.repairs.trim == 60
 
 
+def test_how_a_figure_stands_is_told_of_what_is_kept() -> None:
+    """A dancer of whom capture loses the floor for all but the first 12 frames: they hid that the
+    feet are centimetres above it, and had all else called unseen support."""
+    dance = load_recording("rokoko_jesse_dance.bvh")
+    diagnosis = diagnose(dance)
+    kinds = [finding.kind for finding in diagnosis.findings if not finding.kind.note]
+    assert kinds == [FindingKind.LEAP, FindingKind.FLOOR]
+    mended = diagnose(repaired(dance, diagnosis.repairs))
+    assert [finding for finding in mended.findings if not finding.kind.note] == []
+    notes = {finding.kind: finding.frames for finding in diagnosis.findings if finding.kind.note}
+    assert {finding.kind: finding.frames for finding in mended.findings} == notes
+
+
+@pytest.mark.parametrize("first", [14.0, 20.0])
+def test_a_dance_of_which_little_stands_does_not_slide(first: float) -> None:
+    """A third of a second out of five; its drift would move the body by 2 m."""
+    dance = load_recording("rokoko_jesse_dance.bvh")
+    kinds = {finding.kind for finding in diagnose(dance.window(first, 500.0)).findings}
+    assert FindingKind.SLIDING not in kinds
+
+
 def test_frames_are_not_put_in_where_they_are_left_out() -> None:
     """They would count among those that are, which then were too few."""
     whole = moved_from(180)
