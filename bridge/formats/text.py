@@ -10,6 +10,8 @@ import numpy as np
 from ...solver.arrays import FloatArray
 from ...solver.data.faults import ClipNotOpened, NonFiniteKey, UnreadableClip
 
+BYTE_ORDER_MARK = "\ufeff"
+
 
 class Line(NamedTuple):
     """The words of one line that is not blank; number is 1-based."""
@@ -36,6 +38,9 @@ class Reader:
         except UnicodeDecodeError as error:
             line = data.count(b"\n", 0, error.start) + 1
             raise UnreadableClip(str(path), line, "holds bytes that are not text") from error
+        if text.startswith(BYTE_ORDER_MARK):  # Blender's importer cannot read past it
+            problem = "begins with a byte order mark; save it as UTF-8 without one"
+            raise UnreadableClip(str(path), 1, problem)
         numbered = [Line(n, s.split()) for n, s in enumerate(text.splitlines(), start=1)]
         self.lines = [line for line in numbered if line.words]
         self.next = 0

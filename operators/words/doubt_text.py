@@ -6,7 +6,9 @@ from math import isfinite
 from ...solver.arrays import FloatArray
 from ...solver.data.problem import MotionProblem
 from ...solver.data.requests import AddedMass
+from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import UpAxis
+from .doctor_text import finding_sentence
 
 # Body mass over squared stature, kg/m². Adults above 40 have obesity of the third class; of healthy
 # children the leanest have 13 (WHO).
@@ -15,6 +17,7 @@ MOST_CARRIED = 1.0  # body masses; a weightlifter moves more, but does not jump 
 MOST_GRAVITY = 25.0  # m/s², Jupiter's
 LONGEST, SHORTEST = 4.0, 0.25  # times a phase's duration
 A_FRAME = 1.0
+MOST_DAMAGES = 4
 SOLES = 0.1  # m, that the highest platform shoes put between foot and floor
 
 
@@ -30,6 +33,16 @@ def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list
         *_of_loads(problem),
         *_of_timings(problem),
     ]
+
+
+def damage_doubts(found: Sequence[Finding]) -> list[str]:
+    """A line for each damage of the recording, the first few, and where the remedies are told."""
+    if not found:
+        return []
+    told = [f"The recording: {finding_sentence(each)}" for each in found[:MOST_DAMAGES]]
+    more = len(found) - len(told)
+    rest = f"{more} more; the" if more else "The"
+    return [*told, f"{rest} command “doctor” tells the remedies, and “--write-recipe” uses them"]
 
 
 def up_doubts(up: UpAxis, *, lies: bool) -> list[str]:

@@ -188,8 +188,10 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "have; it has {known:names}.",
     faults.StillBone: "“{request}” names the bone “{bone}”, which is none of those that physics "
     "moves; those most like it are {likeliest:names}.",
-    faults.BadTiming: "“{request}” would last {seconds:.3f} s, or lies outside the clip; change "
-    "its frames, phase or duration.",
+    faults.BadTiming: "“{request}” would last {seconds:.3f} s; change its frames, phase or "
+    "duration.",
+    faults.BesideFrames: "“{request}” is about frame {at:g}, but the adapted frames are {first:g} "
+    "to {last:g}; choose frames among these.",
     faults.NoSuchPoseFrame: "“{request}” takes its pose from frame {frame:g}, but the adapted "
     "frames are {first:g} to {last:g}; choose a pose frame among these.",
     faults.RootHasNoJoint: "“{request}” limits the joint of “{bone}”, but that is the root, which "

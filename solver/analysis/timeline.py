@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, Interval, Phase
-from ..data.faults import BadTiming, TimedTwice, TooMuchTime, UnknownPhaseIn
+from ..data.faults import BadTiming, BesideFrames, TimedTwice, TooMuchTime, UnknownPhaseIn
 from ..data.requests import Hold, Moment, PhaseTiming, When
 
 MIN_PHASE_DURATION = 0.03  # s
@@ -163,7 +163,8 @@ def timeline(
 ) -> Timeline:
     """Time warp from new phase durations and held frames.
 
-    schedule: of the recording. Raises UnknownPhaseIn, BadTiming, TimedTwice, TooMuchTime.
+    schedule: of the recording. Raises UnknownPhaseIn, BadTiming, BesideFrames, TimedTwice,
+    TooMuchTime.
     """
     phases = {phase.name: phase for phase in schedule.phases}
     wanted: dict[str, float] = {}
@@ -182,7 +183,10 @@ def timeline(
     for hold in holds:
         at = (hold.frame - first_frame) / rate
         at = next((edge for edge in edges if abs(edge - at) < 1e-6), at)
-        if not 0.0 < at <= schedule.duration or hold.seconds < MIN_PHASE_DURATION:
+        if not 0.0 < at <= schedule.duration:
+            last_frame = first_frame + schedule.duration * rate
+            raise BesideFrames(hold.name, hold.frame, first_frame, last_frame)
+        if hold.seconds < MIN_PHASE_DURATION:
             raise BadTiming(hold.name, hold.seconds)
         stops.setdefault(at, []).append(hold)
     _check_added(
@@ -230,7 +234,7 @@ def active_interval(
     """Start and end, s, in new time, of when a request holds; equal for a single instant.
 
     phases: in new time. apex: (T, 2) instants, s, and heights, m, of the centre of mass.
-    Raises UnknownPhaseIn, BadTiming.
+    Raises UnknownPhaseIn, BadTiming, BesideFrames.
     """
     start, end = 0.0, line.duration
     if when.phase is not None:
@@ -241,9 +245,11 @@ def active_interval(
         start, end = found[-1].start, found[-1].end
     if when.frames is not None:
         first, last = (line.instant(frame) for frame in when.frames)
-        shown = line.first_frame + line.rate * line.old[-1]
-        if when.frames[0] > shown + 0.5 or when.frames[1] < line.first_frame - 0.5:
-            raise BadTiming(name, 0.0)
+        shown = float(line.first_frame + line.rate * line.old[-1])
+        if when.frames[0] > shown + 0.5:
+            raise BesideFrames(name, when.frames[0], line.first_frame, shown)
+        if when.frames[1] < line.first_frame - 0.5:
+            raise BesideFrames(name, when.frames[1], line.first_frame, shown)
         start, end = max(start, first), min(end, last)
     if end < start:
         raise BadTiming(name, end - start)

@@ -46,6 +46,7 @@ from .recordings import ZeroLengthBone as ZeroLengthBone
 from .requests import AsksNothing as AsksNothing
 from .requests import BadDimensions as BadDimensions
 from .requests import BadTiming as BadTiming
+from .requests import BesideFrames as BesideFrames
 from .requests import BeyondReason as BeyondReason
 from .requests import CrossedBounds as CrossedBounds
 from .requests import DependentRows as DependentRows

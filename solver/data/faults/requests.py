@@ -117,9 +117,18 @@ class StillBone(RequestFault):
 
 @dataclass
 class BadTiming(RequestFault):
-    """A request's time is empty, too short, or outside the clip; seconds: how long it would be."""
+    """A request's time is empty or too short; seconds: how long it would be."""
 
     seconds: float
+
+
+@dataclass
+class BesideFrames(RequestFault):
+    """A request is about frames beside those that are adapted; at: the frame nearest to these."""
+
+    at: float
+    first: float
+    last: float
 
 
 @dataclass

@@ -241,6 +241,15 @@ def test_file_that_is_absent_or_no_text(tmp_path: Path) -> None:
     assert caught.value.line == 21
 
 
+def test_a_byte_order_mark_is_told_as_such(tmp_path: Path) -> None:
+    path = tmp_path / "marked.bvh"
+    path.write_bytes(b"\xef\xbb\xbf" + BVH.encode())
+    with pytest.raises(UnreadableClip) as caught:
+        read_bvh(path)
+    assert caught.value.line == 1
+    assert "byte order mark" in caught.value.problem
+
+
 @pytest.mark.parametrize(
     ("asf", "line"),
     [

@@ -7,7 +7,7 @@ import pytest
 from hangtime.solver.analysis.timeline import Stretch, Timeline, TimeWarp, active_interval, timeline
 from hangtime.solver.arrays import FloatArray
 from hangtime.solver.data.contacts import Contact, ContactSchedule, Interval
-from hangtime.solver.data.faults import BadTiming, TooMuchTime, UnknownPhaseIn
+from hangtime.solver.data.faults import BadTiming, BesideFrames, TooMuchTime, UnknownPhaseIn
 from hangtime.solver.data.requests import ALWAYS, Hold, Moment, PhaseTiming, When
 from hypothesis import given
 from hypothesis import strategies as st
@@ -234,19 +234,21 @@ def test_phases_too_short_are_refused_by_name(timing: PhaseTiming) -> None:
     assert caught.value.request == "short"
 
 
-@pytest.mark.parametrize(
-    "hold",
-    [
-        Hold("hang", frame(-0.1), 0.4),
-        Hold("hang", frame(1.3), 0.4),
-        Hold("hang", frame(0.5), 0.0),
-        Hold("hang", frame(0.5), -1.0),
-    ],
-)
-def test_holds_outside_the_clip_or_of_no_time_are_refused_by_name(hold: Hold) -> None:
+@pytest.mark.parametrize("seconds", [0.0, -1.0])
+def test_holds_of_no_time_are_refused_by_name(seconds: float) -> None:
     with pytest.raises(BadTiming) as caught:
-        made(holds=(hold,))
+        made(holds=(Hold("hang", frame(0.5), seconds),))
     assert caught.value.request == "hang"
+
+
+@pytest.mark.parametrize("at", [-0.1, 1.3])
+def test_holds_outside_the_clip_are_refused_with_the_frames_that_there_are(at: float) -> None:
+    with pytest.raises(BesideFrames) as caught:
+        made(holds=(Hold("hang", frame(at), 0.4),))
+    told = caught.value
+    assert (told.request, told.at) == ("hang", frame(at))
+    assert told.first <= frame(0.0) < told.last
+    assert not told.first <= told.at <= told.last
 
 
 def test_frames_outside_a_phase_are_no_time_at_all() -> None:

@@ -1,0 +1,61 @@
+"""What is wrong with a recording is told before a fit that is to end far from it."""
+
+from dataclasses import replace
+
+import numpy as np
+from hangtime.operators.headless.doubts import doubts_about
+from hangtime.operators.words.doubt_text import MOST_DAMAGES, damage_doubts
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.doctor.finding import Finding, FindingKind
+from hangtime.solver.worker.pipeline import measure
+from hangtime.tests.helpers.clips import JUMP, load_recording
+from hangtime.tests.helpers.meshes import box, thing
+
+USUAL = MotionProblem()
+
+
+def told(recording: Recording, problem: MotionProblem = USUAL) -> list[str]:
+    return doubts_about(problem, None, measure(recording, problem))
+
+
+def leaping() -> Recording:
+    """The jump with one frame in which the whole body is 20 m higher."""
+    recording = load_recording(JUMP)
+    heads = recording.heads.copy()
+    heads[109, :, 2] += 20.0
+    return replace(recording, heads=heads)
+
+
+def test_of_a_clean_recording_nothing_is_told() -> None:
+    assert told(load_recording(JUMP)) == []
+
+
+def test_a_frame_that_no_fit_can_follow_is_told_with_where_its_remedy_is() -> None:
+    recording = leaping()
+    damage, remedy = told(recording)
+    assert f"at frame {recording.frames[109]:g}" in damage
+    assert "“doctor”" in remedy
+
+
+def test_at_a_stated_stature_lengths_are_told_as_recorded() -> None:
+    lifted = load_recording(JUMP)
+    lifted = replace(lifted, heads=lifted.heads + np.array([0.0, 0.0, 0.5]))
+    floor, _ = told(lifted, replace(USUAL, height=1.5))
+    assert "height of 0.5" in floor
+
+
+def test_ground_of_the_scene_may_be_anywhere() -> None:
+    lifted = load_recording(JUMP)
+    lifted = replace(lifted, heads=lifted.heads + np.array([0.0, 0.0, 0.5]))
+    stage = thing("Stage", box((9.0, 9.0, 0.5)), (0.0, 0.0, 0.25))
+    assert told(lifted, replace(USUAL, scene=(stage,))) == []
+
+
+def test_of_many_damages_the_first_few_are_told() -> None:
+    many = [
+        Finding(FindingKind.FLIP, 180.0, "°", ((float(i), float(i)),), "Hips") for i in range(9)
+    ]
+    lines = damage_doubts(many)
+    assert len(lines) == MOST_DAMAGES + 1
+    assert lines[-1].startswith(f"{9 - MOST_DAMAGES} more; the command")
