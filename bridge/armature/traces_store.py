@@ -3,12 +3,14 @@ with its action. What is drawn follows the armature wherever the artist moves it
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from io import BytesIO
 from typing import Any
-from zlib import crc32
+from zipfile import BadZipFile
 
 import bpy
 import numpy as np
@@ -17,13 +19,25 @@ from numpy.typing import NDArray
 
 from ...solver.data.traces import FlightParabola, Traces
 
-_CONTENT, _KEY = "hangtime_traces", "hangtime_traces_key"
-_KEYS = (_CONTENT, _KEY)
+CONTENT = "hangtime_traces"
+_KEY = "hangtime_traces_key"
+_KEYS = (CONTENT, _KEY)
 _WAITING = ("hangtime_waiting_traces", "hangtime_waiting_traces_key")
 _ARRAYS = tuple(f.name for f in fields(Traces) if f.type == "FloatArray")
 _NAMES = ("bones", "contacts", "joints", "solids")
 _STOOD, _WEIGHT, _FLIGHTS = "stood", "weight", "flights"
 _REMEMBERED = 8
+# What reading raises of bytes that a script or another version left there.
+_OTHERWISE = (
+    ValueError,
+    TypeError,
+    LookupError,
+    OSError,
+    EOFError,
+    BadZipFile,
+    struct.error,
+    zlib.error,
+)
 
 
 @dataclass(frozen=True)
@@ -51,13 +65,13 @@ def keep(owner: bpy.types.ID, traces: Traces, stood: Matrix) -> None:
     stream = BytesIO()
     np.savez(stream, **packed)
     forget(owner)  # Blender would cut bytes that replace others off at the first zero
-    owner[_CONTENT] = stream.getvalue()
-    owner[_KEY] = str(crc32(stream.getbuffer()))
+    owner[CONTENT] = stream.getvalue()
+    owner[_KEY] = str(zlib.crc32(stream.getbuffer()))
 
 
 def forget(owner: bpy.types.ID) -> None:
     """Remove what `keep` stored."""
-    for name in (_CONTENT, _KEY):
+    for name in (CONTENT, _KEY):
         if owner.get(name) is not None:
             del owner[name]
 
@@ -83,11 +97,19 @@ def _move_content(
 
 
 def kept(owner: bpy.types.ID | None) -> StoredTraces | None:
-    """Traces that `keep` stored with an owner; cheap when asked again and again."""
-    if owner is None:
+    """Traces that `keep` stored with an owner; cheap when asked again and again. None where what is
+    there is something else, which `is_ours` tells."""
+    if owner is None or (key := owner.get(_KEY)) is None:
         return None
-    key = owner.get(_KEY)
-    return _unpacked(_Stored(key, owner)) if key is not None else None
+    try:
+        return _unpacked(_Stored(key, owner))
+    except _OTHERWISE:
+        return None
+
+
+def is_ours(owner: bpy.types.ID) -> bool:
+    """Whether an owner has traces that can be read, or none."""
+    return owner.get(_KEY) is None or kept(owner) is not None
 
 
 @dataclass(frozen=True)
@@ -105,7 +127,7 @@ def _flight(packed: Mapping[str, NDArray[Any]], i: int, name: str) -> FlightPara
 
 @lru_cache(maxsize=_REMEMBERED)
 def _unpacked(stored: _Stored) -> StoredTraces:
-    with np.load(BytesIO(stored.owner[_CONTENT]), allow_pickle=False) as packed:
+    with np.load(BytesIO(stored.owner[CONTENT]), allow_pickle=False) as packed:
         # Files of earlier versions lack what traces did not have then.
         arrays = {n: packed[n].astype(float) for n in _ARRAYS if n in packed}
         names: dict[str, Any] = {n: tuple(packed[n].tolist()) for n in _NAMES if n in packed}

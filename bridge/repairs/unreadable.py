@@ -1,4 +1,4 @@
-"""Texts that are not Hangtime's, in the properties of an armature and of the takes at work."""
+"""What is not Hangtime's, in the properties of an armature and of the takes at work."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import bpy
 
 from ...solver.data.faults import TextCure, UnreadableText
 from ..accessors import current_action
+from ..armature import traces_store
 from ..armature.actions import recorded_action
 from ..hidden_texts import HiddenText
 from ..properties.settings import action_settings, settings_of
@@ -37,6 +38,8 @@ def unreadable_texts(armature: bpy.types.Object) -> Iterator[UnreadableText]:
         yield UnreadableText(armature.name, UNSEEN.name, TextCure.ANALYZE)
     if not FEET.is_ours(settings.feet):
         yield UnreadableText(armature.name, FEET.name, TextCure.EXAMINE)
+    if not traces_store.is_ours(armature):
+        yield UnreadableText(armature.name, traces_store.CONTENT, TextCure.ANALYZE)
     if not all(is_finding(row) for row in settings.findings):
         yield UnreadableText(armature.name, "findings", TextCure.EXAMINE)
     takes = (recorded_action(armature), current_action(armature), settings.adapted)
@@ -51,3 +54,5 @@ def unreadable_texts(armature: bpy.types.Object) -> Iterator[UnreadableText]:
         for text, stored in texts:
             if not text.is_ours(stored):
                 yield UnreadableText(action.name, text.name, TextCure.ADAPT)
+        if not traces_store.is_ours(action):
+            yield UnreadableText(action.name, traces_store.CONTENT, TextCure.ADAPT)

@@ -8,6 +8,7 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.accessors import current_action
 from hangtime.bridge.armature.actions import recorded_action
+from hangtime.bridge.armature.traces_store import kept
 from hangtime.bridge.properties.settings import action_settings
 from hangtime.bridge.properties.shown_overlaps import shown_overlaps
 from hangtime.bridge.properties.shown_times import recorded_frame
@@ -37,6 +38,18 @@ def test_what_carries_unseen_is_nothing_and_stops_a_solve_until_analyzed(analyse
         bpy.ops.hangtime.adapt()
     (sentence,) = told(analysed)
     assert f"“{analysed.name}”" in sentence
+
+
+@pytest.mark.parametrize("stored", [b"PK\x03\x04 and then nothing", b"", "text", 7, [1.0, 2.0]])
+def test_traces_that_are_none_are_not_drawn_and_named(analysed, stored) -> None:
+    assert kept(analysed) is not None
+    del analysed["hangtime_traces"]
+    analysed["hangtime_traces"], analysed["hangtime_traces_key"] = stored, f"another {stored}"
+    assert kept(analysed) is None
+    (sentence,) = told(analysed)
+    assert f"“hangtime_traces” of “{analysed.name}”" in sentence
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert kept(analysed) is not None
 
 
 def test_an_analysis_writes_anew_what_carries_unseen(analysed, capfd) -> None:
