@@ -21,6 +21,7 @@ from ...operators.headless.outputs import Outputs, require_exported, require_pla
 from ...operators.headless.stages import Stages
 from ...operators.words.doctor_text import diagnosis_text, finding_sentence
 from ...operators.words.headline import headline, nearness
+from ...operators.words.messages import together
 from ...solver.data.faults import BadRecipe, NoSolution
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
@@ -104,7 +105,7 @@ def adapt_cell(
         )
     if Output.BVH in settings.outputs and result.fault is None:
         write_motion(result, loaded.origin, outbox)
-    advice = [explained(each, None) for each in loaded.subject.analysis.unseen]
+    advice = [explained(each, None) for each in together(loaded.subject.analysis.unseen)]
     return Done((*headline(report), *advice), figures(report), result.fault)
 
 

@@ -19,6 +19,7 @@ from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.headline import headline
+from ..words.messages import together
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
@@ -173,7 +174,7 @@ def adapt(options: argparse.Namespace) -> None:
         report = outputs.write(picture=not options.no_picture)
         files = outbox.deliver()
     total = f"{'Total':<{WIDTH}}{stages.total:6.1f} s"
-    advice = [explained(each, None) for each in loaded.subject.analysis.unseen]
+    advice = [explained(each, None) for each in together(loaded.subject.analysis.unseen)]
     print(total, *headline(report), *advice, "Written:", sep="\n")
     for path in files:
         print(f"  {path}")

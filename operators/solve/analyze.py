@@ -42,6 +42,7 @@ from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
 from ..words.headline import accepted_lines
+from ..words.messages import together
 from ..words.report_text import apex_words
 from ..words.shape_text import shapes_told
 from .adapt import Adapting, ask_for, read_wanted, require_writable
@@ -215,7 +216,7 @@ def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:
 
 def _unseen(answer: Analysed) -> str:
     """Words on where something unseen carries the body: everywhere."""
-    return "".join(f". {said(each).rstrip('.')}" for each in answer.unseen)
+    return "".join(f". {said(each).rstrip('.')}" for each in together(answer.unseen))
 
 
 def _leave_out_bind_pose(settings: HangtimeSettings, recording: Recording) -> str:

@@ -10,7 +10,7 @@ from ...solver.data.contacts import Phase, PhaseKind
 from ...solver.data.faults import UnseenSupport
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
-from .messages import sentence
+from .messages import sentence, together
 from .report_text import held_at_rest
 
 LEAST_WIDTH = 16  # letters of a column
@@ -40,7 +40,7 @@ def analysis_text(analysis: Analysis, origin: Origin) -> str:
 
 def _unseen(analysis: Analysis) -> list[str]:
     """Where something unseen carries the body, and a box that would."""
-    told = [sentence(each) for each in analysis.unseen]
+    told = [sentence(each) for each in together(analysis.unseen)]
     boxes = [box for u in analysis.unseen if isinstance(u, UnseenSupport) for box in u.boxes]
     return ["", *told, *support_texts(boxes)] if told else []
 

@@ -26,6 +26,19 @@ def sentence(fault: Fault, translate: Translate = str) -> str:
     return _Formatter(translate).format(translate(template), fault)
 
 
+def together(found: Sequence[Fault]) -> list[Fault]:
+    """Faults, those of support that is unseen and of which no more is known in one."""
+    bare = [
+        each
+        for each in found
+        if isinstance(each, faults.UnseenSupport) and not each.boxes and each.rate is None
+    ]
+    if len(bare) < 2:
+        return [*found]
+    spans = tuple((each.first, each.last) for each in bare)
+    return [faults.UnseenSupports(spans), *(each for each in found if each not in bare)]
+
+
 def missed(violation: Violation, translate: Translate = str) -> str:
     """What is left of a violation, without a full stop."""
     return _Formatter(translate).missed(violation)
@@ -80,6 +93,8 @@ class _Formatter(Formatter):
         match format_spec:
             case "names":
                 return ", ".join(value) or "none"
+            case "spans":
+                return ", ".join(f"{first:g} to {last:g}" for first, last in value)
             case "numbers":
                 return ", ".join(f"{number:g}" for number in value)
             case "plain":  # 100, not 1e+02

@@ -165,6 +165,10 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "The body falls as gravity has it at {rate} frames a second, but the scene has "
         "{scene_rate:.4g} (frames {first:g} to {last:g}); set the scene's frame rate to {rate}.",
     ),
+    faults.UnseenSupports: "In frames {spans:spans} neither foot touches the ground, yet the body "
+    "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "
+    "it, or let what carries it be ground in the panel World. If nothing does, give the scene the "
+    "recording's frame rate.",
     faults.Treadmill: "While they stand, the feet slide along the floor at a steady {speed:.1f} "
     "m/s, as on a treadmill, so no place on the ground can hold them; add that speed to the hips' "
     "motion, or choose a recording that moves over the ground.",

@@ -42,6 +42,7 @@ from .recordings import UnreadableRepairs as UnreadableRepairs
 from .recordings import UnreadableText as UnreadableText
 from .recordings import UnreadStrips as UnreadStrips
 from .recordings import UnseenSupport as UnseenSupport
+from .recordings import UnseenSupports as UnseenSupports
 from .recordings import ZeroLengthBone as ZeroLengthBone
 from .requests import AsksNothing as AsksNothing
 from .requests import BadDimensions as BadDimensions

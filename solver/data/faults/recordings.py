@@ -229,6 +229,13 @@ class UnseenSupport(Fault):
 
 
 @dataclass
+class UnseenSupports(Fault):
+    """The same in several spans (first, last frame), of which no more is known."""
+
+    spans: tuple[tuple[float, float], ...]
+
+
+@dataclass
 class Treadmill(Fault):
     """The feet slide along the floor at one steady speed, m/s, so no place holds them."""
 

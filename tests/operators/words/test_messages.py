@@ -11,7 +11,7 @@ from typing import get_type_hints
 import hangtime.solver
 import pytest
 from hangtime.operators.words import templates
-from hangtime.operators.words.messages import sentence
+from hangtime.operators.words.messages import sentence, together
 from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES
 from hangtime.solver.data.faults import (
     BadRecipe,
@@ -21,6 +21,7 @@ from hangtime.solver.data.faults import (
     RequestFault,
     SceneFault,
     TextCure,
+    UnseenSupport,
 )
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scene import SupportBox
@@ -51,6 +52,8 @@ def filled(hint: object) -> object:
         return (Violation("Landing: Left heel 2", RowKind.PIN, 12.0),)
     if "SupportBox" in text:
         return (SupportBox((0.4, 0.3, 0.31), (0.0, 0.0, 0.0), 0.0),)
+    if text.startswith("tuple[tuple[float"):
+        return ((1.0, 2.0), (4.0, 7.0))
     if text.startswith("tuple[float"):
         return (1.0, 2.0, 3.0)
     if text.startswith("tuple[str"):
@@ -133,6 +136,15 @@ def test_every_kind_of_violation_has_words(kind: RowKind) -> None:
     assert "Knee" in words
     assert "0.25" in words
     assert "{" not in words
+
+
+def test_support_of_which_nothing_is_known_is_told_at_once() -> None:
+    box = UnseenSupport(3.0, 9.0, (SupportBox((0.3, 0.3, 0.1), (0.0, 0.0, 0.0), 0.0),))
+    bare = [UnseenSupport(20.0, 31.0), UnseenSupport(40.0, 55.0)]
+    first, second = map(sentence, together([box, *bare]))
+    assert "In frames 20 to 31, 40 to 55 neither foot" in first
+    assert "as on a box" in second
+    assert together([box, bare[0]]) == [box, bare[0]]
 
 
 def test_a_recipe_fault_names_its_line() -> None:
