@@ -111,7 +111,7 @@ def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], f
         within = slice(first, first + len(performance.times))
         return {name: point.part(within) for name, point in points.items()}, floor_m
     feet = [_foot(performance, side) for side in (Side.LEFT, Side.RIGHT)]
-    floor_m = floor_height(performance.times, feet)
+    floor_m = floor_height(performance.times, feet, performance.character.height)
     points = foot_points(performance.times, feet, floor_m)
     for side in (Side.LEFT, Side.RIGHT):
         hand = performance.character.body(Part.HAND, side)

@@ -15,9 +15,11 @@ from ..numerics.rotations import unit
 HEEL_OFFSET_RATIO = 0.3  # of the level distance from ankle to ball; where plates see it press
 TOE_OFFSET_RATIO = 0.75  # of the way from ball to tip; what lies beyond cannot dip under the floor
 PRESSING_RATIO = 0.3  # of the same way; where plates see it press until it leaves
-MAX_SOLE_THICKNESS = 0.08  # m from the ball joint to the floor
-MAX_ANKLE_HEIGHT = 0.12  # m, of one in a shoe
-DEFAULT_SOLE_THICKNESS = 0.025  # m, where nothing tells
+ANKLE_HEIGHT = 0.039  # of the stature, of a bare foot (Drillis & Contini 1966)
+BALL_HEIGHT = 0.013  # likewise; the ball is a third as high as the ankle
+USUAL_SHOE = 0.01  # m that a shoe adds to these, where nothing tells
+THINNER, THICKER = 0.02, 0.04  # m than the usual; soles of recordings whose floor is surely at 0
+FIRMNESS = 2.0  # m that the floor goes for each by which a sole is too thick or thin
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
 STANDING_HEIGHT_BAND = 0.02  # m; how much the height of a standing foot varies
 MIN_STANDING_FRAMES = 4
@@ -71,26 +73,31 @@ class _Sole:
     ahead: FloatArray
 
 
-def floor_height(times: FloatArray, feet: Sequence[FootTracks]) -> float:
-    """Floor height, m, from the lowest standing height of the balls of the feet.
+def floor_height(times: FloatArray, feet: Sequence[FootTracks], stature_m: float) -> float:
+    """Floor height, m: from soles of skin, else from the lower foot's ball when it stands.
 
     The height 0 is taken where it can be the floor, since recordings are made upon it.
     """
     standing = [_standing(times, foot) for foot in feet]
-    soles = [_sole(foot, flat) for foot, (flat, _) in zip(feet, standing, strict=True)]
-    ankles = [
-        float(np.median(foot.ankle[flat, 2]))
-        for foot, (flat, _) in zip(feet, standing, strict=True)
-    ]
-    under = [
-        ankle - sole.down for ankle, sole in zip(ankles, soles, strict=True) if sole is not None
-    ]
+    soles = [_sole(foot, flat) for foot, flat in zip(feet, standing, strict=True)]
+    heights = np.array([_heights(f, flat) for f, flat in zip(feet, standing, strict=True)])
+    under = [h[0] - sole.down for h, sole in zip(heights, soles, strict=True) if sole is not None]
     if len(under) == len(feet):
-        return 0.0 if abs(min(under)) <= STANDING_HEIGHT_BAND else min(under)
-    if not any(foot.has_toes for foot in feet) and 0.0 < min(ankles) <= MAX_ANKLE_HEIGHT:
-        return 0.0  # the tails, which are their balls, often lie
-    lowest = min(ball for _, ball in standing)
-    return 0.0 if 0.0 < lowest <= MAX_SOLE_THICKNESS else lowest - DEFAULT_SOLE_THICKNESS
+        return 0.0 if abs(min(under)) <= STANDING_HEIGHT_BAND else float(min(under))
+    ankle, ball = heights.min(axis=0).tolist()
+    if all(foot.has_toes for foot in feet):
+        return _firm(ball - BALL_HEIGHT * stature_m - USUAL_SHOE)
+    return _firm(ankle - ANKLE_HEIGHT * stature_m - USUAL_SHOE)  # their balls are tails: often lie
+
+
+def _firm(height: float) -> float:
+    """A floor's height, m, from the one at which soles are usual: 0 where that is near.
+
+    Further away it is that height, and in between it is neither, so that it never leaps: firm
+    shrinkage (Gao and Bruce, Statistica Sinica 7, 1997).
+    """
+    beyond = FIRMNESS * (height - np.clip(height, -THINNER, THICKER))
+    return float(np.clip(beyond, min(height, 0.0), max(height, 0.0)))
 
 
 def foot_points(
@@ -102,7 +109,7 @@ def foot_points(
     """
     points = {}
     for foot in feet:
-        flat, _ = _standing(times, foot)
+        flat = _standing(times, foot)
         sole = _sole(foot, flat)
         heel, ball, tip = _joint_places(foot) if sole is None else _sole_places(foot, sole)
         toe_head = foot.ball if foot.has_toes else foot.ankle
@@ -132,6 +139,11 @@ def foot_points(
         )
         points[f"{foot.side} toe"] = replace(toe, hip=foot.hip, pressing=pressing.track)
     return points
+
+
+def _heights(foot: FootTracks, flat: BoolArray) -> tuple[float, float]:
+    """Median heights, m, of ankle and ball in the frames flat (T,)."""
+    return float(np.median(foot.ankle[flat, 2])), float(np.median(foot.ball[flat, 2]))
 
 
 def _joint_places(foot: FootTracks) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -168,14 +180,14 @@ def _sole(foot: FootTracks, flat: BoolArray) -> _Sole | None:
     return _Sole(float(down), float(back), float(front), ahead)
 
 
-def _standing(times: FloatArray, foot: FootTracks) -> tuple[BoolArray, float]:
-    """Mask (T,) of the frames in which the foot stands flat, and the ball's median height then, m.
+def _standing(times: FloatArray, foot: FootTracks) -> BoolArray:
+    """Mask (T,) of the frames in which the foot stands flat.
 
     A runner's foot never quite stands: then the slowest and lowest frames are taken. One on a
     treadmill stands while it moves with the belt, and is slow where it turns back in the air.
     """
     ankle, ball = foot.ankle[:, 2], foot.ball[:, 2]
-    speed = _speed(times, foot.ankle) + _speed(times, foot.ball)
+    speed = _foot_speed(times, foot)
     flat = speed < 2 * MAX_STANDING_SPEED
     for height in (ball, ankle):
         if flat.any():
@@ -189,7 +201,12 @@ def _standing(times: FloatArray, foot: FootTracks) -> tuple[BoolArray, float]:
         carried &= ankle < np.percentile(ankle[carried], 20) + STANDING_HEIGHT_BAND
         if np.median(ball[carried]) < np.median(ball[flat]) - 2.0 * STANDING_HEIGHT_BAND:
             flat = carried
-    return flat, float(np.median(ball[flat]))
+    return flat
+
+
+def _foot_speed(times: FloatArray, foot: FootTracks) -> FloatArray:
+    """(T,) m/s, of ankle and ball together."""
+    return _speed(times, foot.ankle) + _speed(times, foot.ball)
 
 
 def _speed(times: FloatArray, track: FloatArray) -> FloatArray:
