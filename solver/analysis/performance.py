@@ -111,8 +111,9 @@ def contact_points(performance: Performance) -> tuple[dict[str, ContactPoint], f
         within = slice(first, first + len(performance.times))
         return {name: point.part(within) for name, point in points.items()}, floor_m
     feet = [_foot(performance, side) for side in (Side.LEFT, Side.RIGHT)]
-    floor_m = floor_height(performance.times, feet, performance.character.height)
-    points = foot_points(performance.times, feet, floor_m)
+    stature_m = performance.character.height
+    floor_m = floor_height(performance.times, feet, stature_m)
+    points = foot_points(performance.times, feet, floor_m, stature_m)
     for side in (Side.LEFT, Side.RIGHT):
         hand = performance.character.body(Part.HAND, side)
         if hand is not None:
@@ -133,13 +134,16 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
     """Joint tracks of one foot."""
     character, recording = performance.character, performance.recording
     foot, toe = character.body(Part.FOOT, side), character.body(Part.TOE, side)
-    thigh = character.body(Part.THIGH, side)
+    thigh, shank = character.body(Part.THIGH, side), character.body(Part.SHANK, side)
     assert foot is not None
     assert thigh is not None
+    assert shank is not None
     last = foot if toe is None else toe
     ankle = performance.centres[:, foot]
     tip = performance.centres[:, last] + performance.rotations[:, last] @ character.bodies[last].tip
     bones = [recording.bones[recording.index(character.bodies[i].bone)] for i in (foot, last)]
+    joints = [recording.index(character.bodies[i].bone) for i in (thigh, shank, foot)]
+    leg = [recording.bones[i].head for i in joints]
     return FootTracks(
         side=side.value.capitalize(),
         foot_bone=character.bodies[foot].bone,
@@ -152,6 +156,7 @@ def _foot(performance: Performance, side: Side) -> FootTracks:
         toe_rotation=performance.rotations[:, last],
         foot_rest=bones[0].rotation,
         toe_rest=bones[1].rotation,
+        leg=float(np.linalg.norm(np.diff(leg, axis=0), axis=1).sum()),
         skin=_skin_of(performance, {foot, last}, bones[0].head),
     )
 

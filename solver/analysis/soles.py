@@ -1,6 +1,7 @@
 """Heel and toe contact points on the foot bones, and floor height, from standing frames.
 
 Where the figure has a skin, its soles tell how high they are over the floor and how far they go.
+Otherwise soles are such as a person may have under them, and alike under both feet.
 """
 
 from collections.abc import Sequence
@@ -18,12 +19,15 @@ PRESSING_RATIO = 0.3  # of the same way; where plates see it press until it leav
 ANKLE_HEIGHT = 0.039  # of the stature, of a bare foot (Drillis & Contini 1966)
 BALL_HEIGHT = 0.013  # likewise; the ball is a third as high as the ankle
 USUAL_SHOE = 0.01  # m that a shoe adds to these, where nothing tells
+HEEL = 0.03  # m, of a shoe that one can still jump in
 THINNER, THICKER = 0.02, 0.04  # m than the usual; soles of recordings whose floor is surely at 0
 FIRMNESS = 2.0  # m that the floor goes for each by which a sole is too thick or thin
+UNLIKE = 0.03  # m; feet that stand level differ by 0.026 at most in clean recordings
 MAX_STANDING_SPEED = 0.25  # m/s; a foot slower than this stands
 STANDING_HEIGHT_BAND = 0.02  # m; how much the height of a standing foot varies
 MIN_STANDING_FRAMES = 4
 LOW_SHARE = 10  # percent of a clip, at least, in which each foot of a runner is down
+TILT_TIME = 0.1  # s; a centimetre off level counts as much as 0.1 m/s when a foot stands
 FEWEST = 30  # points of skin that tell a foot's shape
 OUTSIDE = 0.02  # share of them that lie further out than its sole's ends
 HEEL_OF_SOLE = 0.67  # of the way from ankle to the heel's end; where plates see it press
@@ -38,7 +42,8 @@ class FootTracks:
     side: as in the points' names ("Left"). hip, ankle, ball, tip: (T, 3) m; the heads of the thigh,
     foot and toe bones, and the toe's end. foot_rotation, toe_rotation: (T, 3, 3), body to world;
     foot_rest, toe_rest: (3, 3) bone to body. A rig without toes names its foot bone twice, with
-    the foot's tail as ball and tip. skin: (N, 3) m, points of foot and toes, in the foot's frame.
+    the foot's tail as ball and tip. leg: m, from hip to ankle when it is straight. skin: (N, 3) m,
+    points of foot and toes, in the foot's frame.
     """
 
     side: str
@@ -52,6 +57,7 @@ class FootTracks:
     toe_rotation: FloatArray
     foot_rest: FloatArray
     toe_rest: FloatArray
+    leg: float
     skin: FloatArray
 
     @property
@@ -71,6 +77,18 @@ class _Sole:
     back: float
     front: float
     ahead: FloatArray
+
+
+@dataclass(frozen=True)
+class _Stance:
+    """How heel or ball of a foot stands.
+
+    flat: (T,) frames in which it is as one that stands. ground: (T,) m, the height under it; where
+    the foot floats in these frames that is over the floor.
+    """
+
+    flat: BoolArray
+    ground: FloatArray
 
 
 def floor_height(times: FloatArray, feet: Sequence[FootTracks], stature_m: float) -> float:
@@ -101,16 +119,16 @@ def _firm(height: float) -> float:
 
 
 def foot_points(
-    times: FloatArray, feet: Sequence[FootTracks], floor_m: float
+    times: FloatArray, feet: Sequence[FootTracks], floor_m: float, stature_m: float
 ) -> dict[str, ContactPoint]:
     """Heel and toe contact points: points of each sole that lie on the floor when it stands.
 
     times: (T,) s. floor_m: as from `floor_height`. Keys such as "Left heel", "Left toe".
     """
     points = {}
-    for foot in feet:
-        flat = _standing(times, foot)
-        sole = _sole(foot, flat)
+    for foot, stances in zip(feet, _stances(times, feet, floor_m, stature_m), strict=True):
+        under_heel, under_ball = stances
+        sole = _sole(foot, under_heel.flat)
         heel, ball, tip = _joint_places(foot) if sole is None else _sole_places(foot, sole)
         toe_head = foot.ball if foot.has_toes else foot.ankle
         toe, pressing = (
@@ -120,8 +138,8 @@ def foot_points(
                 toe_head,
                 foot.toe_rotation,
                 foot.toe_rest,
-                _on_floor(ball + ratio * _level(tip - ball), floor_m),
-                flat,
+                _on_ground(ball + ratio * _level(tip - ball), under_ball.ground),
+                under_ball.flat,
             )
             for ratio in (TOE_OFFSET_RATIO, PRESSING_RATIO)
         )
@@ -132,13 +150,63 @@ def foot_points(
                 foot.ankle,
                 foot.foot_rotation,
                 foot.foot_rest,
-                _on_floor(heel, floor_m),
-                flat,
+                _on_ground(heel, under_heel.ground),
+                under_heel.flat,
             ),
             hip=foot.hip,
         )
         points[f"{foot.side} toe"] = replace(toe, hip=foot.hip, pressing=pressing.track)
     return points
+
+
+def _stances(
+    times: FloatArray, feet: Sequence[FootTracks], floor_m: float, stature_m: float
+) -> list[tuple[_Stance, _Stance]]:
+    """How heel and ball of each foot stand: on the floor, where a person's sole may be so thick."""
+    standing = [_standing(times, foot) for foot in feet]
+    found = np.array([_heights(f, flat) for f, flat in zip(feet, standing, strict=True)]) - floor_m
+    soles = _believable(feet, found, stature_m)
+    stances = []
+    for foot, flat, seen, sole in zip(feet, standing, found, soles, strict=True):
+        stands = _Stance(flat, np.full(len(times), floor_m))
+        level = _level_frames(times, foot, sole)
+        heel, ball = (
+            stands if thick == usual else _Stance(level, joint[:, 2] - usual)
+            for joint, thick, usual in zip((foot.ankle, foot.ball), seen, sole, strict=True)
+        )
+        stances.append((heel, ball))
+    return stances
+
+
+def _believable(feet: Sequence[FootTracks], found: FloatArray, stature_m: float) -> FloatArray:
+    """(F, 2) m, heights of ankles and balls over the floor when feet stand on it.
+
+    found: the same in the frames in which each foot is stillest. One that is much higher than the
+    other floats then, on a box or by a fault of the capture, and has the other's sole. One whose
+    ankle is further above its ball than in any shoe is on tiptoe.
+    """
+    legs = np.array([[foot.leg] for foot in feet])
+    raised = legs.max() - legs  # who has a shorter leg may stand on a thicker sole
+    lower = found.min(axis=0)
+    soles = np.where(found - raised > lower + UNLIKE, lower, found)
+    steepest = (ANKLE_HEIGHT - BALL_HEIGHT) * stature_m + HEEL
+    for foot, seen, sole in zip(feet, found, soles, strict=True):
+        if not foot.has_toes:  # its ball is a tail, which may be anywhere
+            sole[1] = seen[1] - (seen[0] - sole[0])
+        elif len(foot.skin) < FEWEST and sole[0] - sole[1] > steepest + UNLIKE:
+            sole[0] = sole[1] + steepest
+    return soles
+
+
+def _level_frames(times: FloatArray, foot: FootTracks, sole: FloatArray) -> BoolArray:
+    """Mask (T,) of the frames in which a foot that floats is as level as one that stands, and slow.
+
+    sole: (2,) m, heights of ankle and ball over the ground of one that stands.
+    """
+    tilt = np.abs(foot.ankle[:, 2] - foot.ball[:, 2] - (sole[0] - sole[1]))
+    count = max(MIN_STANDING_FRAMES, len(times) * LOW_SHARE // 100)
+    nearest = np.argsort(_foot_speed(times, foot) + tilt / TILT_TIME, kind="stable")[:count]
+    return np.isin(np.arange(len(times)), nearest)
 
 
 def _heights(foot: FootTracks, flat: BoolArray) -> tuple[float, float]:
@@ -219,8 +287,9 @@ def _level(vectors: FloatArray) -> FloatArray:
     return np.asarray(vectors * np.array([1.0, 1.0, 0.0]))
 
 
-def _on_floor(points: FloatArray, floor_m: float) -> FloatArray:
-    return np.asarray(_level(points) + np.array([0.0, 0.0, floor_m]))
+def _on_ground(points: FloatArray, heights: FloatArray) -> FloatArray:
+    """(T, 3) m, points over or under those of (T, 3), at the heights (T,)."""
+    return np.column_stack([points[:, :2], heights])
 
 
 def _fixed_in(
