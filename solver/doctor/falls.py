@@ -36,6 +36,8 @@ UNIT_RATIOS = tuple(
 CLEARLY = 1.5  # times nearer than the next ratio
 HEIGHTS = (1.1, 2.1)  # m; persons; others are read at a wrong scale
 USUAL_HEIGHT = 1.75  # m
+AGREE = 3.0  # times a fall's uncertainty, by which honest ones miss the rest
+MOST = 2.0 / 3.0  # of the falls, and of their weight, must agree: others may be none
 LEAP = 3.0  # g, downwards, of the centre of mass; honest recordings have 1.0 to 1.8
 LEAP_WINDOW, LEAP_FRAMES = 0.05, 2  # s, on each side, and frames at least
 
@@ -55,8 +57,8 @@ Spans = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True)
 class Trusted:
-    """Which falls tell a clock. fewest: frames of one. but: where frames are held or missing, so
-    that they are not the clock's."""
+    """Which falls tell a clock. fewest: frames of one. but: where frames are held or missing, or
+    something unseen carries the body, so that they are not the clock's."""
 
     fewest: int = FEWEST
     but: Spans = ()
@@ -71,7 +73,8 @@ ALL = Trusted()
 
 
 def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
-    """The falls of a recording that are trusted; None where there are none that are parabolas."""
+    """The falls of a recording that are trusted; None where there are none that are parabolas, or
+    they do not agree."""
     points, floor = contact_points(performance)
     feet = [point.track[:, 2] for point in points.values() if point.kind is not PointKind.HAND]
     height = performance.character.height
@@ -87,15 +90,29 @@ def falls_of(performance: Performance, trusted: Trusted = ALL) -> Falls | None:
         clock, path = times[first : last + 1] - times[first], com[first : last + 1]
         curve = np.polyfit(clock, path, 2)
         missed = float(np.sqrt(np.mean((path - np.polyval(curve, clock)) ** 2)))
-        if curve[0] < 0.0 and missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4):
-            found.append((_acceleration(clock, path), float(clock[-1])))
+        fall = _acceleration(clock, path)
+        smooth = missed < min(ROUGH_BY * height, ROUGH * float(np.ptp(path)) + 5e-4)
+        if curve[0] < 0.0 < fall and smooth:
+            found.append((fall, float(clock[-1])))
             spans.append(span)
-    if not found:
-        return None
-    accelerations, durations = np.array(found).T
+    return _agreed(np.array(found), tuple(spans)) if found else None
+
+
+def _agreed(found: FloatArray, spans: Spans) -> Falls | None:
+    """Of falls (N, 2), m/s² and s, and their frames, those that agree with their median; None where
+    these are not nearly all, for then the recording does not tell which of them are falls."""
+    accelerations, durations = found.T
     # Of the slope of velocities with independent errors the variance goes as T^-3.
-    mean = float(np.average(accelerations, weights=durations**3))
-    return Falls(mean, float(durations.max()), tuple(spans))
+    weights = durations**3
+    order = np.argsort(accelerations, kind="stable")
+    half = np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum())
+    apart = np.abs(np.log(accelerations / accelerations[order[half]]))
+    alike = apart < AGREE * 2.0 * np.array([_uncertainty(each) for each in durations])
+    if min(alike.mean(), weights[alike].sum() / weights.sum()) < MOST:
+        return None
+    mean = float(np.average(accelerations[alike], weights=weights[alike]))
+    frames = tuple(span for span, each in zip(spans, alike, strict=True) if each)
+    return Falls(mean, float(durations[alike].max()), frames)
 
 
 def _acceleration(clock: FloatArray, path: FloatArray) -> float:

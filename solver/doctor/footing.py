@@ -145,6 +145,11 @@ def _flicker(performance: Performance, schedule: ContactSchedule) -> Finding | N
     return Finding(FindingKind.FLICKER, float(len(breaks)), "times", spans, breaks[0][1])
 
 
+def unseen_places(performance: Performance) -> tuple[tuple[float, float], ...]:
+    """First and last scene frames where nothing touches, yet the body does not fall."""
+    return tuple(_frames(performance, gap) for gap in find_contacts(performance).unseen)
+
+
 def _note(performance: Performance, kind: FindingKind, gaps: tuple[Interval, ...]) -> Finding:
     seconds = sum(gap.end - gap.start for gap in gaps)
     return Finding(kind, seconds, "s", tuple(_frames(performance, gap) for gap in gaps))

@@ -18,7 +18,7 @@ from ...skeleton.bind_pose import bind_frames
 from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale, refined
 from ..figure import figure_of
 from ..finding import Finding, FindingKind
-from ..footing import find_footing, find_rise
+from ..footing import find_footing, find_rise, unseen_places
 from ..frames.flips import find_flips
 from ..frames.jumps import find_jumps
 from ..frames.missing import find_dropped, find_held
@@ -107,6 +107,11 @@ def diagnose(
     performance = performed(Repairs())
     trusted = _trusted(found)
     scale = find_scale(performance, trusted)
+    if scale is not None and scale.frames:
+        # At the clock that they tell, what is carried unseen shows that it is no fall.
+        carried = unseen_places(performed(_remedy(scale)))
+        trusted = replace(trusted, but=(*trusted.but, *carried))
+        scale = find_scale(performance, trusted)
     if scale is not None:
         performance = performed(_remedy(scale))
         if scale.kind is FindingKind.SIZE:

@@ -329,6 +329,31 @@ def test_a_clock_is_not_told_by_falls_in_which_frames_are_held() -> None:
     assert kinds == [FindingKind.HELD_FRAMES]
 
 
+@pytest.mark.parametrize(("height", "seconds"), [(0.045, 0.6), (0.09, 0.8)])
+def test_falls_that_disagree_tell_no_clock(height: float, seconds: float) -> None:
+    """A hop as on the moon, of which half is in the air, beside a jump that falls as it should: as
+    where legs are exchanged, and none of them touches."""
+    u = (jump().times - jump().times[15]) / seconds
+    lifted = 4.0 * height * np.maximum(u * (1.0 - u), 0.0)
+    heads = jump().heads + lifted[:, None, None] * np.array([0.0, 0.0, 1.0])
+    hovering = replace(jump(), heads=heads)
+    assert find_scale(perform(hovering, character())) is None
+    many = load_recording("hops_in_place.bvh")  # of whose falls one is at 6.7 m/s²
+    found = find_scale(perform(slowed(1.25).of(many).recording, build_character(many)))
+    assert found is not None
+    assert found.remedy == Repairs(time_scale=pytest.approx(0.8))
+
+
+def test_what_is_carried_unseen_tells_no_clock() -> None:
+    """Hips that are held at one height: what legs do then makes parabolas of 1.3 m/s²."""
+    hop = load_recording("hop_01_01.bvh")
+    heads = hop.heads.copy()
+    heads[:, :, 2] += hop.heads[:, :1, 2].mean() - hop.heads[:, :1, 2]
+    kinds = {finding.kind for finding in diagnose(replace(hop, heads=heads)).findings}
+    assert FindingKind.UNSEEN_SUPPORT in kinds
+    assert FindingKind.TIME_SCALE not in kinds
+
+
 @pytest.mark.parametrize("seed", [4, 5])
 def test_noise_of_a_runs_short_stances_is_no_drift(seed: int) -> None:
     """Half of a dozen frames may slide alike by chance; its remedy moved the body by 0.7 m."""
