@@ -20,7 +20,7 @@ from ...solver.numerics.interpolation import interpolate
 from ...solver.numerics.rotations import rotation_matrix
 
 SEED = 7
-VIDEO_RATE = 30.0  # Hz
+VIDEO_RATE, FAST_RATE = 30.0, 120.0  # Hz, of one camera and of several
 
 
 @dataclass(frozen=True)
@@ -242,11 +242,11 @@ def raised(metres: float) -> Damage:
     return Damage(f"{metres:+g} m up", FindingKind.FLOOR, do)
 
 
-def noisy(millimetres: float, degrees: float) -> Damage:
-    """As video capture gives it: 30 Hz, and white noise on the root's place and on all joints."""
+def noisy(millimetres: float, degrees: float, rate: float = VIDEO_RATE) -> Damage:
+    """As video capture gives it: white noise on the root's place and on all joints."""
 
     def do(recording: Recording, rng: np.random.Generator) -> Damaged:
-        original = at_rate(recording, VIDEO_RATE)
+        original = at_rate(recording, rate)
         local = LocalPoses.of(original)
         turns = np.radians(degrees) * rng.normal(size=(*local.rotations.shape[:2], 3))
         rotations, heads = local.rotations @ rotation_matrix(turns), local.heads
@@ -255,7 +255,7 @@ def noisy(millimetres: float, degrees: float) -> Damage:
                 heads[:, b] += 1e-3 * millimetres * rng.normal(size=(len(heads), 3))
         return Damaged(LocalPoses(rotations, heads).posed(original), original)
 
-    name = f"30 Hz, {millimetres:g} mm and {degrees:g}° noise"
+    name = f"{rate:g} Hz, {millimetres:g} mm and {degrees:g}° noise"
     return Damage(name, FindingKind.NOISE, do)
 
 
@@ -323,6 +323,7 @@ DAMAGES = (
     rising(0.1),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
     noisy(3.0, 1.0),
+    noisy(3.0, 1.0, FAST_RATE),
     noisy(6.0, 2.0),
     *map(stretched, (0.05, 0.15)),
 )

@@ -24,7 +24,7 @@ from ..frames.jumps import find_jumps
 from ..frames.missing import find_dropped, find_held
 from ..frames.spikes import find_spikes
 from ..lengths import find_lengths
-from ..noise import REACH, find_noise
+from ..noise import find_noise, reach
 from ..repairs import Repairs
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_up
@@ -105,7 +105,7 @@ def diagnose(
         return perform(placed, character, placed_skin(skin, repairs))
 
     performance = performed(Repairs())
-    trusted = _trusted(found)
+    trusted = _trusted(found, rate)
     scale = find_scale(performance, trusted)
     if scale is not None and scale.frames:
         # At the clock that they tell, what is carried unseen shows that it is no fall.
@@ -159,10 +159,10 @@ def _remedy(finding: Finding | None) -> Repairs:
     return (finding and finding.remedy) or Repairs()
 
 
-def _trusted(found: list[Finding]) -> Trusted:
+def _trusted(found: list[Finding], rate: float) -> Trusted:
     """The falls that tell the clock; of what was smoothed those that are longer than its window."""
     noisy = any(finding.kind is FindingKind.NOISE for finding in found)
-    fewest = 2 * REACH + 1 if noisy else FEWEST
+    fewest = 2 * reach(rate) + 1 if noisy else FEWEST
     return Trusted(fewest, _places(found, FindingKind.HELD_FRAMES, *GAPS))
 
 
