@@ -8,6 +8,10 @@ from ..data.recording import Recording
 AT_REST = np.radians(2.0)  # a joint that is nearer to its rest than this is at rest
 SHARE = 0.95  # of the joints that are at rest in a bind pose
 JUMP = np.radians(20.0)  # from a frame to the next; at 24 a second no joint leaves its rest so fast
+# Some put a T pose with legs apart before a motion whose rest has them beside each other: most are
+# at rest and none is far from it, and then a part of all jump. Recordings' own frames have 0.3 of
+# them at rest, and none jumps at the beginning.
+MOST, NEAR, PART = 0.8, np.radians(30.0), 0.2
 
 
 def bind_frames(recording: Recording) -> int:
@@ -21,13 +25,14 @@ def bind_frames(recording: Recording) -> int:
     bones, parents = map(list, zip(*pairs, strict=True))
     rest = np.stack([bone.rotation for bone in recording.bones])
     local = _between(recording.rotations[:, parents], recording.rotations[:, bones])
-    resting = _angles(_between(rest[parents], rest[bones])[None], local) < AT_REST
-    held = resting.mean(axis=1) >= SHARE
-    count = int(np.argmin(held)) if not held.all() else 0
-    if count == 0:
-        return 0
-    jump = _angles(local[count - 1], local[count]).max()
-    return count if jump > JUMP else 0
+    away = _angles(_between(rest[parents], rest[bones])[None], local)
+    resting = (away < AT_REST).mean(axis=1)
+    leaning = (resting >= MOST) & (away.max(axis=1) < NEAR)
+    for held, least in ((resting >= SHARE, 0.0), (leaning, PART)):
+        count = int(np.argmin(held)) if not held.all() else 0
+        if count and (_angles(local[count - 1], local[count]) > JUMP).mean() > least:
+            return count
+    return 0
 
 
 def _between(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 from hangtime.devtools.recordings import JUMP
 from hangtime.solver.data.recording import Recording
+from hangtime.solver.doctor.local_poses import LocalPoses
+from hangtime.solver.numerics.rotations import rotation_matrix
 from hangtime.solver.skeleton.bind_pose import bind_frames
 from hangtime.tests.helpers.clips import load_recording
 
@@ -42,3 +44,31 @@ def test_who_begins_in_a_rest_pose_and_moves_on_smoothly_is_let_be() -> None:
         for i, bone in enumerate(recording.bones)
     )
     assert bind_frames(replace(recording, bones=bones)) == 0
+
+
+def with_legs_apart(recording: Recording) -> Recording:
+    """The first frame with 17° at both thighs and 5° at both arms, as CMU's BVH files have it."""
+    local = LocalPoses.of(recording)
+    for name, degrees in (("LeftUpLeg", 17), ("RightUpLeg", -17), ("LeftArm", 5), ("RightArm", -5)):
+        turn = rotation_matrix(np.radians([0.0, 0.0, degrees]))
+        bone = recording.index(name)
+        local.rotations[0, bone] = local.rotations[0, bone] @ turn
+    return local.posed(recording)
+
+
+def test_a_bind_pose_with_legs_apart_is_found() -> None:
+    assert bind_frames(with_legs_apart(begun_at_rest(clip(), 1))) == 1
+
+
+def test_who_stands_with_legs_apart_and_raises_an_arm_at_once_is_let_be() -> None:
+    """All but the arm move on smoothly: the rest skeleton is the second frame's own."""
+    recording = clip()
+    bones = tuple(
+        replace(bone, rotation=recording.rotations[1, i], head=recording.heads[1, i])
+        for i, bone in enumerate(recording.bones)
+    )
+    stood = with_legs_apart(replace(recording, bones=bones))
+    arm = stood.index("LeftForeArm")
+    rotations = stood.rotations.copy()
+    rotations[1:, arm] = rotations[1:, arm] @ rotation_matrix(np.radians([40.0, 0.0, 0.0]))
+    assert bind_frames(replace(stood, rotations=rotations)) == 0
