@@ -19,7 +19,7 @@ SLOW = 0.15  # m/s, up or down
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
 ALIKE = 0.75  # of the drift, by which half of all speeds differ from it at most; noise leaves more
-LEAST_STANCE = 0.3  # s
+LEAST_STANCE, LEAST_STANDING = 0.3, 12  # s, and frames: half of fewer slide alike by chance
 LEAST_SHARE = 0.1  # of a clip, in which something stands, likewise: a dance's few moments turn feet
 RISE = 0.06  # m/s, of feet that stand; half a second and more of honest ones leave 0.04
 LEAST_LEVEL = 0.5  # s of feet that stand flat, of which so much can be told
@@ -57,8 +57,8 @@ def _floor(performance: Performance) -> Finding | None:
 def _sliding(performance: Performance) -> Finding | None:
     """Feet that all slide the same way at the same speed: the whole body drifts."""
     speeds = _standing_speeds(performance)
-    least = LEAST_STANCE * performance.recording.rate, LEAST_SHARE * len(performance.times)
-    if len(speeds) < max(least):
+    rate, share = performance.recording.rate, LEAST_SHARE * len(performance.times)
+    if len(speeds) < max(LEAST_STANCE * rate, share, LEAST_STANDING):
         return None
     middle, differ = _agreed(speeds)
     speed = float(np.linalg.norm(middle))

@@ -11,6 +11,7 @@ from ...body.anatomy import Part
 from ...data.recording import Recording
 from ..figure import Figure
 from ..local_poses import LocalPoses, angles_between
+from ..slack import slack
 from .steps import around, moved_steps, turned_steps
 
 # The steps to the first frame and from the last one, beyond those beside them; honest ones are up
@@ -33,7 +34,7 @@ def bursts(recording: Recording, figure: Figure) -> BoolArray:
         def turned(one: int, other: int, turns: FloatArray = turns) -> float:
             return float(angles_between(turns[one], turns[other]))
 
-        limit = TOE_TURN if part is Part.TOE else TURN
+        limit = (TOE_TURN if part is Part.TOE else TURN) * slack(recording.rate, part)
         for first, last in _bursts(turned_steps(local, bone), limit, turned):
             unsound[first : last + 1, bone] = True
     root = figure.bones[0]
@@ -41,7 +42,7 @@ def bursts(recording: Recording, figure: Figure) -> BoolArray:
     def moved(one: int, other: int) -> float:
         return float(np.linalg.norm(local.heads[one, root] - local.heads[other, root]))
 
-    for first, last in _bursts(moved_steps(local, root), PLACE, moved):
+    for first, last in _bursts(moved_steps(local, root), PLACE * slack(recording.rate), moved):
         unsound[first : last + 1, root] = True
     return unsound
 

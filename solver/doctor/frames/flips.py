@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...body.anatomy import Part
 from ...data.problem import Mend
 from ...data.recording import Recording
 from ...numerics.rotations import rotation_matrix, rotation_vector
@@ -11,14 +12,16 @@ from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..local_poses import LocalPoses, angles_between, spans
 from ..repairs import Repairs
+from ..slack import SPARSE
 
-FLIP = np.radians(140.0)  # from a frame to the next; no joint turns so far
+FLIP = np.radians(140.0)  # from a frame to the next; no joint turns so far, but a hand in 1/15 s
 
 
 def flips(recording: Recording, figure: Figure) -> list[tuple[int, int, int]]:
     """Bone, first and last index of frames in which a joint is turned by half a turn."""
     local, found = LocalPoses.of(recording), []
-    for b in figure.bones:
+    sparse = recording.rate < SPARSE
+    for b in (b for b, part in figure.parts if not (sparse and part is Part.HAND)):
         turns = local.rotations[:, b]
         jumps = np.flatnonzero(angles_between(turns[:-1], turns[1:]) > FLIP) + 1
         edges = [*jumps.tolist(), len(turns)]

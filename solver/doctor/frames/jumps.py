@@ -10,6 +10,7 @@ from ...data.recording import Recording
 from ..figure import Figure
 from ..finding import Finding, FindingKind
 from ..local_poses import LocalPoses
+from ..slack import slack
 from .steps import around, moved_steps, turned_steps
 
 # Beyond the mean of the steps beside it. In honest recordings of 30 Hz and more the root's are
@@ -26,12 +27,12 @@ def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
     if len(recording.frames) < FEWEST:
         return None
     local, root = LocalPoses.of(recording), figure.bones[0]
-    moved = moved_steps(local, root)
-    places = [(float(100.0 * moved[t]), "", t) for t in _jumps(moved, PLACE)]
+    moved, wider = moved_steps(local, root), slack(recording.rate)
+    places = [(float(100.0 * moved[t]), "", t) for t in _jumps(moved, PLACE * wider)]
     turns = []
     for bone in (b for b, part in figure.parts if part not in STRIKE and b != root):
         turned, name = np.degrees(turned_steps(local, bone)), recording.bones[bone].name
-        turns += [(float(turned[t]), name, t) for t in _jumps(turned, TURN)]
+        turns += [(float(turned[t]), name, t) for t in _jumps(turned, TURN * wider)]
     if not places and not turns:
         return None
     amount, part, _ = max(places or turns)  # of the whole body where it jumps, else of a bone

@@ -10,6 +10,7 @@ from ...data.recording import Recording
 from ..finding import Finding, FindingKind
 from ..local_poses import runs, spans
 from ..repairs import MissingFrames, Repairs
+from ..slack import SPARSE
 
 HELD = 1e-5  # m and entries of a matrix; a pose that changes by less is held
 MOVING = 1e-3  # m, of the farthest joint from a frame to the next, beside a pose that is held
@@ -45,7 +46,9 @@ def find_held(recording: Recording) -> Finding | None:
 
 def find_dropped(recording: Recording) -> Finding | None:
     """Steps of the whole body, one to three side by side, each as long as two to eleven of those
-    before and after them: frames are missing."""
+    before and after them: frames are missing. None is told of sparse frames."""
+    if recording.rate < SPARSE:
+        return None
     moves = np.diff(recording.heads, axis=0).reshape(len(recording.frames) - 1, -1)
     counts = np.zeros(len(recording.frames), int)  # before each frame
     # The most first: a step beside one that is too long is not what either is measured by.

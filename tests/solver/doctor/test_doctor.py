@@ -56,6 +56,7 @@ from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
 from hangtime.solver.doctor.upright import find_up
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
+CLIPS = "131_03_hop.bvh", JUMP, "hop_01_01.bvh", "fair1_jumping.bvh"
 STANDING = 73, 325  # frames, from standing to standing
 
 
@@ -91,6 +92,35 @@ def of_poses(recording: Recording) -> list[Finding]:
 
 def test_a_clean_recording_has_no_findings() -> None:
     assert diagnose(jump(), mass=70.0).findings == ()
+
+
+def sparse(recording: Recording, every: int, first: int = 0) -> Recording:
+    """Every so many frames of it."""
+    part = recording.part(slice(first, None, every))
+    count = np.arange(len(part.frames))
+    return replace(part, frames=1.0 + count, times=count * every / recording.rate)
+
+
+@pytest.mark.parametrize(
+    ("name", "every", "first"),
+    [
+        ("131_03_hop.bvh", 6, 5),  # whose wrist turns by 82° in 1/30 s
+        *((name, every, 0) for name in CLIPS for every in (8, 10)),
+        ("run_1.bvh", 2, 1),  # whose toes strike
+        ("run_3.bvh", 10, 0),  # of whose feet four frames slide alike
+    ],
+)
+def test_a_clean_recording_of_few_frames_has_no_findings(name, every, first) -> None:
+    """Steps from frame to frame are long, and unlike each other, at 12 to 60 Hz."""
+    clip = sparse(load_recording(name), every, first)
+    assert [finding for finding in diagnose(clip).findings if not finding.kind.note] == []
+
+
+@pytest.mark.parametrize("every", [4, 5, 8])
+@pytest.mark.parametrize("damage", [spiked(120.0), joined(0.4)], ids=lambda damage: damage.name)
+def test_what_no_body_can_do_is_told_of_few_frames_too(damage: Damage, every: int) -> None:
+    damaged = damage.of(sparse(jump(), every)).recording
+    assert damage.kind in [finding.kind for finding in of_poses(damaged)]
 
 
 @pytest.mark.parametrize(
