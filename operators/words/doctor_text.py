@@ -2,6 +2,7 @@
 
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
+from ...solver.analysis.analyse import MIN_CLIP_DURATION
 from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.feet import FootFault
 from ...solver.doctor.finding import Finding, FindingKind
@@ -24,6 +25,8 @@ SENTENCES = {
     FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
+    FindingKind.TOO_SHORT: "The clip is {n:.2f} s long, too short to be adapted: a jump needs "
+    f"{MIN_CLIP_DURATION:g} s at least.",
     FindingKind.MASS: "{n:.0f} kg do not go with the figure's height.",
     FindingKind.JUMP: "{part} jumps by {amount} {where}, as where two takes were joined, capture "
     "mistook something, or many frames are missing.",

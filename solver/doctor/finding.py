@@ -21,6 +21,7 @@ class FindingKind(Enum):
     NOISE = "noise"
     TIME_SCALE = "time scale"
     SIZE = "size"
+    TOO_SHORT = "too short"
     MASS = "mass"
     JUMP = "jump"
     LEAP = "leap"

@@ -119,7 +119,9 @@ def diagnose(
             scale = refined(scale, performance, trusted)
             performance = performed(_remedy(scale))
         found.append(scale)
-    height = performance.character.height
+    height, seconds = performance.character.height, float(performance.times[-1])
+    if seconds < MIN_CLIP_DURATION:
+        found.append(Finding(FindingKind.TOO_SHORT, seconds, "s"))
     leaps = find_leaps(performance)
     near = LEAP_WINDOW * recording.rate
     if leaps is not None and not _are_at(leaps, _places(found, *GAPS), near):

@@ -570,6 +570,25 @@ def test_a_clip_of_a_few_frames_is_refused_in_words(count: int) -> None:
         diagnose(jump().part(slice(0, count)))
 
 
+@pytest.mark.parametrize(("frames", "too_short"), [(5, True), (36, True), (37, False)])
+def test_a_clip_that_is_too_short_to_be_adapted_is_told(frames: int, too_short: bool) -> None:
+    """As the analysis refuses it, of less than 0.3 s."""
+    clip = jump().part(slice(0, frames))
+    kinds = [finding.kind for finding in diagnose(clip).findings if not finding.kind.note]
+    assert kinds == ([FindingKind.TOO_SHORT] if too_short else [])
+    if too_short:
+        with pytest.raises(ClipTooShort):
+            analyse(clip, MotionProblem())
+
+
+def test_a_clip_is_too_short_by_the_clock_that_is_told() -> None:
+    """Its flight of 0.4 s, at four times the rate."""
+    fast = slowed(0.25).of(jump().part(slice(90, 170))).recording
+    kinds = {finding.kind for finding in diagnose(fast).findings}
+    assert FindingKind.TIME_SCALE in kinds
+    assert FindingKind.TOO_SHORT not in kinds
+
+
 def test_frames_of_hours_are_refused_in_words() -> None:
     """A file's frame time of hours would be searched for contacts every hundredth of a second."""
     clip = jump().part(slice(0, 20))
