@@ -11,6 +11,7 @@ from .figure import Figure
 from .finding import Finding, FindingKind
 from .local_poses import LocalPoses, fourth_differences
 from .repairs import Repairs
+from .slack import slack
 
 TREMBLING = 0.0015  # m, rms of a joint's place; laboratories' recordings have a tenth to a half
 ALTERNATING = -0.5  # correlation of what neighbouring frames are off; noise has -0.8
@@ -31,7 +32,7 @@ def find_noise(recording: Recording, figure: Figure) -> Finding | None:
     power = np.einsum("tbi,tbi->b", off, off)
     alternation = np.einsum("tbi,tbi->b", off[:-1], off[1:]) / np.maximum(power, 1e-15)
     usual = float(np.median(rms))
-    if usual < TREMBLING or float(np.median(alternation)) > ALTERNATING:
+    if usual < TREMBLING * slack(recording.rate) or float(np.median(alternation)) > ALTERNATING:
         return None
     worst = recording.bones[bones[int(np.argmax(rms))]].name
     remedy = Repairs(mend=(Mend.NOISE,))

@@ -106,6 +106,7 @@ def sparse(recording: Recording, every: int, first: int = 0) -> Recording:
     [
         ("131_03_hop.bvh", 6, 5),  # whose wrist turns by 82° in 1/30 s
         *((name, every, 0) for name in CLIPS for every in (8, 10)),
+        ("rokoko_jesse_dance.bvh", 5, 0),  # who treads fast
         ("run_1.bvh", 2, 1),  # whose toes strike
         ("run_3.bvh", 10, 0),  # of whose feet four frames slide alike
     ],
