@@ -8,6 +8,7 @@ adaptation = adapt(fitted, problem)
 track = adaptation.motion.track(analysis.performance.recording)
 """
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -36,6 +37,7 @@ from .take import take_of
 
 MIN_CLIP_DURATION = 0.3  # s
 ROUNDING = 1e-6  # of a frame's time
+MOST = 2.0 / 3.0  # of the time in the air, in which the body falls at another rate than the scene's
 MAX_FRAME_TIME = 0.125  # s: the flight of a small hop, a quarter second, has two frames then
 
 
@@ -110,11 +112,22 @@ def _told(
         yield Treadmill(speed)
         return
     recording = performance.recording
+    agreed = _agreed_rate(performance, schedule)
     for gap in schedule.unseen:
-        rate = _fitting_rate(performance, gap)
+        rate = agreed if _fitting_rate(performance, gap) == agreed else None
         boxes = boxes_beneath(performance.times, points, gap, floor_m) if rate is None else ()
         first, last = _frame(recording, gap.start), _frame(recording, gap.end)
         yield UnseenSupport(first, last, boxes, rate, recording.rate)
+
+
+def _agreed_rate(performance: Performance, schedule: ContactSchedule) -> int | None:
+    """The frame rate at which the body falls most of the time in which nothing touches; None where
+    there is none: a clock that is wrong is so in every flight."""
+    seconds: defaultdict[int | None, float] = defaultdict(float)
+    for gap in schedule.unseen:
+        seconds[_fitting_rate(performance, gap)] += gap.end - gap.start
+    aloft = sum(seconds.values()) + sum(flight.end - flight.start for flight in schedule.flights)
+    return next((rate for rate, spent in seconds.items() if spent > MOST * aloft), None)
 
 
 def _fitting_rate(performance: Performance, gap: Interval) -> int | None:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.data.faults import UnseenSupport
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.recording import Recording
 from hangtime.solver.scene.fall_rate import fitting_rate
+from hangtime.tests.helpers.clips import JUMP, load_recording
 
 
 def flown(rate: float, frames: int = 50) -> np.ndarray:
@@ -27,3 +34,25 @@ def test_what_is_carried_tells_none() -> None:
     times = np.arange(50) / 24.0
     assert fitting_rate(times, np.full(50, 1.3), 24.0) is None
     assert fitting_rate(times, 1.0 + 0.1 * np.sin(9.0 * times), 24.0) is None
+
+
+def told_rates(recording: Recording) -> list[int | None]:
+    """The rates that an analysis tells where nothing touches, yet the body does not fall."""
+    found = analyse(recording, MotionProblem()).unseen
+    return [each.rate for each in found if isinstance(each, UnseenSupport)]
+
+
+def jump() -> Recording:
+    return load_recording(JUMP).window(73, 325)
+
+
+def test_a_jump_that_is_played_too_slowly_tells_its_rate() -> None:
+    assert 120 in told_rates(replace(jump(), times=2.0 * jump().times))
+
+
+def test_what_falls_unlike_a_true_flight_tells_no_rate() -> None:
+    """A hop as on the moon, before a jump that falls as it should at 120 frames a second."""
+    u = (jump().times - jump().times[4]) / 0.7
+    lifted = 4.0 * 0.15 * np.maximum(u * (1.0 - u), 0.0)  # at 2.4 m/s²
+    heads = jump().heads + lifted[:, None, None] * np.array([0.0, 0.0, 1.0])
+    assert told_rates(replace(jump(), heads=heads)) == [None]
