@@ -102,10 +102,9 @@ def test_a_remedy_is_left_out_again(examined) -> None:
     assert applied(examined.hangtime) == Repairs()
 
 
-@pytest.fixture
-def lacking(jump: bpy.types.Object) -> bpy.types.Object:
-    """The jump without frames 151 to 154, those after them that much earlier."""
-    for curve in curves_of(jump):
+def take_frames_out(armature: bpy.types.Object) -> None:
+    """Leaves out frames 151 to 154, those after them that much earlier."""
+    for curve in curves_of(armature):
         keys = table(curve)
         at = keys["co"][:, 0]
         keys = {name: column[(at <= GAP) | (at > GAP + LACKS)] for name, column in keys.items()}
@@ -113,6 +112,12 @@ def lacking(jump: bpy.types.Object) -> bpy.types.Object:
         for name in ("co", "handle_left", "handle_right"):
             keys[name][late, 0] -= LACKS
         put(curve, keys)
+
+
+@pytest.fixture
+def lacking(jump: bpy.types.Object) -> bpy.types.Object:
+    """The jump without frames 151 to 154, those after them that much earlier."""
+    take_frames_out(jump)
     return jump
 
 
@@ -315,14 +320,7 @@ def test_of_the_frames_that_were_chosen_those_stay_that_can(joined, chosen, left
 def test_frames_that_are_put_in_move_what_is_left_out(joined) -> None:
     settings = joined.hangtime
     settings.use_range = False
-    for curve in curves_of(joined):
-        keys = table(curve)
-        at = keys["co"][:, 0]
-        keys = {name: column[(at <= GAP) | (at > GAP + LACKS)] for name, column in keys.items()}
-        late = keys["co"][:, 0] > GAP
-        for name in ("co", "handle_left", "handle_right"):
-            keys[name][late, 0] -= LACKS
-        put(curve, keys)
+    take_frames_out(joined)
     assert bpy.ops.hangtime.examine() == {"FINISHED"}
     assert {"dropped frames", "jump"} <= set(kinds(joined))
     assert bpy.ops.hangtime.repair_all() == {"FINISHED"}
