@@ -20,6 +20,7 @@ from ...solver.solid.shape_changes import ShapeChanges
 from ...solver.solid.shapes import Capsule, capsules, floor_balls, meeting_pairs
 from ...solver.solid.solid_world import floor_heights
 from ...solver.stages.implicit import Adaptation
+from ...solver.stages.surroundings import floor_of
 from ...solver.transcription.motion import Motion
 from .mujoco_shapes import Poses, capsule_depths, floor_depths
 from .scenery import PlacedObject, distances_to, placed_object, scene_depths
@@ -182,7 +183,7 @@ def solid_check(
         Solids.of(reference, pairs, changes),
         tuple(body.bone for body in reference.transcription.character.bodies),
         scale,
-        floor_heights(setup.schedule, setup.target_places)(times),
+        floor_of(adaptation.fit, setup.context, setup.target_places)(times),
         Solids.of(fitted.motion, pairs, changes).depths(before, floor),
         scene,
         tuple(_stands(adaptation, problem, scene)),

@@ -8,13 +8,14 @@ import pytest
 from hangtime.operators.words.headline import headline
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.reports.recording import Origin
-from hangtime.solver.data.requests import PointRequest, Requests, When
+from hangtime.solver.data.requests import Lift, PointRequest, Requests, When
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.results.report import report
 from hangtime.solver.solid.solid_world import floor_heights
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
+from hangtime.solver.stages.surroundings import floor_of
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.validity import assert_valid
 
@@ -143,6 +144,17 @@ def test_a_landing_that_is_pinned_lower_has_its_own_floor() -> None:
     heights = floor_heights(schedule, places)(np.array([0.1, 0.6, 1.2]))
     floor = schedule.floor_m
     assert heights == pytest.approx([floor, floor - 0.2, floor - 0.2])
+
+
+@pytest.mark.parametrize("side", ["Left", "Right"])
+def test_the_floor_stays_where_it_was_recorded_when_a_foot_is_lifted(side: str) -> None:
+    """One of the two stood the lowest. Without it the floor rose into the other foot."""
+    fit = fitted_hop()
+    lift = Lift("one leg", "ground 2", (f"{side}Foot", f"{side}ToeBase"))
+    setup = set_up(fit, MotionProblem(requests=Requests(lifts=(lift,))))
+    times = np.linspace(0.0, setup.start.duration, 50)
+    before = floor_heights(fit.schedule, fit.places)(setup.context.timeline.to_old(times))
+    assert floor_of(fit, setup.context, setup.target_places)(times) == pytest.approx(before)
 
 
 def test_solid_is_what_is_asked_for_by_default() -> None:
