@@ -31,6 +31,7 @@ MAX_CHORD_GUARDED = 10.0  # tolerances (1 cm, 1 degree) by which guards join, fo
 MAX_STEPS = 30  # of a restoration
 MIN_RESTORATION_LENGTH = 0.005
 STALL_WINDOW = 6  # steps in which the violation has to halve
+MAX_CREEPING = 3  # steps in a row that are shorter than a tenth: such solves arrive nowhere
 NEARLY_FEASIBLE = 200.0  # times the tolerances: the end of a solve, which restoration finishes
 RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
 # Times the tolerances: from further off steps that keep guards may lead astray; and once more,
@@ -309,7 +310,9 @@ class _ChordIterate:
 
 
 def _stagnant(steps: list[Step]) -> bool:
-    """Whether the last steps did not even halve the violation."""
+    """Whether the last steps creep, or did not even halve the violation."""
+    if len(steps) >= MAX_CREEPING and all(step.length < 0.1 for step in steps[-MAX_CREEPING:]):
+        return True
     if len(steps) < 2 * STALL_WINDOW:
         return False
     return steps[-1].violation > 0.5 * steps[-1 - STALL_WINDOW].violation

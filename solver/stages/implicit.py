@@ -1,32 +1,31 @@
 """The implicit solution (thesis 4.4): minimum-norm steps from the fit to where every request holds.
 
-Far edits are made by continuation (Allgower & Georg 1990): pins and bounds move in several steps.
+Far edits are made by continuation, in more steps where fewer fail; what arrives is then closed
+between the nodes.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
-from ..arrays import FloatArray
 from ..data.faults import NotInLoop, SeamStanceMoved
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.row_kinds import RowKind
 from ..data.solver_options import Method, ObjectiveKind
 from ..data.status import Durations, Status
-from ..inverse_kinematics.arm_ik import reach_grips
-from ..optimisation.guards import Guard, guarded, in_the_way, with_guards
-from ..optimisation.sqp import MAX_STEPS, FeasibleSet, Outcome, Progress, Stopped, restore
+from ..optimisation.guards import Guard, guarded, in_the_way
+from ..optimisation.sqp import MAX_STEPS, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import DenseViolation, dense_violation, exchange
 from ..transcription.contact_pins import tied_places
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
+from .continuation import continuation
 from .explicit import explicit
-from .fit import ADAPT_TOLERANCE, MAX_TURN, Fit, SolvedMotion, refine
+from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
 from .setup import Setup, check_places, set_up
-from .warm_start import Standing, continuation_steps, partial_places, stance_moves, warm_start
+from .warm_start import Standing
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
 MAX_TIMED_ATTEMPTS = 2  # with found durations, which begin at their places: no step is smaller
@@ -232,7 +231,8 @@ def _attempt(
     setup: Setup, times: int, progress: Progress | None, *, limbs: bool, giving_up: bool
 ) -> ContinuationAttempt:
     """A continuation, and where it arrives, what closes it between the nodes."""
-    attempt = _continuation(setup, times, progress, limbs=limbs, giving_up=giving_up)
+    taken, steps = continuation(setup, times, progress, limbs=limbs, giving_up=giving_up)
+    attempt = ContinuationAttempt(tuple(taken), steps)
     if not attempt.arrived:
         return attempt
     closed = close_between_nodes(attempt.outcomes[-1], setup, progress)
@@ -253,95 +253,6 @@ def _best_feasible(
     places = setup.target_places
     stood = Standing.of(Motion(best.transcription, best.x, best.places))
     return Adaptation(tuple(outcomes), places, fit, setup, stuck, attempt.reached, stood=stood)
-
-
-def _continuation(
-    setup: Setup, times: int, progress: Progress | None, *, limbs: bool, giving_up: bool
-) -> ContinuationAttempt:
-    """Solves in as many steps as the pins' moves ask for, times `times`; bounds ease in.
-
-    limbs: whether they keep out of each other on the way as well. That costs more, but a leg that
-    once is through the other finds no short way back. giving_up: whether a step goes on without the
-    guards that hold it back.
-    """
-    on_the_way = _on_the_way(setup, limbs=limbs)
-    motion, schedule = setup.start, setup.schedule
-    before = last = setup.fitted.with_places(motion.places)
-    whole = stance_moves(schedule, before, setup.target, setup.turns)
-    steps = times * continuation_steps(whole)
-    outcomes: list[Outcome] = []
-    for step in range(1, steps + 1):
-        standing, places = setup.target, setup.target_places
-        transcription = setup.start.transcription
-        if step < steps:
-            places = partial_places(schedule, before.places, places, whole, step / steps)
-            standing = setup.target.slowed(step / steps, before).with_places(places)
-        if step < steps and standing.moves:
-            transcription = transcription.riding(standing.rides)
-        start = warm_start(motion, stance_moves(schedule, last, standing))
-        if transcription.seam is not None:
-            start = transcription.seam.closed(start, setup.metric)
-        if step == 1:  # where nothing is gripped this changes nothing
-            start = reach_grips(Motion(transcription, start, places), setup.target_places).x
-        if step < steps:
-            transcription = transcription.relaxed(start, 1.0 / (steps - step + 1))
-        feasible = setup.feasible_set(transcription, places)
-        guards = setup.guards if step == steps else on_the_way
-        ways = _ways_to_guard(guards) if giving_up else [guards]
-        outcome = _restored(feasible, start, setup, progress, ways)
-        outcomes.append(outcome)
-        motion = setup.feasible_set(outcome.transcription, places).motion(outcome.x)
-        last = standing
-        if not outcome.solved:
-            break
-    return ContinuationAttempt(tuple(outcomes), steps)
-
-
-def _on_the_way(setup: Setup, *, limbs: bool) -> tuple[Guard, ...]:
-    """Guards of the steps before the last: floor and scene are not yet where they shall be, but a
-    joint that once is far beyond its range finds a long way back."""
-    guards: list[Guard] = [] if setup.human is None else [setup.human]
-    if limbs and setup.solid is not None:
-        guards.append(setup.solid.limbs_alone())
-    return tuple(guards)
-
-
-def _restored(
-    feasible: FeasibleSet,
-    start: FloatArray,
-    setup: Setup,
-    progress: Progress | None,
-    ways: Sequence[tuple[Guard, ...]],
-) -> Outcome:
-    """A continuation step; the guards join in at its end, in the first of `ways` that helps."""
-    for some in ways:
-        wider = partial(with_guards, some)
-        outcome = restore(
-            feasible,
-            setup.metric,
-            start,
-            stage="adapt",
-            max_turn=MAX_TURN,
-            progress=progress,
-            wider=wider,
-        )
-        if outcome.solved or not outcome.transcription.guards:
-            break
-    return outcome
-
-
-def _ways_to_guard(guards: tuple[Guard, ...]) -> list[tuple[Guard, ...]]:
-    """By which guards a step is tried in turn: all, some, and none but hard ones.
-
-    Where not all can be kept, floor and limbs go before ranges, unless these are hard.
-    """
-    hard = tuple(guard for guard in guards if guard.hard)
-    solids = tuple(guard for guard in guards if guard.kind is RowKind.SOLID)
-    ways = [guards]
-    for fewer in (hard,) if hard else (solids, ()):
-        if len(fewer) < len(ways[-1]):
-            ways.append(fewer)
-    return ways
 
 
 def close_between_nodes(outcome: Outcome, setup: Setup, progress: Progress | None) -> list[Outcome]:
