@@ -119,7 +119,9 @@ def _add_planning(each: argparse.ArgumentParser, name: str) -> None:
     )
     each.add_argument("--unit", type=_positive, metavar="M", help="metres per unit of the clips")
     each.add_argument("--up", choices=("Y", "Z"), type=str.upper, help="axis that points up")
-    each.add_argument("--rate", type=_positive, metavar="HZ", help="AMC files' frames a second")
+    each.add_argument(
+        "--rate", type=_positive, metavar="HZ", help="AMC and BVH files' frames a second"
+    )
     each.add_argument(
         "--jobs", type=_count, default=cores(), metavar="N", help="at once (default: the cores)"
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from math import ceil, floor
 from pathlib import Path
 
-from ...bridge.formats.acclaim import USUAL_RATE, find_asf, read_acclaim
+from ...bridge.formats.acclaim import find_asf, read_acclaim
 from ...bridge.formats.bvh import read_bvh
 from ...bridge.formats.guess import guess_unit, guess_up
 from ...bridge.formats.motion_clip import MotionClip, UpAxis, to_recording
@@ -47,13 +47,13 @@ class ReadClip:
 
 
 def read_file(path: Path, rate: float | None) -> MotionClip:
-    """A BVH or AMC file as it is. rate: Hz, of an AMC file. Raises ClipNotOpened, UnreadableClip,
-    NonFiniteKey."""
+    """A BVH or AMC file as it is. rate: Hz, in place of what a BVH tells. Raises ClipNotOpened,
+    UnreadableClip, NonFiniteKey."""
     if not path.is_file():
         raise ClipNotOpened(str(path), "there is no such file")
     if path.suffix.lower() == ".bvh":
-        return read_bvh(path)
-    return read_acclaim(find_asf(path), path, USUAL_RATE if rate is None else rate)
+        return read_bvh(path, rate)
+    return read_acclaim(find_asf(path), path, rate)
 
 
 def read_clip(
@@ -72,7 +72,7 @@ def read_clip(
     axis = up or guess_up(clip)
     metres = unit or clip.unit or guess_unit(clip, axis)
     guessed = unit is None and clip.unit is None
-    origin = Origin(path.name, metres, guessed, axis, up is None)
+    origin = Origin(path.name, metres, guessed, axis, up is None, miscount=clip.miscount)
     recording = _by_depth(to_recording(replace(clip, name=path.stem), metres, axis))
     mend = repairs or Repairs()
     recording = filled(recording, mend.missing)

@@ -83,7 +83,7 @@ def adapt_cell(
         require_place(loaded.scene, wanted, recipe.loop)
         for form in forms:
             require_exported(loaded.scene, outbox.folder, replace(export, format=form))
-    for line in doubts_about(recipe.problem, recipe.repairs, loaded.subject):
+    for line in doubts_about(recipe.problem, recipe.repairs, loaded.subject, loaded.origin):
         stages.out.write(f"Warning: {line}\n")
     placed = placed_objects(recipe.under, loaded.subject.problem, loaded.subject.analysis)
     result = solve(loaded.subject.with_objects(placed), stages, fits)

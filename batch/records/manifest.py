@@ -53,8 +53,8 @@ def version() -> str:
 class BatchSettings:
     """What all cells of a batch share. check: only diagnose and fit.
 
-    unit: m per unit of the clips, up: their axis that points up, rate: Hz, of AMC files; None where
-    the files tell, or it is guessed.
+    unit: m per unit of the clips, up: their axis that points up, rate: Hz, of AMC and BVH
+    files; None where the files tell, or it is guessed.
     """
 
     outputs: tuple[Output, ...] = (Output.NPZ,)

@@ -24,7 +24,7 @@ from ..accessors import armature_data, current_action, current_scene, pose_of, p
 from ..armature import fcurves
 from ..armature.build_armature import FIRST_FRAME, build_armature
 from ..armature.poses import metres_per_unit
-from ..formats.acclaim import USUAL_RATE, find_asf, read_acclaim
+from ..formats.acclaim import find_asf, read_acclaim
 from ..formats.bvh import read_bvh
 from ..formats.fbx_records import require_sound
 from ..formats.guess import guess_unit, guess_up, likely_unit
@@ -41,6 +41,7 @@ class ImportedClip:
 
     unit_m: m per unit of the file; of an FBX, whose units Blender converts itself, the factor
     applied after that. up: the file's axis that points up, None for an FBX, which tells it.
+    miscount: frames that a BVH announces, and that it holds, where these are more.
     """
 
     armature: bpy.types.Object
@@ -48,6 +49,7 @@ class ImportedClip:
     unit_guessed: bool
     up: UpAxis | None
     up_guessed: bool
+    miscount: tuple[int, int] | None = None
 
 
 def import_clip(
@@ -56,22 +58,23 @@ def import_clip(
     unit: float | None = None,
     up: UpAxis | None = None,
     asf: str | Path | None = None,
-    rate: float = USUAL_RATE,
+    rate: float | None = None,
 ) -> ImportedClip:
     """Import a .bvh, .fbx or .amc file as an armature with its action.
 
     unit: m per unit of length, up: the axis that points up (an FBX tells its own); what is not
-    given is what the file tells or else guessed. asf, rate (Hz): the skeleton and rate of an AMC
-    file, which tells neither. The scene gets the clip's rate, range and first frame; one file
-    frame is one scene frame. Raises ClipNotOpened, UnknownClipFormat, UnreadableClip, NonFiniteKey,
-    and for an FBX NoArmature, NoAction; nothing that came in is then left behind.
+    given is what the file tells or else guessed. asf: the skeleton of an AMC file. rate: Hz, of an
+    AMC file, which tells none, or in place of what a BVH tells. The scene gets the clip's rate,
+    range and first frame; one file frame is one scene frame. Raises ClipNotOpened,
+    UnknownClipFormat, UnreadableClip, NonFiniteKey, and for an FBX NoArmature, NoAction; nothing
+    that came in is then left behind.
     """
     path = Path(path)
     with _nothing_left_on_failure():
         _leave_other_modes()
         match path.suffix.lower():
             case ".bvh":
-                return _placed(read_bvh(path), unit, up, partial(_import_bvh, path))
+                return _placed(read_bvh(path, rate), unit, up, partial(_import_bvh, path))
             case ".amc":
                 skeleton = find_asf(path) if asf is None else asf
                 return _placed(read_acclaim(skeleton, path, rate), unit, up, build_armature)
@@ -95,7 +98,8 @@ def _placed(
     metres = unit or clip.unit or guess_unit(clip, axis)
     armature = make(clip, metres / metres_per_unit(current_scene()), axis)
     _set_scene(clip)
-    return ImportedClip(armature, metres, unit is None and clip.unit is None, axis, up is None)
+    guessed = unit is None and clip.unit is None
+    return ImportedClip(armature, metres, guessed, axis, up is None, clip.miscount)
 
 
 def _import_bvh(path: Path, _: MotionClip, scale: float, up: UpAxis) -> bpy.types.Object:

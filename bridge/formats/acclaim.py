@@ -66,9 +66,9 @@ def find_asf(amc: str | Path) -> Path:
 
 
 def read_acclaim(
-    asf_path: str | Path, amc_path: str | Path, frame_rate: float = USUAL_RATE
+    asf_path: str | Path, amc_path: str | Path, rate: float | None = None
 ) -> MotionClip:
-    """Read a skeleton and a motion; frame_rate in Hz, which neither file tells.
+    """Read a skeleton and a motion; rate in Hz, which neither file tells: else the usual one.
 
     Raises UnreadableClip (with the file and line) and NonFiniteKey (frames counted from 1).
     """
@@ -81,7 +81,7 @@ def read_acclaim(
         tuple(_joints(skeleton)),
         positions,
         matrices,
-        1.0 / frame_rate,
+        1.0 / (USUAL_RATE if rate is None else rate),
         skeleton.unit,
     )
 

@@ -23,21 +23,23 @@ class _Draft:
     tip: FloatArray | None = None
 
 
-def read_bvh(path: str | Path) -> MotionClip:
+def read_bvh(path: str | Path, rate: float | None = None) -> MotionClip:
     """Read a BVH file.
 
     A position channel replaces the joint's offset, as in Blender. Rotations are multiplied in the
-    order of the channels. The frame time is the rate's that the printed digits stand for.
+    order of the channels. The frame time is the rate's that the printed digits stand for, or
+    of the rate that is given, Hz. All lines of motion are read, also where fewer are announced.
     Raises UnreadableClip (with the line) and NonFiniteKey (frames counted from 1).
     """
     reader = Reader(Path(path))
     drafts = _hierarchy(reader)
-    frame_time, table = _motion(reader, drafts)
+    announced, frame_time, table = _motion(reader, drafts)
     return MotionClip(
         reader.path.stem,
         tuple(Joint(d.name, d.parent, d.offset, d.tip) for d in drafts),
         *_poses(drafts, table),
-        frame_time,
+        frame_time if rate is None else 1.0 / rate,
+        miscount=(announced, len(table)) if announced < len(table) else None,
     )
 
 
@@ -112,20 +114,20 @@ def _channels(reader: Reader) -> list[str]:
     return names
 
 
-def _motion(reader: Reader, drafts: list[_Draft]) -> tuple[float, FloatArray]:
-    """Frame time, s, and the table (T, C) of channel values, units and degrees."""
-    total = _frame_count(reader)
+def _motion(reader: Reader, drafts: list[_Draft]) -> tuple[int, float, FloatArray]:
+    """Frames announced, frame time, s, and channel values (T, C), units and degrees."""
+    announced = _frame_count(reader)
     frame_time = _frame_time(reader)
     owners = [draft.name for draft in drafts for _ in draft.channels]
     rows = []
     while (line := reader.peek()) is not None:
         reader.next += 1
         rows.append(reader.keys(line.number, line.words, len(owners)))
-    if len(rows) < total:
-        reader.fail(reader.last_line, f"the file ends after {len(rows)} of {total} frames")
+    if len(rows) < announced:
+        reader.fail(reader.last_line, f"the file ends after {len(rows)} of {announced} frames")
     table = np.array(rows)
     require_finite(table, owners)
-    return frame_time, table
+    return announced, frame_time, table
 
 
 def _frame_count(reader: Reader) -> int:

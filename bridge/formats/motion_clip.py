@@ -48,6 +48,7 @@ class MotionClip:
 
     positions: (T, J, 3) each head in its parent's frame. rotations: (T, J, 3, 3) each joint's
     frame in its parent's. frame_time: s. unit: m per unit of length, None where the file is silent.
+    miscount: frames that the file announces, and that it holds, where these are more.
     """
 
     name: str
@@ -56,6 +57,7 @@ class MotionClip:
     rotations: FloatArray
     frame_time: float
     unit: float | None = None
+    miscount: tuple[int, int] | None = None
 
 
 def to_z_up(up: UpAxis) -> FloatArray:

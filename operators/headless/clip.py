@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 class Clip:
     """A motion file, or a .blend with a recorded armature, and what it does not tell.
 
-    unit: m per unit of length. up: the axis that points up. rate, asf: of an AMC file.
+    unit: m per unit of length. up: the axis that points up. rate: Hz, of an AMC or BVH file. asf:
+    an AMC file's skeleton.
     """
 
     path: Path
@@ -58,14 +59,14 @@ class LoadedClip:
     skin: SkinReading
 
 
-def read_clip(clip: Clip, problem: MotionProblem) -> Recording:
+def read_clip(clip: Clip, problem: MotionProblem) -> tuple[Recording, Origin]:
     """Imports a clip as `load` does, and reads the problem's frames of it, as they are.
 
     Raises every Fault that a clip can have.
     """
-    armature, _ = _import(clip)
+    armature, origin = _import(clip)
     recording = _read(armature, problem)
-    return recording if problem.frames is None else recording.window(*problem.frames)
+    return recording if problem.frames is None else recording.window(*problem.frames), origin
 
 
 def load(
@@ -111,21 +112,20 @@ def _import(clip: Clip) -> tuple[bpy.types.Object, Origin]:
 
     from ...bridge.accessors import current_action, present
     from ...bridge.files.import_clip import import_clip
-    from ...bridge.formats.acclaim import USUAL_RATE
 
     # Not the factory *settings*: those would disable the extension that runs this.
     with quiet():
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    made = import_clip(
-        clip.path,
-        unit=clip.unit,
-        up=clip.up,
-        asf=clip.asf,
-        rate=USUAL_RATE if clip.rate is None else clip.rate,
-    )
+    made = import_clip(clip.path, unit=clip.unit, up=clip.up, asf=clip.asf, rate=clip.rate)
     present(current_action(made.armature)).name = clip.path.stem
-    origin = Origin(clip.path.name, made.unit_m, made.unit_guessed, made.up, made.up_guessed)
-    return made.armature, origin
+    return made.armature, Origin(
+        clip.path.name,
+        made.unit_m,
+        made.unit_guessed,
+        made.up,
+        made.up_guessed,
+        miscount=made.miscount,
+    )
 
 
 def _open(path: Path) -> bpy.types.Object:

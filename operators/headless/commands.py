@@ -13,7 +13,7 @@ from ...bridge.recipe.keys import KeyOptions, require_every_frame
 from ...bridge.recipe.objects import placed_objects
 from ...bridge.recipe.problem import PARTS, STATURE, Recipe, parse_recipe, read_recipe_text
 from ...bridge.recipe.result import ResultOptions, require_return_after
-from ...solver.data.faults import BadRecipe, Fault, NoSolution
+from ...solver.data.faults import BadRecipe, Fault, NoSolution, OptionNotTaken
 from ...solver.data.problem import MotionProblem
 from ...solver.doctor.repairs import Repairs
 from ...solver.worker.pipeline import solve
@@ -94,7 +94,12 @@ def _add_clip_options(each: argparse.ArgumentParser, *, optional: bool) -> None:
     each.add_argument("--height", type=_stature, metavar="M", help="the performer's true height")
     each.add_argument("--unit", type=_positive, metavar="M", help="metres per unit of the file")
     each.add_argument("--up", choices=("Y", "Z"), type=str.upper, help="axis that points up")
-    each.add_argument("--rate", type=_positive, metavar="HZ", help="an AMC file's frames a second")
+    each.add_argument(
+        "--rate",
+        type=_positive,
+        metavar="HZ",
+        help="frames a second of an AMC file, or instead of what a BVH file tells",
+    )
     each.add_argument("--asf", type=Path, metavar="FILE", help="an AMC file's skeleton")
     each.add_argument(
         *("--bone", "--bones"),
@@ -212,15 +217,15 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | No
     bodies = [body.name for body in subject.analysis.performance.character.bodies]
     for line in shapes_told(loaded.skin, bodies, subject.fleshed).splitlines():
         print(line)
-    for doubt in doubts_about(problem, repairs, subject):
+    for doubt in doubts_about(problem, repairs, subject, loaded.origin):
         print(f"Warning: {doubt}", file=sys.stderr)
 
 
 def doctor(options: argparse.Namespace) -> None:
     """Prints what is wrong with a clip; leaves a recipe where asked. Raises Fault."""
     clip, problem = _clip(options, None), overridden(MotionProblem(), options)
-    diagnosis = examined(clip, problem, options.mass)
-    print(told(diagnosis, clip, as_json=options.json), end="")
+    diagnosis, doubts = examined(clip, problem, options.mass)
+    print(told(diagnosis, doubts, clip, as_json=options.json), end="")
     target: Path | None = options.write_recipe
     if target is not None:
         write_recipe_of(diagnosis, clip, target)
@@ -235,7 +240,21 @@ def _clip(options: argparse.Namespace, recipe: Recipe | None) -> Clip:
             problem = 'no recording; name one on the command line, or here as clip = "..."'
             raise BadRecipe(str(options.recipe), None, problem)
         path = options.recipe.parent / recipe.clip
+    _require_taken(options, path)
     return Clip(path, options.unit, options.up, options.rate, options.asf)
+
+
+# By suffix: the options about how such a file is read.
+_ALL = ("unit", "up", "rate", "asf")
+_TAKEN = {".bvh": ("unit", "up", "rate"), ".fbx": ("unit",), ".blend": ()}
+
+
+def _require_taken(options: argparse.Namespace, path: Path) -> None:
+    """Raises OptionNotTaken for an option that would go unheard."""
+    taken = _TAKEN.get(path.suffix.lower(), _ALL)
+    for name in _ALL:
+        if getattr(options, name) is not None and name not in taken:
+            raise OptionNotTaken(f"--{name}", path.name)
 
 
 def overridden(problem: MotionProblem, options: argparse.Namespace) -> MotionProblem:

@@ -13,22 +13,25 @@ from ...solver.doctor.examination.diagnose import Diagnosis, diagnose
 from ...solver.doctor.finding import Finding
 from ..words.analysis_text import relative
 from ..words.doctor_text import diagnosis_text, finding_sentence, rounded
+from ..words.doubt_text import file_doubts
 from .clip import Clip, read_clip
 from .outbox import not_writable
 
 
-def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> Diagnosis:
-    """The diagnosis of a clip. mass: kg, None where the artist stated none. Raises Fault."""
-    recording = read_clip(clip, problem)
-    return diagnose(recording, problem.bones, mass)
+def examined(clip: Clip, problem: MotionProblem, mass: float | None) -> tuple[Diagnosis, list[str]]:
+    """The diagnosis of a clip, and doubts about its file. mass: kg, None where the artist stated
+    none. Raises Fault."""
+    recording, origin = read_clip(clip, problem)
+    return diagnose(recording, problem.bones, mass), file_doubts(origin)
 
 
-def told(diagnosis: Diagnosis, clip: Clip, *, as_json: bool) -> str:
-    """The diagnosis as text."""
+def told(diagnosis: Diagnosis, doubts: list[str], clip: Clip, *, as_json: bool) -> str:
+    """The diagnosis, and doubts about the file, as text."""
     if not as_json:
-        return diagnosis_text(diagnosis)
+        return "".join(f"note: {doubt}.\n" for doubt in doubts) + diagnosis_text(diagnosis)
     content = {
         "clip": clip.path.name,
+        "file": doubts,
         "findings": [_content(finding) for finding in diagnosis.findings],
         "recording": RECORDING.write(rounded(diagnosis.repairs)),
         "mass": diagnosis.mass,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...solver.data.problem import MotionProblem
+from ...solver.data.reports.recording import Origin
 from ...solver.data.scaling import scaled_recording
 from ...solver.doctor.examination.diagnose import diagnose
 from ...solver.doctor.figure import figure_of
@@ -10,16 +11,20 @@ from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs
 from ...solver.doctor.upright import find_up
 from ...solver.worker.pipeline import Subject
-from ..words.doubt_text import damage_doubts, doubts_of, floor_doubts, up_doubts
+from ..words.doubt_text import damage_doubts, doubts_of, file_doubts, floor_doubts, up_doubts
 
 # What objects of the scene may explain: a box to stand on, a train, a belt.
 ABOUT_GROUND = (FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING)
 
 
-def doubts_about(problem: MotionProblem, repairs: Repairs | None, subject: Subject) -> list[str]:
+def doubts_about(
+    problem: MotionProblem, repairs: Repairs | None, subject: Subject, origin: Origin
+) -> list[str]:
     """A line for each. problem: as it was asked for. subject: the analysis of what it is about."""
     frames = subject.recording.frames
-    doubts = doubts_of(problem, subject.height, frames[:0] if problem.loop else frames)
+    doubts = file_doubts(origin) + doubts_of(
+        problem, subject.height, frames[:0] if problem.loop else frames
+    )
     doubts += damage_doubts(_damages(problem, subject))
     if repairs is None:
         return doubts

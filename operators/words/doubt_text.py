@@ -5,6 +5,7 @@ from math import isfinite
 
 from ...solver.arrays import FloatArray
 from ...solver.data.problem import MotionProblem
+from ...solver.data.reports.recording import Origin
 from ...solver.data.requests import AddedMass
 from ...solver.doctor.finding import Finding
 from ...solver.doctor.repairs import UpAxis
@@ -32,6 +33,18 @@ def doubts_of(problem: MotionProblem, height: float, frames: FloatArray) -> list
         *_of_build(problem.mass, problem.height or height),
         *_of_loads(problem),
         *_of_timings(problem),
+    ]
+
+
+def file_doubts(origin: Origin) -> list[str]:
+    """A line where a file holds more frames than its header announces."""
+    if origin.miscount is None:
+        return []
+    announced, held = origin.miscount
+    return [
+        f"The header of {origin.clip} announces {announced} frames, but {held} lines of motion "
+        f"follow, and all are read. Mend “Frames:” in the file, or leave out the last by "
+        f"“trim_end = {held - announced}” under “[recording]” in the recipe"
     ]
 
 

@@ -128,6 +128,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     ),
     faults.ClipNotOpened: "The recording {path} cannot be opened ({problem}); check its name and "
     "whether it may be read.",
+    faults.OptionNotTaken: "“{option}” does not count for {path}, as files of this kind tell it "
+    "themselves or do not need it; leave it out. What they tell wrongly is set under “[recording]” "
+    "in a recipe, such as “time_scale” for a wrong rate.",
     faults.UnknownClipFormat: "The recording {path} is no BVH, FBX, AMC or .blend file; import it "
     "in Blender, and give the .blend file that you save.",
     faults.BadRecipe: (

@@ -32,6 +32,7 @@ from .recordings import NotMirrored as NotMirrored
 from .recordings import NotPutIn as NotPutIn
 from .recordings import OddHeight as OddHeight
 from .recordings import OddScale as OddScale
+from .recordings import OptionNotTaken as OptionNotTaken
 from .recordings import OutsideKeys as OutsideKeys
 from .recordings import TextCure as TextCure
 from .recordings import Treadmill as Treadmill

@@ -199,6 +199,14 @@ class ClipNotOpened(Fault):
 
 
 @dataclass
+class OptionNotTaken(Fault):
+    """An option of the command line that does not count for files of this kind."""
+
+    option: str
+    path: str
+
+
+@dataclass
 class UnknownClipFormat(Fault):
     """A file of another format than those that are read."""
 

@@ -10,7 +10,8 @@ class Origin:
     """Source file of a recording and how it was read; None where nothing had to be settled.
 
     unit_m: m per unit of length in the file. up: its axis that points up. bind_frames: at its
-    beginning, which hold the rest pose and are left out.
+    beginning, which hold the rest pose and are left out. miscount: frames that the file
+    announces, and that it holds, where these are more.
     """
 
     clip: str
@@ -19,6 +20,7 @@ class Origin:
     up: str | None = None
     up_guessed: bool = False
     bind_frames: int = 0
+    miscount: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True)

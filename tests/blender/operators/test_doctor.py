@@ -1,6 +1,7 @@
 """The doctor on the command line, and recipes that repair what it found."""
 
 import json
+import re
 from io import StringIO
 from pathlib import Path
 
@@ -40,6 +41,23 @@ def test_what_is_wrong_is_told_with_its_remedy(tmp_path: Path, capsys) -> None:
 def test_a_clean_clip_is_called_so(capsys) -> None:
     assert main(["doctor", str(mocap_path(CLIP)), *FRAMES]) == 0
     assert capsys.readouterr().out == "Nothing is wrong with the recording.\n"
+
+
+def test_more_frames_than_the_file_announces_are_told(tmp_path: Path, capsys) -> None:
+    text, clip = mocap_path(CLIP).read_text(), tmp_path / "longer.bvh"
+    clip.write_text(re.sub(r"Frames:\s*\d+", "Frames: 300", text))
+    assert main(["doctor", str(clip), *FRAMES]) == 0
+    assert "announces 300 frames, but 336 lines" in capsys.readouterr().out
+    assert main(["analyze", str(clip), *FRAMES, "--rate", "100"]) == 0
+    told = capsys.readouterr()
+    assert "announces 300 frames, but 336 lines" in told.err
+    assert "at 100 frames a second" in told.out
+
+
+@pytest.mark.parametrize(("option", "value"), [("--rate", "60"), ("--up", "Z"), ("--asf", "a.asf")])
+def test_an_option_that_would_go_unheard_is_refused(option, value, capsys) -> None:
+    assert main(["analyze", "clip.fbx", option, value]) == 2
+    assert f"“{option}” does not count for clip.fbx" in capsys.readouterr().err
 
 
 def test_a_recipe_is_not_overwritten(tmp_path: Path, capsys) -> None:

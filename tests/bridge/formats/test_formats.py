@@ -175,6 +175,16 @@ def test_rate_is_the_one_the_printed_digits_stand_for(
     assert 1.0 / clip.frame_time == pytest.approx(rate, rel=1e-12)
 
 
+def test_a_rate_that_is_given_counts_instead_of_the_printed_one(tmp_path: Path) -> None:
+    assert 1.0 / read_bvh(bvh_file(tmp_path, BVH), 50.0).frame_time == pytest.approx(50.0)
+
+
+def test_more_frames_than_announced_are_read_and_counted(tmp_path: Path) -> None:
+    assert read_bvh(bvh_file(tmp_path, BVH)).miscount is None
+    clip = read_bvh(bvh_file(tmp_path, edited(BVH, 17, "Frames: 1")))
+    assert (len(clip.positions), clip.miscount) == (2, (1, 2))
+
+
 # ---------------------------------------------------------------- complaints
 
 

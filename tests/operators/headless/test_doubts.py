@@ -7,6 +7,7 @@ from hangtime.operators.headless.doubts import doubts_about
 from hangtime.operators.words.doubt_text import MOST_DAMAGES, damage_doubts
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Recording
+from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.worker.pipeline import measure
 from hangtime.tests.helpers.clips import JUMP, load_recording
@@ -16,7 +17,7 @@ USUAL = MotionProblem()
 
 
 def told(recording: Recording, problem: MotionProblem = USUAL) -> list[str]:
-    return doubts_about(problem, None, measure(recording, problem))
+    return doubts_about(problem, None, measure(recording, problem), Origin("jump.bvh"))
 
 
 def leaping() -> Recording:
