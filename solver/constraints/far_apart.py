@@ -55,7 +55,7 @@ def check_apart(
     for one, other in combinations(held, 2):
         if not (one.asked or other.asked):
             continue  # what was recorded is the fit's affair
-        least, most = _reach(context.character, one.point, other.point)
+        least, most = reach(context.character, one.point, other.point)
         was = _recorded_apart(one, other)
         first, second = (one, other) if one.asked else (other, one)
         if _together(one, other):
@@ -130,7 +130,7 @@ def _still(place: FloatArray) -> Callable[[FloatArray], FloatArray]:
     return lambda times: np.tile(place, (len(times), 1))
 
 
-def _reach(character: Character, one: BodyPoint, other: BodyPoint) -> tuple[float, float]:
+def reach(character: Character, one: BodyPoint, other: BodyPoint) -> tuple[float, float]:
     """Bounds (m) of the distance of two points: from joint to joint along the body at most."""
     lines = character.ancestors(one.body), character.ancestors(other.body)
     common = next(body for body in lines[0] if body in lines[1])

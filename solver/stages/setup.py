@@ -17,6 +17,7 @@ from ..arrays import FloatArray
 from ..body.body_changes import changed_character, changed_points
 from ..body.dynamics import MomentFunction
 from ..body.proportions import changed_recording
+from ..constraints.capped_forces import check_capped
 from ..constraints.constraint_builder import build_constraints
 from ..constraints.contact_setup import added_contact, with_added, without_lifted
 from ..constraints.evaluation_context import EvaluationContext
@@ -48,7 +49,7 @@ from ..solid.solid_world import SolidWorld
 from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
-from .anticipation import anticipate, changed_jumps
+from .anticipation import Jump, anticipate, changed_jumps
 from .fit import ADAPT_COST_WEIGHTS, Fit, LinearisedPoses
 from .footing import check_sunk, on_faces, pin_turns
 from .initial_guess import resampled_fit
@@ -225,8 +226,8 @@ def check_places(
     fitted: Standing,
     target: Standing,
 ) -> None:
-    """Refuses what is too far apart for any body, or for one whose pose is held. Raises
-    ContradictoryPins, OutOfReach, PoseHeld.
+    """Refuses what is too far apart for any body, or for one whose pose is held, and caps on forces
+    that carry none. Raises ContradictoryPins, OutOfReach, PoseHeld, PeakTooLow.
 
     context, start: of the problem; fitted: where its contacts were; target: where they shall be.
     """
@@ -235,6 +236,8 @@ def check_places(
         moved = replace(start, places=target.places)
         check_apart(problem.requests, context, moved, fitted.places, pinned)
         check_poses(problem.requests, context, moved, fitted.places, pinned)
+        if not _retimed_jumps(problem, context, start, target.places):
+            check_capped(problem.requests, context, moved)
 
 
 def set_up(fit: Fit, problem: MotionProblem) -> Setup:
@@ -247,6 +250,7 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     durations, price = Durations.MOVING_GROUND, _price(fit, reference, requests)
     if not target.moves:  # the ground's clock is no jumper's to stretch
         context, start, durations = _anticipated(fit, problem, context, start, target.places, price)
+        check_capped(requests, context, replace(start, places=target.places))
     start = _with_constraints(_riding(start, asked.fitted, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
@@ -288,17 +292,12 @@ def _anticipated(
     price: JointPrice | None,
 ) -> tuple[EvaluationContext, Motion, Durations]:
     """Context and initial guess with the durations that go with where the contacts shall be."""
-    requests = problem.requests
-    timed = {timing.phase for timing in requests.timings}
-    kept = tuple(Interval(p.start, p.end) for p in context.phases if p.name in timed)
-    kept += tuple(Interval(hold.start, hold.end) for hold in context.timeline.holds)
-    if requests.solution.keep_times or start.transcription.periodic:  # a loop lasts whole frames
-        return context, start, Durations.RECORDED
-    jumps = changed_jumps(start, context.schedule, target, kept)
+    jumps = _retimed_jumps(problem, context, start, target)
     if not jumps:
         return context, start, Durations.RECORDED
     own = start is fit.motion and price is fit.price
     poses = fit.poses if own else LinearisedPoses(start, price)
+    kept = _kept_intervals(problem, context)
     found = anticipate(poses, context.schedule, target, kept, jumps)
     if found is None:
         return context, start, Durations.NONE_FOUND
@@ -314,6 +313,22 @@ def _anticipated(
         travel=partial(_travel, fit, phases),
     )
     return context, found.motion, Durations.FOUND
+
+
+def _retimed_jumps(
+    problem: MotionProblem, context: EvaluationContext, start: Motion, target: FloatArray
+) -> tuple[Jump, ...]:
+    """The jumps whose durations are to be found for contacts at target (n_contacts, 3) m."""
+    if problem.requests.solution.keep_times or start.transcription.periodic:
+        return ()  # a loop lasts whole frames
+    return changed_jumps(start, context.schedule, target, _kept_intervals(problem, context))
+
+
+def _kept_intervals(problem: MotionProblem, context: EvaluationContext) -> tuple[Interval, ...]:
+    """Those whose durations the artist has set."""
+    timed = {timing.phase for timing in problem.requests.timings}
+    kept = tuple(Interval(p.start, p.end) for p in context.phases if p.name in timed)
+    return kept + tuple(Interval(hold.start, hold.end) for hold in context.timeline.holds)
 
 
 def _riding(start: Motion, fitted: Standing, target: Standing) -> Motion:

@@ -201,6 +201,15 @@ class OutOfReach(RequestFault):
 
 
 @dataclass
+class PeakTooLow(RequestFault):
+    """A request's peak of contact forces, under which no body could keep up; least: it could not
+    with less than this. Both in standard weights (constants.py)."""
+
+    peak: float
+    least: float
+
+
+@dataclass
 class PoseHeld(RequestFault):
     """A pose holds the whole body through stances that a pin moves against each other, by
     metres."""
