@@ -77,7 +77,11 @@ KIND = ConstraintKind(
             "Limit Peak", "Cap the largest contact force, for a softer landing", default=True
         ),
         "peak": stored_number(
-            "Peak", "Largest contact force, in body weights", min=0.1, soft_max=10.0, default=3.0
+            "Peak",
+            "Largest contact force, in body weights (those on Earth: mass × 9.81 m/s²)",
+            min=0.1,
+            soft_max=10.0,
+            default=3.0,
         ),
         "use_friction": boolean("Custom Friction", "Set how slippery the ground is; 1 otherwise"),
         "friction": stored_number("Friction", min=0.0, soft_max=1.5, default=0.8),

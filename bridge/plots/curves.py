@@ -65,6 +65,7 @@ class Chart:
     missing: str = ""
 
 
+WEIGHTS = "body weights on Earth"  # also where gravity is another
 Takes = Mapping[Take, Traces]
 
 
@@ -80,7 +81,7 @@ def force_chart(takes: Takes, caps: tuple[Cap, ...]) -> Chart:
         if take is Take.ADAPTED:
             curves.append(Curve(take, traces.frames, total[:, 2], "Vertical"))
     missing = "" if curves else "Adapt to see forces"
-    return Chart("Contact Force", "body weights", tuple(curves), 2, caps=caps, missing=missing)
+    return Chart("Contact Force", WEIGHTS, tuple(curves), 2, caps=caps, missing=missing)
 
 
 def torque_chart(takes: Takes, bone: str, caps: tuple[Cap, ...]) -> Chart:
@@ -143,7 +144,7 @@ def _point_chart(takes: Takes, point: str) -> Chart:
         for take, t in takes.items()
         if point in t.contacts and t.forces.size  # a recording has contacts without forces
     )
-    return Chart(f"Force of {point}", "body weights", curves, 2)
+    return Chart(f"Force of {point}", WEIGHTS, curves, 2)
 
 
 def _distinct(takes: Takes, names: str) -> list[str]:

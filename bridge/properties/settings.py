@@ -153,7 +153,8 @@ class HangtimeSettings(bpy.types.PropertyGroup):
     gravity: chosen(
         number(
             "Gravity (m/s²)",
-            "Of the place where the motion is performed; 1.62 m/s² on the Moon",
+            "Of the place where the motion is performed; 1.62 m/s² on the Moon. Forces are told in "
+            "body weights on Earth all the same",
             default=STANDARD_GRAVITY,
             min=0.1,
             max=50.0,

@@ -53,7 +53,7 @@ class HangtimeView(bpy.types.PropertyGroup):
     labels: _switch("Labels", "Numbers beside pins, limits and arrows")
 
     plots: _switch("Plots", "Curves over time at the foot of the viewport", on=False)
-    plot_forces: _switch("Contact Forces", "In body weights")
+    plot_forces: _switch("Contact Forces", "In body weights, those on Earth")
     plot_torque: _switch("Torque", "Of the chosen joint, with its limit, in N·m")
     plot_bone: declared(
         text("Joint", "The bone whose joint's torque is plotted; the active one if empty")

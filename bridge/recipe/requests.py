@@ -60,7 +60,7 @@ slack = 2
 points = ["Left heel"]          # or bones = [...]; default: all contacts
 friction = 0.8                  # coefficient
 shape = "exact"                 # or "pyramid", of the friction cone
-peak = 3                        # body weights
+peak = 3                        # body weights on Earth, 9.81 N a kg
 match = 10                      # how much more than usual they are kept as they were
 
 [[clear]]                       # the way goes over an object of the scene

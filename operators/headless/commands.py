@@ -20,6 +20,7 @@ from ...solver.worker.pipeline import solve
 from ..words.analysis_text import analysis_text, starter_recipe
 from ..words.headline import headline
 from ..words.messages import together
+from ..words.report_text import gravity_lines
 from .clip import Clip, LoadedClip, load
 from .doctor import examined, told, write_recipe_of
 from .doubts import doubts_about
@@ -217,6 +218,8 @@ def _ask_about(problem: MotionProblem, loaded: LoadedClip, repairs: Repairs | No
     bodies = [body.name for body in subject.analysis.performance.character.bodies]
     for line in shapes_told(loaded.skin, bodies, subject.fleshed).splitlines():
         print(line)
+    for line in gravity_lines(problem.requests.body.gravity):
+        print(f"Gravity: {line}")
     for doubt in doubts_about(problem, repairs, subject, loaded.origin):
         print(f"Warning: {doubt}", file=sys.stderr)
 

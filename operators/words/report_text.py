@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from math import hypot
 
 from ...bridge.rows.choices import KeyChoice
+from ...solver.data.constants import STANDARD_GRAVITY
 from ...solver.data.contacts import PhaseKind
 from ...solver.data.reports.constraints import ConstraintReport
 from ...solver.data.reports.jumps import PhaseReport
@@ -118,6 +119,7 @@ def _input(report: Report) -> Iterator[str]:
         f"Figure      {figure.height_m:.2f} m, {figure.mass_kg:g} kg, "
         f"{figure.bodies} bodies, {figure.degrees_of_freedom} degrees of freedom"
     )
+    yield from (f"{'Gravity':<12}{line}" for line in gravity_lines(figure.gravity_m_s2))
     guesses = []
     if r.unit_guessed:
         guesses.append(f"one unit of the file is {r.unit_m:.4g} m (--unit)")
@@ -127,6 +129,13 @@ def _input(report: Report) -> Iterator[str]:
         yield f"Guessed     {' and '.join(guesses)}"
     if r.bind_pose_frames:
         yield f"Left out    {held_at_rest(r.bind_pose_frames)}"
+
+
+def gravity_lines(gravity: float) -> list[str]:
+    """What body weights mean where gravity (m/s²) is another than the Earth's: a line."""
+    if gravity == STANDARD_GRAVITY:
+        return []
+    return [f"{gravity:g} m/s²; body weights (BW) are those on Earth all the same"]
 
 
 def held_at_rest(count: int) -> str:
@@ -162,7 +171,7 @@ def _changes(report: Report) -> Iterator[str]:
     for peak in report.forces.peaks:
         yield (
             f"{peak.phase.capitalize():<11} what carries the body pushes with at most "
-            f"{peak.peak_bw:.1f} times the body's weight (frame {peak.frame:.0f})"
+            f"{peak.peak_bw:.1f} body weights (frame {peak.frame:.0f})"
         )
 
 
@@ -211,7 +220,7 @@ def _quality(report: Report) -> Iterator[str]:
         if left is not None:
             yield (
                 f"Physics     {kind.value}: unexplained force {left.force_rms_bw:.5f} "
-                f"of the weight, moment {left.moment_rms_bw_m:.5f} of weight × metre (rms)"
+                f"body weights, moment {left.moment_rms_bw_m:.5f} body weights × metre (rms)"
             )
             if left.moment_rms_bw_m > LEFT_AT_MOST[kind]:
                 yield "            more than it should be between the solver's nodes: choose fewer"

@@ -10,6 +10,7 @@ from .report_text import (
     amount,
     certificate_lines,
     durations_lines,
+    gravity_lines,
     joint_lines,
     loop_lines,
     retimed,
@@ -40,6 +41,7 @@ def summary(answer: Adapted, roles: Mapping[str, str]) -> str:
                 for p in retimed(report)
             ),
             *(f"Durations: {line[0].lower()}{line[1:]}" for line in durations_lines(report)),
+            *(f"Gravity: {line}" for line in gravity_lines(report.figure.gravity_m_s2)),
             *([] if peak is None else [_peak(peak, report.forces.recorded_peak_bw)]),
             *given_up_lines(report),
             *loop_lines(report),

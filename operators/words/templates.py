@@ -319,7 +319,7 @@ ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"
 AWAY = "“{name}” stays {amount:millimetres} from its place"
 AT_ITS_END = "{name} as far as its range goes"
 MISSED = {  # of a constraint, by its type
-    RowKind.BALANCE: "in {name}, {amount:.3g} of the body's weight is not carried as it must be",
+    RowKind.BALANCE: "in {name}, {amount:.3g} body weights are not carried as they must be",
     RowKind.MOMENT: "in {name}, the body would have to push off thin air ({amount:.3g} BW·m)",
     RowKind.PIN: AWAY,
     RowKind.PIN_SPEED: "“{name}” still slides at {amount:.3g} m/s",
@@ -329,9 +329,9 @@ MISSED = {  # of a constraint, by its type
     RowKind.TWIST: ANGLE_MISSED,
     RowKind.ORIENTATION: ANGLE_MISSED,
     RowKind.POSE: ANGLE_MISSED,
-    RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} of the body's weight",
-    RowKind.FRICTION: "“{name}” slips: {amount:.3g} of the body's weight beyond its friction",
-    RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} of the body's weight",
+    RowKind.PUSH: "“{name}” would have to pull with {amount:.3g} body weights",
+    RowKind.FRICTION: "“{name}” slips: {amount:.3g} body weights beyond its friction",
+    RowKind.PEAK: "“{name}” is exceeded by {amount:.3g} body weights",
     RowKind.SOLID: "{name} stays in by {amount:millimetres}",
     RowKind.RANGE: "{name} {amount:.3g}° beyond its range",
     RowKind.TORQUE: "“{name}” needs {amount:.3g} N·m more than its limit",

@@ -222,7 +222,7 @@ def test_forces_are_arrows_as_long_as_they_are_strong(armature: bpy.types.Object
     layer = shown(armature)[Part.FORCES]
     arrow = in_world(layer) - in_world(layer).min(axis=0)
     assert np.isclose(arrow[:, 2].max(), 2.0 * motion.PER_WEIGHT / METRES, rtol=1e-3)
-    assert words(layer) == ["2.0 × weight"]
+    assert words(layer) == ["2.0 body weights"]
     assert looks(shown(armature, 14.0)[Part.FORCES]) == set()
     assert list(shown(armature, 500.0)[Part.FORCES].build()) == []
 

@@ -216,7 +216,7 @@ def test_curves_are_saved_as_a_table(armature: bpy.types.Object, tmp_path: Path)
     line = next(line for line in lines if line["Frame"] == "50")
     assert float(line["Recording: Height of Centre of Mass (m)"]) == pytest.approx(1.05)
     assert float(line["Adapted: Torque of shin (N m)"]) == pytest.approx(50.0)
-    assert float(lines[0]["Adapted Vertical: Force of Left toe (body weights)"]) == 0.6
+    assert float(lines[0]["Adapted Vertical: Force of Left toe (body weights on Earth)"]) == 0.6
     assert [p.name for p in tmp_path.iterdir()] == ["plots.csv"]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hangtime.operators.words.report_text import higher
+from hangtime.operators.words.report_text import gravity_lines, higher
 
 
 @pytest.mark.parametrize(
@@ -17,3 +17,8 @@ from hangtime.operators.words.report_text import higher
 )
 def test_a_difference_of_heights_is_said_where_there_is_one(centimetres: float, said: str) -> None:
     assert higher(centimetres) == said
+
+
+def test_body_weights_are_told_to_be_the_earths_where_gravity_is_another() -> None:
+    assert gravity_lines(9.81) == []
+    assert gravity_lines(1.62) == ["1.62 m/s²; body weights (BW) are those on Earth all the same"]

@@ -49,7 +49,7 @@ def force_shapes(traces: Traces, frame: float, size: float) -> Iterator[Shape | 
     if np.linalg.norm(total) > LEAST_SAID:
         largest = int(strength.argmax())
         tip = points[largest] + PER_WEIGHT * size * weights[largest]
-        words = f"{np.linalg.norm(total):.1f} × weight"
+        words = f"{np.linalg.norm(total):.1f} body weights"
         yield Label(words, tuple(tip.tolist()), palette.FORCE)
 
 
@@ -59,7 +59,7 @@ def _unseen(point: FloatArray, weights: FloatArray, size: float) -> Iterator[Sha
     if strength > LEAST_FORCE:
         vector = PER_WEIGHT * size * weights
         yield solids.arrows(point[None], vector[None], SHAFT * size, palette.UNSEEN)
-        words = f"Unseen: {strength:.1f} × weight"
+        words = f"Unseen: {strength:.1f} body weights"
         yield Label(words, tuple((point + vector).tolist()), palette.UNSEEN)
 
 

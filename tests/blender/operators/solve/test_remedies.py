@@ -80,7 +80,7 @@ def test_a_failure_is_a_short_line_with_what_is_furthest_off_first() -> None:
     both = failure_of(NoSolution(Status.STALLED, (heavy, *worst), 0.0), 1, "hangtime.adapt")
     assert [row.name for row in both.rows] == ["Right Hand", "Knee", "ground 2"]
     assert both.short == failure.short
-    assert both.rows[-1].text.startswith("In ground 2, 0.115 of the body's weight")
+    assert both.rows[-1].text.startswith("In ground 2, 0.115 body weights")
     told = failure_of(UnseenSupport(1.0, 9.0), 1, "hangtime.analyze")
     assert len(told.short) <= 100
     assert not told.rows
