@@ -65,6 +65,8 @@ from ...solver.data.faults import (
     DependentRows,
     Fault,
     MissingPart,
+    NotBetweenFrames,
+    NothingLeft,
     OddScale,
     SceneFault,
     UnknownContactName,
@@ -202,6 +204,11 @@ def _places(values: dict[str, Any], fault: Fault) -> list[KeyPath]:
             return [("contact", i, "name") for i, entry in contacts if entry["name"] == fault.name]
         case OddScale():
             return [(RECORDING.header, "scale")]
+        case NotBetweenFrames():
+            return [(RECORDING.header, "missing")]
+        case NothingLeft():
+            keys = ("trim", "trim_end") if fault.trim >= fault.trim_end else ("trim_end", "trim")
+            return [(RECORDING.header, key) for key in keys]
         case MissingPart():
             return [("bones", fault.by if isinstance(fault, BoneTaken) else fault.part)]
         case UnknownReductionBone() | WrongWeights():

@@ -19,6 +19,9 @@ from hangtime.solver.data.faults import (
     BoneTaken,
     ContradictoryPins,
     MissingPart,
+    NotBetweenFrames,
+    NothingLeft,
+    OddScale,
     UnknownContact,
     UnknownContactName,
     UnknownPhase,
@@ -291,6 +294,20 @@ def test_a_missing_or_binary_file_is_refused(tmp_path) -> None:
 )
 def test_faults_of_the_solver_are_found_in_the_recipe(fault, part: str) -> None:
     assert locate(FULL, fault) == line_of(FULL, part)
+
+
+@pytest.mark.parametrize(
+    ("fault", "line"),
+    [
+        (NotBetweenFrames(999.0, 1.0, 200.0), 2),
+        (NothingLeft(300, 60, 200), 3),
+        (NothingLeft(30, 190, 200), 4),
+        (OddScale(90.0, 100.0, 1.0), 5),
+    ],
+)
+def test_remedies_of_a_recording_that_do_not_fit_it_are_found_in_the_recipe(fault, line) -> None:
+    text = "[recording]\nmissing = { 999 = 4 }\ntrim = 30\ntrim_end = 60\nscale = 90\n"
+    assert locate(text, fault) == line
 
 
 def test_faults_that_the_recipe_is_not_about_have_no_line() -> None:
