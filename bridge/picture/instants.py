@@ -51,16 +51,28 @@ def _smooth(x: FloatArray, samples: float) -> FloatArray:
     return np.convolve(np.pad(x, reach, mode="edge"), kernel / kernel.sum(), mode="valid")
 
 
-def instants(row: SheetRow, x: FloatArray, count: int) -> list[int]:
-    """Indices of about `count` instants worth showing, x: (T,) m where each would be drawn.
+def same_instants(lead: SheetRow, row: SheetRow) -> FloatArray:
+    """(T,) s, a row's instants at which it is where the lead is at each of its own: between the
+    same key times, where both have as many, else at the same time."""
+    if len(lead.key_times) != len(row.key_times):
+        return lead.times.clip(row.times[0], row.times[-1])
+    ends = [(each.times[0], *sorted(each.key_times), each.times[-1]) for each in (lead, row)]
+    return np.interp(lead.times, *ends)
 
+
+def instants(rows: Sequence[SheetRow], same: FloatArray, x: FloatArray, count: int) -> list[int]:
+    """Indices of about `count` of the first row's instants worth showing in all rows.
+
+    same: (R, T) s, each row's instants that go with them. x: (R, T) m, where each would be drawn.
     Key times, momentary marks, ends, lowest and highest; the others are put where the gaps are
-    widest.
+    widest. No figure hides another in any row.
     """
-    z = row.com[:, 2]
-    wished = [*_momentary(row), 0, len(x) - 1, int(z.argmin()), int(z.argmax())]
-    kept = with_keys(row, x, wished, count)
-    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x)))])
+    z = rows[0].com[:, 2]
+    keys = [nearest(s, t) for row, s in zip(rows, same, strict=True) for t in row.key_times]
+    marks = [nearest(s, t) for row, s in zip(rows, same, strict=True) for t in _momentary(row)]
+    wished = [*marks, 0, len(z) - 1, int(z.argmin()), int(z.argmax())]
+    kept = _apart(x, keys, wished, count)
+    along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(x[0])))])
     gaps = np.diff(along[kept])
     parts = np.ones(len(gaps), dtype=int)
     while parts.sum() < count - 1 and np.max(gaps / parts, initial=0.0) > 1.4 * CLOSE:
@@ -69,19 +81,20 @@ def instants(row: SheetRow, x: FloatArray, count: int) -> list[int]:
     for start, gap, n in zip(along[kept], gaps, parts, strict=False):
         between = start + gap * np.arange(1, n) / n
         shown.update(np.searchsorted(along, between).tolist())
-    return sorted(shown)
+    return _apart(x, keys, sorted(shown), len(shown))
 
 
-def with_keys(row: SheetRow, x: FloatArray, wished: Sequence[int], count: int) -> list[int]:
+def _apart(x: FloatArray, keys: Sequence[int], wished: Sequence[int], count: int) -> list[int]:
     """Indices of the key times, then of those wished for, that none before hides; in order.
 
-    count: about how many figures the row will have.
+    count: about how many figures a row will have.
     """
     kept: list[int] = []
-    keys = [nearest(row.times, t) for t in row.key_times]
-    even = float(np.ptp(x)) / max(count - 1, 1)
+    even = float(np.ptp(x[0])) / max(count - 1, 1)
     for apart, candidates in ((KEYS_CLOSE * even, keys), (CLOSE, wished)):
-        kept += (i for i in candidates if all(abs(x[i] - x[j]) >= apart for j in kept))
+        for i in candidates:
+            if np.abs(x[:, kept] - x[:, [i]]).min(initial=np.inf) >= apart:
+                kept.append(i)
     return sorted(kept)
 
 
@@ -102,6 +115,6 @@ def during(span: tuple[float, float], times: FloatArray, shown: Sequence[int]) -
     return [nearest(times, (span[0] + span[1]) / 2)]
 
 
-def _momentary(row: SheetRow) -> list[int]:
-    spans = [mark.span for mark in row.marks]
-    return [nearest(row.times, (a + b) / 2) for a, b in spans if b - a < MOMENTARY]
+def _momentary(row: SheetRow) -> list[float]:
+    """Middles, s, of marks that are shown for a moment only."""
+    return [(a + b) / 2 for a, b in (mark.span for mark in row.marks) if b - a < MOMENTARY]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from .annotations import Mark, Sphere, Thing, Tint, Tone, at, moved
-from .instants import during, instants, nearest, spread, with_keys
+from .instants import during, instants, nearest, same_instants, spread
 from .mark_meshes import Solid, merged, solids
 from .sheet import Limb, SheetRow, View
 
@@ -114,9 +114,17 @@ def lay_out(rows: Sequence[SheetRow], view: View | None = None) -> Layout:
     slide = np.zeros(len(lead.times))
     if not view.in_place:
         slide = spread(lead, SPACING * (view.figures - 1))
-    wished = lead.times[instants(lead, lead.com[:, 0] + slide, view.figures)]
+    slides = [np.interp(row.times, lead.times, slide) for row in turned]
+    same = np.stack([same_instants(lead, row) for row in turned])
+    x = np.stack(
+        [
+            np.interp(each, row.times, row.com[:, 0] + aside)
+            for each, row, aside in zip(same, turned, slides, strict=True)
+        ]
+    )
+    wished = same[:, instants(turned, same, x, view.figures)]
     floor = min(_ground(row) for row in turned)
-    tiers = tuple(_tier(r, np.interp(r.times, lead.times, slide), wished, floor) for r in turned)
+    tiers = tuple(_tier(*each, floor) for each in zip(turned, slides, wished, strict=True))
     reach = np.concatenate([tier.corners() for tier in tiers])
     return Layout(tiers, floor, reach.min(axis=0), reach.max(axis=0))
 
@@ -155,8 +163,7 @@ def _ground(row: SheetRow) -> float:
 
 def _tier(row: SheetRow, slide: FloatArray, wished: FloatArray, floor: float) -> Tier:
     path = row.com + slide[:, None] * RIGHT
-    same = [nearest(row.times, t) for t in wished.tolist()]
-    shown = with_keys(row, path[:, 0], same, len(same))
+    shown = [nearest(row.times, t) for t in wished.tolist()]
     centre = np.stack([limb.centre for limb in row.limbs], axis=1)
     rotation = np.stack([limb.rotation for limb in row.limbs], axis=1)
     sizes = np.array([limb.size for limb in row.limbs])

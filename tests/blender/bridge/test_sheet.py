@@ -172,6 +172,20 @@ def test_key_instants_are_shown_and_figures_keep_apart(rows):
         assert np.diff(x).min() > 0.3
 
 
+def test_both_rows_show_the_same_instants_also_where_one_flies_for_longer() -> None:
+    short = hopper("Recording", further=-1.0)
+    late = np.interp(TIMES, (0.0, 0.4, 0.8, 1.0), (0.0, 0.4, 0.7, 1.0))
+    at = np.searchsorted(TIMES, late).clip(max=len(TIMES) - 1)
+    limbs = tuple(
+        replace(limb, centre=limb.centre[at], rotation=limb.rotation[at]) for limb in short.limbs
+    )
+    long = replace(short, limbs=limbs, com=short.com[at], key_times=(0.4, 0.6, 0.8))
+    recording, adapted = layout.lay_out((short, long)).tiers
+    assert len(recording.figures) == len(adapted.figures) > 5
+    for one, other in zip(recording.figures, adapted.figures, strict=True):
+        assert one.com[2] == pytest.approx(other.com[2], abs=0.03)
+
+
 def test_a_farther_landing_is_as_much_farther_in_the_picture(rows):
     recording, adapted = layout.lay_out(rows).tiers
     apart = adapted.figures[-1].com - recording.figures[-1].com
