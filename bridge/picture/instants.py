@@ -56,8 +56,10 @@ def same_instants(lead: SheetRow, row: SheetRow) -> FloatArray:
     same key times, where both have as many, else at the same time."""
     if len(lead.key_times) != len(row.key_times):
         return lead.times.clip(row.times[0], row.times[-1])
-    ends = [(each.times[0], *sorted(each.key_times), each.times[-1]) for each in (lead, row)]
-    return np.interp(lead.times, *ends)
+    was, now = (
+        np.array([each.times[0], *sorted(each.key_times), each.times[-1]]) for each in (lead, row)
+    )
+    return np.interp(lead.times, was, now)
 
 
 def instants(rows: Sequence[SheetRow], same: FloatArray, x: FloatArray, count: int) -> list[int]:

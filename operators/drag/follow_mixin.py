@@ -236,7 +236,7 @@ class FollowedDrag(PolledOperator):
         summary = seen.summary
         return (
             f" · crouch {deeper(summary.deeper_cm)}, apex {higher(summary.higher_cm)}, "
-            f"force up to {summary.peak_bw:.1f} × weight"
+            f"force up to {summary.peak_bw:.1f} BW"
         )
 
 

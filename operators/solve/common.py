@@ -74,7 +74,7 @@ def hindrance(context: bpy.types.Context) -> str | None:
 def unready(context: bpy.types.Context) -> str | None:
     """Precondition: a sentence why no take of an armature can be shown now; None where one can."""
     armature = chosen_armature(context)
-    if shared().busy or session().solving is not None:
+    if at_work():
         return BUSY
     if armature is None or armature.type != "ARMATURE":
         active = present(context.view_layer).objects.active
@@ -88,6 +88,11 @@ def unready(context: bpy.types.Context) -> str | None:
     if current_action(armature) is None:
         return said(why_no_action(armature))
     return None
+
+
+def at_work() -> bool:
+    """Whether something is under way that the artist waits for."""
+    return shared().busy or session().solving is not None
 
 
 def tweaked(armature: bpy.types.Object) -> bool:

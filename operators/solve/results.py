@@ -11,9 +11,8 @@ from ...bridge.takes.takes import bake_shown, results_from
 from ...bridge.takes.write_result import remove_slot
 from ..names import OperatorId
 from ..operator_types import OperatorResult, PolledOperator
-from .common import TWEAK_MODE, chosen_armature, required_armature, tweaked
+from .common import BUSY, TWEAK_MODE, at_work, chosen_armature, required_armature, tweaked
 from .session import session
-from .task import CANCELLED
 
 NOTHING_ADAPTED = "Nothing has been adapted yet"
 BESIDE = "The armature {} performs the result beside the recording; there is nothing to switch"
@@ -72,6 +71,14 @@ class _OfResult(PolledOperator):
         if armature is None or result_of(armature) is None:
             return NOTHING_ADAPTED
         return TWEAK_MODE if tweaked(armature) else None
+
+
+class _OfSettledResult(_OfResult):
+    """Mixin: needs a result, while nothing is at work that may be writing the next one."""
+
+    @classmethod
+    def obstacle(cls, context: bpy.types.Context) -> str | None:
+        return BUSY if at_work() else super().obstacle(context)
 
 
 class CompareOperator(_OfResult, bpy.types.Operator):
@@ -136,7 +143,7 @@ class ShowAdaptedOperator(_OfResult, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class AcceptOperator(_OfResult, bpy.types.Operator):
+class AcceptOperator(_OfSettledResult, bpy.types.Operator):
     bl_idname = OperatorId.ACCEPT
     bl_label = "Accept"
     bl_description = (
@@ -175,7 +182,7 @@ class AcceptOperator(_OfResult, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class DiscardOperator(_OfResult, bpy.types.Operator):
+class DiscardOperator(_OfSettledResult, bpy.types.Operator):
     bl_idname = OperatorId.DISCARD
     bl_label = "Discard"
     bl_description = (
@@ -254,7 +261,8 @@ class CancelOperator(PolledOperator, bpy.types.Operator):
         return None if session().running else "Nothing is under way"
 
     def execute(self, _context: bpy.types.Context) -> OperatorResult:
+        solving = session().solving
         for operator in list(session().running):
             operator.leave()
-        self.report({"INFO"}, CANCELLED)
+        self.report({"INFO"}, "The drag was ended" if solving is None else solving.cancelled)
         return {"FINISHED"}

@@ -43,11 +43,13 @@ SHARES = {
 @dataclass
 class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
-    ValueError, for it would be a mistake of ours. of: the operator that runs it."""
+    ValueError, for it would be a mistake of ours. of, label: the operator that runs it, and what
+    its button says."""
 
     of: str = ""
     state: SolveState = SolveState.READING
     progress: Progress | None = None
+    label: str = "The work"
 
     def advance(self, to: SolveState) -> None:
         """The next part begins."""
@@ -76,6 +78,18 @@ class Solving:
         if not self.can_stop:
             raise ValueError(f"stopped while {self.state.value}")
         self.state = SolveState.STOPPING
+
+    @property
+    def has_result(self) -> bool:
+        """Whether what it was for is there, and it only makes ready what comes next."""
+        return self.state is SolveState.PREPARING
+
+    @property
+    def cancelled(self) -> str:
+        """What is told where the artist ends it."""
+        if self.has_result:
+            return f"{self.state.value.capitalize()} was cancelled; what {self.label} found is kept"
+        return f"{self.label} was cancelled while {self.doing}; nothing was changed"
 
     @property
     def share(self) -> float:

@@ -22,7 +22,6 @@ LOOK_EVERY = 0.02  # s
 LOOK_AGAIN = 0.1  # s
 BUDGET = 0.012  # s of work at each look
 STATUS = "Hangtime: {} (Esc cancels)"
-CANCELLED = "Cancelled; nothing was changed"
 TAKEN_AWAY = "Stopped, because the scene changed meanwhile; nothing was written. Try again"
 
 A = TypeVar("A")
@@ -48,7 +47,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         raise NotImplementedError
 
     def run(self, context: bpy.types.Context) -> OperatorResult:
-        solving = session().solving = Solving(type(self).bl_idname)
+        solving = session().solving = self._begun()
         task = self.task(context)
         finished = False
         try:
@@ -67,10 +66,13 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                 if solving.state is SolveState.SOLVING and shared().busy:  # interrupted
                     shared().close()
 
+    def _begun(self) -> Solving:
+        return Solving(type(self).bl_idname, label=type(self).bl_label)
+
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> OperatorResult:
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        self._solving = session().solving = Solving(type(self).bl_idname)
+        self._solving = session().solving = self._begun()
         session().failure = None
         armature = chosen_armature(context)
         self._uid = armature.session_uid if armature is not None else 0
@@ -85,12 +87,11 @@ class TaskOperator(ReadyOperator, FaultyOperator):
         return {"RUNNING_MODAL"}
 
     def modal(self, _context: bpy.types.Context, event: bpy.types.Event) -> OperatorResult:
-        if self not in session().running:  # ended from outside
-            return {"CANCELLED"}
-        if event.value == "PRESS" and event.type == "ESC":
+        if event.value == "PRESS" and event.type == "ESC" and self in session().running:
             self.leave()
-            self.report({"INFO"}, CANCELLED)
-            return {"CANCELLED"}
+            self.report({"INFO"}, self._solving.cancelled)
+        if self not in session().running:  # it may have been ended from outside, too
+            return {"FINISHED"} if self._solving.has_result else {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"} if self._solving.passes(event.type) else {"RUNNING_MODAL"}
         return self._work()

@@ -17,8 +17,10 @@ from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
 from hangtime.bridge.takes.write_result import write_adapted_incrementally
+from hangtime.operators.solve.common import BUSY
 from hangtime.operators.solve.results import result_of
 from hangtime.operators.solve.session import session
+from hangtime.operators.solve.solving import Solving
 from hangtime.operators.words.warning_text import NOT_MET
 from hangtime.solver.data.recording import PoseTrack
 from hangtime.solver.data.reports.jumps import TimeMap
@@ -63,6 +65,21 @@ def test_the_fit_says_in_words_how_near_it_is(analysed: bpy.types.Object) -> Non
     assert " cm apart" in second
     assert third.startswith("At worst ")
     assert current_action(analysed).hangtime.recording is None
+
+
+def test_a_result_is_neither_accepted_nor_discarded_while_something_is_at_work(
+    adapted: bpy.types.Object,
+) -> None:
+    assert bpy.ops.hangtime.accept.poll()
+    assert bpy.ops.hangtime.discard.poll()
+    session().solving = Solving()
+    try:
+        for name in ("accept", "discard"):
+            with pytest.raises(RuntimeError, match=BUSY):
+                getattr(bpy.ops.hangtime, name)()
+    finally:
+        session().solving = None
+    assert current_action(adapted) == adapted.hangtime.adapted
 
 
 def test_traces_are_kept_and_survive_saving(adapted: bpy.types.Object, tmp_path: Path) -> None:

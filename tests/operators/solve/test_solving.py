@@ -37,6 +37,17 @@ def test_the_share_never_falls_on_the_way() -> None:
     assert shares[-1] == 1.0
 
 
+def test_who_cancels_hears_what_was_cancelled_and_what_is_left() -> None:
+    under_way = Solving(label="Adapt")
+    assert under_way.cancelled == (
+        "Adapt was cancelled while reading the recording; nothing was changed"
+    )
+    assert not under_way.has_result
+    under_way = Solving(label="Analyze", state=SolveState.PREPARING)
+    assert under_way.cancelled == ("Preparing the drag was cancelled; what Analyze found is kept")
+    assert under_way.has_result
+
+
 def test_after_an_analysis_it_says_what_is_made_ready() -> None:
     under_way = solving()
     under_way.advance(SolveState.PREPARING)
