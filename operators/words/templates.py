@@ -223,7 +223,7 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.OutOfReach: "“{request}” is {metres:length} from “{other}”, with {seconds:.2f} s "
     "between them: nobody goes so far in that time. Move it nearer, give it more time, or switch "
     "Human Ranges off for a figure that is no human.",
-    faults.PeakTooLow: "“{request}” lets the ground push with {peak:.3g} body weights at most, "
+    faults.PeakTooLow: "“{request}” lets the ground push with {peak:plain} body weights at most, "
     "with which nobody keeps off the floor so long; {least:.2f} would not be enough either. Raise "
     "its peak, or let it hold for a shorter time.",
     faults.PoseHeld: "“{request}” holds the whole body, which then stands and lands where it did, "

@@ -19,20 +19,21 @@ from ..body.kinematics import BodyPoint
 from ..data.constants import STANDARD_GRAVITY
 from ..data.faults import PeakTooLow
 from ..data.requests import ForceRequest, Requests
+from ..data.row_kinds import RowKind
 from ..transcription.motion import Motion
 from .evaluation_context import EvaluationContext, touches
 from .far_apart import reach
 
-SLACK = 0.05  # m: soles give, limbs are let into the floor a little, forces beyond their cap
+SLACK = 0.05  # m: soles give, and limbs are let into the floor a little
 INSTANTS = 65  # beside those at which contacts and caps begin and end
-MOST, HALVINGS = 64.0, 12  # times the peaks, up to which those are sought that may carry the body
+MOST, HALVINGS = 50.0, 12  # standard weights, up to which peaks are sought that may carry the body
 
 
 @dataclass(frozen=True)
 class _Cap:
     """A request's cap on the forces of some points, from start to end, s."""
 
-    request: ForceRequest
+    name: str
     peak: float
     points: frozenset[int]
     start: float
@@ -48,47 +49,54 @@ def check_capped(requests: Requests, context: EvaluationContext, motion: Motion)
     caps = [_cap(r, context, motion) for r in requests.forces if r.peak is not None]
     if not caps or not requests.solution.solid or t.support is not None:
         return  # nothing is capped, there is no floor, or something unseen carries as well
+    lowest = min([context.schedule.floor_m, *motion.places[:, 2]])
     ends = [x for c in t.contacts for x in (c.contact.start, c.contact.end)]
     ends += [x for cap in caps for x in (cap.start, cap.end)]
     times = np.unique([*np.linspace(0.0, motion.duration, INSTANTS), *ends])
     times = times[(times >= 0.0) & (times <= motion.duration)]
-    push = np.array([_most_push(m, caps, motion) for m in 0.5 * (times[1:] + times[:-1])])
-    room = _highest(times, motion) - min(context.schedule.floor_m, *motion.places[:, 2]) + SLACK
+    limits = [_limit(middle, caps, motion) for middle in 0.5 * (times[1:] + times[:-1])]
+    push = np.array([most for most, _ in limits])
+    room = _highest(times, motion) - lowest + SLACK
+    let = len(caps) * RowKind.PEAK.tolerance
 
     def sinks(factor: float) -> BoolArray:
-        pull = context.character.gravity - factor * STANDARD_GRAVITY * push
+        pull = context.character.gravity - STANDARD_GRAVITY * (factor * push + let)
         return _sinks(times, pull, room)
 
-    if not sinks(1.0).any() or sinks(MOST).any():  # or it is not the peaks that are to blame
+    low, high = 1.0, max(1.0, MOST / min(cap.peak for cap in caps))
+    if not sinks(low).any() or sinks(high).any():  # or it is not the peaks that are to blame
         return
-    low, high = 1.0, MOST
     for _ in range(HALVINGS):
         middle = np.sqrt(low * high)
         low, high = (middle, high) if sinks(middle).any() else (low, middle)
-    worst = float(times[np.flatnonzero(sinks(low))[0]])
-    here = [cap for cap in caps if cap.start <= worst <= cap.end] or caps
-    cap = min(here, key=lambda each: each.peak)
-    raise PeakTooLow(cap.request.name, cap.peak, float(cap.peak * low))
+    worst = int(np.flatnonzero(sinks(low))[0])  # there it touches, before or after
+    cap = limits[worst][1] or limits[worst - 1][1] or caps[0]
+    raise PeakTooLow(cap.name, cap.peak, float(cap.peak * low))
 
 
 def _cap(request: ForceRequest, context: EvaluationContext, motion: Motion) -> _Cap:
     contacts = motion.transcription.contacts
     points = frozenset(c.point for c in contacts if touches(request.touching, c.contact))
     span = context.interval(request.name, request.when)
-    return _Cap(request, request.peak or 0.0, points, *span)
+    return _Cap(request.name, request.peak or 0.0, points, *span)
 
 
-def _most_push(instant: float, caps: Sequence[_Cap], motion: Motion) -> float:
-    """The most that all contacts may push with at an instant, s; standard weights."""
+def _limit(instant: float, caps: Sequence[_Cap], motion: Motion) -> tuple[float, _Cap | None]:
+    """The most that all contacts may push with at an instant, s, standard weights; and the cap, or
+    the lowest of those, that says so. Infinite where some force is not capped."""
     contacts = motion.transcription.contacts
     touching = {c.point for c in contacts if c.contact.start < instant < c.contact.end}
     here = [cap for cap in caps if cap.start < instant < cap.end]
     if not touching:
-        return 0.0
-    whole = [cap.peak for cap in here if cap.points >= touching]
+        return 0.0, None
+    covers = [[cap] for cap in here if cap.points >= touching]
     if frozenset[int]().union(*(cap.points for cap in here)) >= touching:
-        whole.append(sum(cap.peak for cap in here))
-    return min(whole, default=np.inf)
+        covers.append(here)
+    sums = [sum(cap.peak for cap in cover) for cover in covers]
+    if not sums:
+        return np.inf, None
+    lowest = int(np.argmin(sums))
+    return sums[lowest], min(covers[lowest], key=lambda cap: cap.peak)
 
 
 def _highest(times: FloatArray, motion: Motion) -> FloatArray:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..data.faults import NotInLoop, SeamStanceMoved
+from ..data.faults import NotInLoop, PeakTooLow, SeamStanceMoved
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack
 from ..data.row_kinds import RowKind
@@ -24,7 +24,7 @@ from ..transcription.transcription import Transcription
 from .continuation import continuation
 from .explicit import explicit
 from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
-from .setup import Setup, check_places, set_up
+from .setup import Setup, check_forces, check_places, set_up
 from .warm_start import Standing
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps
@@ -75,28 +75,47 @@ def unadapted(fit: Fit) -> Adaptation:
 def adapt(fit: Fit, problem: MotionProblem, *, progress: Progress | None = None) -> Adaptation:
     """Adapts a fitted performance to a problem (thesis 4.3, 4.4).
 
-    Raises UnknownPhase, UnknownContact, ContradictoryPins, OutOfReach, PoseHeld and the requests'
-    own faults.
+    Raises UnknownPhase, UnknownContact, ContradictoryPins, OutOfReach, PoseHeld, PeakTooLow and the
+    requests' own faults.
     What is not met with the durations that go with the pins, or only where guards are given up, is
     tried with the recorded ones, and the better of both returned; a loop keeps these, for it lasts
     whole frames. Raises SeamStanceMoved, NotInLoop of a loop. A solve that fails is returned with
     the best motion found and a status that says so; one that `progress` ends by raising Stopped,
     with the motion as it stood.
     """
-    setup = set_up(fit, problem)
-    check_places(fit, problem, setup.context, setup.start, setup.fitted, setup.target)
+    setup = _possible(fit, problem)
     _require_closed(setup)
     try:
         found = _solve(fit, problem, setup, progress)
         lacking = _shortcomings(found)
         if setup.durations is not Durations.FOUND or lacking == NO_SHORTCOMINGS:
             return found
-        setup = replace(set_up(fit, problem.keeping_times()), durations=Durations.NOT_MET)
+        setup = _with_recorded_durations(fit, problem)
         again = _solve(fit, problem, setup, progress)
         worse, better = (found, again) if _shortcomings(again) < lacking else (again, found)
         return replace(better, outcomes=(*worse.outcomes, *better.outcomes))
     except Stopped as stop:
         return _stopped(stop.motion, fit, setup)
+
+
+def _possible(fit: Fit, problem: MotionProblem) -> Setup:
+    """The set-up, where it is not seen to be impossible; with the recorded durations where forces
+    are capped too low for those that go with the pins."""
+    setup = set_up(fit, problem)
+    check_places(fit, problem, setup.context, setup.start, setup.fitted, setup.target)
+    try:
+        check_forces(problem, setup.context, setup.start, setup.target)
+    except PeakTooLow:
+        if setup.durations is not Durations.FOUND:
+            raise
+        setup = _with_recorded_durations(fit, problem)
+        check_forces(problem, setup.context, setup.start, setup.target)
+    return setup
+
+
+def _with_recorded_durations(fit: Fit, problem: MotionProblem) -> Setup:
+    """The set-up, where it could not be met with durations that go with the pins."""
+    return replace(set_up(fit, problem.keeping_times()), durations=Durations.NOT_MET)
 
 
 def _shortcomings(found: Adaptation) -> tuple[float, bool, float]:

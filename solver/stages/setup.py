@@ -226,8 +226,8 @@ def check_places(
     fitted: Standing,
     target: Standing,
 ) -> None:
-    """Refuses what is too far apart for any body, or for one whose pose is held, and caps on forces
-    that carry none. Raises ContradictoryPins, OutOfReach, PoseHeld, PeakTooLow.
+    """Refuses what is too far apart for any body, or for one whose pose is held. Raises
+    ContradictoryPins, OutOfReach, PoseHeld.
 
     context, start: of the problem; fitted: where its contacts were; target: where they shall be.
     """
@@ -236,8 +236,17 @@ def check_places(
         moved = replace(start, places=target.places)
         check_apart(problem.requests, context, moved, fitted.places, pinned)
         check_poses(problem.requests, context, moved, fitted.places, pinned)
-        if not _retimed_jumps(problem, context, start, target.places):
-            check_capped(problem.requests, context, moved)
+
+
+def check_forces(
+    problem: MotionProblem, context: EvaluationContext, start: Motion, target: Standing
+) -> None:
+    """Refuses caps on forces that carry nobody with the durations of start. Raises PeakTooLow.
+
+    context, start, target: as of `check_places`.
+    """
+    if not target.moves:
+        check_capped(problem.requests, context, replace(start, places=target.places))
 
 
 def set_up(fit: Fit, problem: MotionProblem) -> Setup:
@@ -250,7 +259,6 @@ def set_up(fit: Fit, problem: MotionProblem) -> Setup:
     durations, price = Durations.MOVING_GROUND, _price(fit, reference, requests)
     if not target.moves:  # the ground's clock is no jumper's to stretch
         context, start, durations = _anticipated(fit, problem, context, start, target.places, price)
-        check_capped(requests, context, replace(start, places=target.places))
     start = _with_constraints(_riding(start, asked.fitted, target), problem, context)
     same = start.transcription.basis is fit.motion.transcription.basis and reference is fit.motion
     weights = _cost_weights(requests)
@@ -292,7 +300,7 @@ def _anticipated(
     price: JointPrice | None,
 ) -> tuple[EvaluationContext, Motion, Durations]:
     """Context and initial guess with the durations that go with where the contacts shall be."""
-    jumps = _retimed_jumps(problem, context, start, target)
+    jumps = retimed_jumps(problem, context, start, target)
     if not jumps:
         return context, start, Durations.RECORDED
     own = start is fit.motion and price is fit.price
@@ -315,7 +323,7 @@ def _anticipated(
     return context, found.motion, Durations.FOUND
 
 
-def _retimed_jumps(
+def retimed_jumps(
     problem: MotionProblem, context: EvaluationContext, start: Motion, target: FloatArray
 ) -> tuple[Jump, ...]:
     """The jumps whose durations are to be found for contacts at target (n_contacts, 3) m."""

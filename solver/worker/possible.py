@@ -11,7 +11,7 @@ from ..data.problem import MotionProblem
 from ..data.status import Status
 from ..optimisation.sqp import FeasibleSet
 from ..stages.fit import Fit, recorded_motion
-from ..stages.setup import check_places, requested
+from ..stages.setup import check_forces, check_places, requested, retimed_jumps
 from ..transcription.ride import Ride
 
 
@@ -33,8 +33,11 @@ def stand_in(
 def check_requested(fit: Fit, problem: MotionProblem) -> None:
     """Everything that can be wrong with a problem, before the fit takes its seconds.
 
-    fit: a stand-in. Raises as `requested`, `build_constraints` and `check_places` do.
+    fit: a stand-in. Raises as `requested`, `build_constraints`, `check_places` and `check_forces`
+    do.
     """
     asked = requested(fit, problem)
     build_constraints(problem.requests, asked.context, asked.start.transcription)
     check_places(fit, problem, asked.context, asked.start, asked.fitted, asked.target)
+    if not retimed_jumps(problem, asked.context, asked.start, asked.target.places):
+        check_forces(problem, asked.context, asked.start, asked.target)

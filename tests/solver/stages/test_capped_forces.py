@@ -7,8 +7,9 @@ import pytest
 from hangtime.solver.constraints.capped_forces import check_capped
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.faults import PeakTooLow
-from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import BodyChange, ForceRequest, Requests, When
+from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.stages.setup import requested
 from hangtime.solver.worker.pipeline import measure, unfitted
 from hangtime.solver.worker.possible import check_requested
@@ -28,10 +29,11 @@ def check(*forces: ForceRequest, body: BodyChange | None = None) -> None:
     check_requested(unfitted(subject), subject.problem)
 
 
-def test_a_peak_that_carries_nobody_is_refused_with_one_that_does_not_either() -> None:
+@pytest.mark.parametrize("peak", [1e-6, 0.3])
+def test_a_peak_that_carries_nobody_is_refused_with_one_that_does_not_either(peak: float) -> None:
     with pytest.raises(PeakTooLow) as caught:
-        check(ForceRequest("Soft", peak=0.3))
-    assert (caught.value.request, caught.value.peak) == ("Soft", 0.3)
+        check(ForceRequest("Soft", peak=peak))
+    assert (caught.value.request, caught.value.peak) == ("Soft", peak)
     assert 0.3 < caught.value.least < 3.0
     with pytest.raises(PeakTooLow):
         check(ForceRequest("Soft", peak=caught.value.least))
@@ -45,6 +47,26 @@ def test_peaks_of_what_carries_together_are_added() -> None:
         check(left, right)
     assert caught.value.request == "Left"
     check(left)  # the right foot may carry all
+
+
+def test_the_cap_that_is_to_blame_is_named() -> None:
+    with pytest.raises(PeakTooLow) as caught:
+        check(
+            ForceRequest("Heel", peak=0.1, touching=("Left heel",)), ForceRequest("All", peak=0.5)
+        )
+    assert (caught.value.request, caught.value.peak) == ("All", 0.5)
+
+
+def test_where_flights_take_another_time_it_is_refused_once_that_is_known() -> None:
+    """Before the fit it might be that these would be shorter."""
+    problem = MotionProblem(
+        pins=(Pin("Further", "ground 2", offset=(0.0, 0.0, 0.3)),),
+        requests=Requests(forces=(ForceRequest("Soft", peak=0.3),)),
+    )
+    subject = measure(load_recording(HOP_CLIP), replace(problem, frames=FRAMES))
+    check_requested(unfitted(subject), subject.problem)
+    with pytest.raises(PeakTooLow):
+        adapt(fitted_hop(), problem)
 
 
 def test_a_moment_on_no_force_and_what_the_moon_needs_are_let_through() -> None:
