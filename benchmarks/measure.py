@@ -8,7 +8,7 @@ from ..devtools.peers import ipopt_peer
 from ..devtools.peers.task import PeerResult, Task
 from ..devtools.recordings import JUMP
 from ..solver.analysis.analyse import analyse
-from ..solver.stages.fit import Fit, fit
+from ..solver.fitting.fit import Fit, fit
 from ..solver.stages.implicit import Adaptation, adapt
 from . import floor, naive_peer, scaling, snopt_peer
 from .recordings import jump, recording

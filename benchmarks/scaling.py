@@ -16,10 +16,10 @@ from ..solver.body.anatomy import Part
 from ..solver.body.character import Character, Joint
 from ..solver.body.dynamics import MomentFunction
 from ..solver.body.joint_axes import JointAxes
+from ..solver.fitting.fit import ADAPT_COST_WEIGHTS, Fit, fit
 from ..solver.numerics.rotations import mean_rotation
 from ..solver.objectives.motion_metric import motion_metric
 from ..solver.optimisation.sqp import FeasibleSet, Outcome, restore
-from ..solver.stages.fit import ADAPT_COST_WEIGHTS, Fit, fit
 from ..solver.stages.implicit import adapt
 from ..solver.transcription.motion import Motion
 from ..solver.worker.pipeline import StageClock, Subject, fit_possible, measure, solve

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...solver.data.recording import digest
 from ...solver.data.requests import Requests
-from ...solver.stages.fit import Fit
+from ...solver.fitting.fit import Fit
 from ...solver.worker.pipeline import (
     FITTING,
     StageClock,

@@ -17,8 +17,8 @@ import bpy
 import numpy as np
 
 from ...solver.data.recording import Recording
+from ...solver.fitting.fit import Fit
 from ...solver.results.npz_export import save
-from ...solver.stages.fit import Fit
 from ...solver.stages.implicit import Adaptation
 from ...solver.transcription.motion import Motion
 from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure

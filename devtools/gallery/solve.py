@@ -9,8 +9,8 @@ from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.reports.report import as_json
 from ...solver.data.solver_options import Method
+from ...solver.fitting.fit import Fit
 from ...solver.results.npz_export import save
-from ...solver.stages.fit import Fit
 from ...solver.stages.implicit import Adaptation
 from ...solver.worker.pipeline import (
     AdaptationResult,

@@ -8,7 +8,7 @@ from ...solver.data.faults import Fault
 from ...solver.data.problem import OffsetAxes, Pin
 from ...solver.data.requests import Requests
 from ...solver.data.solver_options import Method, ObjectiveKind, SolverOptions
-from ...solver.stages.fit import Fit
+from ...solver.fitting.fit import Fit
 from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
 from ..processes import dump, undump
 from .jobs import SolvedJump, SolvedSource, SourceTask

@@ -12,10 +12,10 @@ from scipy.sparse import csc_matrix
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.data.problem import MotionProblem
+from ...solver.fitting.fit import Fit
 from ...solver.numerics.block_banded import BlockBanded
 from ...solver.numerics.splines import ORDER
 from ...solver.optimisation.sqp import worst_violation
-from ...solver.stages.fit import Fit
 from ...solver.stages.setup import set_up
 from ...solver.stages.warm_start import stance_moves, warm_start
 from ...solver.transcription.rows import Rows

@@ -18,8 +18,8 @@ from ...solver.body.anatomy import Part, Side
 from ...solver.data.problem import MotionProblem
 from ...solver.data.requests import PointAxes, PointRequest, Requests, When
 from ...solver.data.solver_options import HumanRanges, SolverOptions
+from ...solver.fitting.fit import Fit
 from ...solver.results.joint_report import joint_turns
-from ...solver.stages.fit import Fit
 from ...solver.stages.implicit import Adaptation
 from ...solver.worker.pipeline import StageClock, Subject, adapt_fit, fit_subject, measure
 from ..environment.virtual_environment import ROOT

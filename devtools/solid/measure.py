@@ -11,7 +11,7 @@ from ...bridge.files.reproportioned import build_reproportioned
 from ...operators.headless.quiet import quiet
 from ...solver.data.faults import Fault
 from ...solver.data.recording import BEYOND, Recording
-from ...solver.stages.fit import Fit
+from ...solver.fitting.fit import Fit
 from ...solver.worker.pipeline import (
     AdaptationResult,
     StageClock,

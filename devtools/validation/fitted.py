@@ -11,7 +11,7 @@ from ...solver.analysis.accelerations import com_acceleration
 from ...solver.arrays import FloatArray
 from ...solver.data.constants import STANDARD_GRAVITY, UP
 from ...solver.data.problem import MotionProblem, Unseen
-from ...solver.stages.fit import Fit
+from ...solver.fitting.fit import Fit
 from ...solver.worker.pipeline import fit_subject, no_fit
 from .contacts import joined
 from .trials import FEET, UNIT, GroundForces, Trial

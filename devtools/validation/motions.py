@@ -6,8 +6,8 @@ import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
 from ...solver.body.anatomy import Part
+from ...solver.fitting.fit import Fit
 from ...solver.results.certificate import loaded_drifts
-from ...solver.stages.fit import Fit
 from ...solver.transcription.motion import Motion, motion_inverse_dynamics
 from ...solver.worker.pipeline import dynamics_of
 from .causes.landings import RecordedLanding, recorded_landings

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ...solver.data.problem import MotionProblem
-from ...solver.stages.fit import Fit
+from ...solver.fitting.fit import Fit
 from ...solver.worker.pipeline import StageClock, fit_subject, measure, no_fit
 from ..recordings import HOPS, JUMP, find, read
 

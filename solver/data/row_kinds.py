@@ -12,7 +12,7 @@ class RowKind(Enum):
     """Constraint type: label, unit of its value, feasibility tolerance in that unit.
 
     Moment and pins hold at their nodes ten times better than an adaptation must between them
-    (stages/fit.py): closer, weak rows ask for long ways, and nobody has anything of it.
+    (fitting/fit.py): closer, weak rows ask for long ways, and nobody has anything of it.
     """
 
     BALANCE = ("balance", "BW", 1e-5)

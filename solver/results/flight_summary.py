@@ -7,8 +7,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.contacts import ContactSchedule, Phase, PhaseKind
 from ..data.reports.jumps import FlightSummary, JumpReport, RecordedFlight
+from ..fitting.fit import Fit
 from ..numerics.interpolation import interpolate
-from ..stages.fit import Fit
 from ..transcription.motion import Motion
 
 FrameOf = Callable[[float], float]  # the scene's frame at an instant, s

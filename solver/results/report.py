@@ -35,9 +35,9 @@ from ..data.reports.report import (
 )
 from ..data.requests import ConeShape, Vector
 from ..data.solver_options import Dynamics, Method
+from ..fitting.fit import Fit
 from ..optimisation.sqp import Outcome
 from ..solid.shape_changes import AS_IS
-from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation
 from ..transcription.contact_pins import PointContact

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..data.constants import STANDARD_GRAVITY
 from ..data.reports.constraints import AcceptedReport, FitNeeds, LetGoReport, UnseenSupportReport
-from ..stages.fit import Fit
+from ..fitting.fit import Fit
 from ..transcription.motion import Motion, pinned_instants
 from .flight_summary import scene_frame
 

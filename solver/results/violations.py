@@ -10,8 +10,8 @@ from ..data.constants import STANDARD_GRAVITY
 from ..data.problem import MotionProblem
 from ..data.row_kinds import RowKind, Violation
 from ..data.status import Status
+from ..fitting.fit import Fit
 from ..optimisation.guards import Guard, in_the_way
-from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..transcription.constraint import DenseViolation, dense_violation
 

@@ -1,1 +1,1 @@
-"""The stages of a solution: fit, problem set-up, warm start, implicit, explicit, interactive."""
+"""The stages of a solution after the fit: set-up, warm start, implicit, explicit, interactive."""

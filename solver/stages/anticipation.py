@@ -17,11 +17,11 @@ from ..analysis.timeline import Stretch, TimeWarp
 from ..arrays import FloatArray
 from ..body.anatomy import Part
 from ..data.contacts import ContactSchedule, Interval
+from ..fitting.fit import LinearisedPoses
 from ..inverse_kinematics.reseat import com_shift
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, dense_instants, greville_abscissae
 from ..transcription.motion import Motion
 from .durations import TimedMotion, find_durations
-from .fit import LinearisedPoses
 from .warm_start import Standing, continuation_steps, stance_moves, warm_start
 
 MIN_MOVE = 1e-6  # m, of a landing relative to its take-off

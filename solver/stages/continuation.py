@@ -8,11 +8,11 @@ from functools import partial
 
 from ..arrays import FloatArray
 from ..data.row_kinds import RowKind
+from ..fitting.fit import MAX_TURN
 from ..inverse_kinematics.arm_ik import reach_grips
 from ..optimisation.guards import Guard, with_guards
 from ..optimisation.sqp import FeasibleSet, Outcome, Progress, restore
 from ..transcription.motion import Motion
-from .fit import MAX_TURN
 from .setup import Setup
 from .warm_start import continuation_steps, partial_places, stance_moves, warm_start
 

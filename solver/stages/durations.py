@@ -21,12 +21,12 @@ import numpy as np
 from ..analysis.timeline import Stretch, TimeWarp
 from ..arrays import FloatArray
 from ..data.contacts import Interval
+from ..fitting.fit import LinearisedPoses
 from ..numerics.block_banded import BlockBanded
 from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet
 from ..transcription.motion import Motion
 from ..transcription.rows import Rows
-from .fit import LinearisedPoses
 
 DERIVATIVE_STEP = 1e-4  # of s, of the finite differences of the rows
 PROBE = 0.03  # of s, for which D is taken: a step with its bounds is only piecewise linear in it

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from ..arrays import FloatArray
 from ..constraints.constraint_builder import preferred_poses
 from ..data.solver_options import ObjectiveKind
+from ..fitting.fit import ADAPT_COST_WEIGHTS
 from ..numerics.block_banded import BlockBanded
 from ..objectives.least_squares import (
     AngleDerivatives,
@@ -27,7 +28,6 @@ from ..optimisation.sqp import Outcome, Progress, restore
 from ..transcription.motion import Motion
 from ..transcription.sampling import MotionFunction
 from ..transcription.transcription import Transcription
-from .fit import ADAPT_COST_WEIGHTS
 from .setup import Setup
 
 DAMPING_SHARE = 0.02  # of what REFERENCE_DRIFT costs: Levenberg damping of the steps

@@ -13,10 +13,10 @@ from ..data.contacts import ContactSchedule, Phase
 from ..data.faults import StandsBelow, StandsIn, TooSteep
 from ..data.problem import MotionProblem, Pin
 from ..data.scene import SceneObject
+from ..fitting.fit import Fit
 from ..scene.triangle_mesh import placed_mesh
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
-from .fit import Fit
 
 SUNK = 0.04  # m; as far as a place may be from the floor that it is put upon (grounding.py)
 

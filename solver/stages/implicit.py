@@ -15,6 +15,7 @@ from ..data.recording import PoseTrack
 from ..data.row_kinds import RowKind
 from ..data.solver_options import Method, ObjectiveKind
 from ..data.status import Durations, Status
+from ..fitting.fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
 from ..optimisation.guards import Guard, guarded, in_the_way
 from ..optimisation.sqp import MAX_STEPS, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import DenseViolation, dense_violation, exchange
@@ -23,7 +24,6 @@ from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from .continuation import continuation
 from .explicit import explicit
-from .fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
 from .setup import Setup, check_forces, check_places, set_up
 from .warm_start import Standing
 

@@ -12,12 +12,12 @@ from ..data.constants import STANDARD_GRAVITY
 from ..data.problem import MotionProblem
 from ..data.requests import PointRequest
 from ..data.solver_options import MIN_SPAN
+from ..fitting.fit import Fit
+from ..fitting.transcribe import body_points, point_contacts
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, SplineBasis, dense_instants, phase_breaks
 from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from ..unseen.support_force import harness, support_force
-from .fit import Fit
-from .transcribe import body_points, point_contacts
 
 MAX_SPAN = 0.08  # s, between knots that are not the fit's
 MAX_HELD_SPAN = 0.04  # s; a held frame tells nothing of the swing that physics makes of it

@@ -25,12 +25,12 @@ from ..data.problem import MotionProblem
 from ..data.reports.report import DragSummary
 from ..data.status import DragStatus
 from ..data.traces import Traces
+from ..fitting.fit import Fit
 from ..optimisation.guards import Guard, guarded
 from ..optimisation.kkt_step import LinearisedProblem
 from ..optimisation.sqp import FeasibleSet, restore
 from ..transcription.guard_rows import GuardRows
 from ..transcription.motion import Motion
-from .fit import Fit
 from .implicit import Adaptation
 from .platforms import find_standing
 from .setup import Setup, set_up

@@ -20,10 +20,10 @@ from ..data.faults import GroundNotThere, JerkyGround
 from ..data.problem import MotionProblem, Pin
 from ..data.recording import Recording
 from ..data.scene import SceneObject
+from ..fitting.fit import Fit
 from ..numerics.rotations import axis_rotation
 from ..scene.object_motion import ObjectMotion
 from ..transcription.ride import Ride
-from .fit import Fit
 from .footing import find_footing
 from .warm_start import Standing
 

@@ -31,6 +31,7 @@ from ..data.requests import AngleLimit, ConeLimit, Requests, TwistLimit
 from ..data.scene import SceneObject
 from ..data.solver_options import Dynamics, HumanRanges, Method, ObjectiveKind
 from ..data.status import Durations
+from ..fitting.fit import ADAPT_COST_WEIGHTS, Fit, LinearisedPoses
 from ..human.human_guard import HumanGuard, recorded_ranges
 from ..human.range_price import range_price
 from ..inverse_kinematics.reseat import reseat
@@ -50,7 +51,6 @@ from ..transcription.motion import Motion
 from ..transcription.torque_constraint import TorqueFunction, joint_torques
 from ..transcription.transcription import Transcription
 from .anticipation import Jump, anticipate, changed_jumps
-from .fit import ADAPT_COST_WEIGHTS, Fit, LinearisedPoses
 from .footing import check_sunk, on_faces, pin_turns
 from .initial_guess import resampled_fit
 from .platforms import find_standing, recorded_in

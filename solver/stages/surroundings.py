@@ -8,10 +8,10 @@ from ..arrays import FloatArray
 from ..constraints.evaluation_context import EvaluationContext
 from ..data.requests import Clear
 from ..data.scene import SceneObject
+from ..fitting.fit import Fit
 from ..scene.object_motion import ObjectMotion
 from ..solid.shape_changes import ShapeChanges
 from ..solid.solid_world import SolidWorld, TimeFunction, floor_heights, solid_world
-from .fit import Fit
 
 
 def surroundings(

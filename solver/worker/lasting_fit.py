@@ -14,8 +14,8 @@ import numpy as np
 from ..analysis.performance import Performance
 from ..data.contacts import ContactSchedule, Interval, gaps
 from ..data.row_kinds import RowKind
+from ..fitting.fit import Fit, LetGo, fit
 from ..optimisation.sqp import Progress
-from ..stages.fit import Fit, LetGo, fit
 from ..transcription.ride import Ride
 from ..transcription.rows import Rows
 

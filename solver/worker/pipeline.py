@@ -41,6 +41,7 @@ from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
 from ..doctor.examination.repair import as_asked
+from ..fitting.fit import Fit
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
 from ..optimisation.sqp import Step
@@ -52,7 +53,6 @@ from ..results.violations import most_telling
 from ..scene.checks import check_scene
 from ..solid.flesh import shape_flesh
 from ..solid.shape_changes import ShapeChanges
-from ..stages.fit import Fit
 from ..stages.implicit import Adaptation, adapt, unadapted
 from ..stages.platforms import recorded_rides
 from ..transcription.motion import Motion

@@ -9,8 +9,8 @@ from ..constraints.constraint_builder import build_constraints
 from ..data.contacts import ContactSchedule
 from ..data.problem import MotionProblem
 from ..data.status import Status
+from ..fitting.fit import Fit, recorded_motion
 from ..optimisation.sqp import FeasibleSet
-from ..stages.fit import Fit, recorded_motion
 from ..stages.setup import check_forces, check_places, requested, retimed_jumps
 from ..transcription.ride import Ride
 

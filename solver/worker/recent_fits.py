@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 
-from ..stages.fit import Fit
+from ..fitting.fit import Fit
 from .pipeline import FITTING, StageClock
 
 

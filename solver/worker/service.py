@@ -19,10 +19,10 @@ from ..doctor.examination.diagnose import diagnose
 from ..doctor.examination.repair import as_asked, unplaced, unplaced_skin
 from ..doctor.feet import find_feet
 from ..doctor.repairs import Repairs
+from ..fitting.fit import Fit
 from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality
 from ..results.unseen_support import fit_needs
-from ..stages.fit import Fit
 from ..stages.implicit import Adaptation
 from ..stages.interactive import Follower, change, pelvis_range
 from ..transcription.motion import Motion

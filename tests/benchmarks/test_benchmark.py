@@ -16,8 +16,8 @@ from hangtime.devtools.peers import ipopt_peer
 from hangtime.devtools.peers.task import Equations, Task, metric_matrix
 from hangtime.solver.body.anatomy import Part
 from hangtime.solver.data.problem import MotionProblem, Pin
+from hangtime.solver.fitting.fit import ADAPT_COST_WEIGHTS
 from hangtime.solver.objectives.motion_metric import motion_metric
-from hangtime.solver.stages.fit import ADAPT_COST_WEIGHTS
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.fitted_hop import fitted_hop
 from hangtime.tests.helpers.toy_problems import places, random_state, standing

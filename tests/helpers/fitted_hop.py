@@ -4,7 +4,7 @@ from functools import cache
 
 from hangtime.solver.analysis.analyse import Analysis, analyse
 from hangtime.solver.data.problem import MotionProblem
-from hangtime.solver.stages.fit import Fit, fit
+from hangtime.solver.fitting.fit import Fit, fit
 from hangtime.tests.helpers.clips import load_recording
 
 HOP_CLIP = "hop_01_01.bvh"  # the first of ten hops

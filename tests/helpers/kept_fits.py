@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hangtime.solver.data.recording import digest
 from hangtime.solver.data.requests import Requests
-from hangtime.solver.stages.fit import Fit
+from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.worker.pipeline import FITTING, StageClock, Subject, fit_subject
 
 

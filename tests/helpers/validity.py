@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.contacts import ContactSchedule
-from hangtime.solver.stages.fit import Fit
+from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.transcription.motion import Motion, dynamics_residual, pinned_instants
 
 RATE = 480.0  # Hz, finer than the nodes

@@ -17,7 +17,7 @@ from ....solver.data.recording import digest
 from ....solver.data.reports.recording import Origin
 from ....solver.data.reports.report import as_json
 from ....solver.data.solver_options import ObjectiveKind, ReductionKind
-from ....solver.stages.fit import Fit
+from ....solver.fitting.fit import Fit
 from ....solver.worker.pipeline import (
     AdaptationResult,
     StageClock,

@@ -9,8 +9,8 @@ from ....solver.arrays import FloatArray
 from ....solver.body.anatomy import Part, Side
 from ....solver.data.constants import UP
 from ....solver.data.contacts import Contact
+from ....solver.fitting.fit import Fit
 from ....solver.numerics.interpolation import interpolate
-from ....solver.stages.fit import Fit
 from ....solver.transcription.contact_pins import PointContact
 
 LEG = (Part.THIGH, Part.SHANK, Part.FOOT)

@@ -8,9 +8,9 @@ from dataclasses import fields, replace
 from types import ModuleType
 
 from ....solver.analysis import accelerations, force_timing, grounding
+from ....solver.fitting import fit, transcribe
 from ....solver.objectives.tracking_cost import CostWeights
 from ....solver.results import certificate
-from ....solver.stages import fit, transcribe
 from ....solver.transcription import compliant_sole
 
 # Constants by name, with the modules that hold them; the weights of the fit's cost are known too.

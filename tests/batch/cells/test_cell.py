@@ -18,7 +18,7 @@ from hangtime.batch.records.manifest import BatchSettings, CellPlan, Output, rea
 from hangtime.batch.records.result import CELLS, FITS, State, cell_folder, read_result
 from hangtime.bridge.formats.bvh import read_bvh
 from hangtime.solver.data.faults import OutputNotWritable
-from hangtime.solver.stages.fit import Fit
+from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.worker.unpickling import Unreadable, unpickled
 from hangtime.tests.helpers.clips import mocap_path
 

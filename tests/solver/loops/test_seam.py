@@ -9,7 +9,7 @@ from hangtime.solver.data.constants import STANDARD_GRAVITY
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.faults import SeamStanceMoved
 from hangtime.solver.data.problem import MotionProblem, Pin
-from hangtime.solver.stages.fit import Fit, fit
+from hangtime.solver.fitting.fit import Fit, fit
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.clips import load_recording

@@ -15,12 +15,12 @@ from hangtime.solver.data.requests import PhaseTiming, Requests
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import SolverOptions
 from hangtime.solver.data.status import Durations
+from hangtime.solver.fitting.fit import Fit, fit
+from hangtime.solver.fitting.transcribe import initial_guess, transcribe
 from hangtime.solver.stages import durations as durations_module
 from hangtime.solver.stages.anticipation import changed_jumps
-from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import set_up
-from hangtime.solver.stages.transcribe import initial_guess, transcribe
 from hangtime.solver.transcription.motion import Motion
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.fitted_hop import HOP_CLIP

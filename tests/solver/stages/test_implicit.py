@@ -11,8 +11,8 @@ from hangtime.solver.data.problem import MotionProblem, OffsetAxes, Pin
 from hangtime.solver.data.requests import Requests
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
 from hangtime.solver.data.status import Status
+from hangtime.solver.fitting.fit import fit
 from hangtime.solver.optimisation.sqp import Step
-from hangtime.solver.stages.fit import fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.tests.helpers.clips import load_recording

@@ -15,7 +15,7 @@ from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.requests import Requests
 from hangtime.solver.data.scene import SceneObject, SceneRole, SteadyMotion
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
-from hangtime.solver.stages.fit import Fit
+from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.stages.implicit import adapt
 from hangtime.solver.worker.pipeline import StageClock, fit_subject, measure
 from hangtime.tests.helpers.clips import load_recording

@@ -11,8 +11,8 @@ from hangtime.solver.body.anatomy import Part
 from hangtime.solver.constraints.joint_constraints import bend_function
 from hangtime.solver.data.contacts import PhaseKind
 from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.fitting.fit import Fit, fit
 from hangtime.solver.human.human_guard import MOST_BEYOND
-from hangtime.solver.stages.fit import Fit, fit
 from hangtime.solver.stages.implicit import Adaptation, adapt
 from hangtime.solver.stages.setup import Setup
 from hangtime.solver.transcription.constraint import dense_violation

@@ -16,10 +16,10 @@ from hangtime.solver.data.reports.recording import Origin
 from hangtime.solver.data.reports.report import Report
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.traces import UNSEEN_SUPPORT
+from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.results.npz_export import save
 from hangtime.solver.results.report import fit_quality
 from hangtime.solver.results.unseen_support import fit_needs
-from hangtime.solver.stages.fit import Fit
 from hangtime.solver.transcription.motion import dynamics_residual
 from hangtime.solver.worker.lasting_fit import lasting_fit
 from hangtime.solver.worker.pipeline import (

@@ -34,7 +34,7 @@ from hangtime.solver.data.requests import (
 )
 from hangtime.solver.data.row_kinds import RowKind
 from hangtime.solver.data.solver_options import HumanRanges, SolverOptions
-from hangtime.solver.stages.fit import Fit
+from hangtime.solver.fitting.fit import Fit
 from hangtime.solver.worker.pipeline import (
     ADAPTING,
     StageClock,

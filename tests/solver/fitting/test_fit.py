@@ -9,9 +9,9 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Bone, Recording
 from hangtime.solver.data.status import Status
+from hangtime.solver.fitting.fit import Fit, fit, on_finer_basis
+from hangtime.solver.fitting.transcribe import transcribe
 from hangtime.solver.numerics.rotations import axis_rotation
-from hangtime.solver.stages.fit import Fit, fit, on_finer_basis
-from hangtime.solver.stages.transcribe import transcribe
 from hangtime.tests.helpers.clips import load_recording
 from hangtime.tests.helpers.fitted_hop import HOP, HOP_CLIP, fitted_hop, frames_of
 from hangtime.tests.helpers.validity import assert_valid, joint_error
