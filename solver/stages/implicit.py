@@ -24,7 +24,8 @@ from ..transcription.motion import Motion
 from ..transcription.transcription import Transcription
 from .continuation import continuation
 from .explicit import explicit
-from .setup import Setup, check_forces, check_places, set_up
+from .requested import check_forces, check_places
+from .setup import Setup, set_up
 from .warm_start import Standing
 
 MAX_ATTEMPTS = 3  # each with twice as many continuation steps

@@ -11,7 +11,7 @@ from ..data.problem import MotionProblem
 from ..data.status import Status
 from ..fitting.fit import Fit, recorded_motion
 from ..optimisation.sqp import FeasibleSet
-from ..stages.setup import check_forces, check_places, requested, retimed_jumps
+from ..stages.requested import check_forces, check_places, requested, retimed_jumps
 from ..transcription.ride import Ride
 
 

@@ -10,7 +10,7 @@ from hangtime.solver.data.faults import PeakTooLow
 from hangtime.solver.data.problem import MotionProblem, Pin
 from hangtime.solver.data.requests import BodyChange, ForceRequest, Requests, When
 from hangtime.solver.stages.implicit import adapt
-from hangtime.solver.stages.setup import requested
+from hangtime.solver.stages.requested import requested
 from hangtime.solver.worker.pipeline import measure, unfitted
 from hangtime.solver.worker.possible import check_requested
 from hangtime.tests.helpers.clips import load_recording
