@@ -7,7 +7,7 @@ and L' depends on the joint angles alone. Forces are in body weights, so L' is i
 (thesis 4.1: scaling).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,7 +18,7 @@ from ..data.constants import STANDARD_GRAVITY
 from .character import Character
 from .kinematics import Pose, forward_kinematics
 
-BATCH = 96  # instants: what they need then stays in the processor's cache
+BATCH = 192  # instants: what they need then stays in the processor's cache
 
 
 class MomentFunction:
@@ -34,7 +34,8 @@ class MomentFunction:
 
     def value_at(self, posed: Pose, v: FloatArray, a: FloatArray) -> FloatArray:
         """(N, 3) the same at poses that are known."""
-        return self._momentum(posed, v, a) / self._weight
+        rate = [self._momentum(posed.at(some), v[some], a[some]) for some in _batches(len(v))]
+        return np.asarray(np.concatenate(rate) / self._weight)
 
     def jacobian(
         self, q: FloatArray, v: FloatArray, a: FloatArray
@@ -48,14 +49,18 @@ class MomentFunction:
         """The same at poses that are known."""
         count, n = v.shape
         rate, by_order = np.empty((count, 3)), np.empty((count, 3, 3, n))
-
-        for first in range(0, count, BATCH):
-            some = slice(first, first + BATCH)
+        for some in _batches(count):
             found = self._momentum.derivatives(posed.at(some), v[some], a[some])
             rate[some] = found[0].T
             for order, each in enumerate(found[1:]):
                 by_order[some, :, order] = each.transpose(2, 1, 0)
         return rate / self._weight, by_order / self._weight
+
+
+def _batches(count: int) -> Iterator[slice]:
+    """Parts of so many instants."""
+    for first in range(0, count, BATCH):
+        yield slice(first, first + BATCH)
 
 
 @dataclass(frozen=True)

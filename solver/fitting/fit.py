@@ -205,36 +205,50 @@ def fit(
     it ended, with a status that says so.
     """
     recorded = recorded_motion(performance, schedule, periodic=periodic, rides=rides)
-    transcription, x, places = recorded.transcription, recorded.x, recorded.places
     human = HumanGuard(recorded_ranges(recorded), recorded)
-    tracking_cost = _distance(transcription, performance, schedule)
-    if transcription.seam is not None:
-        x = transcription.seam.closed(x, tracking_cost.expand(x)[1])
-    feasible = FeasibleSet(transcription, places)
-    near = project(
-        feasible, tracking_cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress
-    )
     price = range_price(recorded)
     metric_of = partial(motion_metric, weights=FIT_COST_WEIGHTS, price=price)
-    metric = metric_of(feasible.motion(near.x))
-    outcomes, last = [near], near
-    for _ in range(1 + MAX_PLACE_UPDATES):
-        last = restore(feasible, metric, last.x, stage="fit", progress=progress)
-        outcomes.append(last)
-        if last.status is Status.SOLVED:
-            coarse = feasible.motion(last.x)
-            finer = on_finer_basis(coarse, spans_to_refine(coarse, FIT_TOLERANCE))
-            cost = _distance(finer.transcription, performance, schedule, price)
-            outcomes += _improved(finer, cost, metric_of, performance, human, progress)
-            break
-        places = reached_places(Motion(last.transcription, last.x, places))
-        feasible = replace(feasible, places=places)
+    outcomes = _valid_nearby(recorded, performance, schedule, metric_of, progress)
+    last = outcomes[-1]
+    if last.solved:
+        coarse = Motion(last.transcription, last.x, last.places)
+        finer = on_finer_basis(coarse, spans_to_refine(coarse, FIT_TOLERANCE))
+        cost_of = partial(_distance, finer.transcription, performance, schedule, price)
+        outcomes += _improved(finer, cost_of, metric_of, performance, human, progress)
+    places = last.places
     settled = tuple(
         replace(contact, place=place)
         for contact, place in zip(schedule.contacts, places, strict=True)
     )
     outcomes[-1] = outcomes[-1].unguarded()
     return Fit(tuple(outcomes), places, performance, replace(schedule, contacts=settled))
+
+
+def _valid_nearby(
+    recorded: Motion,
+    performance: Performance,
+    schedule: ContactSchedule,
+    metric_of: MetricOf,
+    progress: Progress | None,
+) -> list[Outcome]:
+    """A valid motion near the recording, on its knots: its distance counts until the rows nearly
+    hold. Where the places contradict each other, those that were reached are tried."""
+    transcription, x = recorded.transcription, recorded.x
+    cost = _distance(transcription, performance, schedule)
+    if transcription.seam is not None:
+        x = transcription.seam.closed(x, cost.expand(x)[1])
+    feasible = FeasibleSet(transcription, recorded.places)
+    outcomes = [
+        project(feasible, cost, x, stage="fit", max_steps=MAX_PROJECTION_STEPS, progress=progress)
+    ]
+    metric = metric_of(feasible.motion(outcomes[0].x))
+    for _ in range(1 + MAX_PLACE_UPDATES):
+        last = restore(feasible, metric, outcomes[-1].x, stage="fit", progress=progress)
+        outcomes.append(last)
+        if last.solved:
+            break
+        feasible = replace(feasible, places=reached_places(feasible.motion(last.x)))
+    return outcomes
 
 
 def recorded_motion(
@@ -266,7 +280,7 @@ def _distance(
 
 def _improved(
     finer: Motion,
-    cost: TrackingCost,
+    cost_of: Callable[[], TrackingCost],
     metric_of: MetricOf,
     performance: Performance,
     human: HumanGuard,
@@ -282,10 +296,7 @@ def _improved(
     for guards in ((human,), ()):
         wider = partial(with_guards, guards)
         feasible = wider(plain, finer.x)
-        nearer = project(
-            feasible, cost, finer.x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress
-        )
-        metric = cost.expand(nearer.x)[1]
+        nearer, metric = _nearer(feasible, cost_of(), finer.x, progress)
         restored = restore(
             feasible,
             metric,
@@ -300,6 +311,14 @@ def _improved(
             return [nearer, restored, *refine(restored, metric_of, ADAPT_TOLERANCE, progress)]
     restored = restore(plain, metric_of(finer), finer.x, stage="fit", progress=progress)
     return [restored, *refine(restored, metric_of, FIT_TOLERANCE, progress)]
+
+
+def _nearer(
+    feasible: FeasibleSet, cost: TrackingCost, x: FloatArray, progress: Progress | None
+) -> tuple[Outcome, BlockBanded]:
+    """Steps towards the recording, and the cost's own metric where they end."""
+    nearer = project(feasible, cost, x, stage="fit", max_steps=MAX_IMPROVEMENTS, progress=progress)
+    return nearer, cost.expand(nearer.x)[1]
 
 
 def _off(motion: Motion, performance: Performance) -> float:

@@ -22,7 +22,7 @@ from ..transcription.transcription import GAUSS_NODES, Transcription
 from .cost_to_go import CostToGo, EndTarget
 from .joint_price import JointPrice
 
-POSE_BATCH = 16  # spans
+POSE_BATCH = 32  # spans
 
 
 @dataclass(frozen=True)
@@ -125,6 +125,7 @@ class TrackingCost:
         self.transcription = transcription
         self.target = target
         share = 0.0 if price is None else weights.by_range
+        self._by_range = share * weights.shape  # of the price
         self.weights = replace(weights, shape=(1.0 - share) * weights.shape)
         self.points = marker_points(transcription.character)
         basis = transcription.basis
@@ -134,11 +135,9 @@ class TrackingCost:
         self._load = weights.com_acceleration / STANDARD_GRAVITY**2
         self._force_metric = self._made_force_metric()
         n = transcription.character.n_angles
-        self._turning = self._damping = np.broadcast_to(0.0, (len(times), n, n))
+        self._price = np.broadcast_to(0.0, (len(times), n, n))
         if price is not None:
-            metric = price.metric(forward_kinematics(transcription.character, target.angles))
-            self._turning = share * weights.shape * metric
-            self._damping = weights.damping * metric
+            self._price = price.metric(forward_kinematics(transcription.character, target.angles))
         time = weights.acceleration_time
         to_go = CostToGo(transcription, target.ends, self.points, time, weights.position)
         goes_on = weights.goes_on and not transcription.periodic  # a loop goes on in itself
@@ -169,7 +168,7 @@ class TrackingCost:
             angles=motion[:, t.layout.angles] - target.angles[nodes],
             acceleration=second[:, t.layout.angles] - target.accelerations[nodes],
             com_acceleration=second[:, t.layout.com] - target.com_acceleration[nodes],
-            turning=self._turning[nodes],
+            turning=self._by_range * self._price[nodes],
         )
 
     def value(self, x: FloatArray) -> float:
@@ -238,7 +237,8 @@ class TrackingCost:
         slope[:, com] = p.position * at.world.mean(axis=1) + p.com * at.com
         curvature = self._smooth * np.einsum("njk,nk->nj", angle, at.acceleration)
         first = self.transcription.basis.first_coefficient[spans]
-        damping = self._damping[GAUSS_NODES * spans.start : GAUSS_NODES * spans.stop]
+        nodes = slice(GAUSS_NODES * spans.start, GAUSS_NODES * spans.stop)
+        damping = p.damping * self._price[nodes]
         metric[:, angles, angles] += damping
         self._add_windows(at, metric, angle + damping, first, matrix)
         value, second = at.values

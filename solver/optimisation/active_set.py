@@ -96,7 +96,7 @@ class _WorkingSet:
             side[rows[pulls]] = 0.0
         u = np.zeros(len(side))
         u[rows] = push
-        reached = -program.stiffness[:, rows] @ push
+        reached = -push @ program.stiffness[rows]  # which is symmetric; rows lie together
         return _WorkingSet(program, rows, np.linalg.inv(own), u, reached)
 
     @property
@@ -150,7 +150,7 @@ class _WorkingSet:
                 push = float(until[first])
             self.u[rows] -= sign * push * share
             self.u[row] += sign * push
-            self.reached -= sign * push * (column - program.stiffness[:, rows] @ share)
+            self.reached -= sign * push * (column - share @ program.stiffness[rows])
             changes += 1
             if first < 0:
                 self._join(row, share, own)
