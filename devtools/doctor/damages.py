@@ -9,12 +9,15 @@ import numpy as np
 
 from ...solver.arrays import IntArray
 from ...solver.body.anatomy import Part
+from ...solver.data.problem import Mend
 from ...solver.data.recording import Recording
 from ...solver.data.scaling import scaled_recording
 from ...solver.doctor.examination.repair import turned
 from ...solver.doctor.figure import figure_of
 from ...solver.doctor.finding import FindingKind
-from ...solver.doctor.local_poses import LocalPoses, angles_between
+from ...solver.doctor.frames.exchanges import KINDS, LIMBS
+from ...solver.doctor.limbs import partners
+from ...solver.doctor.local_poses import LocalPoses
 from ...solver.doctor.repairs import Repairs, UpAxis
 from ...solver.numerics.interpolation import interpolate
 from ...solver.numerics.rotations import rotation_matrix
@@ -35,11 +38,12 @@ class Damaged:
 
 @dataclass(frozen=True)
 class Damage:
-    """kind: of the finding that names it rightly."""
+    """kind: of the finding that names it rightly, and also: others that do so together with it."""
 
     name: str
     kind: FindingKind
     do: Callable[[Recording, np.random.Generator], Damaged]
+    also: tuple[FindingKind, ...] = ()
 
     def of(self, recording: Recording) -> Damaged:
         """The damage done to a recording, alike in every run."""
@@ -132,19 +136,32 @@ def joined(metres: float) -> Damage:
     return Damage(f"jump of {metres:g} m", FindingKind.JUMP, do)
 
 
-def exchanged(frames: int) -> Damage:
-    """Left and right thigh exchanged on some frames, as video capture mistakes them, from where
-    they differ most."""
+def exchanged(frames: int, *limbs: Mend, last: bool = False, angles: bool = False) -> Damage:
+    """Left and right limbs exchanged on some frames, from where they differ most, or on the last:
+    as video capture mistakes them, each bone 5° off, for it exchanges nothing exactly, or their
+    angles, as programs do."""
 
-    def do(recording: Recording, _: np.random.Generator) -> Damaged:
-        local, thighs = LocalPoses.of(recording), figure_of(recording).of(Part.THIGH)
-        turns = local.rotations[:, thighs]
-        apart = angles_between(turns[:, 0], turns[:, 1])
-        first = 12 + int(np.argmax(apart[12 : -frames - 12]))
-        local.rotations[first : first + frames, thighs] = turns[first : first + frames, ::-1]
-        return Damaged(local.posed(recording), recording)
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        figure, damaged = figure_of(recording), recording
+        pairs = [partners(recording, figure, LIMBS[each])[angles] for each in limbs]
+        apart = np.linalg.norm(np.diff(pairs[0].ways(recording)[:, :, 0], axis=1), axis=(1, 2))
+        count = len(recording.frames)
+        first = count - frames if last else 12 + int(np.argmax(apart[12 : -frames - 12]))
+        where = (np.arange(count) >= first) & (np.arange(count) < first + frames)
+        for pair in pairs:
+            damaged = pair.exchanged(damaged, where)
+        local = LocalPoses.of(damaged)
+        for bone in () if angles else np.concatenate([pair.bones.ravel() for pair in pairs]):
+            axis = rng.normal(size=3)
+            off = rotation_matrix(np.radians(5.0) * axis / np.linalg.norm(axis))
+            local.rotations[where, bone] = local.rotations[where, bone] @ off
+        return Damaged(local.posed(damaged), recording)
 
-    return Damage(f"thighs exchanged, {frames} frames", FindingKind.JUMP, do)
+    what = " and ".join(each.value.removeprefix("exchanged ") for each in limbs)
+    kinds = [KINDS[each] for each in limbs]
+    which = f"{'the last ' if last else ''}{frames} frames"
+    name = f"{what}{' by angles' if angles else ''} exchanged, {which}"
+    return Damage(name, kinds[0], do, tuple(kinds[1:]))
 
 
 def flipped(frames: int) -> Damage:
@@ -313,7 +330,10 @@ DAMAGES = (
     *map(spiked, (20.0, 45.0, 120.0)),
     *map(burst, (2, 5)),
     *map(joined, (0.1, 0.4)),
-    exchanged(30),
+    *(exchanged(frames, limbs) for limbs in (Mend.LEGS, Mend.ARMS) for frames in (5, 15, 30)),
+    exchanged(30, Mend.LEGS, last=True),
+    exchanged(30, Mend.LEGS, angles=True),
+    exchanged(30, Mend.LEGS, Mend.ARMS),
     *map(flipped, (2, 12)),
     *map(held, (1, 6)),
     *map(dropped, (1, 4)),

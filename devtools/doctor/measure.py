@@ -58,8 +58,9 @@ def examine(name: str, recording: Recording, damage: Damage) -> Examined:
     damaged = damage.of(recording)
     diagnosis = diagnose(damaged.recording)
     told = [finding for finding in diagnosis.findings if not finding.kind.note]
-    found = any(finding.kind is damage.kind for finding in told)
-    usual = (damage.kind, *OWN_FAULTS.get(name, ()))
+    right = (damage.kind, *damage.also)
+    found = {*right} <= {finding.kind for finding in told}
+    usual = (*right, *OWN_FAULTS.get(name, ()))
     false = tuple(f.kind.value for f in told if f.kind not in usual)
     mended = repaired(damaged.recording, diagnosis.repairs)
     error = None

@@ -11,12 +11,19 @@ from ...solver.doctor.repairs import Repairs
 MOST_PLACES = 6
 HEALTHY = "Nothing is wrong with the recording."
 
+EXCHANGED = (
+    "are exchanged {where}, as capture mistakes them: {part} leaps by {amount} where that begins "
+    "or ends, and if they are exchanged back it does not."
+)
+
 # {n}: the number, {speed} and {way}: of it, without its sign, and upwards or downwards, {amount}:
 # with its unit, {part}, {where}: "at frame 12" or "in frames 3 to 9, 40"; "" without frames.
 # {clock}: how the recording is played.
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
     FindingKind.BIND_POSE: "The rest pose is held {where}, and the motion jumps from it.",
+    FindingKind.EXCHANGED_LEGS: f"The left and the right leg {EXCHANGED}",
+    FindingKind.EXCHANGED_ARMS: f"The left and the right arm {EXCHANGED}",
     FindingKind.FLIP: "{part} is turned by half a turn {where}.",
     FindingKind.SPIKE: "Frames are far from those around them, {part} by {amount}: {where}.",
     FindingKind.HELD_FRAMES: "The pose of the frame before is held amid a movement {where}.",
@@ -53,6 +60,8 @@ ADVICE = {
 REMEDIES = {
     FindingKind.UP_AXIS: "Turn Upright",
     FindingKind.BIND_POSE: "Leave Out",
+    FindingKind.EXCHANGED_LEGS: "Exchange Back",
+    FindingKind.EXCHANGED_ARMS: "Exchange Back",
     FindingKind.FLIP: "Turn Back",
     FindingKind.SPIKE: "Smooth Over",
     FindingKind.HELD_FRAMES: "Fill In",

@@ -25,6 +25,8 @@ class Unseen(Enum):
 class Mend(Enum):
     """A repair of poses. Its value is the word in recipes."""
 
+    LEGS = "exchanged legs"
+    ARMS = "exchanged arms"
     FLIPS = "flips"
     SPIKES = "spikes"
     HELD_FRAMES = "held frames"

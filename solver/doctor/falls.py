@@ -58,15 +58,15 @@ Spans = tuple[tuple[float, float], ...]
 @dataclass(frozen=True)
 class Trusted:
     """Which falls tell a clock. fewest: frames of one. but: where frames are held or missing, or
-    something unseen carries the body, so that they are not the clock's."""
+    something unseen carries the body: those that touch them may be cut, and are not the clock's."""
 
     fewest: int = FEWEST
     but: Spans = ()
 
     def holds(self, count: int, span: tuple[float, float]) -> bool:
         """Whether one of so many frames, from the first to the last of a span, does."""
-        first, last = span
-        return count >= self.fewest and not any(a <= last and first <= b for a, b in self.but)
+        before, after = span[0] - 1.0, span[1] + 1.0
+        return count >= self.fewest and not any(a <= after and before <= b for a, b in self.but)
 
 
 ALL = Trusted()

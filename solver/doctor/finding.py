@@ -13,6 +13,8 @@ class FindingKind(Enum):
 
     UP_AXIS = "up axis"
     BIND_POSE = "bind pose"
+    EXCHANGED_LEGS = "exchanged legs"
+    EXCHANGED_ARMS = "exchanged arms"
     FLIP = "flip"
     SPIKE = "spike"
     HELD_FRAMES = "held frames"

@@ -19,6 +19,7 @@ from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale,
 from ..figure import figure_of
 from ..finding import Finding, FindingKind
 from ..footing import find_footing, find_rise, unseen_places
+from ..frames.exchanges import KINDS, LIMBS, find_exchange
 from ..frames.flips import find_flips
 from ..frames.jumps import find_jumps
 from ..frames.missing import find_dropped, find_held
@@ -87,6 +88,8 @@ def diagnose(
     recording = cured(recording, _find_bind_pose(recording))
     _require_length(recording)
     figure = figure_of(recording, chosen)
+    for limbs in LIMBS:
+        recording = cured(recording, find_exchange(recording, figure, limbs))
     for find in (find_flips, find_spikes):
         recording = cured(recording, find(recording, figure))
     recording = cured(recording, find_held(recording))
@@ -165,7 +168,7 @@ def _trusted(found: list[Finding], rate: float) -> Trusted:
     """The falls that tell the clock; of what was smoothed those that are longer than its window."""
     noisy = any(finding.kind is FindingKind.NOISE for finding in found)
     fewest = 2 * reach(rate) + 1 if noisy else FEWEST
-    return Trusted(fewest, _places(found, FindingKind.HELD_FRAMES, *GAPS))
+    return Trusted(fewest, _places(found, FindingKind.HELD_FRAMES, *KINDS.values(), *GAPS))
 
 
 def _places(found: list[Finding], *kinds: FindingKind) -> Spans:

@@ -15,6 +15,7 @@ from ...data.scaling import scaled_recording
 from ...skeleton.bind_pose import bind_frames
 from ...skeleton.mirror import mirrored
 from ..figure import Figure, figure_of
+from ..frames.exchanges import exchanged_back
 from ..frames.flips import unflipped
 from ..frames.missing import held_frames
 from ..frames.spikes import unsound_spikes
@@ -149,6 +150,8 @@ def mended(
 
 def _with(mend: Mend, recording: Recording, figure: Figure) -> Recording:
     match mend:
+        case Mend.LEGS | Mend.ARMS:
+            return exchanged_back(recording, figure, mend)
         case Mend.FLIPS:
             return unflipped(recording, figure)
         case Mend.SPIKES:

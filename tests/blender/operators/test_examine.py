@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -264,6 +267,46 @@ def test_repairs_are_undone_saved_and_exported(examined, tmp_path) -> None:
     assert len(findings(again.hangtime)) == 3
     bpy.ops.hangtime.repair(kind="spike")
     assert repaired_since(again.hangtime)
+
+
+def legs_exchanged(source: Path, target: Path, frames: slice) -> Path:
+    """A copy of a BVH file in which each leg has the other's angles."""
+    head, rows = source.read_text().split("Frame Time:")
+    clock, *lines = rows.strip().splitlines()
+    joints = re.findall(r"(?:ROOT|JOINT) (\S+)", head)
+    values = np.array([line.split() for line in lines], float)
+    for part in ("Hip", "Knee", "Ankle", "Toe"):
+        left, right = (
+            slice(3 * joints.index(side + part) + 3, 3 * joints.index(side + part) + 6)
+            for side in ("Left", "Right")
+        )
+        values[frames, left], values[frames, right] = (
+            values[frames, right].copy(),
+            values[frames, left].copy(),
+        )
+    changed = "\n".join(" ".join(f"{value:.6f}" for value in row) for row in values)
+    target.write_text(f"{head}Frame Time: {clock.strip()}\n{changed}\n")
+    return target
+
+
+def test_legs_that_were_exchanged_in_a_file_are_exchanged_back(tmp_path) -> None:
+    rigs.reset()
+    source = mocap_path("131_03_hop.bvh")
+    whole = read_recording(import_clip(source).armature)
+    rigs.reset()
+    clip = legs_exchanged(source, tmp_path / "exchanged.bvh", slice(280, 320))
+    hop = import_clip(clip).armature
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert kinds(hop) == ["exchanged legs"]
+    found = finding_of(hop.hangtime.findings["exchanged legs"])
+    assert found.frames == ((281.0, 320.0),)
+    assert bpy.ops.hangtime.repair(kind="exchanged legs") == {"FINISHED"}
+    recording = read_recording(hop)
+    mended = as_asked(recording, problem_of(hop.hangtime, recording))
+    assert np.abs(recording.heads - whole.heads).max() > 0.3
+    assert np.abs(mended.heads - whole.heads).max() < 0.05
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    assert is_applied(hop.hangtime, hop.hangtime.findings["exchanged legs"])
 
 
 def test_frames_at_rest_are_left_out_by_the_range(tmp_path) -> None:

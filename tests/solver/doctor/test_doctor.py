@@ -46,6 +46,7 @@ from hangtime.solver.doctor.feet import FootFaultKind, find_feet
 from hangtime.solver.doctor.figure import Figure, figure_of
 from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.doctor.footing import find_footing, find_rise
+from hangtime.solver.doctor.frames.exchanges import LIMBS, find_exchange
 from hangtime.solver.doctor.frames.flips import find_flips
 from hangtime.solver.doctor.frames.jumps import find_jumps
 from hangtime.solver.doctor.frames.missing import find_dropped, find_held
@@ -79,6 +80,7 @@ def of_poses(recording: Recording) -> list[Finding]:
     """What the poses alone tell, each as the remedies before leave them."""
     found = []
     for find in (
+        *(partial(find_exchange, figure=figure(), limbs=each) for each in LIMBS),
         *(partial(each, figure=figure()) for each in (find_flips, find_spikes)),
         *(find_held, find_dropped),
         partial(find_jumps, figure=figure()),
@@ -130,7 +132,10 @@ def test_what_no_body_can_do_is_told_of_few_frames_too(damage: Damage, every: in
         *map(spiked, (20.0, 120.0)),
         *map(burst, (2, 5)),
         joined(0.1),
-        exchanged(30),
+        exchanged(15, Mend.LEGS),
+        exchanged(30, Mend.ARMS),
+        exchanged(40, Mend.LEGS, last=True),
+        exchanged(30, Mend.LEGS, Mend.ARMS),
         held(6),
         stretched(0.05),
         noisy(3.0, 1.0),
@@ -143,7 +148,9 @@ def test_what_no_body_can_do_is_told_of_few_frames_too(damage: Damage, every: in
 )
 def test_damage_of_poses_is_named_and_nothing_else(damage: Damage) -> None:
     damaged = damage.of(jump())
-    assert [finding.kind for finding in of_poses(damaged.recording)] == [damage.kind]
+    assert [finding.kind for finding in of_poses(damaged.recording)] == [
+        *(damage.kind, *damage.also)
+    ]
 
 
 def test_frames_that_are_missing_in_a_row_are_counted_and_no_other_fault_is_told() -> None:
@@ -233,6 +240,8 @@ def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
     [
         (spiked(120.0), 0.05),
         (burst(5), 0.1),
+        (exchanged(30, Mend.LEGS), 1.5),  # each bone is 5° off
+        (exchanged(30, Mend.ARMS), 1.5),
         (flipped(12), 0.1),
         (held(6), 0.05),
         (stretched(0.15), 0.15),
@@ -243,6 +252,8 @@ def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
     ids=[
         "spikes",
         "a burst",
+        "exchanged legs",
+        "exchanged arms",
         "flips",
         "held frames",
         "bone lengths",
