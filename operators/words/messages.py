@@ -28,11 +28,7 @@ def sentence(fault: Fault, translate: Translate = str) -> str:
 
 def together(found: Sequence[Fault]) -> list[Fault]:
     """Faults, those of support that is unseen and of which no more is known in one."""
-    bare = [
-        each
-        for each in found
-        if isinstance(each, faults.UnseenSupport) and not each.boxes and each.rate is None
-    ]
+    bare = [e for e in found if isinstance(e, faults.UnseenSupport) and not _variant(e)]
     if len(bare) < 2:
         return [*found]
     spans = tuple((each.first, each.last) for each in bare)
@@ -72,7 +68,8 @@ def _variant(fault: Fault) -> int:
         case faults.NothingTouches():
             return bool(fault.touching)
         case faults.UnseenSupport():
-            return 2 if fault.rate is not None else bool(fault.boxes)
+            more = bool(fault.boxes), fault.rate is not None, fault.exchanged
+            return max(i for i, each in enumerate((True, *more)) if each)
         case faults.UnknownObject():
             return bool(fault.known)
         case faults.ChangedMeanwhile():

@@ -167,6 +167,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
         "Box Here in the panel World, or an [[object]] in a recipe), or choose frames without it.",
         "The body falls as gravity has it at {rate} frames a second, but the scene has "
         "{scene_rate:.4g} (frames {first:g} to {last:g}); set the scene's frame rate to {rate}.",
+        "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
+        "fall, for capture took the left leg for the right one; exchange them back (Examine, "
+        'Exchange Back; repair = ["exchanged legs"] in a recipe), or choose frames without it.',
     ),
     faults.UnseenSupports: "In frames {spans:spans} neither foot touches the ground, yet the body "
     "does not fall, so something unseen carries it (a box, a rail, a hand); choose frames without "

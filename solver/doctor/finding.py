@@ -60,3 +60,7 @@ class Finding:
     part: str = ""
     remedy: Repairs | None = None
     alternative: Repairs | None = None
+
+    def touches(self, first: float, last: float) -> bool:
+        """Whether a place of it is among scene frames."""
+        return any(a <= last and first <= b for a, b in self.frames)

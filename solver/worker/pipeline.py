@@ -40,6 +40,7 @@ from ..data.scaling import (
 from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
+from ..doctor.examination.mistaken_support import with_cause
 from ..doctor.examination.repair import as_asked
 from ..fitting.fit import Fit
 from ..loops.find_cycle import check_loop, find_cycle
@@ -258,11 +259,17 @@ def _unscaled(fault: UnseenSupport | Treadmill, factor: float) -> UnseenSupport 
 
 def _analysed(recording: Recording, problem: MotionProblem) -> tuple[Analysis, Cycle | None]:
     """The analysis, and the cycle that it is of where the motion shall repeat."""
-    if not problem.loop:
-        return analyse(recording, problem), None
-    check_loop(problem)
-    cycle = find_cycle(recording, problem)
-    return analyse(recording, replace(problem, frames=cycle.frames)), cycle
+    cycle = None
+    if problem.loop:
+        check_loop(problem)
+        cycle = find_cycle(recording, problem)
+        problem = replace(problem, frames=cycle.frames)
+    try:
+        analysis = analyse(recording, problem)
+    except UnseenSupport as fault:
+        raise with_cause([fault], recording, problem.bones)[0] from None
+    told = with_cause(analysis.unseen, recording, problem.bones)
+    return replace(analysis, unseen=tuple(told)), cycle
 
 
 def fit_subject(subject: Subject, clock: StageClock) -> Fit:

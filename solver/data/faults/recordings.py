@@ -226,7 +226,8 @@ class UnseenSupport(Fault):
     """Nothing touches, yet the body does not fall: something unrecorded carries it (frames).
 
     boxes: what would, where feet rest above the floor. rate: frames a second at which the body
-    would fall as gravity has it, where the scene's, scene_rate, is another.
+    would fall as gravity has it, where the scene's, scene_rate, is another. exchanged: whether the
+    legs are there, so that none of these is meant.
     """
 
     first: float
@@ -234,6 +235,7 @@ class UnseenSupport(Fault):
     boxes: tuple[SupportBox, ...] = ()
     rate: int | None = None
     scene_rate: float = 0.0
+    exchanged: bool = False
 
 
 @dataclass

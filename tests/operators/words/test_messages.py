@@ -145,6 +145,9 @@ def test_support_of_which_nothing_is_known_is_told_at_once() -> None:
     assert "In frames 20 to 31, 40 to 55 neither foot" in first
     assert "as on a box" in second
     assert together([box, bare[0]]) == [box, bare[0]]
+    legs = UnseenSupport(60.0, 70.0, exchanged=True)
+    assert together([legs, bare[0]]) == [legs, bare[0]]
+    assert "the left leg for the right one; exchange them back" in sentence(legs)
 
 
 def test_a_recipe_fault_names_its_line() -> None:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from hangtime.devtools.doctor.damages import exchanged, noisy
 from hangtime.devtools.doctor.measure import apart
-from hangtime.solver.data.problem import Mend, MotionProblem
+from hangtime.solver.data.faults import UnseenSupport
+from hangtime.solver.data.problem import Mend, MotionProblem, Unseen
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.repair import as_asked, repaired
@@ -17,6 +18,7 @@ from hangtime.solver.doctor.frames.exchanges import LIMBS, find_exchange
 from hangtime.solver.doctor.limbs import partners
 from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.numerics.rotations import axis_rotation
+from hangtime.solver.worker.pipeline import measure
 from hangtime.tests.helpers.clips import load_recording
 
 HOP = "131_03_hop.bvh"  # on one leg
@@ -112,3 +114,16 @@ def test_the_problem_that_asks_for_it_is_mended() -> None:
     damaged = exchanged(40, Mend.LEGS).of(hop()).recording
     mended = as_asked(damaged, MotionProblem(mend=(Mend.LEGS,)))
     assert apart(mended, hop()) < 0.015
+
+
+def test_no_box_is_offered_where_legs_are_exchanged() -> None:
+    """Neither foot touches the floor there, for one is where the other was."""
+    jacks = exchanged(30, Mend.LEGS, angles=True).of(load_recording(JACKS)).recording
+    (unseen,) = measure(jacks, MotionProblem()).analysis.unseen
+    assert isinstance(unseen, UnseenSupport)
+    assert unseen.exchanged
+    assert unseen.boxes == ()
+    assert measure(jacks, MotionProblem(mend=(Mend.LEGS,))).analysis.unseen == ()
+    with pytest.raises(UnseenSupport) as refused:
+        measure(jacks, MotionProblem(unseen=Unseen.REFUSE))
+    assert refused.value == unseen
