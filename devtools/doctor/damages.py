@@ -259,6 +259,17 @@ def raised(metres: float) -> Damage:
     return Damage(f"{metres:+g} m up", FindingKind.FLOOR, do)
 
 
+def levelled() -> Damage:
+    """The hips' height left out, as exports in place may do."""
+
+    def do(recording: Recording, _: np.random.Generator) -> Damaged:
+        hips = recording.heads[:, figure_of(recording).bones[0], 2]
+        away = (hips - hips.mean())[:, None] * np.array([0.0, 0.0, 1.0])
+        return Damaged(replace(recording, heads=recording.heads - away[:, None]), recording)
+
+    return Damage("hips level", FindingKind.LEVEL_HIPS, do)
+
+
 def noisy(millimetres: float, degrees: float, rate: float = VIDEO_RATE) -> Damage:
     """As video capture gives it: white noise on the root's place and on all joints."""
 
@@ -342,6 +353,7 @@ DAMAGES = (
     *map(sliding, (0.2, 0.5)),
     rising(0.1),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
+    levelled(),
     noisy(3.0, 1.0),
     noisy(3.0, 1.0, FAST_RATE),
     noisy(6.0, 2.0),

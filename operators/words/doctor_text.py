@@ -30,6 +30,8 @@ SENTENCES = {
     FindingKind.DROPPED_FRAMES: "About {n:.0f} frames are missing: the whole body jumps {where}.",
     FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}.",
     FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
+    FindingKind.LEVEL_HIPS: "The hips keep one height, though the legs below them stretch and bend "
+    "by {n:.0f} cm: how the body rises and sinks was left out, so nothing it does obeys gravity.",
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
     FindingKind.TOO_SHORT: "The clip is {n:.2f} s long, too short to be adapted: a jump needs "
@@ -54,6 +56,7 @@ SENTENCES = {
 ADVICE = {
     FindingKind.JUMP: " Choose frames on one side of it.",
     FindingKind.LEAP: " Choose frames without it.",
+    FindingKind.LEVEL_HIPS: " Export the recording again with the hips' height.",
 }
 
 # Of the buttons. {n}: the remedy's number.

@@ -21,6 +21,7 @@ class FindingKind(Enum):
     DROPPED_FRAMES = "dropped frames"
     BONE_LENGTH = "bone length"
     NOISE = "noise"
+    LEVEL_HIPS = "level hips"
     TIME_SCALE = "time scale"
     SIZE = "size"
     TOO_SHORT = "too short"

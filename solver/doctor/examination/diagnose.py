@@ -28,7 +28,7 @@ from ..lengths import find_lengths
 from ..noise import find_noise, reach
 from ..repairs import Repairs
 from ..stretch import CUTTING, Span, longest_stretch
-from ..upright import find_up
+from ..upright import find_level_hips, find_up
 from .repair import placed_skin, repaired
 
 PARTING = (FindingKind.JUMP, FindingKind.LEAP)
@@ -101,6 +101,9 @@ def diagnose(
         found.append(jumps)
     for find in (find_lengths, find_noise):
         recording = cured(recording, find(recording, figure))
+    level = find_level_hips(recording, figure)
+    if level is not None:  # how it falls and stands is lost with their rise
+        return Diagnosis((*found, level))
 
     def performed(repairs: Repairs) -> Performance:
         placed = repaired(recording, repairs)

@@ -17,6 +17,7 @@ from hangtime.devtools.doctor.damages import (
     held,
     joined,
     lain,
+    levelled,
     noisy,
     raised,
     rising,
@@ -29,6 +30,7 @@ from hangtime.devtools.doctor.damages import (
 from hangtime.devtools.doctor.measure import apart
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.performance import perform
+from hangtime.solver.body.anatomy import Part
 from hangtime.solver.body.character import Character, build_character
 from hangtime.solver.data.faults import (
     ClipTooShort,
@@ -54,7 +56,7 @@ from hangtime.solver.doctor.frames.spikes import find_spikes
 from hangtime.solver.doctor.lengths import find_lengths
 from hangtime.solver.doctor.noise import find_noise
 from hangtime.solver.doctor.repairs import MissingFrames, Repairs, UpAxis
-from hangtime.solver.doctor.upright import find_up
+from hangtime.solver.doctor.upright import find_level_hips, find_up
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
 CLIPS = "131_03_hop.bvh", JUMP, "hop_01_01.bvh", "fair1_jumping.bvh"
@@ -400,11 +402,24 @@ def test_falls_that_disagree_tell_no_clock(height: float, seconds: float) -> Non
     assert found.remedy == Repairs(time_scale=pytest.approx(0.8))
 
 
+@pytest.mark.parametrize("name", [JUMP, "run_1.bvh", "hops_in_place.bvh"])
+def test_hips_whose_height_was_left_out_are_told_and_no_clock(name: str) -> None:
+    damaged = levelled().of(load_recording(name)).recording
+    assert [finding.kind for finding in diagnose(damaged).findings] == [FindingKind.LEVEL_HIPS]
+
+
+def test_who_sits_may_keep_the_hips_level() -> None:
+    seated = levelled().of(jump()).recording
+    assert find_level_hips(seated, figure()) is not None
+    seated.heads[:, figure().of(Part.FOOT), 2] += 0.4
+    assert find_level_hips(seated, figure()) is None
+
+
 def test_what_is_carried_unseen_tells_no_clock() -> None:
-    """Hips that are held at one height: what legs do then makes parabolas of 1.3 m/s²."""
+    """Hips that are held at nearly one height: what legs do then makes parabolas of 1.3 m/s²."""
     hop = load_recording("hop_01_01.bvh")
     heads = hop.heads.copy()
-    heads[:, :, 2] += hop.heads[:, :1, 2].mean() - hop.heads[:, :1, 2]
+    heads[:, :, 2] += 0.98 * (hop.heads[:, :1, 2].mean() - hop.heads[:, :1, 2])
     kinds = {finding.kind for finding in diagnose(replace(hop, heads=heads)).findings}
     assert FindingKind.UNSEEN_SUPPORT in kinds
     assert FindingKind.TIME_SCALE not in kinds
