@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import product
+
 import numpy as np
 
-from ...arrays import BoolArray, FloatArray, IntArray
+from ...arrays import BoolArray, FloatArray
 from ...data.problem import Mend
 from ...data.recording import Recording
 from ..finding import Finding, FindingKind
@@ -15,9 +18,16 @@ from ..slack import SPARSE
 HELD = 1e-5  # m and entries of a matrix; a pose that changes by less is held
 MOVING = 1e-3  # m, of the farthest joint from a frame to the next, beside a pose that is held
 LONGEST_HELD = 0.25  # s; a longer one is a pause
-DROPPED = (0.8, 10.5)  # further than the frames beside: by one to ten missing frames
-SIDE_BY_SIDE = 3  # steps with missing frames, one frame from each to the next
-ALIKE = 0.15  # of a step, by which it may differ from its neighbours' way
+# Missing frames of steps side by side.
+COUNTS = (
+    *((count,) for count in range(1, 11)),
+    *product((1, 2, 3), repeat=2),
+    *product((1, 2), repeat=3),
+)
+BESIDE = 2  # steps on each side of these
+NEARER = 2.2  # times, to a cubic, if the frames are missing; where two are, two apart, 2.7 and more
+STANDS_OUT = 2.5  # times the median of how far those around are from one
+ALIKE = 0.4  # of a step, by which it may differ from its neighbours' way
 
 
 def held_frames(recording: Recording) -> BoolArray:
@@ -45,18 +55,16 @@ def find_held(recording: Recording) -> Finding | None:
 
 
 def find_dropped(recording: Recording) -> Finding | None:
-    """Steps of the whole body, one to three side by side, each as long as two to eleven of those
-    before and after them: frames are missing. None is told of sparse frames."""
+    """Steps of the whole body, one to three side by side, in which frames are missing. None is told
+    of sparse frames."""
     if recording.rate < SPARSE:
         return None
-    moves = np.diff(recording.heads, axis=0).reshape(len(recording.frames) - 1, -1)
+    places = recording.heads.reshape(len(recording.frames), -1)
+    found = [each for lacking in COUNTS for each in _lacking(places, lacking)]
     counts = np.zeros(len(recording.frames), int)  # before each frame
-    # The most first: a step beside one that is too long is not what either is measured by.
-    for several in range(SIDE_BY_SIDE, 0, -1):
-        lacking = _lacking(moves, several)
-        for start in np.flatnonzero(lacking.all(axis=1)).tolist():
-            if not counts[start + 1 : start + several + 3].any():  # nor of the steps beside them
-                counts[start + 2 : start + several + 2] = lacking[start]
+    for _, at, lacking in sorted(found, reverse=True):  # the clearest first
+        if not counts[at - 1 : at + len(lacking) + 1].any():  # nor are the steps beside too long
+            counts[at : at + len(lacking)] = lacking
     after = np.flatnonzero(counts)
     if len(after) == 0:
         return None
@@ -70,24 +78,49 @@ def find_dropped(recording: Recording) -> Finding | None:
     )
 
 
-def _lacking(moves: FloatArray, several: int) -> IntArray:
-    """(S - several - 1, several) how many frames each of several steps side by side lacks, from the
-    second step on, by the steps (S, 3 B) before and after them; 0 where it lacks none."""
-    found = np.zeros((max(len(moves) - several - 1, 0), several), int)
-    if len(found) == 0:
-        return found
-    before, after = moves[: len(found)], moves[several + 1 :]
+def _lacking(
+    places: FloatArray, counts: tuple[int, ...]
+) -> Iterator[tuple[float, int, tuple[int, ...]]]:
+    """Where joints at places (T, D) are nearer to a cubic if steps side by side lack so many
+    frames: how many times nearer, the first frame after one, and the counts."""
+    size = len(counts) + 1 + 2 * BESIDE
+    if len(places) < size:
+        return
+    windows = np.lib.stride_tricks.sliding_window_view(places, size, axis=0)  # (N, D, size)
+    beside = np.ones(BESIDE)
+    true = np.concatenate([[0.0], beside, np.array(counts) + 1.0, beside]).cumsum()
+    off, left = (
+        np.linalg.norm(windows @ _beyond_cubic(instants), axis=(1, 2))
+        for instants in (np.arange(float(size)), true)
+    )
+    ratio = off / np.maximum(left, 1e-9)
+    for at in np.flatnonzero((ratio > NEARER) & _is_alike(places, len(counts), len(off))).tolist():
+        around = off[max(at - 2 * size, 0) : at + 2 * size + 1]  # most have none of these steps
+        if off[at] > STANDS_OUT * np.median(around):
+            yield float(ratio[at]), at + BESIDE + 1, counts
+
+
+def _beyond_cubic(instants: FloatArray) -> FloatArray:
+    """(N, N) projection of samples at instants (N,) to what no cubic fits."""
+    cubics, _ = np.linalg.qr(np.vander(instants - instants.mean(), 4))
+    return np.eye(len(instants)) - cubics @ cubics.T
+
+
+def _is_alike(places: FloatArray, several: int, count: int) -> BoolArray:
+    """(count,) whether all of several steps, side by side after BESIDE others, go the way of those
+    before and after them, as no jump does, and these move."""
+    moves = np.diff(places, axis=0)
+    before, after = (moves[k : k + count] for k in (BESIDE - 1, BESIDE + several))
+    alike = np.ones(count, bool)
     for k in range(several):
-        own, share = moves[k + 1 : k + 1 + len(found)], (k + 1) / (several + 1)
+        own, share = moves[BESIDE + k : BESIDE + k + count], (k + 1) / (several + 1)
         usual = before + share * (after - before)
         square = np.maximum(np.einsum("ti,ti->t", usual, usual), 1e-12)
         times = np.einsum("ti,ti->t", own, usual) / square
         rest = np.linalg.norm(own - times[:, None] * usual, axis=1)
-        alike = rest < ALIKE * np.linalg.norm(own, axis=1)
-        whole = (times - 1.0 > DROPPED[0]) & (times - 1.0 < DROPPED[1])
-        fast = np.abs(usual).max(axis=1) > MOVING
-        found[:, k] = np.where(whole & alike & fast, np.round(times - 1.0), 0)
-    return found
+        alike &= rest < ALIKE * np.linalg.norm(own, axis=1)
+        alike &= np.abs(usual).max(axis=1) > MOVING
+    return alike
 
 
 def _steps(recording: Recording) -> FloatArray:
