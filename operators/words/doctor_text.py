@@ -31,7 +31,8 @@ SENTENCES = {
     FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}.",
     FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
     FindingKind.LEVEL_HIPS: "The hips keep one height, though the legs below them stretch and bend "
-    "by {n:.0f} cm: how the body rises and sinks was left out, so nothing it does obeys gravity.",
+    "by {n:.0f} % of their length: how the body rises and sinks was left out, so nothing it does "
+    "obeys gravity.",
     FindingKind.TIME_SCALE: "The body falls at {n:.1f} m/s² {where}, not at 9.8: {clock}.",
     FindingKind.SIZE: "The figure is {n:.2g} m tall, which nobody is.",
     FindingKind.TOO_SHORT: "The clip is {n:.2f} s long, too short to be adapted: a jump needs "

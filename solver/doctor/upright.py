@@ -50,7 +50,7 @@ def find_level_hips(recording: Recording, figure: Figure) -> Finding | None:
     level = np.ptp(hips) < LEVEL * standing and np.median(reach) > STANDS * standing
     if not level or np.ptp(reach) < STEPS * standing:
         return None
-    return Finding(FindingKind.LEVEL_HIPS, 100.0 * float(np.ptp(reach)), "cm")
+    return Finding(FindingKind.LEVEL_HIPS, 100.0 * float(np.ptp(reach) / standing), "%")
 
 
 def _along(way: FloatArray) -> UpAxis | None:

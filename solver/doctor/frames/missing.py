@@ -86,13 +86,9 @@ def _lacking(
     size = len(counts) + 1 + 2 * BESIDE
     if len(places) < size:
         return
-    windows = np.lib.stride_tricks.sliding_window_view(places, size, axis=0)  # (N, D, size)
     beside = np.ones(BESIDE)
     true = np.concatenate([[0.0], beside, np.array(counts) + 1.0, beside]).cumsum()
-    off, left = (
-        np.linalg.norm(windows @ _beyond_cubic(instants), axis=(1, 2))
-        for instants in (np.arange(float(size)), true)
-    )
+    off, left = (_from_cubic(places, instants) for instants in (np.arange(float(size)), true))
     ratio = off / np.maximum(left, 1e-9)
     for at in np.flatnonzero((ratio > NEARER) & _is_alike(places, len(counts), len(off))).tolist():
         around = off[max(at - 2 * size, 0) : at + 2 * size + 1]  # most have none of these steps
@@ -100,10 +96,14 @@ def _lacking(
             yield float(ratio[at]), at + BESIDE + 1, counts
 
 
-def _beyond_cubic(instants: FloatArray) -> FloatArray:
-    """(N, N) projection of samples at instants (N,) to what no cubic fits."""
-    cubics, _ = np.linalg.qr(np.vander(instants - instants.mean(), 4))
-    return np.eye(len(instants)) - cubics @ cubics.T
+def _from_cubic(places: FloatArray, instants: FloatArray) -> FloatArray:
+    """(N,) m, how far each run of places (T, D), at instants (S,), is from the nearest cubic."""
+    basis, _ = np.linalg.qr(np.vander(instants - instants.mean(), 4), mode="complete")
+    square = np.zeros(len(places) - len(instants) + 1)
+    for weights in basis[:, 4:].T:  # one after the other: all windows at once fill the memory
+        beyond = sum(w * places[k : k + len(square)] for k, w in enumerate(weights))
+        square += np.einsum("td,td->t", beyond, beyond)
+    return np.sqrt(square)
 
 
 def _is_alike(places: FloatArray, several: int, count: int) -> BoolArray:
