@@ -31,17 +31,19 @@ class Partners:
 
     def ways(self, recording: Recording) -> FloatArray:
         """(T, 2, K, 3) unit, world, along the bones."""
-        return np.einsum("tskij,skj->tski", recording.rotations[:, self.bones], self.along)
+        found = np.einsum("tskij,skj->tski", recording.rotations[:, self.bones], self.along)
+        return np.asarray(found)
 
     def ways_exchanged(self, recording: Recording) -> FloatArray:
         """The same where each limb is posed as its partner."""
-        return np.einsum("tskij,skj->tski", self._turns(recording.rotations), self.along)
+        found = np.einsum("tskij,skj->tski", self._turns(recording.rotations), self.along)
+        return np.asarray(found)
 
     def exchanged(self, recording: Recording, where: BoolArray) -> Recording:
         """In some frames (T,) each limb is posed as its partner was; what hangs on them follows,
         and lengths stay. Twice is the recording itself."""
         local, turns = LocalPoses.of(recording), self._turns(recording.rotations[where])
-        carried = {bone: turns[:, side, k] for (side, k), bone in np.ndenumerate(self.bones)}
+        carried = {int(bone): turns[:, side, k] for (side, k), bone in np.ndenumerate(self.bones)}
         rotations, heads = recording.rotations.copy(), recording.heads.copy()
         for b, bone in enumerate(recording.bones):
             if bone.parent >= 0:

@@ -94,7 +94,7 @@ def _frames(straight: FloatArray, crossed: FloatArray, clearer: float) -> BoolAr
     if ((alike < first - 1) | (alike > last + 1)).any():
         # What leads to an end of the clip may as well end before it, unseen.
         return None if inside[-1] else inside
-    return min(inside, ~inside, key=lambda where: int(where.sum()))
+    return np.asarray(min(inside, ~inside, key=np.count_nonzero))
 
 
 def _off(ways: FloatArray, then: FloatArray) -> FloatArray:
