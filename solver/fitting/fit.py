@@ -10,14 +10,13 @@ from functools import cached_property, partial
 import numpy as np
 
 from ..analysis.performance import Performance
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..data.contacts import Contact, ContactSchedule
 from ..data.requests import BodyChange
 from ..data.status import Status
 from ..human.human_guard import HumanGuard, recorded_ranges
 from ..human.range_price import range_price
 from ..numerics.block_banded import BlockBanded
-from ..numerics.splines import SplineBasis
 from ..objectives.joint_price import JointPrice
 from ..objectives.least_squares import torque_metric
 from ..objectives.motion_metric import motion_metric
@@ -35,11 +34,11 @@ from ..transcription.motion import (
     Motion,
     pinned_instants,
     spans_to_refine,
-    split_spans,
 )
 from ..transcription.ride import Ride
 from ..transcription.torque_constraint import joint_torques
 from ..transcription.transcription import Transcription
+from .knot_refinement import MetricOf, on_finer_basis, refine
 from .transcribe import initial_guess, recorded_target, transcribe
 
 # One g of the centre of mass's acceleration weighs like a decimetre: recordings are off by a tenth
@@ -69,7 +68,6 @@ ADAPT_COST_WEIGHTS = CostWeights(
 # mass only settle what no pose shows. The weight of accelerations was chosen on two broad jumps,
 # where a third tells how much longer the performer flies; the hops of docs/pairs.md had no say.
 POSE_COST_WEIGHTS = CostWeights(shape=1.0, com=1e-4, acceleration_time=0.05, force=1e-5)
-MAX_REFINEMENTS = 3
 MAX_PLACE_UPDATES = 4
 MAX_PROJECTION_STEPS = 3  # undamped, from afar
 MAX_TURN = 0.5 * np.pi  # of a joint in a step near a motion; beyond, linear rows point backwards
@@ -78,10 +76,6 @@ MAX_IMPROVEMENTS = 2  # such steps on the refined knots, near by; most end after
 # The fit is made finer than an adaptation needs, so that most adaptations need no more knots.
 FIT_TOLERANCE = DenseTolerance(flight=4e-4, ground=1.5e-3, drift=1e-4)
 ADAPT_TOLERANCE = DenseTolerance(flight=1e-3, ground=4e-3, drift=4e-4)
-
-
-MetricOf = Callable[[Motion], BlockBanded]
-"""Metric W of the minimum-norm steps at a motion."""
 
 
 @dataclass(frozen=True)
@@ -349,55 +343,3 @@ def settled_places(transcription: Transcription, places: FloatArray) -> FloatArr
         return places
     duration = float(transcription.basis.breaks[-1])
     return tied_places(places, transcription.contacts, duration)
-
-
-def refine(
-    outcome: Outcome,
-    metric_of: MetricOf,
-    tolerance: DenseTolerance,
-    progress: Progress | None = None,
-    *,
-    basis: FloatArray | None = None,
-) -> list[Outcome]:
-    """Knot refinement: splits spans until dynamics and pins hold between the nodes (thesis 6.4).
-
-    basis: the changes of a block that are allowed, see FeasibleSet.
-    """
-    outcomes: list[Outcome] = []
-    for _ in range(MAX_REFINEMENTS):
-        motion = Motion(outcome.transcription, outcome.x, outcome.places)
-        weak = spans_to_refine(motion, tolerance)
-        if not len(weak):
-            break
-        finer = on_finer_basis(motion, weak)
-        metric = metric_of(finer)
-        feasible = FeasibleSet(finer.transcription, outcome.places, basis)
-        finer_outcome = restore(feasible, metric, finer.x, stage="refine", progress=progress)
-        if finer_outcome.status is not Status.SOLVED:
-            break  # what was solved for stands; its residual between the nodes is reported
-        outcome = finer_outcome
-        outcomes.append(outcome)
-    return outcomes
-
-
-def on_finer_basis(motion: Motion, spans: IntArray) -> Motion:
-    """Knot insertion: the same motion with some spans split in two."""
-    old = motion.transcription
-    breaks = split_spans(old.basis.breaks, spans)
-    double = np.isin(breaks, old.basis.breaks[old.basis.double])
-    basis = SplineBasis(breaks, double)
-    new = replace(old, basis=basis)
-    x = np.zeros((basis.n_coefficients, old.layout.n_block))
-    x[:, old.layout.motion] = old.basis.insert_knots(basis, motion.x[:, old.layout.motion])
-    inner = np.arange(basis.n_spans)
-    nodes = basis.force_nodes(inner)
-    middles = 0.5 * (breaks[:-1] + breaks[1:])
-    was = old.basis.spans(middles)
-    values = motion.x[old.layout.force_block(old.basis.force_nodes(was))][:, :, old.layout.forces]
-    for side in range(2):
-        weights = old.basis.force_weights(breaks[inner + side], was)
-        x[old.layout.force_block(nodes[:, side]), old.layout.forces] = np.einsum(
-            "tk,tkn->tn", weights, values
-        )
-    x[~new.active] = 0.0
-    return Motion(new, x, motion.places)

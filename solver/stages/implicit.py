@@ -15,7 +15,8 @@ from ..data.recording import PoseTrack
 from ..data.row_kinds import RowKind
 from ..data.solver_options import Method, ObjectiveKind
 from ..data.status import Durations, Status
-from ..fitting.fit import ADAPT_TOLERANCE, Fit, SolvedMotion, refine
+from ..fitting.fit import ADAPT_TOLERANCE, Fit, SolvedMotion
+from ..fitting.knot_refinement import refine
 from ..optimisation.guards import Guard, guarded, in_the_way
 from ..optimisation.sqp import MAX_STEPS, Outcome, Progress, Stopped, restore
 from ..transcription.constraint import DenseViolation, dense_violation, exchange

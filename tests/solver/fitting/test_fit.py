@@ -9,7 +9,8 @@ from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import Bone, Recording
 from hangtime.solver.data.status import Status
-from hangtime.solver.fitting.fit import Fit, fit, on_finer_basis
+from hangtime.solver.fitting.fit import Fit, fit
+from hangtime.solver.fitting.knot_refinement import on_finer_basis
 from hangtime.solver.fitting.transcribe import transcribe
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import load_recording
