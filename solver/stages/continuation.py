@@ -18,17 +18,15 @@ from .warm_start import continuation_steps, partial_places, stance_moves, warm_s
 
 
 def continuation(
-    setup: Setup, times: int, progress: Progress | None, *, limbs: bool, giving_up: bool
+    setup: Setup, times: int, progress: Progress | None, *, giving_up: bool
 ) -> tuple[list[Outcome], int]:
     """Solves in as many steps as the pins' moves ask for, times `times`; bounds ease in. The
     outcomes of those that were taken, the last of which may have failed, and how many there were
     to be.
 
-    limbs: whether they keep out of each other on the way as well. That costs more, but a leg that
-    once is through the other finds no short way back. giving_up: whether a step goes on without the
-    guards that hold it back.
+    giving_up: whether a step goes on without the guards that hold it back.
     """
-    on_the_way = _on_the_way(setup, limbs=limbs)
+    on_the_way = _on_the_way(setup)
     motion, schedule = setup.start, setup.schedule
     before = last = setup.fitted.with_places(motion.places)
     whole = stance_moves(schedule, before, setup.target, setup.turns)
@@ -61,11 +59,12 @@ def continuation(
     return outcomes, steps
 
 
-def _on_the_way(setup: Setup, *, limbs: bool) -> tuple[Guard, ...]:
+def _on_the_way(setup: Setup) -> tuple[Guard, ...]:
     """Guards of the steps before the last: floor and scene are not yet where they shall be, but a
-    joint that once is far beyond its range finds a long way back."""
+    joint that once is far beyond its range, or an arm that is through the trunk, finds a long way
+    back."""
     guards: list[Guard] = [] if setup.human is None else [setup.human]
-    if limbs and setup.solid is not None:
+    if setup.solid is not None:
         guards.append(setup.solid.limbs_alone())
     return tuple(guards)
 

@@ -152,10 +152,8 @@ def _solve(fit: Fit, problem: MotionProblem, setup: Setup, progress: Progress | 
     attempts: list[ContinuationAttempt] = []
     timed = setup.durations is Durations.FOUND
     for harder in range(MAX_TIMED_ATTEMPTS if timed else MAX_ATTEMPTS):
-        # What moves far may bring one limb through another on its way.
-        limbs = any(attempt.held_back and attempt.steps > 1 for attempt in attempts)
         giving_up = harder > 0  # what smaller steps keep needs no giving up
-        attempts.append(_attempt(setup, 2**harder, progress, limbs=limbs, giving_up=giving_up))
+        attempts.append(_attempt(setup, 2**harder, progress, giving_up=giving_up))
         arrived = [attempt for attempt in attempts if attempt.arrived]
         enough = len(arrived) == MAX_ARRIVALS or any(
             (each.over == 0.0 and not each.missed) or each.over > HOPELESS for each in arrived
@@ -241,18 +239,12 @@ class ContinuationAttempt:
     def arrived(self) -> bool:
         return len(self.steps_taken) == self.steps and self.steps_taken[-1].solved
 
-    @property
-    def held_back(self) -> bool:
-        """Whether guards stopped it, or would have and were given up."""
-        stuck = self.steps_taken[-1]
-        return self.over > 0.0 or (not stuck.solved and bool(stuck.transcription.guards))
-
 
 def _attempt(
-    setup: Setup, times: int, progress: Progress | None, *, limbs: bool, giving_up: bool
+    setup: Setup, times: int, progress: Progress | None, *, giving_up: bool
 ) -> ContinuationAttempt:
     """A continuation, and where it arrives, what closes it between the nodes."""
-    taken, steps = continuation(setup, times, progress, limbs=limbs, giving_up=giving_up)
+    taken, steps = continuation(setup, times, progress, giving_up=giving_up)
     attempt = ContinuationAttempt(tuple(taken), steps)
     if not attempt.arrived:
         return attempt
