@@ -107,7 +107,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     "frames of the recording; leave out fewer at its beginning and end.",
     faults.NotPutIn: "Missing frames cannot be put into “{action}”: {why}.",
     faults.BadScale: "The scale of “{object_name}” is ({scale:numbers}), but it must be the same, "
-    "and above zero, along all three axes; apply the scale or make it even.",
+    "and above zero, along all three axes; type one such number for all three (of the parent, "
+    "where it has the scale), and press Examine, which tells the size. Do not apply the scale: "
+    "bones' keys would stay, and joints move.",
     faults.UnreadableRepairs: "What this file holds of the recording's repairs cannot be read (a "
     "script or another version of Hangtime wrote it); press Examine, and repair anew.",
     faults.UnreadableText: (
