@@ -20,7 +20,7 @@ from ..names import OperatorId
 from ..solve.adapt import read_wanted
 from ..solve.common import required_armature
 from ..solve.live import redraw
-from ..solve.scene import read_bound
+from ..solve.scene import read_bound, read_surfaces
 from ..solve.session import session
 from ..solve.solving import SolveState
 from ..solve.task import Task, TaskOperator, answered
@@ -50,6 +50,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
         skin = (
             yield from read_bound(armature, recording.frames)
         ).skin  # with whose soles it stands
+        scene = yield from read_surfaces(armature, recording.frames)
         session().advance(SolveState.SOLVING)
         if unreadable(settings):
             settings.repairs = ""
@@ -63,6 +64,7 @@ class ExamineOperator(TaskOperator, bpy.types.Operator):
             drift=repairs.drift,
             rise=repairs.rise,
             skin=skin,
+            scene=scene.objects,
         )
         job = shared().ask(RequestKind.EXAMINE, recording, problem, repairs)
         answer = yield from answered(job, Examined)

@@ -43,7 +43,10 @@ class FootFault:
 
 
 def find_feet(performance: Performance) -> tuple[FootFault, ...]:
-    """The faults of all feet's points, in the order in which they begin. The floor is at 0."""
+    """The faults of all feet's points, in the order in which they begin.
+
+    performance: as seen from what it stands on, which is at 0 (`as_stood`).
+    """
     points, floor = contact_points(performance)
     feet = {n: p for n, p in points.items() if p.kind is not PointKind.HAND}
     lowest = np.min([point.track[:, 2] for point in feet.values()], axis=0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -30,9 +31,15 @@ FLICKER_PLACE = 0.03  # m
 FLICKERS = 3
 
 
-def find_footing(performance: Performance) -> list[Finding]:
-    """Floor, sliding, flicker, unseen support, and a clip that begins or ends in the air."""
-    schedule = find_contacts(performance)
+def find_footing(
+    performance: Performance, schedule: ContactSchedule | None = None
+) -> list[Finding]:
+    """Floor, sliding, flicker, unseen support, and a clip that begins or ends in the air.
+
+    performance: as seen from what it stands on. schedule: its contacts, with the scene's ground;
+    None for those with the floor alone.
+    """
+    schedule = find_contacts(performance) if schedule is None else schedule
     found = [_floor(performance), _sliding(performance), _flicker(performance, schedule)]
     notes = [
         (FindingKind.UNSEEN_SUPPORT, schedule.unseen),
@@ -119,6 +126,20 @@ def _agreed(speeds: FloatArray) -> tuple[FloatArray, float]:
 
 def _standing_speeds(performance: Performance) -> FloatArray:
     """(N, 2) m/s, along the floor, of the lowest point of the feet while it stands."""
+    return standing(performance).velocities[:, :2]
+
+
+@dataclass(frozen=True)
+class LowestPoint:
+    """Of the feet, while it stands, N samples: s, m and m/s."""
+
+    times: FloatArray
+    places: FloatArray
+    velocities: FloatArray
+
+
+def standing(performance: Performance) -> LowestPoint:
+    """When, where and how fast the lowest point of the feet stands, near its floor."""
     points, floor = contact_points(performance)
     feet = [point.track for point in points.values() if point.kind is not PointKind.HAND]
     tracks = np.stack(feet, axis=1)
@@ -126,7 +147,7 @@ def _standing_speeds(performance: Performance) -> FloatArray:
     lowest = np.argmin(tracks[:, :, 2], axis=1), np.arange(len(tracks))
     place, speed = tracks[lowest[1], lowest[0]], velocity[lowest[1], lowest[0]]
     stands = (place[:, 2] - floor < LOW) & (np.abs(speed[:, 2]) < SLOW)
-    return np.asarray(speed[stands, :2])
+    return LowestPoint(performance.times[stands], place[stands], speed[stands])
 
 
 def _flicker(performance: Performance, schedule: ContactSchedule) -> Finding | None:

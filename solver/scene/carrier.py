@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..data.contacts import ContactPoint
+from ..data.recording import Recording
 from ..numerics.rigid_motion import Poses
 from .object_motion import ObjectMotion
 from .triangle_mesh import TriangleMesh, placed_mesh
@@ -36,6 +37,14 @@ class Carrier:
         """A point that is recorded at instants (T,) s, seen from the ground."""
         pressing = None if point.pressing is None else self.seen(times, point.pressing)
         return replace(point, track=self.seen(times, point.track), pressing=pressing)
+
+    def seen_recording(self, recording: Recording) -> Recording:
+        """A recording seen from the ground."""
+        now, first = self.motion.surface(recording.times), self._first
+        back = first.turn @ np.swapaxes(now.turn, 1, 2)
+        local = recording.heads - now.shift[:, None]
+        heads = np.einsum("tij,tbj->tbi", back, local) + first.shift
+        return replace(recording, heads=heads, rotations=back[:, None] @ recording.rotations)
 
     def placed(self, place: FloatArray, time: float) -> FloatArray:
         """Where a place (3,) m that is seen from the ground is at an instant, s."""

@@ -16,6 +16,7 @@ from ..data.recording import Recording, digest
 from ..data.reports.recording import Origin
 from ..data.scene import SceneObject
 from ..doctor.examination.diagnose import diagnose
+from ..doctor.examination.ground import as_stood
 from ..doctor.examination.repair import as_asked, unplaced, unplaced_skin
 from ..doctor.feet import find_feet
 from ..doctor.repairs import Repairs
@@ -245,10 +246,11 @@ def _examined(request: Request) -> Examined:
     with computable():
         as_made = unplaced(request.recording, placed)
         skin = unplaced_skin(problem.skin, placed)
-        diagnosis = diagnose(as_made, problem.bones, problem.mass, skin)
+        diagnosis = diagnose(as_made, problem.bones, problem.mass, skin, problem.scene)
         now = as_asked(request.recording, problem)
         performance = perform(now, build_character(now, chosen=problem.bones), problem.skin)
-    return Examined(request.id, diagnosis, find_feet(performance))
+        feet = find_feet(as_stood(performance, problem.scene))
+    return Examined(request.id, diagnosis, feet)
 
 
 def _named(names: Collection[str], scene: Sequence[SceneObject]) -> tuple[SceneObject, ...]:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
 
 from ...analysis.analyse import MIN_CLIP_DURATION, require_dense
-from ...analysis.performance import Performance, perform
+from ...analysis.performance import Performance, find_contacts, perform
 from ...arrays import FloatArray
 from ...body.character import build_character
 from ...data.faults import ClipTooShort, computable
 from ...data.recording import Recording, Skin
+from ...data.scene import SceneObject
 from ...skeleton.bind_pose import bind_frames
 from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale, refined
 from ..figure import figure_of
@@ -29,6 +30,7 @@ from ..noise import find_noise, reach
 from ..repairs import Repairs
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
+from .ground import as_stood
 from .repair import placed_skin, repaired
 
 PARTING = (FindingKind.JUMP, FindingKind.LEAP)
@@ -66,9 +68,11 @@ def diagnose(
     chosen: Mapping[str, str] | None = None,
     mass: float | None = None,
     skin: Skin | None = None,
+    scene: Sequence[SceneObject] = (),
 ) -> Diagnosis:
     """chosen: bones by parts of the body, as in a problem. mass: kg, as stated by the artist. skin:
-    of the figure, with whose soles it stands.
+    of the figure, with whose soles it stands. scene: objects of which ground explains where it
+    stands, and what it rides on.
 
     Raises ClipTooShort, FramesFarApart, MissingPart, NotComputable, ZeroLengthBone.
     """
@@ -137,11 +141,11 @@ def diagnose(
         found[:] = _parted(found, frames, kept)
         recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
         performance = performed(_remedy(scale))
-    rise = find_rise(performance)
+    rise = find_rise(as_stood(performance, scene))
     if rise is not None:
         found.append(rise)
         performance = performed(_remedy(scale).joined(_remedy(rise)))
-    found += find_footing(performance)
+    found += find_footing(as_stood(performance, scene), find_contacts(performance, scene))
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2

@@ -32,6 +32,7 @@ from hangtime.solver.doctor.examination.repair import as_asked, unplaced
 from hangtime.solver.doctor.feet import FootFaultKind
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
 from hangtime.tests.blender.helpers import rigs
+from hangtime.tests.blender.helpers.solids import add_row
 from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap_path
 
 SPIKED, TURN, RAISED, SLOWED = 150, 0.8, 0.2, 1.25
@@ -103,6 +104,18 @@ def test_a_remedy_is_left_out_again(examined) -> None:
     assert examined.parent is None
     assert scene.render.fps / scene.render.fps_base == pytest.approx(150.0)
     assert applied(examined.hangtime) == Repairs()
+
+
+def test_ground_of_the_panel_world_is_the_floor(jump) -> None:
+    jump.location.z = -RAISED
+    bpy.ops.hangtime.examine()
+    assert kinds(jump) == ["floor"]
+    bpy.ops.mesh.primitive_plane_add(size=20.0, location=(0.0, 0.0, -RAISED))
+    add_row(jump, bpy.context.object)
+    bpy.context.view_layer.objects.active = jump
+    bpy.ops.hangtime.examine()
+    assert kinds(jump) == []
+    assert not foot_faults(jump.hangtime)
 
 
 def take_frames_out(armature: bpy.types.Object) -> None:
