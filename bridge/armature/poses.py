@@ -38,6 +38,12 @@ def frames_per_second(scene: bpy.types.Scene) -> float:
     return scene.render.fps / scene.render.fps_base
 
 
+def set_frame_rate(scene: bpy.types.Scene, rate: float) -> None:
+    """Has a scene play so many frames a second, by the nearest whole number and a base near 1."""
+    scene.render.fps = max(1, round(rate))
+    scene.render.fps_base = scene.render.fps / rate
+
+
 def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
     """Evaluate `armature`, constraints and drivers included, at each of `frames` (T,).
 

@@ -23,7 +23,7 @@ from ...solver.data.faults import (
 from ..accessors import armature_data, current_action, current_scene, pose_of, present
 from ..armature import fcurves
 from ..armature.build_armature import FIRST_FRAME, build_armature
-from ..armature.poses import metres_per_unit
+from ..armature.poses import metres_per_unit, set_frame_rate
 from ..formats.acclaim import find_asf, read_acclaim
 from ..formats.bvh import read_bvh
 from ..formats.fbx_records import require_sound
@@ -153,10 +153,7 @@ def _leave_other_modes() -> None:
 
 def _set_scene(clip: MotionClip) -> None:
     """Set the clip's rate and range, one file frame on one scene frame."""
-    render = current_scene().render
-    rate = 1.0 / clip.frame_time
-    render.fps = max(1, round(rate))
-    render.fps_base = render.fps / rate
+    set_frame_rate(current_scene(), 1.0 / clip.frame_time)
     _set_range(FIRST_FRAME, FIRST_FRAME + len(clip.positions) - 1)
 
 

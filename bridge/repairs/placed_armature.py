@@ -12,7 +12,7 @@ from mathutils import Matrix
 from ...solver.doctor.repairs import Repairs
 from ...solver.doctor.upright import turn_upright
 from ..accessors import current_scene, present
-from ..armature.poses import metres_per_unit
+from ..armature.poses import frames_per_second, metres_per_unit, set_frame_rate
 from ..properties.settings import settings_of
 from .missing_keys import put_in
 from .stored import applied, text_of
@@ -26,7 +26,9 @@ def repair(armature: bpy.types.Object, repairs: Repairs) -> None:
     before = applied(settings_of(armature))
     if repairs.missing != before.missing:
         put_in(armature, repairs.missing, before.missing)
-    current_scene().render.fps_base *= repairs.time_scale / before.time_scale
+    if repairs.time_scale != before.time_scale:
+        unrepaired = frames_per_second(current_scene()) * before.time_scale
+        set_frame_rate(current_scene(), unrepaired / repairs.time_scale)
     _place(armature, repairs)
     settings_of(armature).repairs = text_of(repairs)
     present(bpy.context.view_layer).update()

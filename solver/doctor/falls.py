@@ -125,6 +125,11 @@ def _acceleration(clock: FloatArray, path: FloatArray) -> float:
     return -float(np.polyfit(middles, np.diff(path) / np.diff(clock), 1)[0])
 
 
+def person_factor(height: float) -> float:
+    """What makes a figure of so many m as tall as persons are; 1 where it is."""
+    return 1.0 if HEIGHTS[0] < height < HEIGHTS[1] else USUAL_HEIGHT / height
+
+
 def find_scale(performance: Performance, trusted: Trusted = ALL) -> Finding | None:
     """A wrong scale of time or of size: whose it is the figure's height tells."""
     height, falls = performance.character.height, falls_of(performance, trusted)

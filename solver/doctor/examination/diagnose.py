@@ -14,12 +14,13 @@ from ...arrays import FloatArray
 from ...body.character import build_character
 from ...data.faults import ClipTooShort, computable
 from ...data.recording import Recording, Skin
+from ...data.scaling import scaled_recording
 from ...data.scene import SceneObject
 from ...skeleton.bind_pose import bind_frames
-from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, find_scale, refined
+from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, person_factor
 from ..figure import figure_of
 from ..finding import Finding, FindingKind
-from ..footing import find_footing, find_rise, unseen_places
+from ..footing import find_footing, find_rise
 from ..frames.exchanges import KINDS, LIMBS, find_exchange
 from ..frames.flips import find_flips
 from ..frames.jumps import find_jumps
@@ -32,6 +33,7 @@ from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
 from .ground import as_stood
 from .repair import placed_skin, repaired
+from .scales import find_scales
 
 PARTING = (FindingKind.JUMP, FindingKind.LEAP)
 LEAST_KEPT = 0.5  # s; of less nobody makes a range
@@ -92,6 +94,8 @@ def diagnose(
     recording = cured(recording, _find_bind_pose(recording))
     _require_length(recording)
     figure = figure_of(recording, chosen)
+    size = person_factor(build_character(recording, chosen=chosen).height)
+    recording = scaled_recording(recording, size)  # limits in metres are those of persons
     for limbs in LIMBS:
         recording = cured(recording, find_exchange(recording, figure, limbs))
     for find in (find_flips, find_spikes):
@@ -108,27 +112,17 @@ def diagnose(
     level = find_level_hips(recording, figure)
     if level is not None:  # how it falls and stands is lost with their rise
         return Diagnosis((*found, level))
+    recording = scaled_recording(recording, 1.0 / size)
 
     def performed(repairs: Repairs) -> Performance:
-        placed = repaired(recording, repairs)
-        character = build_character(placed, chosen=chosen)
-        return perform(placed, character, placed_skin(skin, repairs))
+        mended = repaired(recording, repairs)
+        character = build_character(mended, chosen=chosen)
+        return perform(mended, character, placed_skin(skin, repairs))
 
-    performance = performed(Repairs())
-    trusted = _trusted(found, rate)
-    scale = find_scale(performance, trusted)
-    if scale is not None and scale.frames:
-        # At the clock that they tell, what is carried unseen shows that it is no fall.
-        carried = unseen_places(performed(_remedy(scale)))
-        trusted = replace(trusted, but=(*trusted.but, *carried))
-        scale = find_scale(performance, trusted)
-    if scale is not None:
-        performance = performed(_remedy(scale))
-        if scale.kind is FindingKind.SIZE:
-            # Where soles begin and how high feet are lifted is told best at the right size.
-            scale = refined(scale, performance, trusted)
-            performance = performed(_remedy(scale))
-        found.append(scale)
+    scales = find_scales(performed, _trusted(found, rate))
+    found += scales
+    placed = reduce(Repairs.joined, map(_remedy, scales), Repairs())
+    performance = performed(placed)
     height, seconds = performance.character.height, float(performance.times[-1])
     if seconds < MIN_CLIP_DURATION:
         found.append(Finding(FindingKind.TOO_SHORT, seconds, "s"))
@@ -140,11 +134,11 @@ def diagnose(
     if kept is not None and any(finding.kind in PARTING for finding in found):
         found[:] = _parted(found, frames, kept)
         recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
-        performance = performed(_remedy(scale))
+        performance = performed(placed)
     rise = find_rise(as_stood(performance, scene))
     if rise is not None:
         found.append(rise)
-        performance = performed(_remedy(scale).joined(_remedy(rise)))
+        performance = performed(placed.joined(_remedy(rise)))
     found += find_footing(as_stood(performance, scene), find_contacts(performance, scene))
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):

@@ -1,0 +1,49 @@
+"""Size and clock that are both wrong are told at once, and no size hides or feigns a fault."""
+
+from functools import cache
+
+import pytest
+from hangtime.devtools.doctor.damages import joined, sized, slowed
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.doctor.examination.diagnose import Diagnosis, diagnose
+from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.tests.helpers.clips import JUMP, load_recording
+
+RATE = 120.0  # Hz
+UNSCALED = 17.7  # times too large: a BVH file's units, taken for metres
+
+
+@cache
+def jump() -> Recording:
+    return load_recording(JUMP)
+
+
+def sizes(factor: float) -> Recording:
+    return sized(factor, "size").of(jump()).recording
+
+
+def kinds(diagnosis: Diagnosis) -> list[str]:
+    return [finding.kind.value for finding in diagnosis.findings]
+
+
+@pytest.mark.parametrize("played", [24.0, 30.0, 60.0])
+def test_an_import_without_scale_and_frame_rate_has_two_remedies(played: float) -> None:
+    recording = slowed(RATE / played).of(sizes(UNSCALED)).recording
+    found = diagnose(recording)
+    assert kinds(found) == ["size", "time scale"]
+    assert [each.alternative for each in found.findings] == [None, None]
+    assert recording.rate / found.repairs.time_scale == pytest.approx(RATE, rel=1e-3)
+    assert kinds(diagnose(repaired(recording, found.repairs))) == []
+
+
+@pytest.mark.parametrize("factor", [0.01, UNSCALED, 100.0])
+def test_limits_in_metres_are_those_of_persons(factor: float) -> None:
+    assert kinds(diagnose(sizes(factor))) == ["size"]
+
+
+@pytest.mark.parametrize("factor", [0.01, UNSCALED])
+def test_a_jump_is_told_at_any_size(factor: float) -> None:
+    damaged = sized(factor, "size").of(joined(0.2).of(jump()).recording).recording
+    found = {finding.kind.value: finding for finding in diagnose(damaged).findings}
+    assert {"jump", "size"} == set(found)
+    assert found["jump"].amount == pytest.approx(20.0, rel=0.15)  # cm, as a person's
