@@ -14,7 +14,7 @@ from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.feet import FootFault, FootFaultKind
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
-from ...solver.doctor.stretch import is_clear
+from ...solver.doctor.stretch import CUTTING, Span, belonging, is_clear
 from ..accessors import current_scene, source_of
 from ..armature.actions import recorded_action
 from ..armature.poses import frames_per_second
@@ -173,6 +173,13 @@ def is_applied(settings: HangtimeSettings, row: HangtimeFinding, *, other: bool 
         span = float(settings.first_frame), float(settings.last_frame)
         return bool(settings.use_range) and is_clear(span, finding_of(row))
     return remedy != Repairs() and applied(settings).includes(remedy)
+
+
+def undoubted(settings: HangtimeSettings, span: Span) -> Span:
+    """A span of frames and those around it that belong to it, as far as an examination tells: what
+    is beyond a leap, a jump or a rest pose says nothing of what touches in it."""
+    cutting = (each for each in map(finding_of, findings(settings)) if each.kind in CUTTING)
+    return belonging(span, cutting)
 
 
 def foot_faults(settings: HangtimeSettings) -> tuple[FootFault, ...]:

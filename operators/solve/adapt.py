@@ -27,6 +27,7 @@ from ...bridge.loops.write_loop import (
 from ...bridge.properties.settings import HangtimeSettings, settings_of
 from ...bridge.recipe.keys import require_every_frame
 from ...bridge.recipe.result import require_return_after
+from ...bridge.repairs.stored import undoubted
 from ...bridge.rows.choices import LoopRoot, WrittenAs
 from ...bridge.takes.options import loop_options, result_options
 from ...bridge.takes.write_result import (
@@ -237,6 +238,10 @@ def _require_loopable(armature: bpy.types.Object) -> None:
 
 
 def read_wanted(armature: bpy.types.Object) -> Incremental[Recording]:
-    """The recording in the artist's range, and beyond where there are keys."""
-    first, last = wanted_range(settings_of(armature))
-    return (yield from read_recorded_incrementally(armature, first, last, BEYOND))
+    """The recording in the artist's range, and beyond where there are keys that belong to it."""
+    settings = settings_of(armature)
+    first, last = wanted_range(settings)
+    recording = yield from read_recorded_incrementally(armature, first, last, BEYOND)
+    if first is None or last is None:
+        return recording
+    return recording.window(*undoubted(settings, (first, last)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import inf
 
 from .finding import Finding, FindingKind
 
@@ -21,6 +22,14 @@ def cuts(finding: Finding) -> list[Span]:
 def is_clear(span: Span, finding: Finding) -> bool:
     """Whether the frames of a span have no place of a finding among them."""
     return not any(span[0] < after and before < span[1] for before, after in cuts(finding))
+
+
+def belonging(span: Span, findings: Iterable[Finding]) -> Span:
+    """The span and as much around it as nothing cuts off from it."""
+    found = [cut for finding in findings for cut in cuts(finding)]
+    first = max((after for _, after in found if after <= span[0]), default=-inf)
+    last = min((before for before, _ in found if before >= span[1]), default=inf)
+    return first, last
 
 
 def longest_stretch(span: Span, findings: Iterable[Finding]) -> Span:

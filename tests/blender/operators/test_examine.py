@@ -26,6 +26,7 @@ from hangtime.bridge.repairs.stored import (
     is_applied,
     look_at_examination,
 )
+from hangtime.bridge.rows.phases import unseen_frames
 from hangtime.operators.timeline.timeline_bars import rows_of
 from hangtime.solver.data.problem import Mend
 from hangtime.solver.doctor.examination.repair import as_asked, unplaced
@@ -116,6 +117,21 @@ def test_ground_of_the_panel_world_is_the_floor(jump) -> None:
     bpy.ops.hangtime.examine()
     assert kinds(jump) == []
     assert not foot_faults(jump.hangtime)
+
+
+def test_frames_that_are_left_out_tell_nothing_of_those_that_stay() -> None:
+    """In a dancer's first 13 frames capture had lost the floor: Analyze found no contact at all."""
+    rigs.reset()
+    dance = import_clip(mocap_path("rokoko_jesse_dance.bvh")).armature
+    bpy.context.view_layer.objects.active = dance
+    bpy.ops.hangtime.examine()
+    bpy.ops.hangtime.repair_all()
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
+    assert len(dance.hangtime.contacts) > 5
+    noted = {row.name: finding_of(row).frames for row in findings(dance.hangtime)}
+    np.testing.assert_allclose(
+        unseen_frames(dance.hangtime), noted["unseen support"], rtol=0.0, atol=0.5
+    )
 
 
 def take_frames_out(armature: bpy.types.Object) -> None:
