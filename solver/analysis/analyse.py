@@ -112,7 +112,7 @@ def _told(
         yield Treadmill(speed)
         return
     recording = performance.recording
-    agreed = _agreed_rate(performance, schedule)
+    agreed = agreed_rate(performance, schedule)
     for gap in schedule.unseen:
         rate = agreed if _fitting_rate(performance, gap) == agreed else None
         boxes = boxes_beneath(performance.times, points, gap, floor_m) if rate is None else ()
@@ -120,7 +120,7 @@ def _told(
         yield UnseenSupport(first, last, boxes, rate, recording.rate)
 
 
-def _agreed_rate(performance: Performance, schedule: ContactSchedule) -> int | None:
+def agreed_rate(performance: Performance, schedule: ContactSchedule) -> int | None:
     """The frame rate at which the body falls most of the time in which nothing touches; None where
     there is none: a clock that is wrong is so in every flight."""
     seconds: defaultdict[int | None, float] = defaultdict(float)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -11,6 +12,7 @@ from ..analysis.performance import Performance, contact_points, find_contacts
 from ..arrays import FloatArray
 from ..body.anatomy import Part, Side
 from ..data.contacts import ContactSchedule, Interval, PointKind
+from .falls import Spans
 from .finding import Finding, FindingKind
 from .repairs import Repairs
 
@@ -162,18 +164,18 @@ def _flicker(performance: Performance, schedule: ContactSchedule) -> Finding | N
     if len(breaks) < FLICKERS:
         return None
     breaks.sort(key=lambda each: each[0].start)
-    spans = tuple(_frames(performance, gap) for gap, _ in breaks)
+    spans = spans_of(performance, (gap for gap, _ in breaks))
     return Finding(FindingKind.FLICKER, float(len(breaks)), "times", spans, breaks[0][1])
 
 
-def unseen_places(performance: Performance) -> tuple[tuple[float, float], ...]:
-    """First and last scene frames where nothing touches, yet the body does not fall."""
-    return tuple(_frames(performance, gap) for gap in find_contacts(performance).unseen)
+def spans_of(performance: Performance, gaps: Iterable[Interval]) -> Spans:
+    """Nearest first and last scene frames of intervals, s."""
+    return tuple(_frames(performance, gap) for gap in gaps)
 
 
 def _note(performance: Performance, kind: FindingKind, gaps: tuple[Interval, ...]) -> Finding:
     seconds = sum(gap.end - gap.start for gap in gaps)
-    return Finding(kind, seconds, "s", tuple(_frames(performance, gap) for gap in gaps))
+    return Finding(kind, seconds, "s", spans_of(performance, gaps))
 
 
 def _frames(performance: Performance, gap: Interval) -> tuple[float, float]:

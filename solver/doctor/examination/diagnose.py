@@ -119,7 +119,7 @@ def diagnose(
         character = build_character(mended, chosen=chosen)
         return perform(mended, character, placed_skin(skin, repairs))
 
-    scales = find_scales(performed, _trusted(found, rate))
+    scales = find_scales(performed, _trusted(found, rate), scene)
     found += scales
     placed = reduce(Repairs.joined, map(_remedy, scales), Repairs())
     performance = performed(placed)

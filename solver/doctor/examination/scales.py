@@ -2,33 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from ...analysis.performance import Performance
+from ...analysis.analyse import agreed_rate
+from ...analysis.performance import Performance, find_contacts
+from ...data.constants import STANDARD_GRAVITY
+from ...data.scene import SceneObject
 from ..falls import Trusted, find_scale, refined
 from ..finding import Finding, FindingKind
-from ..footing import unseen_places
+from ..footing import spans_of
 from ..repairs import Repairs
 
 
 def find_scales(
-    performed: Callable[[Repairs], Performance], trusted: Trusted
+    performed: Callable[[Repairs], Performance], trusted: Trusted, scene: Sequence[SceneObject]
 ) -> tuple[Finding, ...]:
-    """performed: the recording with repairs. trusted: the falls that tell a clock.
+    """performed: the recording with repairs. trusted: the falls that tell a clock. scene: objects
+    of which ground may carry it.
 
     Where the fall does not fit a person's size, the clock is wrong too, as after an import without
     scale and frame rate: then neither remedy does without the other, and there is none instead.
     """
     scale, falling = _scale_at(performed, Repairs(), trusted)
     if scale is None or scale.kind is not FindingKind.SIZE or scale.remedy is None:
+        scale = scale or _slow_fall(performed(Repairs()), scene)
         return () if scale is None else (scale,)
     # Where soles begin and how high feet are lifted is told best at the right size.
     scale = refined(scale, performed(scale.remedy), falling)
-    clock, _ = _scale_at(performed, scale.remedy or Repairs(), trusted)
-    if clock is None:
+    sized = scale.remedy or Repairs()
+    clock, _ = _scale_at(performed, sized, trusted)
+    clock = clock or _slow_fall(performed(sized), scene)
+    if clock is None or clock.kind is FindingKind.SIZE:
         return (scale,)
     return replace(scale, alternative=None), replace(clock, alternative=None)
+
+
+def _slow_fall(performance: Performance, scene: Sequence[SceneObject]) -> Finding | None:
+    """A wrong clock by which most of the time in the air is no fall, as an analysis refuses it."""
+    schedule = find_contacts(performance, scene)
+    rate = agreed_rate(performance, schedule)
+    if rate is None:
+        return None
+    factor = performance.recording.rate / rate
+    places = spans_of(performance, schedule.unseen)
+    remedy = Repairs(time_scale=factor)
+    return Finding(
+        FindingKind.TIME_SCALE, STANDARD_GRAVITY * factor**2, "m/s²", places, remedy=remedy
+    )
 
 
 def _scale_at(
@@ -39,6 +60,7 @@ def _scale_at(
     scale = find_scale(performed(placed), trusted)
     if scale is None or scale.remedy is None or not scale.frames:
         return scale, trusted
-    carried = unseen_places(performed(placed.joined(scale.remedy)))
+    mended = performed(placed.joined(scale.remedy))
+    carried = spans_of(mended, find_contacts(mended).unseen)
     trusted = replace(trusted, but=(*trusted.but, *carried))
     return find_scale(performed(placed), trusted), trusted

@@ -47,3 +47,12 @@ def test_a_jump_is_told_at_any_size(factor: float) -> None:
     found = {finding.kind.value: finding for finding in diagnose(damaged).findings}
     assert {"jump", "size"} == set(found)
     assert found["jump"].amount == pytest.approx(20.0, rel=0.15)  # cm, as a person's
+
+
+@pytest.mark.parametrize(("clip", "times"), [("BMC_run.bvh", 0.5), ("rokoko_jesse_dance.bvh", 5.0)])
+def test_a_frame_rate_that_an_analysis_refuses_is_told(clip: str, times: float) -> None:
+    """Falls of a run that is too fast are short, and of a dance they do not agree."""
+    recording = slowed(times).of(load_recording(clip)).recording
+    found = diagnose(recording)
+    assert "time scale" in kinds(found)
+    assert found.repairs.time_scale == pytest.approx(1.0 / times, rel=0.01)
