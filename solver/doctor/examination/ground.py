@@ -19,6 +19,8 @@ def as_stood(performance: Performance, scene: Sequence[SceneObject]) -> Performa
     than as it was recorded; as it was where that is the floor, or ground that it does not touch."""
     recording = performance.recording
     ground = StandingGround.of(-np.inf, scene, recording)  # objects alone: the floor is known
+    if ground.bare:
+        return performance
     for carrier in ground.carriers:
         seen = perform(carrier.seen_recording(recording), performance.character, performance.skin)
         top = _top(seen, carrier.heights)
