@@ -91,7 +91,8 @@ def accepted_lines(needs: FitNeeds) -> list[str]:
             f"{each.name} ({length(each.off_mm / 1000.0)} off)" if each.off_mm else each.name
             for each in needs.let_go
         )
-        lines.append(f"Contacts let go, as they cannot be held with the others: {names}")
+        why = "as they cannot be held with the others; nothing moves them"
+        lines.append(f"Contacts let go, {why}: {names}")
     if needs.accepted:
         names = ", ".join(
             f"{each.name} ({length(each.off_mm / 1000.0)})" for each in needs.accepted

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..body.character import Character, build_character
-from ..data.contacts import Contact, ContactSchedule, Interval, snap
+from ..data.contacts import Contact, ContactSchedule, Interval, numbered, snap
 from ..data.faults import (
     BadTiming,
     ClipTooShort,
@@ -64,8 +64,9 @@ def analyse(recording: Recording, problem: MotionProblem) -> Analysis:
     """
     within, character = build_figure(recording, problem)
     performance = _performed(recording, within, character, problem.skin)
-    # Parted before corrections, for those are the last word.
-    found = parted(find_contacts(performance, problem.scene))
+    # Before corrections, which are the last word, and name contacts as they are told.
+    found = disjoint(parted(find_contacts(performance, problem.scene)))
+    found = replace(found, contacts=numbered(found.contacts))
     corrected = disjoint(_corrected(found, problem, performance))
     standing = foot_sized(corrected, performance, problem.scene)
     schedule = grounded(standing, performance, problem.scene)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ..analysis.pinned_places import chosen_contacts, phase_of
-from ..data.contacts import ContactSchedule, Phase
+from ..data.contacts import Contact, ContactSchedule, Phase
 from ..data.faults import PinLetGo, UnknownPhaseIn
 from ..data.problem import MotionProblem, Pin
 from ..data.recording import Recording
@@ -29,7 +29,7 @@ def on_phases_of(
     change = _Change(found, fitted, recording)
     return replace(
         problem,
-        pins=tuple(change.pin(pin) for pin in problem.pins),
+        pins=change.pins(problem.pins),
         requests=change.requests(problem.requests),
     )
 
@@ -42,13 +42,27 @@ class _Change:
     fitted: ContactSchedule
     recording: Recording
 
-    def pin(self, pin: Pin) -> Pin:
-        """The pin on those of its contacts that are left."""
+    def pins(self, asked: Sequence[Pin]) -> tuple[Pin, ...]:
+        """Each pin on those of its contacts that are left. One that has none moves nothing, as the
+        report says of its contacts, but where no other pin moves its stance either."""
+        held = [(pin, self._left(pin)) for pin in asked]
+        moved = {pin.phase for pin, left in held if left}
+        for pin in asked:
+            if pin.phase not in moved:
+                raise PinLetGo(pin.name, tuple(c.name for c in self._chosen(pin)))
+        return tuple(self._pin(pin, left) for pin, left in held if left)
+
+    def _chosen(self, pin: Pin) -> list[Contact]:
+        """The found contacts that a pin moves."""
         chosen = chosen_contacts(pin, phase_of(pin, self.found), self.found)
-        names = [self.found.contacts[i].name for i in chosen]
-        left = [c for c in self.fitted.contacts if c.name in names]
-        if not left:
-            raise PinLetGo(pin.name, tuple(names))
+        return [self.found.contacts[i] for i in chosen]
+
+    def _left(self, pin: Pin) -> list[Contact]:
+        """Those of them that the fit has."""
+        names = [contact.name for contact in self._chosen(pin)]
+        return [contact for contact in self.fitted.contacts if contact.name in names]
+
+    def _pin(self, pin: Pin, left: Sequence[Contact]) -> Pin:
         phase = self.fitted.stance(left[0])
         every = len(left) == len(self.fitted.of_phase(phase))
         touching = () if every and not pin.touching else tuple(c.name for c in left)

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hangtime.solver.analysis import analyse as analyse_module
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.analysis.grounding import (
     MIN_STEP_TIME,
@@ -16,7 +17,7 @@ from hangtime.solver.analysis.grounding import (
     parted,
 )
 from hangtime.solver.analysis.performance import find_contacts
-from hangtime.solver.data.contacts import Contact, ContactSchedule
+from hangtime.solver.data.contacts import Contact, ContactSchedule, numbered
 from hangtime.solver.data.problem import ContactEdit, MotionProblem
 from hangtime.solver.numerics.rotations import unit
 from hangtime.tests.helpers.clips import load_recording
@@ -53,6 +54,24 @@ def test_one_point_is_in_one_place_at_a_time() -> None:
     assert [(c.name, c.start, c.end) for c in kept] == [
         (c.name, c.start, c.end) for c in found().contacts
     ]
+
+
+def test_contacts_that_are_made_one_leave_no_gap_in_the_numbers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Pins and corrections count the contacts that are told."""
+    schedule = overlapping(0.5 * SAME_PLACE)
+    later = replace(schedule.contacts[-1], start=0.9 * schedule.duration, end=schedule.duration)
+    three = numbered((*schedule.contacts, later))
+    monkeypatch.setattr(
+        analyse_module, "find_contacts", lambda *_: replace(schedule, contacts=three)
+    )
+    recording = hop().performance.recording
+    told = analyse(recording, MotionProblem()).schedule.contacts
+    assert [c.name for c in told] == [f"{later.point} {i}" for i in (1, 2)]
+    removed = MotionProblem(contacts=(ContactEdit(told[1].name, remove=True),))
+    (left,) = analyse(recording, removed).schedule.contacts
+    assert left.end == told[0].end
 
 
 def test_places_near_the_floor_are_put_upon_it() -> None:

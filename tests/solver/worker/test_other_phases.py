@@ -66,6 +66,17 @@ def test_a_pin_of_what_was_let_go_is_told() -> None:
     assert "Middle" in sentence(caught.value)
 
 
+def test_a_contact_that_was_let_go_keeps_no_other_pin_of_its_stance() -> None:
+    """A stance is moved by a pin for each of its contacts."""
+    first, *others = found().contacts
+    heel = replace(first, name="Heel 1", point="Heel")
+    both = replace(found(), contacts=(first, heel, *others))
+    pins = (Pin("Toe", "ground 1", (first.name,)), Pin("Heel", "ground 1", (heel.name,)))
+    left = replace(both, contacts=(heel, *others))
+    problem = on_phases_of(MotionProblem(pins=pins), both, left, recording())
+    assert [(pin.name, pin.touching) for pin in problem.pins] == [("Heel", ("Heel 1",))]
+
+
 def test_requests_stay_with_their_instants() -> None:
     limits = tuple(
         AngleLimit(phase, "LeftLeg", None, None, when=When(phase))
