@@ -31,7 +31,7 @@ from .targets import parents_of, targets_of
 class ControlRig:
     """The controls that pose bodies. used: what of each; carriers: those that no other moves.
 
-    turns: (L, D, B, 3) of the bodies by each degree of freedom at the frames where they were tried.
+    effects: of the degrees of freedom, at each of the frames where they were tried.
     """
 
     armature: bpy.types.Object
@@ -40,7 +40,7 @@ class ControlRig:
     responses: Responses
     used: dict[str, set[Freedom]]
     carriers: tuple[str, ...]
-    turns: FloatArray
+    effects: tuple[Effects, ...]
 
     @property
     def posing(self) -> Posing:
@@ -98,11 +98,10 @@ def found_controls(
 
 @dataclass(frozen=True)
 class _Look:
-    """What all controls do at a frame, and the turns that this is, (D, B, 3)."""
+    """What all controls do at a frame."""
 
     responses: Responses
     effects: Effects
-    turns: FloatArray
 
 
 def _felt(
@@ -126,7 +125,7 @@ def _looks(posing: Posing, parents: list[int], frames: FloatArray) -> list[_Look
             responses, posed = all_responses(posing, bases), posing.look()
             unit = metres_per_unit(current_scene()) * float(np.cbrt(np.linalg.det(world[:3, :3])))
             effects = effects_at(responses, posed, bases, parents, unit)
-            looks.append(_Look(responses, effects, responses.columns(posed, bases)[0]))
+            looks.append(_Look(responses, effects))
     return looks
 
 
@@ -146,8 +145,8 @@ def _rig(posing: Posing, looks: list[_Look], groups: list[Group]) -> ControlRig:
         used.setdefault(controls[dof.control], set()).add(dof.freedom)
     free = [name for c, name in enumerate(controls) if not middle.moved[:, c].any()]
     carriers = tuple(name for name in free if Freedom.SHIFT in used[name])
-    turns = np.stack([look.turns[dofs] for look in looks])
-    return ControlRig(posing.armature, controls, posing.bodies, middle, used, carriers, turns)
+    effects = tuple(look.effects.part(dofs) for look in looks)
+    return ControlRig(posing.armature, controls, posing.bodies, middle, used, carriers, effects)
 
 
 def control_poses(

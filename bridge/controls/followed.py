@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, nullcontext
 import bpy
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import BoolArray, FloatArray
 from ..accessors import current_scene, pose_of
 from ..armature.incremental import Incremental, in_slices
 from ..armature.poses import evaluated
@@ -25,18 +25,27 @@ def telling_frames(
 ) -> Incremental[FloatArray]:
     """Frames (L,) of those (T,) that show all that acts in a rig at any: some that are spread
     evenly, and the middle one of each state of its switches."""
+    states = yield from acting(armature, frames, showing)
+    at = np.linspace(0, len(frames) - 1, LOOKS).round().astype(int).tolist()
+    for state in np.unique(states, axis=0):
+        rows = np.flatnonzero((states == state).all(axis=1))
+        at.append(int(rows[len(rows) // 2]))
+    return np.asarray(frames[np.unique(at)])
+
+
+def acting(
+    armature: bpy.types.Object,
+    frames: FloatArray,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
+) -> Incremental[BoolArray]:
+    """(T, N) which constraints of an armature act at frames (T,)."""
     influences = Influences(armature)
 
     def look(part: FloatArray) -> FloatArray:
         return np.stack([influences.at(float(frame)) for frame in part])
 
     parts = yield from in_slices(frames, look, showing)
-    states = np.concatenate(parts) > FAINT
-    at = np.linspace(0, len(frames) - 1, LOOKS).round().astype(int).tolist()
-    for state in np.unique(states, axis=0):
-        rows = np.flatnonzero((states == state).all(axis=1))
-        at.append(int(rows[len(rows) // 2]))
-    return np.asarray(frames[np.unique(at)])
+    return np.asarray(np.concatenate(parts) > FAINT)
 
 
 class Influences:

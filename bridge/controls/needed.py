@@ -33,6 +33,10 @@ class Effects:
     done: FloatArray
     wanted: FloatArray
 
+    def part(self, dofs: Sequence[int]) -> Effects:
+        """Those of some dofs."""
+        return Effects(self.done[list(dofs)], self.wanted)
+
     @property
     def torn(self) -> FloatArray:
         """(D,) share of what each dof does that bodies which hang together do not."""

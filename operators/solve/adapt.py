@@ -200,7 +200,7 @@ def require_writable(
     """Before a solve takes its seconds. span: first and last frame that are adapted.
 
     Controls are tried once for a recording, as that takes long and a drag's ghost waits for it.
-    Raises NoControls, DrivenBones, HeldBones, and as `map_anatomy`.
+    Raises PulledFromOutside, NoControls, DrivenBones, HeldBones, and as `map_anatomy`.
     """
     if not beside_keys(armature):
         return

@@ -64,6 +64,10 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.NoControls: "The bones {bones:names} follow constraints, and no bone that you can pose "
     "turns them by itself, so a result could not be written; bake them and mute the constraints, "
     "or choose other bones under Bones.",
+    faults.PulledFromOutside: "The bones {bones:names} are pulled towards {targets:names} by "
+    "constraints ({constraints:names}), and no bone of the armature moves that, so a result could "
+    "not be written; bake the action with Visual Keying (Object > Animation > Bake Action), then "
+    "mute the constraints.",
     faults.DrivenBones: "Drivers pose the bones {bones:names} whatever keys they have, so a result "
     "could not be written; bake the action and delete these drivers, or choose other bones under "
     "Bones.",

@@ -84,6 +84,7 @@ from .requests import WrongWeights as WrongWeights
 from .rigs import DrivenBones as DrivenBones
 from .rigs import HeldBones as HeldBones
 from .rigs import NoControls as NoControls
+from .rigs import PulledFromOutside as PulledFromOutside
 from .scenes import GroundNotThere as GroundNotThere
 from .scenes import InsideOut as InsideOut
 from .scenes import JerkyGround as JerkyGround

@@ -13,6 +13,16 @@ class NoControls(Fault):
 
 
 @dataclass
+class PulledFromOutside(Fault):
+    """Constraints of inverse kinematics, of these bones, pull towards these objects, which no bone
+    of the armature moves."""
+
+    bones: tuple[str, ...]
+    constraints: tuple[str, ...]
+    targets: tuple[str, ...]
+
+
+@dataclass
 class DrivenBones(Fault):
     """Drivers set the rotations of these bones, or the location that carries the first."""
 

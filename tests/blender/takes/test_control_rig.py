@@ -20,7 +20,7 @@ from hangtime.bridge.controls.control_rig import (
     found_controls,
 )
 from hangtime.bridge.controls.driven import is_driven
-from hangtime.bridge.controls.needed import Effects, needed
+from hangtime.bridge.controls.needed import LEVER, Effects, needed
 from hangtime.bridge.controls.refusals import unled
 from hangtime.bridge.recipe.result import ResultOptions
 from hangtime.bridge.takes.plan import AdaptedMotion
@@ -237,14 +237,64 @@ def test_bones_that_follow_another_armature_are_refused_before_a_solve(
 
 
 def test_an_elbow_may_bend_about_any_axis() -> None:
-    """One hinge across all of the armature's axes is a lead; none is not."""
-    oblique = np.zeros((1, 2, 3))
-    oblique[0, 1] = np.ones(3) / np.sqrt(3.0)
-    trunk = np.zeros((3, 2, 3))
-    trunk[:, 0] = trunk[:, 1] = np.eye(3)
-    parents = [-1, 0]
-    assert unled(np.concatenate([trunk, oblique]), ("trunk", "forearm"), parents) == []
-    assert unled(trunk, ("trunk", "forearm"), parents) == ["forearm"]
+    """One hinge across all of the armature's axes is a lead; none is not, nor what shifts it."""
+    oblique = np.zeros((1, 2, 2, 3))  # shifts and turns of trunk and forearm
+    oblique[0, 1, 1] = np.ones(3) / np.sqrt(3.0)
+    trunk = np.zeros((3, 2, 2, 3))
+    trunk[:, 1, 0] = trunk[:, 1, 1] = np.eye(3)
+    shifting = oblique.copy()
+    shifting[0, 0, 1] = 1.0
+    bodies, parents = ("trunk", "forearm"), [-1, 0]
+
+    def unled_by(*dofs: np.ndarray) -> list[str]:
+        return unled(LEVER * np.concatenate(dofs).reshape(-1, 12), bodies, parents)
+
+    assert unled_by(trunk, oblique) == []
+    assert unled_by(trunk) == unled_by(trunk, shifting) == ["forearm"]
+
+
+def pulled_legs(jump: bpy.types.Object) -> list[bpy.types.Object]:
+    """Lets empties pull the legs of the jump; returns these."""
+    targets = []
+    for side in ("Left", "Right"):
+        target = bpy.data.objects.new(f"{side} target", None)
+        bpy.context.scene.collection.objects.link(target)
+        chain = jump.pose.bones[f"{side}Leg"].constraints.new("IK")
+        chain.target, chain.chain_count = target, 2
+        targets.append(target)
+    return targets
+
+
+def test_legs_that_are_pulled_from_outside_the_armature_are_refused_before_a_solve(
+    jump: bpy.types.Object,
+) -> None:
+    """Though the bones above them, by which the hips shift, would turn them, too."""
+    targets = pulled_legs(jump)
+    told = "LeftLeg, RightLeg are pulled towards Left target, Right target by constraints .IK."
+    with pytest.raises(RuntimeError, match=told):
+        bpy.ops.hangtime.analyze()
+    for target in targets:
+        target.parent = jump
+    with pytest.raises(RuntimeError, match=told):
+        bpy.ops.hangtime.analyze()
+    for target in targets:
+        target.parent_type, target.parent_bone = "BONE", "Hips"
+    with pytest.raises(RuntimeError, match="LeftLeg.* follow constraints, and no bone"):
+        bpy.ops.hangtime.analyze()
+
+
+def test_what_pulls_from_outside_at_other_frames_alone_is_no_matter(
+    jump: bpy.types.Object,
+) -> None:
+    pulled_legs(jump)
+    for side in ("Left", "Right"):
+        chain = jump.pose.bones[f"{side}Leg"].constraints[0]
+        for frame, influence in ((1, 1.0), (JUMP_FRAMES[0] - 40, 1.0), (JUMP_FRAMES[0] - 30, 0.0)):
+            chain.influence = influence
+            chain.keyframe_insert("influence", frame=frame)
+    settings = jump.hangtime
+    settings.use_range, (settings.first_frame, settings.last_frame) = True, JUMP_FRAMES
+    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
 
 
 def test_a_constraint_on_a_finger_diverts_nothing(jump: bpy.types.Object) -> None:
