@@ -59,21 +59,20 @@ def _require_inside(
     PulledFromOutside."""
     with showing():
         outside = [
-            (index, bone, each)
+            (index, bone.name, each.name, each.target.name)
             for index, (bone, each) in enumerate(constraints_of(armature))
             if isinstance(each, bpy.types.KinematicConstraint)
-            and not set(bodies).isdisjoint(chain_of(bone, each))
+            and each.target is not None
             and each.target != armature
+            and not set(bodies).isdisjoint(chain_of(bone, each))
             and not _moves(armature, each.target)
         ]
     if not outside:
         return
     acts = yield from acting(armature, frames, showing)
-    pulls = [(bone, each) for index, bone, each in outside if acts[:, index].any()]
+    pulls = [names for index, *names in outside if acts[:, index].any()]
     if pulls:
-        named = zip(
-            *((bone.name, each.name, each.target.name) for bone, each in pulls), strict=True
-        )
+        named = zip(*pulls, strict=True)
         raise PulledFromOutside(*(tuple(dict.fromkeys(names)) for names in named))
 
 

@@ -28,6 +28,8 @@ CREEP_WINDOW = 0.4  # s; of the running median of a resting point's place
 SINK_WINDOW = 0.2  # s; of the running low of its height, when it lands
 MAX_FLIGHT = 1.2  # s; a rise of 1.8 m
 MIN_PIECE = 0.03  # s, of a contact that a cut leaves; a foot takes as long to land or leave
+MAX_DELAY = 0.1  # s, by which noise delays a contact of who stands; a hop of 1 cm flies as long
+LEAST_FALL = 0.25  # m/s; a flight of 0.05 s ends, and begins, so fast; standing bodies are slower
 MIN_FALL_WINDOW = 0.05  # s; over which an acceleration can be estimated
 FREE_FALL_TOLERANCE = 6.0  # m/s²; short flights, and the ends of clips, are that uncertain
 FALL_RESIDUAL = 0.03  # m, rms; a centre of mass further from every parabola is carried
@@ -77,7 +79,7 @@ def detect_contacts(
     touches = timed_by_forces(clock, touches, heights, legs)
     contacts = _within(touches, duration)
     contacts = _kept_off_ends(contacts, duration, shortest_flight_s, times, com)
-    contacts = _closed(contacts, duration, shortest_flight_s)
+    contacts = _closed(contacts, duration, shortest_flight_s, times, com)
     unseen = unseen_support(contacts, duration, times, com)
     return ContactSchedule(numbered(contacts), duration, floor_m, unseen)
 
@@ -249,6 +251,8 @@ def _kept_off_ends(
         first = gap.start == 0.0
         if gap.end - gap.start >= shortest or first == (gap.end == duration):
             continue
+        if _stands(times, com, gap):
+            continue
         flight = Interval(0.0, shortest) if first else Interval(duration - shortest, duration)
         if not _falls(times, com, flight):
             continue
@@ -263,11 +267,18 @@ def _kept_off_ends(
     ]
 
 
-def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> list[Contact]:
-    """The contacts with every gap shorter than `shortest`, s, closed by those on either side."""
+def _closed(
+    contacts: Sequence[Contact],
+    duration: float,
+    shortest: float,
+    times: FloatArray,
+    com: FloatArray | None,
+) -> list[Contact]:
+    """The contacts with every gap shorter than `shortest`, s, and those at the recording's ends in
+    which the body stands, closed by those on either side."""
     closed = list(contacts)
     for gap in gaps(((c.start, c.end) for c in contacts), duration):
-        if gap.end - gap.start >= shortest - 1e-9:
+        if gap.end - gap.start >= shortest - 1e-9 and not _stands(times, com, gap):
             continue
         meet = (gap.start + gap.end) / 2
         if gap.start == 0.0 or gap.end == duration:
@@ -275,6 +286,18 @@ def _closed(contacts: Sequence[Contact], duration: float, shortest: float) -> li
         closed = [replace(c, end=meet) if c.end == gap.start else c for c in closed]
         closed = [replace(c, start=meet) if c.start == gap.end else c for c in closed]
     return closed
+
+
+def _stands(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
+    """Whether a gap at an end of the recording, of a frame or two, which tell no acceleration, is
+    one that noise leaves in the contacts of who stands: the body moves no faster up or down."""
+    at_end = gap.start <= times[0] or gap.end >= times[-1]
+    seconds = gap.end - gap.start
+    if com is None or not at_end or seconds > MAX_DELAY:
+        return False
+    first, last = np.interp([gap.start, gap.end], times, com[:, 2])
+    told = _off_gravity(times, com, gap) is not None
+    return not told and bool(abs(last - first) < LEAST_FALL * seconds)
 
 
 def _falls(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:

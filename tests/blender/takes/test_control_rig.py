@@ -279,7 +279,7 @@ def test_legs_that_are_pulled_from_outside_the_armature_are_refused_before_a_sol
         bpy.ops.hangtime.analyze()
     for target in targets:
         target.parent_type, target.parent_bone = "BONE", "Hips"
-    with pytest.raises(RuntimeError, match="LeftLeg.* follow constraints, and no bone"):
+    with pytest.raises(RuntimeError, match=r"LeftLeg.* follow constraints, and no bone"):
         bpy.ops.hangtime.analyze()
 
 

@@ -1,6 +1,7 @@
 """Contacts: the schedule's bookkeeping, detection on made-up tracks, and on recordings."""
 
 import json
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -216,6 +217,24 @@ def test_a_clip_that_begins_as_a_foot_lands_begins_with_a_short_flight() -> None
         assert flight.start == 0.0 or flight.end == TIMES[-1]
         hanging = np.broadcast_to([0.0, 0.0, 0.9], body.shape)
         assert detect_contacts(TIMES, feet, com=hanging).flights == ()
+
+
+@pytest.mark.parametrize("rate", [24.0, 30.0, 60.0])
+def test_noise_on_the_first_frame_or_the_last_makes_no_flight(rate: float) -> None:
+    """Of a body that stands; one that comes down with it lands then."""
+    times = np.arange(0.0, 2.0, 1.0 / rate)
+    height = np.where(times > 0.0, 0.0, 0.06)
+    heel = ContactPoint(
+        PointKind.TOE, "Foot", np.zeros(3), np.stack([0.0 * times, 0.0 * times, height], 1)
+    )
+    standing = np.full_like(times, 0.9)
+    landing = standing - np.minimum(times, 0.5 / rate)  # at 1 m/s
+    for reverse in (slice(None), slice(None, None, -1)):
+        point = replace(heel, track=heel.track[reverse])
+        for com, flights in ((standing, 0), (landing, 1)):
+            body = np.stack([0.0 * times, 0.0 * times, com[reverse]], axis=1)
+            found = detect_contacts(times, {"Left toe": point}, com=body)
+            assert len(found.flights) == flights
 
 
 # ---- recordings ----
