@@ -30,17 +30,20 @@ from ...solver.data.faults import (
     UnseenSupport,
 )
 from ...solver.data.loop import Cycle
-from ...solver.data.problem import MotionProblem
+from ...solver.data.problem import Mend, MotionProblem
 from ...solver.data.recording import Recording
 from ...solver.data.reports.constraints import FitNeeds
 from ...solver.data.reports.report import FitQuality
 from ...solver.data.scene import SceneRole
 from ...solver.data.solver_options import SolverOptions
+from ...solver.doctor.figure import figure_of
+from ...solver.doctor.noise import find_noise
 from ...solver.skeleton.bind_pose import bind_frames
 from ...solver.skeleton.mapping import UNSURE
 from ...solver.worker.protocol import Analysed, Fitted, RequestKind
 from ..names import OperatorId
 from ..operator_types import OperatorResult
+from ..words.doctor_text import finding_sentence
 from ..words.headline import accepted_lines
 from ..words.messages import together
 from ..words.report_text import apex_words
@@ -68,6 +71,7 @@ ORPHAN = (
     "What {} was made from is not there any more, so it cannot be made anew. To adapt it as it is, "
     "press Analyze"
 )
+SMOOTH_FIRST = "Examine, and smooth them first, for noise breaks contacts into pieces"
 LOOSE = "only roughly like the recording: check the contacts' frames, and the scale"
 
 
@@ -198,7 +202,7 @@ def analysis(context: bpy.types.Context) -> Task:
     settings.shapes_told = shapes_told(bound, answer.bones, answer.fleshed)
     scene_settings(context.scene).armature = armature
     found = f"Found {contacts} contacts and {flights or 'no'} flight{'s' if flights > 1 else ''}"
-    found = f"{found}{bind}{_snapped(settings, span)}{_unseen(answer)}"
+    found = f"{found}{bind}{_snapped(settings, span)}{_noise(recording, problem)}{_unseen(answer)}"
     return f"{found}; but {said(odd)}" if odd is not None else found
 
 
@@ -212,6 +216,14 @@ def _prepare_drag(context: bpy.types.Context) -> Incremental[None]:
         skin, held = asked.problem.skin, chosen.name if chosen is not None else ""
         problem = problem_of(settings, asked.recording, asked.scene.objects, skin=skin, held=held)
         shared().prepare(asked.recording, problem)
+
+
+def _noise(recording: Recording, problem: MotionProblem) -> str:
+    """Words on noise that is not smoothed, which makes the fit long and bad."""
+    if Mend.NOISE in problem.mend:
+        return ""
+    found = find_noise(recording, figure_of(recording, problem.bones))
+    return f". {finding_sentence(found)} {SMOOTH_FIRST}" if found is not None else ""
 
 
 def _unseen(answer: Analysed) -> str:

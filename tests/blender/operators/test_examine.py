@@ -95,6 +95,25 @@ def test_all_remedies_count_at_once_and_no_key_changes(examined) -> None:
     assert not bpy.ops.hangtime.repair_all.poll()
 
 
+def test_noise_is_told_by_analyze_until_it_is_smoothed(
+    jump: bpy.types.Object, capfd: pytest.CaptureFixture[str]
+) -> None:
+    trembles = "joints tremble by .* Examine, and smooth them first"
+    bpy.ops.hangtime.analyze()
+    assert not re.search(trembles, capfd.readouterr().out)
+    shaken = np.random.default_rng(0)
+    for curve in curves_of(jump):
+        if "rotation" in curve.data_path:
+            for key in curve.keyframe_points:
+                key.co[1] += shaken.normal(0.0, np.radians(1.0))
+    bpy.ops.hangtime.analyze()
+    assert re.search(trembles, capfd.readouterr().out)
+    bpy.ops.hangtime.examine()
+    bpy.ops.hangtime.repair_all()
+    bpy.ops.hangtime.analyze()
+    assert not re.search(trembles, capfd.readouterr().out)
+
+
 def test_a_remedy_is_left_out_again(examined) -> None:
     scene = bpy.context.scene
     bpy.ops.hangtime.repair_all()
