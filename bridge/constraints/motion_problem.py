@@ -64,12 +64,17 @@ def span_of(settings: HangtimeSettings, recording: Recording) -> tuple[float, fl
 
 
 def analysis_key(
-    settings: HangtimeSettings, recording: Recording, grid: float = POSE_TOLERANCE
+    settings: HangtimeSettings,
+    recording: Recording,
+    grid: float = POSE_TOLERANCE,
+    *,
+    named: bool = False,
 ) -> str:
     """What an analysis is of: the recording, the range where there are frames beyond it, and
     whether it is a loop's, and its repairs. grid: of its poses; to their last bit they would be
-    others on another computer. Raises BadRecipe."""
-    span, key = span_of(settings, recording), digest(recording, grid)
+    others on another computer. named: whether its action's name is part of it. Raises BadRecipe."""
+    told = recording if named else replace(recording, name="")
+    span, key = span_of(settings, recording), digest(told, grid)
     whole = span == (recording.frames[0], recording.frames[-1])
     key = key if whole else f"{key} {span[0]:g} {span[1]:g}"
     key = key if loop_options(settings) is None else f"{key} loop"
@@ -77,10 +82,11 @@ def analysis_key(
 
 
 def analysis_is_of(settings: HangtimeSettings, recording: Recording) -> bool:
-    """Whether this is what was analysed. Earlier versions kept the key of every bit."""
+    """Whether this is what was analysed, whatever its action is called now. Earlier versions kept
+    the key with its name, the first ones of every bit."""
     return any(
-        settings.analysed == analysis_key(settings, recording, grid)
-        for grid in (POSE_TOLERANCE, 0.0)
+        settings.analysed == analysis_key(settings, recording, grid, named=named)
+        for grid, named in ((POSE_TOLERANCE, False), (POSE_TOLERANCE, True), (0.0, True))
     )
 
 

@@ -20,6 +20,7 @@ from hangtime.bridge.armature.poses import sample
 from hangtime.bridge.constraints.motion_problem import analysis_is_of, analysis_key
 from hangtime.bridge.rows.phases import phases_of
 from hangtime.operators.solve.adapt import read_wanted
+from hangtime.solver.data.recording import POSE_TOLERANCE
 from hangtime.tests.blender.helpers.actions import curves_of
 from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, SceneState, ask_by_text, landing
 from mathutils import Matrix
@@ -278,5 +279,14 @@ def test_a_file_that_another_processor_analysed_needs_no_analysis(
     bits = np.random.default_rng(0).choice([-1e-15, 1e-15], read.heads.shape)
     assert analysis_is_of(settings, replace(read, heads=read.heads * (1.0 + bits)))
     assert not analysis_is_of(settings, replace(read, heads=read.heads + 1e-3))
-    settings.analysed = analysis_key(settings, read, grid=0.0)  # as earlier versions kept it
-    assert analysis_is_of(settings, read)
+    for grid in (POSE_TOLERANCE, 0.0):  # as earlier versions kept it
+        settings.analysed = analysis_key(settings, read, grid, named=True)
+        assert analysis_is_of(settings, read)
+
+
+def test_an_action_may_be_renamed_after_the_analysis(analysed: bpy.types.Object) -> None:
+    analysed.animation_data.action.name = "Take 7"
+    assert bpy.ops.hangtime.fit() == {"FINISHED"}
+    curves_of(analysed)[0].keyframe_points[150].co[1] += 0.1
+    with pytest.raises(RuntimeError, match="changed since the analysis"):
+        bpy.ops.hangtime.fit()
