@@ -289,15 +289,17 @@ def _closed(
 
 
 def _stands(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:
-    """Whether a gap at an end of the recording, of a frame or two, which tell no acceleration, is
-    one that noise leaves in the contacts of who stands: the body moves no faster up or down."""
+    """Whether a gap at an end of the recording is one that noise leaves in the contacts of who
+    stands: of a frame or two, which tell no acceleration, and of a body that is slower up and down
+    than one that lands or leaves."""
     at_end = gap.start <= times[0] or gap.end >= times[-1]
     seconds = gap.end - gap.start
     if com is None or not at_end or seconds > MAX_DELAY:
         return False
+    if _off_gravity(times, com, gap) is not None:
+        return False
     first, last = np.interp([gap.start, gap.end], times, com[:, 2])
-    told = _off_gravity(times, com, gap) is not None
-    return not told and bool(abs(last - first) < LEAST_FALL * seconds)
+    return bool(abs(last - first) < LEAST_FALL * seconds)
 
 
 def _falls(times: FloatArray, com: FloatArray | None, gap: Interval) -> bool:

@@ -62,7 +62,8 @@ class NoFit(NoSolution):
 
 @dataclass
 class PinLetGo(Fault):
-    """A pin moves only contacts that the fit let go, as no motion holds them beside the others."""
+    """A pin moves only contacts that the fit let go, as no motion holds them beside the others, and
+    no other pin moves their stance."""
 
     pin: str
     contacts: tuple[str, ...]
