@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import bpy
 import numpy as np
 from mathutils import Matrix
@@ -15,13 +17,17 @@ from .poses import Poses, metres_per_unit
 
 
 def pose_bases(
-    armature: bpy.types.Object, poses: Poses, track: PoseTrack
+    armature: bpy.types.Object,
+    poses: Poses,
+    track: PoseTrack,
+    steady: Mapping[str, FloatArray],
 ) -> Incremental[dict[str, FloatArray]]:
     """Basis matrices (T, 4, 4) by bone, for the track's bones and all their ancestors; a bone a
     slice.
 
     Walks down from the roots: a bone of the track turns to the wanted rotation, any other keeps
-    what it had relative to its parent, which may have moved.
+    what it had relative to its parent, which may have moved. steady: bases (T, 4, 4) that bones
+    have instead of those in the poses, the turns of the track's apart.
     """
     pelvis = track.bones[0]
     carrier = carrier_of(armature_data(armature).bones[pelvis]).name
@@ -34,7 +40,7 @@ def pose_bases(
         old = poses.matrices[:, poses.bones.index(name)]
         old_parent = poses.matrices[:, poses.bones.index(bone.parent.name)] if bone.parent else None
         parent = new[bone.parent.name] if bone.parent else None
-        basis = basis_under(bone, old_parent, old)
+        basis = steady[name].copy() if name in steady else basis_under(bone, old_parent, old)
         target = old.copy()
         target[:, :3, :3] = wanted.get(name, old[:, :3, :3])
         target[:, :3, 3] += shift

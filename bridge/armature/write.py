@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager, nullcontext
 
 import bpy
@@ -18,6 +18,7 @@ from .incremental import Incremental, complete, sample_incrementally
 from .played import scene_copy
 from .pose_basis import carrier_of, pose_bases
 from .poses import metres_per_unit
+from .steady_joints import steady_bases
 
 _ROTATION_CHANNELS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 _EULER_CHANNEL = "rotation_euler"
@@ -28,8 +29,9 @@ def write_action(armature: bpy.types.Object, track: PoseTrack, *, name: str) -> 
 
     Every bone of the track gets its rotation keyed at each of the track's frames in its own
     rotation mode, the first one (or, where that is connected to its parent, the nearest ancestor
-    that can move) its location too; linear in between. All other curves keep their shape, cut to
-    the track's frames. The recording's action gets a fake user and is not changed otherwise.
+    that can move) its location too; linear in between. What would move joints in the body above
+    holds still (`steady_joints.py`). All other curves keep their shape, cut to the track's frames.
+    The recording's action gets a fake user and is not changed otherwise.
     Raises KeyError where the armature lacks a bone of the track.
     """
     recorded, slot = present(current_action(armature)), fcurves.slot_identifier(armature)
@@ -52,11 +54,12 @@ def write_incrementally(
     showing: lets the armature perform the recording.
     """
     poses = yield from sample_incrementally(armature, track.frames, showing)
-    made = yield from pose_bases(armature, poses, track)
+    steady = steady_bases(armature, poses, track.bones)
+    made = yield from pose_bases(armature, poses, track, steady)
     action = scene_copy(armature, recorded, name)
     whole = False
     try:
-        yield from _write_bases(armature, track, made, fcurves.holder_in(action, slot))
+        yield from _write_bases(armature, track, made, steady, fcurves.holder_in(action, slot))
         whole = True
     finally:
         if not whole:  # cancelled in between: half an action is of no use to anybody
@@ -69,16 +72,22 @@ def _write_bases(
     armature: bpy.types.Object,
     track: PoseTrack,
     made: dict[str, FloatArray],
+    steady: Iterable[str],
     curves: fcurves.CurveHolder | None,
 ) -> Incremental[None]:
-    """Write the pose bases (T, 4, 4) by bone into curves, a bone a slice."""
+    """Write the pose bases (T, 4, 4) by bone into curves, a bone a slice. steady: bones that hold
+    joints."""
     assert curves is not None
     carrier = carrier_of(armature_data(armature).bones[track.bones[0]]).name
-    for bone in track.bones:
-        _write_rotation(curves, pose_of(armature).bones[bone], track.frames, made[bone])
+    posed = pose_of(armature).bones
+    written = [(bone, rotation_channel(posed[bone])) for bone in track.bones]
+    written.append((carrier, "location"))
+    for bone in steady:
+        held = steady_properties(armature, curves, track.bones, bone)
+        written += [(bone, attribute) for attribute in held]
+    for bone, attribute in written:
+        _write_property(curves, posed[bone], attribute, track.frames, made[bone])
         yield
-    path = pose_of(armature).bones[carrier].path_from_id("location")
-    fcurves.write_channels(curves, path, track.frames, made[carrier][:, :3, 3], carrier)
     for curve in curves.fcurves:
         fcurves.crop(curve, float(track.frames[0]), float(track.frames[-1]))
 
@@ -88,18 +97,48 @@ def rotation_channel(bone: bpy.types.PoseBone) -> str:
     return _ROTATION_CHANNELS.get(bone.rotation_mode, _EULER_CHANNEL)
 
 
-def _write_rotation(
-    curves: fcurves.CurveHolder, bone: bpy.types.PoseBone, frames: FloatArray, basis: FloatArray
+def steady_properties(
+    armature: bpy.types.Object, curves: fcurves.CurveHolder, bodies: tuple[str, ...], name: str
+) -> list[str]:
+    """Properties with keys of a bone that holds joints (`steady_joints.py`), of which these are to
+    be replaced. bodies: the pelvis first; what turns them, and carries it, is the motion's."""
+    rest, bone = armature_data(armature).bones, pose_of(armature).bones[name]
+    wanted = ["scale"]
+    if name not in bodies:
+        wanted.append(rotation_channel(bone))
+    if not rest[name].use_connect and name != carrier_of(rest[bodies[0]]).name:
+        wanted.append("location")
+    keyed = {curve.data_path for curve in curves.fcurves}
+    return [each for each in wanted if bone.path_from_id(each) in keyed]
+
+
+def property_values(
+    bone: bpy.types.PoseBone, attribute: str, bases: FloatArray, near: FloatArray
+) -> FloatArray:
+    """(T, n) location, scale or rotation of bases (T, 4, 4). near: as of `channels`."""
+    if attribute == "location":
+        return np.asarray(bases[:, :3, 3])
+    if attribute == "scale":
+        return np.asarray(np.linalg.norm(bases[:, :3, :3], axis=1))
+    return channels(proper(bases[:, :3, :3]), bone.rotation_mode, near)
+
+
+def _write_property(
+    curves: fcurves.CurveHolder,
+    bone: bpy.types.PoseBone,
+    attribute: str,
+    frames: FloatArray,
+    bases: FloatArray,
 ) -> None:
-    used = rotation_channel(bone)
-    remove_other_rotations(curves, bone, used)
-    path = bone.path_from_id(used)
-    near = np.array(getattr(bone, used))
+    if attribute == rotation_channel(bone):
+        remove_other_rotations(curves, bone, attribute)
+    path = bone.path_from_id(attribute)
+    near = np.array(getattr(bone, attribute))
     for index in range(len(near)):
         curve = curves.fcurves.find(path, index=index)
         if curve is not None:
             near[index] = curve.evaluate(frames[0])
-    values = channels(proper(basis[:, :3, :3]), bone.rotation_mode, near)
+    values = property_values(bone, attribute, bases, near)
     fcurves.write_channels(curves, path, frames, values, bone.name)
 
 

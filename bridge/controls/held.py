@@ -1,5 +1,4 @@
-"""Keyed bones that cannot follow a solution: constraints pose them otherwise than their keys say,
-or their lengths change."""
+"""Keyed bones that cannot follow a solution: constraints pose them otherwise than their keys."""
 
 from __future__ import annotations
 
@@ -9,7 +8,6 @@ import bpy
 import numpy as np
 
 from ...solver.arrays import BoolArray, FloatArray
-from ...solver.data.recording import Recording
 from ..accessors import armature_data, pose_of
 from ..armature.channels import proper
 from ..armature.pose_basis import place
@@ -20,7 +18,6 @@ from .posing import Posing
 LOOKS = 24  # frames
 TURNED = 2e-3  # rad
 SHIFTED = 1e-3  # of the bone's length
-STRETCHED = 0.01  # m
 
 
 def held_bones(
@@ -43,37 +40,6 @@ def held_bones(
         return None
     first = float(at[np.flatnonzero(off.any(axis=0))[0]])
     return tuple(name for name, each in zip(names, off, strict=True) if each.any()), first
-
-
-def stretched_bone(recording: Recording, bodies: Sequence[str]) -> tuple[str, float, float] | None:
-    """The body whose length changes most, by how much, m, and in which frame, as squash and stretch
-    has it; None where none changes by more than captures do. A solution's lengths are constant."""
-    worst: tuple[str, float, float] | None = None
-    for child in _links(recording, bodies):
-        above = recording.bones[child].parent
-        apart = recording.heads[:, child] - recording.heads[:, above]
-        lengths = np.linalg.norm(apart, axis=1)
-        off = np.abs(lengths - np.median(lengths))
-        if off.max() > (STRETCHED if worst is None else worst[1]):
-            frame = float(recording.frames[off.argmax()])
-            worst = recording.bones[above].name, float(off.max()), frame
-    return worst
-
-
-def _links(recording: Recording, bodies: Sequence[str]) -> list[int]:
-    """Bones from each body up to the pelvis, which comes first, or to a bone that carries it too;
-    each stands on its parent. Collar bones and the like, which turn, are among them."""
-    found, carrying, above = set[int](), {-1}, recording.index(bodies[0])
-    while above >= 0:
-        carrying.add(above)
-        above = recording.bones[above].parent
-    for body in bodies[1:]:
-        bone = recording.index(body)
-        while bone not in carrying:
-            if recording.bones[bone].parent >= 0:
-                found.add(bone)
-            bone = recording.bones[bone].parent
-    return sorted(found)
 
 
 def _held_at_all(armature: bpy.types.Object) -> set[str]:

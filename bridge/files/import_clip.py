@@ -22,13 +22,13 @@ from ...solver.data.faults import (
 )
 from ..accessors import armature_data, current_action, current_scene, pose_of, present
 from ..armature import fcurves
-from ..armature.build_armature import FIRST_FRAME, build_armature
 from ..armature.poses import metres_per_unit, set_frame_rate
 from ..formats.acclaim import find_asf, read_acclaim
 from ..formats.bvh import read_bvh
 from ..formats.fbx_records import require_sound
 from ..formats.guess import guess_unit, guess_up, likely_unit
 from ..formats.motion_clip import MotionClip, UpAxis
+from .build_armature import FIRST_FRAME, build_armature
 from .data_blocks import SceneState, data_blocks, remove_added
 
 _PLAUSIBLE_HEIGHT = (0.5, 3.0)  # m

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack, Recording
-from ..armature.build_armature import build_armature
 from ..armature.read import read_recording
 from ..formats.motion_clip import from_recording
+from .build_armature import build_armature
 
 
 def build_reproportioned(

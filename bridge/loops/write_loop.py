@@ -21,6 +21,7 @@ from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.played import scene_copy
 from ..armature.pose_basis import carrier_of, pose_bases, with_ancestors
 from ..armature.poses import Poses, metres_per_unit
+from ..armature.steady_joints import steady_bases
 from ..armature.write import remove, remove_other_rotations, rotation_channel
 from ..controls.control_rig import (
     ControlRig,
@@ -34,7 +35,7 @@ from ..controls.targets import targets_of
 from ..keys.bezier_keys import splice_bezier
 from ..properties.settings import settings_of
 from ..rows.choices import LoopRoot
-from ..takes.owned import owned_by
+from ..takes.owned import owned_by, steady_channels
 from ..takes.takes import derive, free_name, root_of
 from ..takes.write_result import forget_copied
 from .cyclic_keys import cyclic_keys
@@ -103,7 +104,7 @@ def write_loop(
     """
     showing = partial(showing_action, armature, recorded)
     frames, bodies = loop.track.frames, loop.track.bones
-    first = yield from sample_incrementally(armature, frames[:1], showing)
+    poses = yield from sample_incrementally(armature, frames, showing)
     rig = None
     if is_driven(armature, bodies):
         rig = yield from found_controls(armature, bodies, frames, showing)
@@ -115,11 +116,11 @@ def write_loop(
         assert curves is not None
         _settle_others(armature, curves, loop, bodies if rig is None else rig.controls)
         if rig is None:
-            yield from _write_bodies(armature, curves, loop, first)
+            yield from _write_bodies(armature, curves, loop, poses)
         else:
             yield from _write_controls(rig, action, curves, loop)
         if loop.root is not None and (rig is None or loop.root.name not in rig.carriers):
-            _write_root(armature, curves, loop.root, loop, first)
+            _write_root(armature, curves, loop.root, loop, poses)
         for curve in all_curves(action):
             _repeat(curve)
         action.use_frame_range = action.use_cyclic = True
@@ -153,11 +154,16 @@ def write_loop_incrementally(
 
 
 def _write_bodies(
-    armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop, first: Poses
+    armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop, poses: Poses
 ) -> Incremental[None]:
-    """Key the bodies' own bones. first: the poses of the cycle's first frame."""
+    """Key the bodies' own bones, and those that move joints. poses: the recording's."""
     frames, bones = loop.track.frames, pose_of(armature).bones
-    bases = yield from pose_bases(armature, _held(first, len(frames)), loop.of_the_body)
+    steady = steady_bases(armature, poses, loop.track.bones)
+    bases = yield from pose_bases(armature, _held(poses), loop.of_the_body, steady)
+    for channel in steady_channels(armature, curves, loop.track.bones, steady):
+        basis = bases[channel.bone]
+        values = channel.values(armature, basis, channel.at_rest(armature)[None])
+        _write(curves, channel.path, channel.bone, frames, values, goes_on=False)
     for bone in loop.track.bones:
         _write_rotation(curves, bones[bone], frames, bases[bone])
         yield
@@ -204,12 +210,12 @@ def _kept(rig: ControlRig, action: bpy.types.Action, loop: Loop) -> Incremental[
     return kept_by(shown, targets_of(rig.armature, shown, track), len(rig.used))
 
 
-def _held(first: Poses, count: int) -> Poses:
-    """The first pose for as many frames."""
+def _held(poses: Poses) -> Poses:
+    """The first pose at all frames."""
     return replace(
-        first,
-        object_to_world=np.repeat(first.object_to_world, count, axis=0),
-        matrices=np.repeat(first.matrices, count, axis=0),
+        poses,
+        object_to_world=np.repeat(poses.object_to_world[:1], len(poses.matrices), axis=0),
+        matrices=np.repeat(poses.matrices[:1], len(poses.matrices), axis=0),
     )
 
 
@@ -283,12 +289,12 @@ def _write_root(
     curves: fcurves.CurveHolder,
     root: bpy.types.Bone,
     loop: Loop,
-    first: Poses,
+    poses: Poses,
 ) -> None:
-    """Let the root bone travel, from where the first frame has it."""
+    """Let the root bone travel, from where the recording's first frame has it."""
     frames = loop.track.frames
-    there = first.matrices[0, first.bones.index(root.name)]
-    to_bone = first.object_to_world[0, :3, :3]
+    there = poses.matrices[0, poses.bones.index(root.name)]
+    to_bone = poses.object_to_world[0, :3, :3]
     if root.use_local_location:
         to_bone = to_bone @ np.array(root.matrix_local, float)[:3, :3]
     rest = np.linalg.solve(np.array(root.matrix_local, float), there)[:3, 3]

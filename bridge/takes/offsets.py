@@ -64,6 +64,11 @@ def _fading(away: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
     """Shares (T,) of an offset and frames (T,) of its rate that are left: the quintic polynomials
     with value and slope 1 at the seam and neither value, slope nor bend at the end."""
     s = np.clip(away / length, 0.0, 1.0)
-    keep = 1.0 - s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
     rate = length * (s - 6.0 * s**3 + 8.0 * s**4 - 3.0 * s**5)
-    return keep, rate
+    return remaining(away, length), rate
+
+
+def remaining(away: FloatArray, length: float) -> FloatArray:
+    """Shares (T,) that are left `away` (T,) frames from a seam of what fades over `length`."""
+    s = np.clip(away / length, 0.0, 1.0)
+    return np.asarray(1.0 - s**3 * (10.0 - 15.0 * s + 6.0 * s**2))

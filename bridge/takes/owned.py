@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -10,10 +10,9 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data, pose_of
-from ..armature.channels import channels, proper
 from ..armature.fcurves import CurveHolder
 from ..armature.pose_basis import carrier_of
-from ..armature.write import rotation_channel
+from ..armature.write import property_values, rotation_channel, steady_properties
 from ..controls.control_rig import ControlRig
 from ..controls.responses import Freedom
 from .key_splice import FullTurns
@@ -47,12 +46,8 @@ class OwnedChannel:
         self, armature: bpy.types.Object, bases: FloatArray, recorded: FloatArray
     ) -> FloatArray:
         """(T, n) channels of bases (T, 4, 4), beginning on the branch of the recorded ones."""
-        if self.attribute == "location":
-            return np.asarray(bases[:, :3, 3])
-        if self.attribute == "scale":
-            return np.asarray(np.linalg.norm(bases[:, :3, :3], axis=1))
-        mode = pose_of(armature).bones[self.bone].rotation_mode
-        return channels(proper(bases[:, :3, :3]), mode, recorded[0])
+        bone = pose_of(armature).bones[self.bone]
+        return property_values(bone, self.attribute, bases, recorded[0])
 
     def turns(self, values: FloatArray, recorded: FloatArray) -> list[FullTurns]:
         """Full turns, by channel, that new values (T, n) have more than the recorded ones."""
@@ -79,6 +74,16 @@ def owned_channels(armature: bpy.types.Object, bones: tuple[str, ...]) -> Iterat
         yield OwnedChannel(bone, path, attribute, carries=bone in carrying)
     path = posed[carrier].path_from_id("location")
     yield OwnedChannel(carrier, path, "location", carries=True)
+
+
+def steady_channels(
+    armature: bpy.types.Object, curves: CurveHolder, bodies: tuple[str, ...], steady: Iterable[str]
+) -> Iterator[OwnedChannel]:
+    """The channels with keys of bones that hold joints in their places, steady."""
+    for bone in steady:
+        for attribute in steady_properties(armature, curves, bodies, bone):
+            path = pose_of(armature).bones[bone].path_from_id(attribute)
+            yield OwnedChannel(bone, path, attribute, carries=False)
 
 
 def carrying_bones(armature: bpy.types.Object, bones: tuple[str, ...]) -> tuple[str, ...]:

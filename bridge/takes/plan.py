@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...solver.arrays import FloatArray
+from ...solver.arrays import FloatArray, IntArray
 from ...solver.data.recording import PoseTrack
 from ...solver.data.reports.jumps import TimeMap
 from ...solver.data.stance_move import StanceMove
@@ -16,6 +16,7 @@ from ..armature.poses import frames_per_second
 from ..recipe.result import ResultOptions
 from ..rows.choices import After
 from .key_splice import key_span
+from .offsets import remaining
 from .owned import OwnedChannel
 from .span import BESIDE, BLEND, RETURN, ResultSpan
 from .take_time import TakeTime
@@ -54,6 +55,21 @@ class Plan:
         span = self.span
         adapted = np.arange(span.first, span.last + 1.0)
         return np.concatenate([span.before, adapted, span.after])
+
+    @property
+    def shares(self) -> FloatArray:
+        """(T,) at the body's frames: 1 where joints hold as the motion's do, 0 as the take's."""
+        span = self.span
+        before = remaining(span.first - span.before, span.blend_in)
+        after = remaining(span.after - span.last, span.blend_out)
+        adapted = len(self.body_frames) - len(before) - len(after)
+        return np.concatenate([before, np.ones(adapted), after])
+
+    def recorded_rows(self, times: TimeMap) -> IntArray:
+        """Of the body's frames, those that show the recording's, one by one."""
+        recorded = np.arange(times.recorded_frame[0], times.recorded_frame[-1] + 1.0)
+        shown = np.clip(self.time.to_result(recorded), self.span.first, self.span.last)
+        return np.asarray(np.rint(shown - self.span.first).astype(int) + len(self.span.before))
 
     @property
     def rest_frames(self) -> FloatArray:

@@ -64,8 +64,9 @@ class WrittenTake:
     """What was done to a take. back: the frame by which it is where it was; None where it is not.
 
     time: where the take's frames are in the result. applied: bones whose curves had modifiers, or
-    were muted, and are keys now. controls: how near the bodies are that controls pose, and rig:
-    these controls; None where bodies have keys of their own.
+    were muted, and are keys now. held: bones that moved joints within the body, and hold still now.
+    controls: how near the bodies are that controls pose, and rig: these controls; None where bodies
+    have keys of their own.
     """
 
     span: ResultSpan
@@ -73,6 +74,7 @@ class WrittenTake:
     back: float | None
     time: TakeTime
     applied: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
     controls: KeptByControls | None = None
     rig: ControlRig | None = None
 

@@ -20,6 +20,7 @@ from ..armature.channels import proper
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.pose_basis import pose_bases
 from ..armature.poses import Poses, metres_per_unit
+from ..armature.steady_joints import steady_bases
 from ..controls.control_rig import (
     ControlRig,
     carried_controls,
@@ -32,7 +33,7 @@ from ..controls.targets import targets_of
 from .carry import carried, shares_of_return
 from .key_splice import FullTurns, anchor, applied, retime, splice
 from .offsets import faded, seam_offset
-from .owned import OwnedChannel, carrying_bones, owned_by, owned_channels
+from .owned import OwnedChannel, carrying_bones, owned_by, owned_channels, steady_channels
 from .plain_root import plain_poses
 from .plan import AdaptedMotion, Plan, planned
 from .span import ResultSpan, WrittenTake
@@ -76,17 +77,24 @@ def write_take(
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
     body, rest = _tracks(poses, later, plan, motion, carrying)
     yield
+    held: dict[OwnedChannel, FloatArray] = {}
     if rig is None:
-        bases = yield from pose_bases(armature, poses, body)
+        steady = steady_bases(armature, poses, bones, plan.recorded_rows(motion.times), plan.shares)
+        moving = tuple(steady_channels(armature, curves, bones, steady))
+        with showing():
+            held = {channel: channel.at_rest(armature) for channel in moving}
+        rests |= held
+        done += _apply_modifiers(curves, held, plan.span)
+        bases = yield from pose_bases(armature, poses, body, steady)
     else:
         bases = (yield from control_poses(rig, poses, body, showing)).bases
     if later is not None and rest is not None:
         if rig is None:
-            more = yield from pose_bases(armature, later, rest)
+            more = yield from pose_bases(armature, later, rest, {})
         else:
             more = yield from carried_controls(rig, later, rest, showing)
         bases |= {c.bone: np.concatenate([bases[c.bone], more[c.bone]]) for c in owned if c.carries}
-    for channel in owned:
+    for channel in rests:
         _write_channel(armature, curves, channel, rests[channel], bases[channel.bone], plan)
         yield
     if motion.ends:
@@ -98,7 +106,8 @@ def write_take(
     if rig is not None:
         shown = yield from sample_incrementally(armature, plan.body_frames, showing)
         kept = kept_by(shown, targets_of(armature, poses, body), len(rig.used))
-    return WrittenTake(plan.span, plan.moved, plan.back, plan.time, done, kept, rig)
+    bones_held = tuple(dict.fromkeys(channel.bone for channel in held))
+    return WrittenTake(plan.span, plan.moved, plan.back, plan.time, done, bones_held, kept, rig)
 
 
 def _controls(

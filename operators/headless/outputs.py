@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ from ...bridge.recipe.export import ExportOptions
 from ...bridge.recipe.keys import KeyOptions
 from ...bridge.recipe.loop import LoopOptions
 from ...bridge.recipe.result import ResultOptions
-from ...bridge.rows.choices import FileFormat, KeyChoice, WrittenAs
+from ...bridge.rows.choices import FileFormat, KeyChoice, LoopRoot, WrittenAs
 from ...solver.data.faults import OutputNotWritable
 from ...solver.data.reports.keys import KeysReport
 from ...solver.data.reports.report import Report
@@ -29,6 +29,7 @@ from .stages import Stages
 if TYPE_CHECKING:  # as in clip.py
     import bpy
 
+    from ...bridge.constraints.standing import MissedContact
     from ...bridge.controls.control_rig import ControlRig
     from ...bridge.controls.kept import KeptByControls
     from ...bridge.takes.plan import AdaptedMotion
@@ -94,6 +95,7 @@ class Outputs:
             recorded = present(current_action(self.clip.armature))
             adopt_strip(self.clip.armature, recorded)
             performer, adapted, written = self._write_actions("adapted")
+            missed = self._missed(performer)
             rig = written.rig if isinstance(written, WrittenTake) else None
             keys = self._choose_keys(performer, adapted, recorded, rig)
             self._mark_contacts(performer, adapted)
@@ -109,7 +111,7 @@ class Outputs:
             if trajectory:
                 write_trajectory(self.result, self.outbox)
             report = replace(self._report(), keys=keys)
-        self._write_report(report, written)
+        self._write_report(report, written, missed)
         return report
 
     def _export(
@@ -154,13 +156,34 @@ class Outputs:
         """With the stages that have ended."""
         return self.result.report(self.clip.origin, self.stages.done)
 
-    def _write_report(self, report: Report, written: WrittenTake | KeptByControls | None) -> None:
-        if written is None:
-            write_report(report, self.outbox)
-            return
-        from ..words.take_text import take_lines, take_record
+    def _missed(self, performer: bpy.types.Object) -> tuple[MissedContact, ...]:
+        """Contacts that the keys which a performer shows have elsewhere than solved; none of a loop
+        whose travel is left out."""
+        from ...bridge.armature.incremental import complete
+        from ...bridge.constraints.standing import missed_contacts
+        from ..words.take_text import missed_line
 
-        write_report(report, self.outbox, {"take": take_record(written)}, take_lines(written))
+        if self.loop is not None and self.loop.root is LoopRoot.IN_PLACE:
+            return ()
+        result = self.result
+        missed = complete(missed_contacts(performer, result.schedule, result.traces()))
+        if missed:
+            self.stages.out.write(f"Warning: {missed_line(missed)}\n")
+        return missed
+
+    def _write_report(
+        self,
+        report: Report,
+        written: WrittenTake | KeptByControls | None,
+        missed: Sequence[MissedContact] = (),
+    ) -> None:
+        from ..words.take_text import missed_line, take_lines, take_record
+
+        records: dict[str, object] = {} if written is None else {"take": take_record(written)}
+        if missed:
+            records["missed_contacts"] = [asdict(each) for each in missed]
+        first = [missed_line(missed)] if missed else []
+        write_report(report, self.outbox, records, first, take_lines(written))
 
     def _write_actions(
         self, called: str

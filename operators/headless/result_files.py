@@ -27,9 +27,11 @@ def write_report(
     report: Report,
     outbox: Outbox,
     more: Mapping[str, object] = MappingProxyType({}),
-    lines: Sequence[str] = (),
+    first: Sequence[str] = (),
+    last: Sequence[str] = (),
 ) -> None:
-    """The report for programs and for people. more, lines: what is told beside it, in each.
+    """The report for programs and for people. more, and first and last lines: what is told beside
+    it, in each.
 
     Raises OutputNotWritable.
     """
@@ -37,5 +39,5 @@ def write_report(
     outbox.write_text("report.json", json.dumps(records, indent=1, allow_nan=False) + "\n")
     outbox.write_text(
         "report.txt",
-        as_text(report) + "".join(f"\n{line}" for line in lines) + ("\n" if lines else ""),
+        "\n".join([*first, as_text(report), *last, *([""] if last else [])]),
     )

@@ -9,12 +9,13 @@ from ...bridge.armature.actions import (
     read_recorded_incrementally,
     recorded_action,
 )
-from ...bridge.armature.incremental import Incremental
+from ...bridge.armature.incremental import Incremental, complete
 from ...bridge.armature.traces_store import keep
 from ...bridge.armature.write import write_action
+from ...bridge.constraints.standing import missed_contacts
 from ...bridge.constraints.status import write_status
 from ...bridge.controls.driven import is_driven
-from ...bridge.controls.held import held_bones, stretched_bone
+from ...bridge.controls.held import held_bones
 from ...bridge.files.reproportioned import build_reproportioned
 from ...bridge.loops.write_loop import (
     Loop,
@@ -49,7 +50,7 @@ from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
 from ..words.report_text import as_text
 from ..words.summary_text import summary
-from ..words.take_text import pin_lines, polish_lines, take_lines
+from ..words.take_text import missed_line, pin_lines, polish_lines, take_lines
 from ..words.warning_text import warnings_of
 from .keys import mark_contacts, write_keys
 from .scene import note_surfaces, stale_surfaces
@@ -63,11 +64,6 @@ ALONE = (
 HELD = (
     "Constraints keep {} from the result (frame {:g}), so it is not what was solved; mute them and "
     "press Update"
-)
-STRETCHED = (
-    "The length of {} changes by {:.1f} cm in the recording (frame {:g}) and the solution's does "
-    "not, so that contacts are off by as much; delete its scale and location keys, or mend it by "
-    "Examine, and press Update"
 )
 FORMS = {
     WrittenAs.ACTION: "action",
@@ -116,6 +112,8 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
         action, controls = yield from write_loop_incrementally(armature, loop)
         keep(action, answer.traces, stood)
         _note(armature, armature, action, answer, take_lines(controls))
+        if loop.travels:
+            complete(_tell_missed(armature, armature, action, answer))
         mark_contacts(armature, action, answer, options)
         note_made(armature, action, None, 0)
         return f"Wrote the loop {action.name}"
@@ -138,12 +136,13 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     time = written.time if written is not None else TakeTime.of(times, 1.0)
     span = written.span if written is not None else None
     try:
+        yield from _tell_missed(armature, armature, action, answer)
         rate = answer.report.recording.frames_per_second
         moved = yield from renewal.put_on(action, answer.track.bones, time, answer.schedule, rate)
         _tell_polish(armature, action, renewal, moved)
         rig = written.rig if written is not None else None
         yield from write_keys(armature, armature, action, answer, rig)
-        _tell_unmet(armature, action, asked, answer.track)
+        _tell_unmet(armature, action, answer.track)
     finally:  # cancelled it has a key on every frame
         mark_contacts(armature, action, answer, options)
         match options.written_as:
@@ -156,21 +155,28 @@ def _write_own(asked: Asked, answer: Adapted, armature: bpy.types.Object) -> Inc
     return f"Wrote the {FORMS[options.written_as]} {action.name}"
 
 
-def _tell_unmet(
-    armature: bpy.types.Object, action: bpy.types.Action, asked: Asked, track: PoseTrack
-) -> None:
-    """Which bones are kept from the result: by constraints, such as a limit that the take did not
-    reach, or as their lengths change and the solution's do not."""
+def _tell_unmet(armature: bpy.types.Object, action: bpy.types.Action, track: PoseTrack) -> None:
+    """Which bones constraints keep from the result, such as a limit that the take did not reach."""
     if is_driven(armature, track.bones):  # what controls miss is told as they are written
         return
     held = held_bones(armature, track.bones, track.frames)
     if held is not None:
         _warn(armature, action, [HELD.format(", ".join(held[0]), held[1])])
-    within = asked.recording.window(*present(asked.problem.frames))
-    stretched = stretched_bone(within, track.bones)
-    if stretched is not None:
-        bone, by, frame = stretched
-        _warn(armature, action, [STRETCHED.format(bone, 100.0 * by, frame)])
+
+
+def _tell_missed(
+    armature: bpy.types.Object,
+    performer: bpy.types.Object,
+    action: bpy.types.Action,
+    answer: Adapted,
+) -> Incremental[None]:
+    """Where points that stand are not where they were solved to be: before all else, and among the
+    warnings. performer: who shows the action."""
+    missed = yield from missed_contacts(performer, answer.schedule, answer.traces)
+    if missed:
+        settings, made, line = settings_of(armature), action_settings(action), missed_line(missed)
+        settings.status, made.report = f"{line}\n{settings.status}", f"{line}\n{made.report}"
+        made.warning = "\n".join([line for line in (line, made.warning) if line])
 
 
 def _tell_polish(
@@ -210,6 +216,7 @@ def _write_other(
     options = result_options(settings_of(armature))
     left_out = [] if options.after is After.CUT else [ALONE.format(other.name)]
     _note(armature, other, action, answer, left_out)
+    yield from _tell_missed(armature, other, action, answer)
     yield from write_keys(armature, other, action, answer)
     mark_contacts(other, action, answer, options)
     return f"Made the armature {other.name}, which performs the adapted motion"

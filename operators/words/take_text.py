@@ -4,11 +4,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import degrees, hypot
 
+from ...bridge.constraints.standing import MissedContact
 from ...bridge.controls.kept import KeptByControls
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish
 from ...bridge.takes.span import WrittenTake
 
+MOST_MISSED = 3  # contacts that are named
 _LEVEL = 0.0005  # m
 _STRAIGHT = 0.05  # degrees
 
@@ -40,6 +42,7 @@ def take_record(written: WrittenTake | KeptByControls) -> dict[str, object]:
         "blend_out_frames": len(span.after),
         "later_frames": written.later,
         "curves_applied": list(written.applied),
+        "bones_held": list(written.held),
     }
     if written.controls is not None:
         record["controls"] = asdict(written.controls)
@@ -65,6 +68,8 @@ def _lines(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:
         yield from _carried(written, roles)
     if written.controls is not None:
         yield from _controls(written.controls)
+    if written.held:
+        yield f"Held still, for they moved joints within the body: {', '.join(written.held)}"
     if written.applied:
         yield f"Curves with modifiers, or muted, are plain keys now: {', '.join(written.applied)}"
 
@@ -96,6 +101,21 @@ def pin_lines(pins: Sequence[MovedPin]) -> list[str]:
         f"Hand polish moves {pin.name} by {1000.0 * pin.distance:.0f} mm at frame {pin.frame:g}"
         for pin in pins
     ]
+
+
+def missed_line(missed: Sequence[MissedContact]) -> str:
+    """The first line of a result whose keys have points that stand elsewhere than solved."""
+    points = ", ".join(
+        f"{each.name} is up to {each.mm:.0f} mm off (frame {each.frame:g})"
+        for each in missed[:MOST_MISSED]
+    )
+    more = len(missed) - MOST_MISSED
+    others = f", and {more} more" if more > 0 else ""
+    return (
+        f"The keys do not show what was solved: {points}{others}. Mute the constraints and drivers "
+        "that move these bones or those above them, take scale off the bones above the hips, and "
+        "press Update"
+    )
 
 
 def _carried(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:

@@ -30,7 +30,7 @@ BODY = (
     BoneSpec("hips", None, (0.0, 0.0, 1.0), (0.0, 0.0, 1.2), 0.4),
     BoneSpec("spine", "hips", (0.0, 0.0, 1.2), (0.0, 0.05, 1.5), -0.3, True),
     BoneSpec("twist", "spine", (0.0, 0.05, 1.5), (0.0, 0.0, 1.6), 0.7),
-    BoneSpec("head", "twist", (0.0, 0.0, 1.6), (0.0, -0.02, 1.9)),
+    BoneSpec("head", "twist", (0.0, 0.05, 1.5), (0.0, -0.02, 1.9)),  # where "twist" turns about
     BoneSpec("thigh", "hips", (0.1, 0.0, 1.0), (0.12, -0.03, 0.55), 1.2),
     BoneSpec("shin", "thigh", (0.12, -0.03, 0.55), (0.12, 0.02, 0.1), 1.0, True),
     BoneSpec("foot", "shin", (0.12, 0.02, 0.1), (0.14, -0.15, 0.02), -2.0, True),

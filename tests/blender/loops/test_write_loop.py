@@ -82,6 +82,18 @@ def test_every_repetition_goes_on_from_the_last(mode: str) -> None:
         np.testing.assert_allclose(again, once + times * TRAVEL, atol=2.0 * CLOSE)
 
 
+def test_what_moves_a_joint_holds_still() -> None:
+    armature = made()
+    thigh = armature.pose.bones["thigh"]
+    for frame in range(1, 40):
+        thigh.scale.y = 1.0 + 0.1 * np.sin(0.3 * frame)
+        thigh.keyframe_insert("scale", frame=frame)
+    track = looped(armature, LoopRoot.HIPS)
+    heads = shown(armature, track, FRAMES)
+    thighs = (heads[:, track.bones.index(bone)] for bone in ("shin", "thigh"))
+    assert np.ptp(np.linalg.norm(np.subtract(*thighs), axis=1)) < CLOSE
+
+
 def test_speed_goes_on_across_the_seam() -> None:
     armature = made()
     track = looped(armature, LoopRoot.HIPS)

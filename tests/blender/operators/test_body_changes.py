@@ -2,8 +2,8 @@
 
 import bpy
 import numpy as np
-from hangtime.bridge.armature.build_armature import build_armature
 from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.files.build_armature import build_armature
 from hangtime.bridge.formats.motion_clip import from_recording
 from hangtime.solver.body.proportions import changed_recording
 from hangtime.solver.data.recording import Recording

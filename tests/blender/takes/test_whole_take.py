@@ -373,3 +373,21 @@ def test_cut_leaves_the_adapted_frames_alone() -> None:
     action, written = write_result(armature, asked, name="Result")
     assert written is None
     assert action.frame_range.to_tuple() == (FIRST, LAST)
+
+
+def test_a_size_that_changes_holds_still_in_the_adapted_frames_and_is_blended() -> None:
+    armature = take()
+    thigh = armature.pose.bones["thigh"]
+    for frame in range(1, LENGTH + 1):
+        thigh.scale.y = 1.0 + 0.1 * np.sin(0.3 * frame)
+        thigh.keyframe_insert("scale", frame=frame)
+    channel, before = (thigh.path_from_id("scale"), 1), keys_of(armature)
+    write_result(armature, motion(read_recording(armature)), name="Result")
+    was, now = before[channel], keys_of(armature)[channel]
+    np.testing.assert_array_equal(now[:, 0], was[:, 0])
+    frames, sizes, recorded = now[:, 0], now[:, 1], was[:, 1]
+    inside = (frames >= FIRST) & (frames <= LAST)
+    outside = (frames <= FIRST - BLEND) | (frames >= LAST + BLEND)
+    assert sizes[outside].tobytes() == recorded[outside].tobytes()
+    np.testing.assert_allclose(sizes[inside], np.median(recorded[inside]), atol=1e-6)
+    assert np.abs(np.diff(sizes)).max() < 0.06  # no step at the seams; recorded 0.03 a frame

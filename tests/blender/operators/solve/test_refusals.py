@@ -22,7 +22,14 @@ from hangtime.bridge.rows.phases import phases_of
 from hangtime.operators.solve.adapt import read_wanted
 from hangtime.solver.data.recording import POSE_TOLERANCE
 from hangtime.tests.blender.helpers.actions import curves_of
-from hangtime.tests.blender.helpers.jump_scene import FIRST, LAST, SceneState, ask_by_text, landing
+from hangtime.tests.blender.helpers.jump_scene import (
+    FIRST,
+    LAST,
+    SceneState,
+    ask_by_text,
+    drift,
+    landing,
+)
 from mathutils import Matrix
 
 pytestmark = pytest.mark.usefixtures("_enabled")
@@ -148,11 +155,12 @@ def test_a_limit_that_only_the_result_reaches_is_told(analysed: bpy.types.Object
     told = "Constraints keep LeftUpLeg from the result (frame "
     made = analysed.hangtime.adapted.hangtime
     for text in (analysed.hangtime.status, made.report, made.warning):
+        assert text.startswith("The keys do not show what was solved: Left")
         assert told in text
 
 
 @pytest.mark.slow
-def test_a_bone_that_stretches_is_told_with_the_result(jump: bpy.types.Object) -> None:
+def test_a_bone_that_stretches_holds_its_length_in_the_result(jump: bpy.types.Object) -> None:
     shin = jump.pose.bones["LeftLeg"]
     for frame, length in ((225, 1.0), (240, 1.1), (262, 1.0)):
         shin.scale.y = length
@@ -160,23 +168,11 @@ def test_a_bone_that_stretches_is_told_with_the_result(jump: bpy.types.Object) -
     assert bpy.ops.hangtime.analyze() == {"FINISHED"}
     jump.hangtime.stances["ground 2"].up = 0.05
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
-    told = "The length of LeftLeg changes by 4."
-    made = jump.hangtime.adapted.hangtime
-    for text in (jump.hangtime.status, made.report, made.warning):
-        assert told in text
-        assert "(frame 240)" in text
-
-
-@pytest.mark.slow
-def test_a_collar_bone_that_turns_stretches_nothing(jump: bpy.types.Object) -> None:
-    collar = jump.pose.bones["LeftShoulder"]
-    for frame, turned in ((180, 0.0), (240, 0.6), (262, 0.0)):
-        collar.rotation_quaternion = (np.cos(turned), np.sin(turned), 0.0, 0.0)
-        collar.keyframe_insert("rotation_quaternion", frame=frame)
-    assert bpy.ops.hangtime.analyze() == {"FINISHED"}
-    jump.hangtime.stances["ground 2"].up = 0.05
-    assert bpy.ops.hangtime.adapt() == {"FINISHED"}
-    assert "length of" not in jump.hangtime.status
+    assert jump.hangtime.status.startswith("Solved")
+    assert "Held still, for they moved joints within the body: LeftLeg" in jump.hangtime.status
+    heels = [row for row in landing(jump.hangtime) if row.bone == "LeftFoot"]
+    assert heels
+    assert max(drift(jump, row) for row in heels) < 2e-3
 
 
 def test_a_clip_without_a_flight_is_analysed(jump: bpy.types.Object) -> None:

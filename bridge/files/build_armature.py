@@ -6,9 +6,9 @@ import bpy
 import numpy as np
 
 from ..accessors import armature_data, present
+from ..armature import fcurves
+from ..armature.channels import quaternions
 from ..formats.motion_clip import MotionClip, UpAxis, rest_axes, rest_heads, to_z_up
-from . import fcurves
-from .channels import quaternions
 
 FIRST_FRAME = 1
 

@@ -1,0 +1,51 @@
+"""Points that stand: whether a result's keys have them where they were solved to be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ...solver.data.contacts import ContactSchedule
+from ...solver.data.traces import Traces
+from ..accessors import current_scene
+from ..armature.incremental import Incremental, sample_incrementally
+from ..armature.poses import frames_per_second
+from ..armature.read import recording_of
+
+TOLD_MM = 1.0  # from which on a miss is told; a foot that slides by more is seen
+
+
+@dataclass(frozen=True)
+class MissedContact:
+    """A contact whose point is elsewhere than solved, by how far at most, and at which frame."""
+
+    name: str
+    mm: float
+    frame: float
+
+
+def missed_contacts(
+    armature: bpy.types.Object, schedule: ContactSchedule, solved: Traces
+) -> Incremental[tuple[MissedContact, ...]]:
+    """Contacts that a result, which the armature shows, misses, the worst first; in slices.
+
+    schedule: of the solved motion, in s from the first of its frames on.
+    """
+    frames = solved.frames
+    poses = yield from sample_incrementally(armature, frames)
+    shown, rate = recording_of(armature, frames, poses), frames_per_second(current_scene())
+    times, missed = (frames - frames[0]) / rate, []
+    for each in schedule.contacts:
+        rows = np.flatnonzero((times >= each.start) & (times <= each.end))
+        if each.point not in solved.contacts or not len(rows):
+            continue
+        bone = shown.index(each.bone)
+        at = shown.heads[rows, bone] + shown.rotations[rows, bone] @ each.offset
+        wanted = solved.points[rows, solved.contacts.index(each.point)]
+        off = 1e3 * np.linalg.norm(at - wanted, axis=1)
+        if off.max() >= TOLD_MM:
+            frame = float(frames[rows[off.argmax()]])
+            missed.append(MissedContact(each.name, float(off.max()), frame))
+    return tuple(sorted(missed, key=lambda miss: -miss.mm))

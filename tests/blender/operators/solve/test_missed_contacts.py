@@ -1,0 +1,47 @@
+"""Points that stand are looked at where Blender shows them."""
+
+from __future__ import annotations
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs the bpy module")
+
+from hangtime.bridge.armature.actions import read_recorded
+from hangtime.bridge.armature.incremental import complete
+from hangtime.bridge.armature.traces_store import kept
+from hangtime.bridge.constraints.standing import MissedContact, missed_contacts
+from hangtime.operators.words.take_text import missed_line
+from hangtime.solver.analysis.analyse import analyse
+from hangtime.solver.data.problem import MotionProblem
+from hangtime.solver.data.recording import BEYOND
+from hangtime.tests.helpers.clips import JUMP_FRAMES
+
+pytestmark = pytest.mark.usefixtures("_enabled")
+
+
+def missed(armature: bpy.types.Object) -> tuple[MissedContact, ...]:
+    take = read_recorded(armature, *JUMP_FRAMES, BEYOND)
+    schedule = analyse(take, MotionProblem(frames=JUMP_FRAMES)).schedule
+    return complete(missed_contacts(armature, schedule, kept(armature.hangtime.adapted).traces))
+
+
+def test_a_leg_that_is_longer_than_solved_is_told_by_its_points(
+    adapted: bpy.types.Object,
+) -> None:
+    assert missed(adapted) == ()
+    adapted.pose.bones["LeftLeg"].scale.y = 1.05
+    found = missed(adapted)
+    assert {each.name for each in found} == {
+        "Left heel 1",
+        "Left toe 1",
+        "Left heel 2",
+        "Left toe 2",
+    }
+    assert all(10.0 < each.mm < 30.0 for each in found)
+    assert found[0].mm == max(each.mm for each in found)
+    worst = found[0]
+    assert missed_line(found).startswith(
+        f"The keys do not show what was solved: {worst.name} is up to {worst.mm:.0f} mm off "
+        f"(frame {worst.frame:g}), "
+    )
+    assert ", and 1 more. " in missed_line(found)
