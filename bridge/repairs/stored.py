@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict, astuple
+from dataclasses import asdict, astuple, replace
 from typing import Any
 
 import bpy
@@ -23,6 +23,7 @@ from ..properties.settings import HangtimeSettings, settings_of
 from ..rows.copying import resized
 from ..rows.finding import HangtimeFinding
 from ..takes.takes import take_digest
+from .length_keys import stretching_bone
 
 USUAL = asdict(Repairs())
 
@@ -121,10 +122,7 @@ def write_diagnosis(
     """Keeps what was found, and of what. Findings whose remedy counts stay, found again or not."""
     settings = settings_of(armature)
     kept = [(finding_of(row), row.mass) for row in findings(settings) if is_applied(settings, row)]
-    found = [
-        (finding, diagnosis.mass or 0.0 if finding.kind is FindingKind.MASS else 0.0)
-        for finding in diagnosis.findings
-    ]
+    found = [_told(armature, finding, diagnosis.mass or 0.0) for finding in diagnosis.findings]
     kinds = [finding.kind for finding, _ in found]
     found = [each for each in kept if each[0].kind not in kinds] + found
     rows = resized(settings.findings, len(found))
@@ -137,6 +135,13 @@ def write_diagnosis(
     settings.examination_stale = False
     told = [(f.kind.value, *astuple(f)[1:]) for f in feet]
     settings.feet = json.dumps([settings.repairs, told]) if told else ""
+
+
+def _told(armature: bpy.types.Object, finding: Finding, mass: float) -> tuple[Finding, float]:
+    """A finding as it is kept, with the mass where it is about that."""
+    if finding.kind is FindingKind.BONE_LENGTH:
+        finding = replace(finding, part=stretching_bone(armature, finding.part))
+    return finding, mass if finding.kind is FindingKind.MASS else 0.0
 
 
 def findings(settings: HangtimeSettings) -> list[HangtimeFinding]:

@@ -469,3 +469,20 @@ def test_a_body_that_drifts_upwards_is_held_level_and_goes_on_where_it_was(jump)
     taken_out = rise * (settings.last_frame - settings.first_frame) / 120.0
     recorded = read_recorded(jump, None, None).heads[-1, 0, 2]
     assert recorded - heights[-1] == pytest.approx(taken_out, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("bone", "attribute", "usual"), [("Spine", "scale", 1.0), ("LeftFoot", "location", 0.0)]
+)
+def test_a_length_is_told_by_the_bone_whose_keys_change_it(
+    jump: bpy.types.Object, bone: str, attribute: str, usual: float
+) -> None:
+    bpy.ops.object.mode_set(mode="EDIT")
+    jump.data.edit_bones[bone].use_connect = False  # else its location does not count
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for frame, more in ((150, 0.0), (200, 0.2), (250, 0.0)):
+        setattr(jump.pose.bones[bone], attribute, [usual + more] * 3)
+        jump.pose.bones[bone].keyframe_insert(attribute, frame=frame)
+    assert bpy.ops.hangtime.examine() == {"FINISHED"}
+    found = {row.name: finding_of(row) for row in findings(jump.hangtime)}
+    assert found["bone length"].part == bone
