@@ -3,13 +3,17 @@ bones between two bodies move them, and scale and location of the bodies' own bo
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+
 import bpy
 import numpy as np
 
-from ...solver.arrays import FloatArray, IntArray
+from ...solver.arrays import FloatArray
 from ...solver.numerics.rotations import rotation_matrix, rotation_vector
 from ..accessors import armature_data, current_scene
 from .channels import proper
+from .incremental import Incremental, sample_incrementally
 from .pose_basis import basis_under
 from .poses import Poses, metres_per_unit
 
@@ -20,21 +24,26 @@ def steady_bases(
     armature: bpy.types.Object,
     poses: Poses,
     bodies: tuple[str, ...],
-    told: IntArray | slice = slice(None),
+    recorded: FloatArray,
+    showing: Callable[[], AbstractContextManager[object]] = nullcontext,
     shares: FloatArray | None = None,
-) -> dict[str, FloatArray]:
-    """Bases (T, 4, 4) with which joints hold their places, of bones whose own ones move them.
+) -> Incremental[dict[str, FloatArray]]:
+    """Bases (T, 4, 4) with which joints hold their places, of bones that move them in poses.
 
-    The median of each such bone's turn, location and scale, of which the solver's body, whose
-    joints are at the median, is made. bodies: the pelvis first. told: which of the poses (T) count
-    for it. shares: (T,) from 0, as the bone was, to 1; all 1 without.
+    The median over the recording of each such bone's turn, location and scale: the solver's body,
+    whose joints are at the median, is made of the same frames. bodies: the pelvis first. recorded:
+    the recording's frames, and showing: lets the armature perform it. shares: (T,) from 0, as in
+    the poses, to 1; all 1 without.
     """
+    moving = sorted(_moving(armature, poses, bodies))
+    if not moving:
+        return {}
+    told = yield from sample_incrementally(armature, recorded, showing)
     share = np.ones(len(poses.matrices)) if shares is None else shares
-    found = {}
-    for name in sorted(_moving(armature, poses, bodies)):
-        basis = _basis(armature, poses, name)
-        found[name] = _towards(basis, _median(basis[told]), share)
-    return found
+    return {
+        name: _towards(_basis(armature, poses, name), _median(_basis(armature, told, name)), share)
+        for name in moving
+    }
 
 
 def _moving(armature: bpy.types.Object, poses: Poses, bodies: tuple[str, ...]) -> set[str]:

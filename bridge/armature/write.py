@@ -47,14 +47,16 @@ def write_incrementally(
     slot: str | None,
     *,
     name: str,
+    frames: FloatArray | None = None,
     showing: Callable[[], AbstractContextManager[object]] = nullcontext,
 ) -> Incremental[bpy.types.Action]:
     """Write, in slices, for a recording in that slot of an action, without assigning the copy.
 
-    showing: lets the armature perform the recording.
+    frames: the recording's, the track's without. showing: lets the armature perform it.
     """
     poses = yield from sample_incrementally(armature, track.frames, showing)
-    steady = steady_bases(armature, poses, track.bones)
+    told = track.frames if frames is None else frames
+    steady = yield from steady_bases(armature, poses, track.bones, told, showing)
     made = yield from pose_bases(armature, poses, track, steady)
     action = scene_copy(armature, recorded, name)
     whole = False

@@ -116,7 +116,8 @@ def write_loop(
         assert curves is not None
         _settle_others(armature, curves, loop, bodies if rig is None else rig.controls)
         if rig is None:
-            yield from _write_bodies(armature, curves, loop, poses)
+            steady = yield from steady_bases(armature, poses, bodies, frames, showing)
+            yield from _write_bodies(armature, curves, loop, poses, steady)
         else:
             yield from _write_controls(rig, action, curves, loop)
         if loop.root is not None and (rig is None or loop.root.name not in rig.carriers):
@@ -154,11 +155,14 @@ def write_loop_incrementally(
 
 
 def _write_bodies(
-    armature: bpy.types.Object, curves: fcurves.CurveHolder, loop: Loop, poses: Poses
+    armature: bpy.types.Object,
+    curves: fcurves.CurveHolder,
+    loop: Loop,
+    poses: Poses,
+    steady: dict[str, FloatArray],
 ) -> Incremental[None]:
-    """Key the bodies' own bones, and those that move joints. poses: the recording's."""
+    """Key the bodies' own bones, and those that hold joints, steady. poses: the recording's."""
     frames, bones = loop.track.frames, pose_of(armature).bones
-    steady = steady_bases(armature, poses, loop.track.bones)
     bases = yield from pose_bases(armature, _held(poses), loop.of_the_body, steady)
     for channel in steady_channels(armature, curves, loop.track.bones, steady):
         basis = bases[channel.bone]

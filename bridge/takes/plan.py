@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...solver.arrays import FloatArray, IntArray
+from ...solver.arrays import FloatArray
 from ...solver.data.recording import PoseTrack
 from ...solver.data.reports.jumps import TimeMap
 from ...solver.data.stance_move import StanceMove
@@ -38,6 +38,12 @@ class AdaptedMotion:
     ends: bool = False
     kept: tuple[tuple[float, float], ...] = ()
 
+    @property
+    def recorded_frames(self) -> FloatArray:
+        """Frames of the recording that were adapted, (T,)."""
+        corners = self.times.recorded_frame
+        return np.arange(np.ceil(corners[0]), np.floor(corners[-1]) + 1.0)
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -64,12 +70,6 @@ class Plan:
         after = remaining(span.after - span.last, span.blend_out)
         adapted = len(self.body_frames) - len(before) - len(after)
         return np.concatenate([before, np.ones(adapted), after])
-
-    def recorded_rows(self, times: TimeMap) -> IntArray:
-        """Of the body's frames, those that show the recording's, one by one."""
-        recorded = np.arange(times.recorded_frame[0], times.recorded_frame[-1] + 1.0)
-        shown = np.clip(self.time.to_result(recorded), self.span.first, self.span.last)
-        return np.asarray(np.rint(shown - self.span.first).astype(int) + len(self.span.before))
 
     @property
     def rest_frames(self) -> FloatArray:

@@ -79,7 +79,10 @@ def write_take(
     yield
     held: dict[OwnedChannel, FloatArray] = {}
     if rig is None:
-        steady = steady_bases(armature, poses, bones, plan.recorded_rows(motion.times), plan.shares)
+        recording = partial(showing_action, armature, take)
+        steady = yield from steady_bases(
+            armature, poses, bones, motion.recorded_frames, recording, plan.shares
+        )
         moving = tuple(steady_channels(armature, curves, bones, steady))
         with showing():
             held = {channel: channel.at_rest(armature) for channel in moving}
@@ -116,9 +119,7 @@ def _controls(
     """The controls of a rig whose bodies follow such, as they are in the take's copy."""
     if not is_driven(armature, motion.track.bones):
         return None
-    recorded = motion.times.recorded_frame
-    frames = np.arange(np.ceil(recorded[0]), np.floor(recorded[-1]) + 1.0)
-    showing = partial(showing_action, armature, action)
+    frames, showing = motion.recorded_frames, partial(showing_action, armature, action)
     return (yield from found_controls(armature, motion.track.bones, frames, showing))
 
 

@@ -146,7 +146,13 @@ def _write(
     if cut_off and not is_driven(armature, motion.track.bones):
         showing = partial(showing_action, armature, recorded)
         cut = yield from write_incrementally(
-            armature, motion.track, recorded, slot, name=name, showing=showing
+            armature,
+            motion.track,
+            recorded,
+            slot,
+            name=name,
+            frames=motion.recorded_frames,
+            showing=showing,
         )
         forget_copied(cut)
         note_take(armature, cut, recorded)

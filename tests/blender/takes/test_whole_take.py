@@ -375,15 +375,24 @@ def test_cut_leaves_the_adapted_frames_alone() -> None:
     assert action.frame_range.to_tuple() == (FIRST, LAST)
 
 
-def test_a_size_that_changes_holds_still_in_the_adapted_frames_and_is_blended() -> None:
+def sized() -> bpy.types.Object:
+    """A take whose thigh changes its size from frame to frame."""
     armature = take()
     thigh = armature.pose.bones["thigh"]
     for frame in range(1, LENGTH + 1):
         thigh.scale.y = 1.0 + 0.1 * np.sin(0.3 * frame)
         thigh.keyframe_insert("scale", frame=frame)
-    channel, before = (thigh.path_from_id("scale"), 1), keys_of(armature)
+    return armature
+
+
+SIZE = ('pose.bones["thigh"].scale', 1)
+
+
+def test_a_size_that_changes_holds_still_in_the_adapted_frames_and_is_blended() -> None:
+    armature = sized()
+    before = keys_of(armature)
     write_result(armature, motion(read_recording(armature)), name="Result")
-    was, now = before[channel], keys_of(armature)[channel]
+    was, now = before[SIZE], keys_of(armature)[SIZE]
     np.testing.assert_array_equal(now[:, 0], was[:, 0])
     frames, sizes, recorded = now[:, 0], now[:, 1], was[:, 1]
     inside = (frames >= FIRST) & (frames <= LAST)
@@ -391,3 +400,14 @@ def test_a_size_that_changes_holds_still_in_the_adapted_frames_and_is_blended() 
     assert sizes[outside].tobytes() == recorded[outside].tobytes()
     np.testing.assert_allclose(sizes[inside], np.median(recorded[inside]), atol=1e-6)
     assert np.abs(np.diff(sizes)).max() < 0.06  # no step at the seams; recorded 0.03 a frame
+
+
+@pytest.mark.parametrize("options", [{"lock_others": True}, {"after": After.CUT}, {}])
+def test_sizes_hold_at_the_recordings_median_whatever_the_durations(options) -> None:
+    armature = sized()
+    recorded = keys_of(armature)[SIZE][FIRST - 1 : LAST, 1]
+    _, written = write_result(armature, later(read_recording(armature), **options), name="Result")
+    assert written is None or written.held == ("thigh",)
+    keys = keys_of(armature)[SIZE]
+    sizes = keys[(keys[:, 0] >= FIRST) & (keys[:, 0] <= LAST), 1]
+    np.testing.assert_allclose(sizes, np.median(recorded), atol=1e-6)
