@@ -9,7 +9,10 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.incremental import Incremental
 from hangtime.bridge.armature.read import read_recording
+from hangtime.bridge.constraints import standing
+from hangtime.bridge.constraints.standing import MissedContact
 from hangtime.bridge.files.import_clip import import_clip
 from hangtime.bridge.files.reimport import reimport
 from hangtime.operators.headless.cli import main
@@ -37,6 +40,7 @@ def test_the_report_says_solved(done: Path) -> None:
     assert report["status"] == "solved"
     assert report["recording"]["clip"] == "forward_jump_116cm.bvh"
     assert [stage["seconds"] > 0.0 for stage in report["stages"]].count(False) == 0
+    assert "missed_contacts" not in report
     landing = [c for c in report["contacts"] if c["pin"] == "Landing"]
     assert len(landing) == 4
     assert max(c["worst_violation_mm"] for c in report["contacts"]) < 1.0
@@ -106,3 +110,25 @@ def test_the_recording_is_untouched(done: Path, clip: Path) -> None:
     assert len(keys) == len(fresh)
     for curve in fresh:
         assert np.array_equal(keys[curve.data_path, curve.array_index], fcurves.keys(curve))
+
+
+def test_keys_that_miss_what_was_solved_are_told_first(
+    clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    """As something may that poses bones beside their keys."""
+    missed = MissedContact("Left toe 2", 9.0, 243.0)
+    monkeypatch.setattr(standing, "missed_contacts", lambda *_: sliced((missed,)))
+    recipe, out = tmp_path / "edit.toml", tmp_path / "out"
+    recipe.write_text(EDIT)
+    assert main(["adapt", str(clip), "--recipe", str(recipe), "--out", str(out)]) == 0
+    told = "The keys do not show what was solved: Left toe 2 is up to 9 mm off (frame 243). "
+    assert (out / "report.txt").read_text(encoding="utf-8").startswith(told)
+    assert f"Warning: {told}" in capsys.readouterr().out
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    assert report["missed_contacts"] == [{"name": "Left toe 2", "mm": 9.0, "frame": 243.0}]
+
+
+def sliced(found: tuple[MissedContact, ...]) -> Incremental[tuple[MissedContact, ...]]:
+    """Slices that find this."""
+    yield
+    return found
