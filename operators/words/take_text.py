@@ -106,7 +106,7 @@ def pin_lines(pins: Sequence[MovedPin]) -> list[str]:
 def missed_line(missed: Sequence[MissedContact]) -> str:
     """The first line of a result whose keys have points that stand elsewhere than solved."""
     points = ", ".join(
-        f"{each.name} is up to {each.mm:.0f} mm off (frame {each.frame:g})"
+        f"{each.name} is up to {each.mm:.1f} mm off (frame {each.frame:g})"
         for each in missed[:MOST_MISSED]
     )
     more = len(missed) - MOST_MISSED

@@ -33,15 +33,17 @@ def test_what_follows_is_told_as_the_artist_calls_the_stance() -> None:
 
 
 def test_what_follows_is_told() -> None:
-    written = WrittenTake(SPAN, MOVED, 450.0, LATER, ("LeftArm",))
+    written = WrittenTake(SPAN, MOVED, 450.0, LATER, ("LeftArm",), ("pelvis",))
     assert take_lines(written)[2:] == [
         "What follows comes 1 frame later",
         "What follows is carried along with ground 2:",
         "  0.500 m along the ground, 0.200 m up, 90.0° to the right",
         "  It is back where it was at frame 450",
+        "Held still, for they moved joints within the body: pelvis",
         "Curves with modifiers, or muted, are plain keys now: LeftArm",
     ]
     record = take_record(written)
     assert record["take_frames"] == [1.0, 900.0]
     assert record["carried_turn_deg"] == -90.0
     assert record["later_frames"] == 1
+    assert record["bones_held"] == ["pelvis"]

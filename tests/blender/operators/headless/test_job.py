@@ -121,7 +121,7 @@ def test_keys_that_miss_what_was_solved_are_told_first(
     recipe, out = tmp_path / "edit.toml", tmp_path / "out"
     recipe.write_text(EDIT)
     assert main(["adapt", str(clip), "--recipe", str(recipe), "--out", str(out)]) == 0
-    told = "The keys do not show what was solved: Left toe 2 is up to 9 mm off (frame 243). "
+    told = "The keys do not show what was solved: Left toe 2 is up to 9.0 mm off (frame 243). "
     assert (out / "report.txt").read_text(encoding="utf-8").startswith(told)
     assert f"Warning: {told}" in capsys.readouterr().out
     report = json.loads((out / "report.json").read_text(encoding="utf-8"))

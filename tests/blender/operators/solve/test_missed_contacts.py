@@ -41,7 +41,7 @@ def test_a_leg_that_is_longer_than_solved_is_told_by_its_points(
     assert found[0].mm == max(each.mm for each in found)
     worst = found[0]
     assert missed_line(found).startswith(
-        f"The keys do not show what was solved: {worst.name} is up to {worst.mm:.0f} mm off "
+        f"The keys do not show what was solved: {worst.name} is up to {worst.mm:.1f} mm off "
         f"(frame {worst.frame:g}), "
     )
     assert ", and 1 more. " in missed_line(found)
