@@ -95,6 +95,7 @@ def test_all_remedies_count_at_once_and_no_key_changes(examined) -> None:
     assert not bpy.ops.hangtime.repair_all.poll()
 
 
+@pytest.mark.slow
 def test_noise_is_told_by_analyze_until_it_is_smoothed(
     jump: bpy.types.Object, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -172,6 +173,7 @@ def lacking(jump: bpy.types.Object) -> bpy.types.Object:
     return jump
 
 
+@pytest.mark.slow
 def test_missing_frames_are_put_into_a_copy(jump, request) -> None:
     whole = read_recorded(jump, *JUMP_FRAMES)
     lacking = request.getfixturevalue("lacking")
@@ -337,6 +339,7 @@ def legs_exchanged(source: Path, target: Path, frames: slice) -> Path:
     return target
 
 
+@pytest.mark.slow
 def test_legs_that_were_exchanged_in_a_file_are_exchanged_back(tmp_path) -> None:
     rigs.reset()
     source = mocap_path("131_03_hop.bvh")
@@ -443,6 +446,7 @@ def test_a_figure_without_feet_is_refused_in_words() -> None:
         bpy.ops.hangtime.examine()
 
 
+@pytest.mark.slow
 def test_a_body_that_drifts_upwards_is_held_level_and_goes_on_where_it_was(jump) -> None:
     """What follows the adapted frames drifts still; it is moved so that nothing jumps."""
     rise = 0.1

@@ -283,6 +283,7 @@ def test_legs_that_are_pulled_from_outside_the_armature_are_refused_before_a_sol
         bpy.ops.hangtime.analyze()
 
 
+@pytest.mark.slow
 def test_what_pulls_from_outside_at_other_frames_alone_is_no_matter(
     jump: bpy.types.Object,
 ) -> None:

@@ -102,6 +102,7 @@ def test_what_lasts_to_an_end_is_the_shorter_part() -> None:
         assert found.frames == ((frames[where][0], frames[where][-1]),)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [30.0, 60.0])
 def test_arms_are_told_in_the_noise_of_video(rate: float) -> None:
     clip = noisy(3.0, 1.0, rate).of(hop()).recording

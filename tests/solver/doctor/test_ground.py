@@ -72,6 +72,7 @@ def test_what_rides_does_not_drift(velocity, spin: float, alone: str) -> None:
     assert told(ridden(way, spin), platform(way, spin)) == []
 
 
+@pytest.mark.slow
 def test_what_drifts_on_ground_still_does() -> None:
     way = np.array([SPEED, 0.0, 0.0])
     for damage in (sliding(0.5), rising(0.1)):

@@ -26,7 +26,9 @@ def kinds(diagnosis: Diagnosis) -> list[str]:
     return [finding.kind.value for finding in diagnosis.findings]
 
 
-@pytest.mark.parametrize("played", [24.0, 30.0, 60.0])
+@pytest.mark.parametrize(
+    "played", [24.0, *(pytest.param(fps, marks=pytest.mark.slow) for fps in (30.0, 60.0))]
+)
 def test_an_import_without_scale_and_frame_rate_has_two_remedies(played: float) -> None:
     recording = slowed(RATE / played).of(sizes(UNSCALED)).recording
     found = diagnose(recording)

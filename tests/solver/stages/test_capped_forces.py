@@ -57,6 +57,7 @@ def test_the_cap_that_is_to_blame_is_named() -> None:
     assert (caught.value.request, caught.value.peak) == ("All", 0.5)
 
 
+@pytest.mark.slow
 def test_where_flights_take_another_time_it_is_refused_once_that_is_known() -> None:
     """Before the fit it might be that these would be shorter."""
     problem = MotionProblem(

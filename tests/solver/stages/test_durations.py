@@ -96,6 +96,7 @@ def test_a_bigger_jump_is_performed_bigger_and_a_smaller_one_smaller() -> None:
     assert pushes == sorted(pushes)
 
 
+@pytest.mark.slow
 def test_the_push_is_longer_rather_than_harder() -> None:
     def peak(adaptation: Adaptation) -> float:
         return float(adaptation.motion.forces(push(adaptation)).sum(axis=1)[:, 2].max())

@@ -112,6 +112,7 @@ def test_the_recording_is_untouched(done: Path, clip: Path) -> None:
         assert np.array_equal(keys[curve.data_path, curve.array_index], fcurves.keys(curve))
 
 
+@pytest.mark.slow
 def test_keys_that_miss_what_was_solved_are_told_first(
     clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
 ) -> None:
