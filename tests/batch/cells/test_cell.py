@@ -226,6 +226,7 @@ def test_a_full_disk_is_told_with_what_to_do(tmp_path: Path) -> None:
         run_cell(tmp_path / "out", cells(tmp_path / "out")[0].cell, work=fill)
 
 
+@pytest.mark.slow
 def test_the_command_line_runs_a_batch_and_goes_on_with_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -139,6 +139,7 @@ def test_ground_of_the_panel_world_is_the_floor(jump) -> None:
     assert not foot_faults(jump.hangtime)
 
 
+@pytest.mark.slow
 def test_frames_that_are_left_out_tell_nothing_of_those_that_stay() -> None:
     """In a dancer's first 13 frames capture had lost the floor: Analyze found no contact at all."""
     rigs.reset()

@@ -39,6 +39,7 @@ def accepted(adapted: bpy.types.Object) -> bpy.types.Object:
     return adapted
 
 
+@pytest.mark.slow
 def test_export_waits_for_a_result_that_is_accepted(
     adapted: bpy.types.Object, tmp_path: Path
 ) -> None:

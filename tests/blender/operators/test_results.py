@@ -137,6 +137,7 @@ def test_a_linked_copy_that_discards_leaves_the_figure(adapted: bpy.types.Object
     assert current_action(adapted) == recording
 
 
+@pytest.mark.slow
 def test_reduced_keys_are_fewer_and_told_with_their_largest_error(
     analysed: bpy.types.Object,
 ) -> None:

@@ -99,6 +99,7 @@ def test_update_refines_again_when_the_take_below_was_edited(analysed: bpy.types
     assert analysed.hangtime.stances["ground 2"].forward == pytest.approx(0.1, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_a_result_in_a_strip_is_switched_off(
     analysed: bpy.types.Object, capfd: pytest.CaptureFixture[str]
 ) -> None:
