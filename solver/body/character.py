@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..data.constants import STANDARD_GRAVITY, UP
-from ..data.faults import StillBone, ZeroLengthBone
+from ..data.faults import NotComputable, StillBone, ZeroLengthBone
 from ..data.problem import MassTable
 from ..data.recording import Recording
 from ..numerics.rotations import unit
@@ -180,6 +180,20 @@ def build_character(
         joints.append(Joint(parent, offsets[i], axes, first))
         first += axes.dofs
     return Character(tuple(bodies), tuple(joints), height, joined=joined)
+
+
+def stature(recording: Recording, chosen: Mapping[str, str] | None = None) -> float:
+    """The height of a recording's character, m, which takes a tenth of what the character does.
+
+    Raises MissingPart, and NotComputable where it is beyond all numbers.
+    """
+    segments, _ = without_still(recording, map_anatomy(recording.bones, chosen))
+    rotations = body_rotations(recording, [s.bone for s in segments])
+    parents = _parents(recording, segments)
+    height = standing_height(segments, _offsets(recording, segments, parents, rotations))
+    if not np.isfinite(height):
+        raise NotComputable
+    return height
 
 
 def body_rotations(recording: Recording, bones: Sequence[int]) -> FloatArray:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cache, reduce
 
 import numpy as np
 
 from ...analysis.analyse import MIN_CLIP_DURATION, require_dense
 from ...analysis.performance import Performance, find_contacts, perform
 from ...arrays import FloatArray
-from ...body.character import build_character
+from ...body.character import build_character, stature
+from ...data.contacts import ContactSchedule
 from ...data.faults import ClipTooShort, computable
 from ...data.recording import Recording, Skin
 from ...data.scaling import scaled_recording
@@ -94,7 +95,7 @@ def diagnose(
     recording = cured(recording, _find_bind_pose(recording))
     _require_length(recording)
     figure = figure_of(recording, chosen)
-    size = person_factor(build_character(recording, chosen=chosen).height)
+    size = person_factor(stature(recording, chosen))
     recording = scaled_recording(recording, size)  # limits in metres are those of persons
     for limbs in LIMBS:
         recording = cured(recording, find_exchange(recording, figure, limbs))
@@ -114,12 +115,17 @@ def diagnose(
         return Diagnosis((*found, level))
     recording = scaled_recording(recording, 1.0 / size)
 
+    @cache
     def performed(repairs: Repairs) -> Performance:
         mended = repaired(recording, repairs)
         character = build_character(mended, chosen=chosen)
         return perform(mended, character, placed_skin(skin, repairs))
 
-    scales = find_scales(performed, _trusted(found, rate), scene)
+    @cache
+    def touched(repairs: Repairs) -> ContactSchedule:
+        return find_contacts(performed(repairs), scene)
+
+    scales = find_scales(performed, touched, _trusted(found, rate))
     found += scales
     placed = reduce(Repairs.joined, map(_remedy, scales), Repairs())
     performance = performed(placed)
@@ -134,12 +140,14 @@ def diagnose(
     if kept is not None and any(finding.kind in PARTING for finding in found):
         found[:] = _parted(found, frames, kept)
         recording = recording.window(*kept)  # how it stands elsewhere is no matter, and may differ
+        performed.cache_clear()
+        touched.cache_clear()
         performance = performed(placed)
     rise = find_rise(as_stood(performance, scene))
     if rise is not None:
         found.append(rise)
-        performance = performed(placed.joined(_remedy(rise)))
-    found += find_footing(as_stood(performance, scene), find_contacts(performance, scene))
+        placed = placed.joined(_remedy(rise))
+    found += find_footing(as_stood(performed(placed), scene), touched(placed))
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):
         fitting = USUAL_MASS_BY_SQUARE * height**2

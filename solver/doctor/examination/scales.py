@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 from ...analysis.analyse import agreed_rate
 from ...analysis.performance import Performance, find_contacts
 from ...data.constants import STANDARD_GRAVITY
-from ...data.scene import SceneObject
+from ...data.contacts import ContactSchedule
 from ..falls import Trusted, find_scale, refined
 from ..finding import Finding, FindingKind
 from ..footing import spans_of
@@ -16,31 +16,32 @@ from ..repairs import Repairs
 
 
 def find_scales(
-    performed: Callable[[Repairs], Performance], trusted: Trusted, scene: Sequence[SceneObject]
+    performed: Callable[[Repairs], Performance],
+    touched: Callable[[Repairs], ContactSchedule],
+    trusted: Trusted,
 ) -> tuple[Finding, ...]:
-    """performed: the recording with repairs. trusted: the falls that tell a clock. scene: objects
-    of which ground may carry it.
+    """performed: the recording with repairs; touched: its contacts. trusted: the falls that tell a
+    clock.
 
     Where the fall does not fit a person's size, the clock is wrong too, as after an import without
     scale and frame rate: then neither remedy does without the other, and there is none instead.
     """
     scale, falling = _scale_at(performed, Repairs(), trusted)
     if scale is None or scale.kind is not FindingKind.SIZE or scale.remedy is None:
-        scale = scale or _slow_fall(performed(Repairs()), scene)
+        scale = scale or _slow_fall(performed(Repairs()), touched(Repairs()))
         return () if scale is None else (scale,)
     # Where soles begin and how high feet are lifted is told best at the right size.
     scale = refined(scale, performed(scale.remedy), falling)
     sized = scale.remedy or Repairs()
     clock, _ = _scale_at(performed, sized, trusted)
-    clock = clock or _slow_fall(performed(sized), scene)
+    clock = clock or _slow_fall(performed(sized), touched(sized))
     if clock is None or clock.kind is FindingKind.SIZE:
         return (scale,)
     return replace(scale, alternative=None), replace(clock, alternative=None)
 
 
-def _slow_fall(performance: Performance, scene: Sequence[SceneObject]) -> Finding | None:
+def _slow_fall(performance: Performance, schedule: ContactSchedule) -> Finding | None:
     """A wrong clock by which most of the time in the air is no fall, as an analysis refuses it."""
-    schedule = find_contacts(performance, scene)
     rate = agreed_rate(performance, schedule)
     if rate is None:
         return None
