@@ -141,6 +141,7 @@ def assert_nothing_lost_or_solved_twice(folder: Path, killed: int, jobs: int) ->
     assert sum(begun.values()) - len(cells) <= killed * jobs  # only those that were running
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
 def test_a_batch_that_is_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     planned(tmp_path, {f"{i}.bvh": f"sleep 0.{i % 3}1" for i in range(8)})

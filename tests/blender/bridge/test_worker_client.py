@@ -246,6 +246,7 @@ def followed(stream: DragStream) -> Iterator[Followed]:
         time.sleep(0.005)
 
 
+@pytest.mark.slow
 def test_a_dragged_pin_is_followed_from_what_was_prepared(worker: Worker, jump: Recording) -> None:
     prepared = worker.prepare(jump, MotionProblem(frames=SPAN))
     assert not worker.busy

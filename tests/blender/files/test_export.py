@@ -115,6 +115,7 @@ def test_fbx_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
     assert fault.value.path == str(path)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Blender's importer
 def test_a_real_jump_survives_writing_and_fbx(tmp_path: Path) -> None:
     bpy.ops.import_anim.bvh(

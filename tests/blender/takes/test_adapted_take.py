@@ -152,6 +152,7 @@ def test_a_return_before_the_last_adapted_frame_is_refused(analysed: bpy.types.O
         bpy.ops.hangtime.adapt()
 
 
+@pytest.mark.slow
 def test_edits_made_by_hand_are_told_before_they_stay_behind(
     analysed: bpy.types.Object, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -203,6 +204,7 @@ def test_hand_polish_is_kept_when_the_landing_is_moved_again(analysed: bpy.types
     assert scene.frame_current == 200
 
 
+@pytest.mark.slow
 def test_hand_polish_that_moves_a_pinned_foot_is_warned_about(analysed: bpy.types.Object) -> None:
     assert bpy.ops.hangtime.adapt() == {"FINISHED"}
     turn(analysed, "LeftFoot", range(250, 256), 0.2)

@@ -82,6 +82,7 @@ def test_a_shorter_leg_stands_on_a_thicker_sole() -> None:
     assert points["Right toe"].track[0, 2] == pytest.approx(0.0, abs=NEAR)
 
 
+@pytest.mark.slow
 def test_the_floor_goes_with_the_recording() -> None:
     """It does not leap, and goes by as much where 0 cannot be the floor."""
     recording, lift = load_recording(HIGH), 0.01

@@ -48,6 +48,7 @@ def beyond(adaptation: Adaptation) -> dict[str, float]:
     }
 
 
+@pytest.mark.slow
 def test_a_far_landing_keeps_joints_in_their_ranges() -> None:
     before = beyond(unguarded())
     assert max(before.values()) > 5.0

@@ -47,6 +47,7 @@ def test_no_step_turns_a_joint_further_than_it_may() -> None:
     assert max(turns) == pytest.approx(0.3)
 
 
+@pytest.mark.slow
 def test_a_step_that_raises_the_violation_is_taken_back_where_none_may_follow() -> None:
     """Near the end one may, if the next makes up for it: far from any motion some do."""
     setup = set_up(fitted_hop(), MotionProblem())

@@ -104,6 +104,7 @@ def test_the_push_is_longer_rather_than_harder() -> None:
     assert peak(adapted(0.15)) < 1.05 * peak(adapted(0.0))
 
 
+@pytest.mark.slow
 def test_where_nothing_is_moved_every_duration_stays() -> None:
     assert durations(adapted(0.0)) == pytest.approx(recorded())
     assert adapted(0.0).setup.context.timeline.unchanged

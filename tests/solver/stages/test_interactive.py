@@ -40,6 +40,7 @@ def settled(follower: Follower, problem: MotionProblem, most: int = 30) -> int:
     raise AssertionError(f"not there after {most} updates")
 
 
+@pytest.mark.slow
 def test_the_ghost_is_near_the_solve() -> None:
     fit = fitted_hop()
     follower = Follower(fit, moved(0.0))
@@ -94,6 +95,7 @@ def test_joints_keep_to_their_ranges_while_the_pin_is_dragged() -> None:
     assert most[0] < 3.0 < 2.0 * most[0] + 3.0 < most[1]
 
 
+@pytest.mark.slow
 def test_times_follow_once_the_pin_rests() -> None:
     fit = fitted_hop()
     follower = Follower(fit, moved(0.0))

@@ -160,6 +160,7 @@ def test_the_starter_recipe_is_valid_and_names_the_landing(
     assert "jump.toml" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_rest_pose_on_the_first_frame_is_left_out(clip: Path, tmp_path: Path, capsys) -> None:
     target = tmp_path / "jump.toml"
     command = ["analyze", str(begun_at_rest(clip, tmp_path)), "--write-recipe", str(target)]
