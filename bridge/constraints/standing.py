@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import bpy
 import numpy as np
 
 from ...solver.data.contacts import ContactSchedule
+from ...solver.data.reports.keys import MissedContact
 from ...solver.data.traces import Traces
 from ..accessors import current_scene
 from ..armature.incremental import Incremental, sample_incrementally
@@ -15,15 +14,6 @@ from ..armature.poses import frames_per_second
 from ..armature.read import recording_of
 
 TOLD_MM = 1.0  # from which on a miss is told; a foot that slides by more is seen
-
-
-@dataclass(frozen=True)
-class MissedContact:
-    """A contact whose point is elsewhere than solved, by how far at most, and at which frame."""
-
-    name: str
-    mm: float
-    frame: float
 
 
 def missed_contacts(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,11 +29,11 @@ from .stages import Stages
 if TYPE_CHECKING:  # as in clip.py
     import bpy
 
-    from ...bridge.constraints.standing import MissedContact
     from ...bridge.controls.control_rig import ControlRig
     from ...bridge.controls.kept import KeptByControls
     from ...bridge.takes.plan import AdaptedMotion
     from ...bridge.takes.span import WrittenTake
+    from ...solver.data.reports.keys import MissedContact
 
 EXPORTED = "adapted"  # file name without ending
 ASIDE = 1.5  # m; how far the recording stands beside the adapted figure
@@ -110,8 +110,8 @@ class Outputs:
         with self.stages.stage("Measuring"):
             if trajectory:
                 write_trajectory(self.result, self.outbox)
-            report = replace(self._report(), keys=keys)
-        self._write_report(report, written, missed)
+            report = replace(self._report(), keys=keys, missed_contacts=missed)
+        self._write_report(report, written)
         return report
 
     def _export(
@@ -161,29 +161,17 @@ class Outputs:
         whose travel is left out."""
         from ...bridge.armature.incremental import complete
         from ...bridge.constraints.standing import missed_contacts
-        from ..words.take_text import missed_line
 
         if self.loop is not None and self.loop.root is LoopRoot.IN_PLACE:
             return ()
         result = self.result
-        missed = complete(missed_contacts(performer, result.schedule, result.traces()))
-        if missed:
-            self.stages.out.write(f"Warning: {missed_line(missed)}\n")
-        return missed
+        return complete(missed_contacts(performer, result.schedule, result.traces()))
 
-    def _write_report(
-        self,
-        report: Report,
-        written: WrittenTake | KeptByControls | None,
-        missed: Sequence[MissedContact] = (),
-    ) -> None:
-        from ..words.take_text import missed_line, take_lines, take_record
+    def _write_report(self, report: Report, written: WrittenTake | KeptByControls | None) -> None:
+        from ..words.take_text import take_lines, take_record
 
         records: dict[str, object] = {} if written is None else {"take": take_record(written)}
-        if missed:
-            records["missed_contacts"] = [asdict(each) for each in missed]
-        first = [missed_line(missed)] if missed else []
-        write_report(report, self.outbox, records, first, take_lines(written))
+        write_report(report, self.outbox, records, take_lines(written))
 
     def _write_actions(
         self, called: str

@@ -27,11 +27,10 @@ def write_report(
     report: Report,
     outbox: Outbox,
     more: Mapping[str, object] = MappingProxyType({}),
-    first: Sequence[str] = (),
     last: Sequence[str] = (),
 ) -> None:
-    """The report for programs and for people. more, and first and last lines: what is told beside
-    it, in each.
+    """The report for programs and for people. more, and last lines: what is told beside it, in
+    each.
 
     Raises OutputNotWritable.
     """
@@ -39,5 +38,5 @@ def write_report(
     outbox.write_text("report.json", json.dumps(records, indent=1, allow_nan=False) + "\n")
     outbox.write_text(
         "report.txt",
-        "\n".join([*first, as_text(report), *last, *([""] if last else [])]),
+        "\n".join([as_text(report), *last, *([""] if last else [])]),
     )

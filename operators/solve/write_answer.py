@@ -48,9 +48,10 @@ from ...solver.data.faults import ChangedMeanwhile, Fault
 from ...solver.data.recording import PoseTrack, Recording, same_motion
 from ...solver.data.solver_options import Method
 from ...solver.worker.protocol import Adapted
+from ..words.headline import missed_line
 from ..words.report_text import as_text
 from ..words.summary_text import summary
-from ..words.take_text import missed_line, pin_lines, polish_lines, take_lines
+from ..words.take_text import pin_lines, polish_lines, take_lines
 from ..words.warning_text import warnings_of
 from .keys import mark_contacts, write_keys
 from .scene import note_surfaces, stale_surfaces

@@ -1,14 +1,19 @@
-"""Wording of a result's headline: how it ended, how near it is, what was accepted, what failed."""
+"""Wording of a result's headline: what its keys do not show, how it ended, how near it is, what was
+accepted, what failed."""
+
+from collections.abc import Sequence
 
 from ...solver.data.faults import NoFit
 from ...solver.data.reports.certificate import CertificateItem, CertificateLine
 from ...solver.data.reports.constraints import ConstraintReport, FitNeeds
+from ...solver.data.reports.keys import MissedContact
 from ...solver.data.reports.report import FitQuality, Report
 from ...solver.data.row_kinds import RowKind
 from ...solver.data.status import Status
 from .messages import length, outcome, sentence
 
 MOST_NAMED = 3  # of the certificate's lines that fail, in a headline
+MOST_MISSED = 3  # contacts
 MOST_GIVEN_UP = 5  # of what is in each other, likewise
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
@@ -37,8 +42,8 @@ CERTIFICATE = {
 
 
 def headline(report: Report) -> list[str]:
-    """How the solve ended, how near the fit is, what was accepted, and what the certificate has
-    against the motion: lines."""
+    """What the keys do not show, how the solve ended, how near the fit is, what was accepted, and
+    what the certificate has against the motion: lines."""
     if report.fit_failed:
         return [sentence(NoFit(report.status))]
     if report.status is not Status.SOLVED:
@@ -46,7 +51,23 @@ def headline(report: Report) -> list[str]:
     accepted = accepted_lines(report.needs)
     told = [nearness(report.fit_to_recording), *accepted, *given_up_lines(report)]
     told += [line_told(line) for line in most_telling(report.failed)]
-    return [_solved(report, shown=not accepted), *(f"  {line}" for line in told)]
+    missed = [missed_line(report.missed_contacts)] if report.missed_contacts else []
+    return [*missed, _solved(report, shown=not accepted), *(f"  {line}" for line in told)]
+
+
+def missed_line(missed: Sequence[MissedContact]) -> str:
+    """The first line of a result whose keys have points that stand elsewhere than solved."""
+    points = ", ".join(
+        f"{each.name} is up to {each.mm:.1f} mm off (frame {each.frame:g})"
+        for each in missed[:MOST_MISSED]
+    )
+    more = len(missed) - MOST_MISSED
+    others = f", and {more} more" if more > 0 else ""
+    return (
+        f"The keys do not show what was solved: {points}{others}. Mute the constraints and drivers "
+        "that move these bones or those above them, take scale off the bones above the hips, and "
+        "press Update"
+    )
 
 
 def _solved(report: Report, *, shown: bool) -> str:

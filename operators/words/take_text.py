@@ -4,13 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import degrees, hypot
 
-from ...bridge.constraints.standing import MissedContact
 from ...bridge.controls.kept import KeptByControls
 from ...bridge.polish.pins import MovedPin
 from ...bridge.polish.put_on import PlacedPolish
 from ...bridge.takes.span import WrittenTake
 
-MOST_MISSED = 3  # contacts that are named
 _LEVEL = 0.0005  # m
 _STRAIGHT = 0.05  # degrees
 
@@ -101,21 +99,6 @@ def pin_lines(pins: Sequence[MovedPin]) -> list[str]:
         f"Hand polish moves {pin.name} by {1000.0 * pin.distance:.0f} mm at frame {pin.frame:g}"
         for pin in pins
     ]
-
-
-def missed_line(missed: Sequence[MissedContact]) -> str:
-    """The first line of a result whose keys have points that stand elsewhere than solved."""
-    points = ", ".join(
-        f"{each.name} is up to {each.mm:.1f} mm off (frame {each.frame:g})"
-        for each in missed[:MOST_MISSED]
-    )
-    more = len(missed) - MOST_MISSED
-    others = f", and {more} more" if more > 0 else ""
-    return (
-        f"The keys do not show what was solved: {points}{others}. Mute the constraints and drivers "
-        "that move these bones or those above them, take scale off the bones above the hips, and "
-        "press Update"
-    )
 
 
 def _carried(written: WrittenTake, roles: Mapping[str, str]) -> Iterator[str]:

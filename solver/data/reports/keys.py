@@ -27,3 +27,13 @@ class KeysReport:
     def rate(self) -> float:
         """Keys a second and channel."""
         return self.keys / (self.channels * self.seconds)
+
+
+@dataclass(frozen=True)
+class MissedContact:
+    """A contact whose point the keys have elsewhere than solved, by how far at most, and at which
+    frame."""
+
+    name: str
+    mm: float
+    frame: float

@@ -27,7 +27,7 @@ from .constraints import (
 from .dynamics import DenseResiduals, ForcesReport, TorquesReport, TorqueUse
 from .joints import JointChange, RecordedRange
 from .jumps import JumpReport, PhaseReport, TimeMap
-from .keys import KeysReport
+from .keys import KeysReport, MissedContact
 from .loop import LoopReport
 from .omission import OMIT_NONE
 from .recording import FigureSummary, RecordingSummary
@@ -125,6 +125,7 @@ class Report:
     changed most. stages: None where nobody timed them. keys: None where none were left out.
     unseen_support: where something unseen carries the body. let_go: contacts that the fit found
     no way to hold. accepted_contacts: those that it holds near enough to their places.
+    missed_contacts: those that the written keys do not show where they were solved to be.
     """
 
     status: Status
@@ -160,6 +161,7 @@ class Report:
     unseen_support: tuple[UnseenSupportReport, ...] = ()
     let_go: tuple[LetGoReport, ...] = ()
     accepted_contacts: tuple[AcceptedReport, ...] = ()
+    missed_contacts: tuple[MissedContact, ...] = ()
 
     @property
     def needs(self) -> FitNeeds:

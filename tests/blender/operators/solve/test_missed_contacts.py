@@ -9,11 +9,12 @@ bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 from hangtime.bridge.armature.actions import read_recorded
 from hangtime.bridge.armature.incremental import complete
 from hangtime.bridge.armature.traces_store import kept
-from hangtime.bridge.constraints.standing import MissedContact, missed_contacts
-from hangtime.operators.words.take_text import missed_line
+from hangtime.bridge.constraints.standing import missed_contacts
+from hangtime.operators.words.headline import missed_line
 from hangtime.solver.analysis.analyse import analyse
 from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import BEYOND
+from hangtime.solver.data.reports.keys import MissedContact
 from hangtime.tests.helpers.clips import JUMP_FRAMES
 
 pytestmark = pytest.mark.usefixtures("_enabled")
