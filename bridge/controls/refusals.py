@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 
 import bpy
@@ -54,18 +54,16 @@ def _require_inside(
     frames: FloatArray,
     showing: Callable[[], AbstractContextManager[object]],
 ) -> Incremental[None]:
-    """Refuse bodies that inverse kinematics pulls towards what the armature's bones do not move: a
-    hip that shifts turns such a leg, too, so that trying alone would not tell. Raises
+    """Refuse bodies that inverse kinematics pulls or turns towards what the armature's bones do
+    not move: a hip that shifts turns such a leg, too, so that trying alone would not tell. Raises
     PulledFromOutside."""
     with showing():
         outside = [
-            (index, bone.name, each.name, each.target.name)
+            (index, bone.name, each.name, thing.name)
             for index, (bone, each) in enumerate(constraints_of(armature))
-            if isinstance(each, bpy.types.KinematicConstraint)
-            and each.target is not None
-            and each.target != armature
-            and not set(bodies).isdisjoint(chain_of(bone, each))
-            and not _moves(armature, each.target)
+            if not set(bodies).isdisjoint(chain_of(bone, each))
+            for thing in _pulling(each)
+            if thing != armature and not _moves(armature, thing)
         ]
     if not outside:
         return
@@ -76,19 +74,33 @@ def _require_inside(
         raise PulledFromOutside(*(tuple(dict.fromkeys(names)) for names in named))
 
 
+def _pulling(constraint: bpy.types.Constraint) -> list[bpy.types.Object]:
+    """What a constraint of inverse kinematics pulls towards, and turns the chain's bend to."""
+    if not isinstance(constraint, bpy.types.KinematicConstraint):
+        return []
+    things = (constraint.target, constraint.pole_target)
+    return [thing for thing in things if thing is not None]
+
+
 def _moves(
     armature: bpy.types.Object, thing: bpy.types.Object, seen: tuple[bpy.types.Object, ...] = ()
 ) -> bool:
     """Whether bones of an armature may move an object that hangs on others or follows them."""
-    on = thing.parent_bone if thing.parent_type == "BONE" else ""
-    followed = (
-        (getattr(c, "target", None), getattr(c, "subtarget", "")) for c in thing.constraints
-    )
     return any(
         bool(bone) if other == armature else _moves(armature, other, (*seen, thing))
-        for other, bone in ((thing.parent, on), *followed)
+        for other, bone in _led_by(thing)
         if other is not None and other not in seen
     )
+
+
+def _led_by(thing: bpy.types.Object) -> Iterator[tuple[bpy.types.Object | None, str]]:
+    """Objects that one hangs on or follows, with the bone where it is one's."""
+    yield thing.parent, thing.parent_bone if thing.parent_type == "BONE" else ""
+    for constraint in thing.constraints:
+        if isinstance(constraint, bpy.types.ArmatureConstraint):
+            yield from ((each.target, each.subtarget) for each in constraint.targets)
+        else:
+            yield getattr(constraint, "target", None), getattr(constraint, "subtarget", "")
 
 
 def unled(done: FloatArray, bodies: tuple[str, ...], parents: list[int]) -> list[str]:

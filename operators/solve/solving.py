@@ -44,12 +44,13 @@ SHARES = {
 class Solving:
     """A solve under way. Whoever runs it tells what happens; what cannot happen now raises
     ValueError, for it would be a mistake of ours. of, label: the operator that runs it, and what
-    its button says."""
+    its button says. analysed: what an analysis found is written, and more is to come."""
 
     of: str = ""
     state: SolveState = SolveState.READING
     progress: Progress | None = None
     label: str = "The work"
+    analysed: bool = False
 
     def advance(self, to: SolveState) -> None:
         """The next part begins."""
@@ -59,8 +60,8 @@ class Solving:
         self.state = to
 
     def again(self) -> None:
-        """Another solve begins after this one."""
-        self.state, self.progress = SolveState.READING, None
+        """The analysis is written, and a solve begins after it."""
+        self.state, self.progress, self.analysed = SolveState.READING, None, True
 
     def heard(self, progress: Progress) -> None:
         """The worker told of a step."""
@@ -81,15 +82,16 @@ class Solving:
 
     @property
     def has_result(self) -> bool:
-        """Whether what it was for is there, and it only makes ready what comes next."""
-        return self.state is SolveState.PREPARING
+        """Whether it has changed what stays though it is ended: a step to undo."""
+        return self.analysed or self.state is SolveState.PREPARING
 
     @property
     def cancelled(self) -> str:
         """What is told where the artist ends it."""
-        if self.has_result:
+        if self.state is SolveState.PREPARING:
             return f"{self.state.value.capitalize()} was cancelled; what {self.label} found is kept"
-        return f"{self.label} was cancelled while {self.doing}; nothing was changed"
+        left = "the new contacts are kept" if self.analysed else "nothing was changed"
+        return f"{self.label} was cancelled while {self.doing}; {left}"
 
     @property
     def share(self) -> float:

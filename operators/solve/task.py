@@ -91,7 +91,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             self.leave()
             self.report({"INFO"}, self._solving.cancelled)
         if self not in session().running:  # it may have been ended from outside, too
-            return {"FINISHED"} if self._solving.has_result else {"CANCELLED"}
+            return self._ended()
         if event.type != "TIMER":
             return {"PASS_THROUGH"} if self._solving.passes(event.type) else {"RUNNING_MODAL"}
         return self._work()
@@ -121,7 +121,8 @@ class TaskOperator(ReadyOperator, FaultyOperator):
             # the report vanishes when the mouse moves
             failure = session().failure = failed(fault, self._uid, type(self).bl_idname)
             # An error's pop-up would hide the panel, which says more.
-            return self.refuse(failure.short, "WARNING")
+            self.refuse(failure.short, "WARNING")
+            return self._ended()
         except ReferenceError:  # an undo took the armature away from under us
             return self.refuse(TAKEN_AWAY)
         finally:
@@ -129,6 +130,10 @@ class TaskOperator(ReadyOperator, FaultyOperator):
                 self.leave()
         self._show()
         return {"RUNNING_MODAL"}
+
+    def _ended(self) -> OperatorResult:
+        """Of work that ended before its end: a step to undo where something of it stays."""
+        return {"FINISHED"} if self._solving.has_result else {"CANCELLED"}
 
     def _heard(self, job: PendingRequest) -> bool:
         """Takes in a job's news; whether its answer is among them."""

@@ -48,6 +48,16 @@ def test_who_cancels_hears_what_was_cancelled_and_what_is_left() -> None:
     assert under_way.has_result
 
 
+def test_who_cancels_an_update_after_its_analysis_hears_that_the_new_contacts_stay() -> None:
+    under_way = Solving(label="Update")
+    under_way.advance(SolveState.SOLVING)
+    under_way.again()
+    under_way.advance(SolveState.SOLVING)
+    under_way.heard(told())
+    assert under_way.cancelled == "Update was cancelled while adapting; the new contacts are kept"
+    assert under_way.has_result  # which is a step that can be undone
+
+
 def test_after_an_analysis_it_says_what_is_made_ready() -> None:
     under_way = solving()
     under_way.advance(SolveState.PREPARING)
