@@ -1,12 +1,18 @@
 """The values of a recipe's text, TOML or JSON, with their lines."""
 
 import json
+import re
 import tomllib
 from typing import Any
 
 from ...solver.data.faults import BadRecipe
 from .source_lines import KeyPath, json_lines, toml_lines
 
+# What people write who do not know TOML, by how it begins.
+_HINTS = (
+    (re.compile(r"[+-]?\.\d"), "a number begins with a digit, such as 0.5"),
+    (re.compile(r"[^\W\d]"), "a text needs quotes, and true and false are lower case"),
+)
 _ABSURD = (ValueError, RecursionError)  # a number of 5,000 digits; 1,000 brackets
 
 
@@ -20,13 +26,24 @@ def recipe_values(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, i
     try:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        message, _, place = str(error).rpartition(" (at ")
-        # Past its last character tomllib says "end of document" instead of a line.
-        line = place.split()[1].rstrip(",") if place.startswith("line ") else text.count("\n") + 1
-        raise BadRecipe(path, int(line), f"not TOML ({message}); correct the line") from error
+        raise _no_toml(text, path, str(error)) from error
     except _ABSURD as error:
         raise BadRecipe(path, None, "not TOML that can be read; see the examples") from error
     return values, dict(toml_lines(text))
+
+
+def _no_toml(text: str, path: str, why: str) -> BadRecipe:
+    """The fault of a text of which tomllib says why it is no TOML: what stands there, and what
+    was probably meant."""
+    message, _, place = why.rpartition(" (at ")
+    told = re.fullmatch(r"line (\d+), column (\d+)\)", place)
+    if told is None:  # past the last character
+        return BadRecipe(path, text.count("\n") + 1, f"not TOML ({message}); correct the line")
+    line, column = int(told[1]), int(told[2])
+    there = text.split("\n")[line - 1][column - 1 :].strip()
+    hint = next((f" ({hint})" for begins, hint in _HINTS if begins.match(there)), "")
+    at = f" at “{there[:40]}”" if there else ""
+    return BadRecipe(path, line, f"not TOML{at} ({message}); correct it{hint}")
 
 
 def _parse_json(text: str, path: str) -> tuple[dict[str, Any], dict[KeyPath, int]]:

@@ -102,6 +102,21 @@ WRONG = [  # what stands in FULL, and what it is replaced by, whose last line is
 ]
 
 
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("forward = .1", "not TOML at “.1” (Invalid value); correct it (a number begins"),
+        ("phase = ground 2", "not TOML at “ground 2” (Invalid value); correct it (a text needs"),
+        ("grip = True", "at “True” (Invalid value); correct it (a text needs quotes, and true"),
+        ("frames = [1, 2", "not TOML (Unclosed array); correct the line"),
+        ("up 0.3", "not TOML at “0.3” (Expected '=' after a key in a key/value pair); correct it"),
+    ],
+)
+def test_what_is_no_toml_is_quoted_with_what_was_probably_meant(line: str, told: str) -> None:
+    fault = refused(f"frames = [1, 9]\n[[pin]]\n{line}")
+    assert (fault.line, told in fault.problem) == (3, True)
+
+
 @pytest.mark.parametrize(("old", "new"), WRONG)
 def test_what_is_wrong_is_named_with_its_line(old: str, new: str) -> None:
     assert FULL.count(old) == 1
