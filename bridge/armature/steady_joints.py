@@ -18,6 +18,7 @@ from .pose_basis import basis_under
 from .poses import Poses, metres_per_unit
 
 MOVES = 1e-4  # m; a joint that moves by less holds its place
+EVEN = 1e-3  # share by which scales that are the same may differ
 
 
 def steady_bases(
@@ -44,6 +45,22 @@ def steady_bases(
         name: _towards(_basis(armature, poses, name), _median(_basis(armature, told, name)), share)
         for name in moving
     }
+
+
+def unsteady_scales(armature: bpy.types.Object, poses: Poses, bone: str) -> list[str]:
+    """What changes a bone's length, or where its ends are, by its scale: the armature where that is
+    not the same in all poses, and bones from the uppermost to this one where it is not the same
+    along all axes, too."""
+    rest = armature_data(armature).bones[bone]
+    line = [each.name for each in reversed((rest, *rest.parent_recursive))]
+    bases = {name: _basis(armature, poses, name) for name in line}
+    sizes = np.cbrt(np.abs(np.linalg.det(poses.object_to_world[:, :3, :3])))
+    found = [armature.name] if np.ptp(sizes) > EVEN * sizes.mean() else []
+    for name, basis in bases.items():
+        stretch = _turns_and_stretches(basis)[1]
+        if np.ptp(np.diagonal(stretch, axis1=1, axis2=2)) > EVEN:
+            found.append(name)
+    return found
 
 
 def _moving(armature: bpy.types.Object, poses: Poses, bodies: tuple[str, ...]) -> set[str]:

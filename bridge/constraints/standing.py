@@ -12,6 +12,7 @@ from ..accessors import current_scene
 from ..armature.incremental import Incremental, sample_incrementally
 from ..armature.poses import frames_per_second
 from ..armature.read import recording_of
+from ..armature.steady_joints import unsteady_scales
 
 TOLD_MM = 1.0  # from which on a miss is told; a foot that slides by more is seen
 
@@ -37,5 +38,6 @@ def missed_contacts(
         off = 1e3 * np.linalg.norm(at - wanted, axis=1)
         if off.max() >= TOLD_MM:
             frame = float(frames[rows[off.argmax()]])
-            missed.append(MissedContact(each.name, float(off.max()), frame))
+            scaled = tuple(unsteady_scales(armature, poses, each.bone))
+            missed.append(MissedContact(each.name, float(off.max()), frame, scaled))
     return tuple(sorted(missed, key=lambda miss: -miss.mm))

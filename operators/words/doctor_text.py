@@ -97,7 +97,8 @@ def remedy_label(finding: Finding, remedy: Repairs, mass: float, rate: float) ->
 
 def finding_sentence(finding: Finding) -> str:
     """What is wrong and where."""
-    told = SENTENCES[finding.kind].format(
+    sentence = SENTENCES[finding.kind]
+    told = sentence.format(
         n=finding.amount,
         speed=abs(finding.amount),
         way="upwards" if finding.amount > 0.0 else "downwards",
@@ -107,7 +108,8 @@ def finding_sentence(finding: Finding) -> str:
         clock=_clock(finding),
     )
     advice = ADVICE.get(finding.kind, "") if finding.remedy is None else ""
-    return f"{told[0].upper()}{told[1:]}{advice}"
+    named = finding.part and sentence.startswith("{part}")  # a bone is called as it is
+    return f"{told if named else told[0].upper() + told[1:]}{advice}"
 
 
 def amount_text(finding: Finding) -> str:
@@ -160,7 +162,8 @@ def _where(finding: Finding) -> str:
     if not spans:
         return ""
     more = len(spans) - MOST_PLACES
-    listed = ", ".join(spans[:MOST_PLACES]) + (f" and {more} more places" if more > 0 else "")
+    others = f" and {more} more place{'s' if more > 1 else ''}" if more > 0 else ""
+    listed = ", ".join(spans[:MOST_PLACES]) + others
     one = len(spans) == 1 and finding.frames[0][0] == finding.frames[0][1]
     return f"at frame {listed}" if one else f"in frames {listed}"
 

@@ -17,6 +17,12 @@ MOST_MISSED = 3  # contacts
 MOST_GIVEN_UP = 5  # of what is in each other, likewise
 FITS = (CertificateItem.FIT_RMS, CertificateItem.FIT_WORST_FRAME)
 
+# What may be done about keys that do not show what was solved.
+SAME_SCALE = (
+    "Lengths change with the scale of {}: make it one number, for all axes and at all frames"
+)
+UNMOVED = "Mute the constraints and drivers that move these bones or those above them"
+
 Item = CertificateItem
 CERTIFICATE = {
     Item.RESIDUAL_FORCE_RMS_SHARE: "unexplained force, rms, of the peak force",
@@ -63,11 +69,9 @@ def missed_line(missed: Sequence[MissedContact]) -> str:
     )
     more = len(missed) - MOST_MISSED
     others = f", and {more} more" if more > 0 else ""
-    return (
-        f"The keys do not show what was solved: {points}{others}. Mute the constraints and drivers "
-        "that move these bones or those above them, take scale off the bones above the hips, and "
-        "press Update"
-    )
+    scaled = dict.fromkeys(name for each in missed for name in each.scaled)
+    cure = SAME_SCALE.format(", ".join(scaled)) if scaled else UNMOVED
+    return f"The keys do not show what was solved: {points}{others}. {cure}, and press Update"
 
 
 def _solved(report: Report, *, shown: bool) -> str:

@@ -121,8 +121,8 @@ class ResultPanel(ArmaturePanel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = present(self.layout)
-        settings = settings_in(context)
         armature = present(chosen_armature(context))
+        settings = settings_of(armature)
         self._draw_takes(layout, context, takes_of(armature))
         row = layout.row(align=True)
         row.operator(OperatorId.ACCEPT, icon="CHECKMARK")
@@ -130,23 +130,15 @@ class ResultPanel(ArmaturePanel):
         row = layout.row(align=True)
         self._draw_switch(row, armature)
         row.operator(OperatorId.SHOW_REPORT, text="Report", icon="TEXT")
-        self._draw_warning(layout, context, armature)
-        first = settings.status.partition("\n")[0]
-        told = layout.column()
-        told.active = current_action(armature) == settings.adapted
-        lines(told, wrapped(context, first, icons=0))
-
-    @staticmethod
-    def _draw_warning(
-        layout: bpy.types.UILayout, context: bpy.types.Context, armature: bpy.types.Object
-    ) -> None:
-        """What is beyond reason in the result that is shown."""
-        result = result_of(armature)
-        warning = action_settings(result).warning if result is not None else ""
-        if warning and current_action(performer_of(armature)) == result:
+        warning = shown_warning(armature)
+        if warning:
             box = layout.box()
             box.alert = True
             lines(box, wrapped(context, warning), icon="ERROR")
+        told = layout.column()
+        told.active = current_action(armature) == settings.adapted
+        for first in beside_warning(armature)[:1]:
+            lines(told, wrapped(context, first, icons=0))
 
     @staticmethod
     def _draw_switch(row: bpy.types.UILayout, armature: bpy.types.Object) -> None:
@@ -188,6 +180,20 @@ class ResultPanel(ArmaturePanel):
                 column.operator(OperatorId.UPDATE)
 
 
+def shown_warning(armature: bpy.types.Object) -> str:
+    """What is beyond reason in the result that is shown."""
+    result = result_of(armature)
+    if result is None or current_action(performer_of(armature)) != result:
+        return ""
+    return action_settings(result).warning
+
+
+def beside_warning(armature: bpy.types.Object) -> list[str]:
+    """The lines on the last result, but for those that its warning says above them."""
+    warned = shown_warning(armature).splitlines()
+    return [line for line in settings_of(armature).status.splitlines() if line not in warned]
+
+
 class DetailsPanel(ArmaturePanel):
     bl_idname = "HANGTIME_PT_details"
     bl_parent_id = ResultPanel.bl_idname
@@ -197,14 +203,14 @@ class DetailsPanel(ArmaturePanel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         armature = chosen_armature(context)
-        return armature is not None and "\n" in settings_of(armature).status
+        return armature is not None and len(beside_warning(armature)) > 1
 
     def draw(self, context: bpy.types.Context) -> None:
         armature = present(chosen_armature(context))
         settings = settings_of(armature)
         told = present(self.layout).column()
         told.active = current_action(armature) == settings.adapted
-        for line in settings.status.splitlines()[1:]:
+        for line in beside_warning(armature)[1:]:
             lines(told, wrapped(context, line, icons=0))
             told.separator(factor=0.5)
 

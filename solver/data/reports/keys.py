@@ -32,8 +32,9 @@ class KeysReport:
 @dataclass(frozen=True)
 class MissedContact:
     """A contact whose point the keys have elsewhere than solved, by how far at most, and at which
-    frame."""
+    frame; and the bones and armature whose scale changes lengths above it."""
 
     name: str
     mm: float
     frame: float
+    scaled: tuple[str, ...] = ()

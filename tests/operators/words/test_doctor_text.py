@@ -45,6 +45,15 @@ def test_what_is_off_is_told_by_its_unit_and_whose_it_is() -> None:
     assert finding_sentence(thigh).startswith("Thigh.R jumps by 48° in frames 8 to 9,")
 
 
+def test_bones_keep_their_names_at_the_start_of_a_sentence_and_places_are_counted() -> None:
+    frames = tuple((float(frame), float(frame)) for frame in range(10, 80, 10))
+    flip = Finding(FindingKind.FLIP, 180.0, "°", frames, "mixamorig:LeftUpLeg")
+    assert finding_sentence(flip) == (
+        "mixamorig:LeftUpLeg is turned by half a turn in frames 10, 20, 30, 40, 50, 60 and 1 more "
+        "place."
+    )
+
+
 def test_of_what_is_cut_everywhere_it_is_advised_to_choose() -> None:
     cut = Finding(FindingKind.JUMP, 40.0, "cm", ((8.0, 9.0),))
     assert finding_sentence(cut).endswith("Choose frames on one side of it.")

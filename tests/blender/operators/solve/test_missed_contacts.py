@@ -16,6 +16,7 @@ from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.recording import BEYOND
 from hangtime.solver.data.reports.keys import MissedContact
 from hangtime.tests.helpers.clips import JUMP_FRAMES
+from hangtime.ui.panels.solve import beside_warning
 
 pytestmark = pytest.mark.usefixtures("_enabled")
 
@@ -45,4 +46,24 @@ def test_a_leg_that_is_longer_than_solved_is_told_by_its_points(
         f"The keys do not show what was solved: {worst.name} is up to {worst.mm:.1f} mm off "
         f"(frame {worst.frame:g}), "
     )
-    assert ", and 1 more. " in missed_line(found)
+    cure = "Lengths change with the scale of LeftLeg: make it one number"
+    assert f", and 1 more. {cure}" in missed_line(found)
+
+
+def test_an_armature_that_grows_is_told_as_the_cause(adapted: bpy.types.Object) -> None:
+    first, last = JUMP_FRAMES
+    for frame, size in ((first, 1.0), (last, 1.1)):
+        adapted.scale = (size, size, size)
+        adapted.keyframe_insert("scale", frame=frame)
+    assert f"the scale of {adapted.name}: make it one number" in missed_line(missed(adapted))
+
+
+def test_what_a_result_warns_of_is_not_said_again_below_the_warning(
+    adapted: bpy.types.Object,
+) -> None:
+    settings, warning = adapted.hangtime, "The keys do not show what was solved"
+    told = settings.status.splitlines()
+    settings.status = "\n".join([warning, *told])
+    assert beside_warning(adapted) == [warning, *told]
+    settings.adapted.hangtime.warning = warning
+    assert beside_warning(adapted) == told
