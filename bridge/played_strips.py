@@ -17,6 +17,7 @@ from .action_slots import span_of
 _SAME = 1e-4  # frames
 
 SEVERAL = "are several, and what they make together has no keys of its own"
+MUTED = "play nothing, for all are muted"
 STARRED = "plays on a starred track, which would hide every result, so take the star off"
 
 

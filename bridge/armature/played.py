@@ -12,6 +12,7 @@ from ...solver.data.faults import BlendedAction, Fault, NoAction, UnreadStrips
 from ..accessors import IN_STRIP, assigned_action, mapped_strip, take_strips
 from ..action_slots import all_curves, alone
 from ..played_strips import (
+    MUTED,
     STARRED,
     StripTime,
     played_strip,
@@ -34,11 +35,13 @@ def strip_time(owner: bpy.types.Object, action: bpy.types.Action) -> StripTime |
 def why_no_action(owner: bpy.types.Object) -> Fault:
     """Why nothing that animates an object can be read as a recording."""
     data, strips = owner.animation_data, visible_strips(owner)
-    if data is not None and data.action is None and strips:
-        why = why_unread(owner, strips)
-        if why is not None:
-            return UnreadStrips(owner.name, tuple(strip.name for strip in strips), why)
-    return NoAction(owner.name)
+    if data is None or data.action is not None:
+        return NoAction(owner.name)
+    unseen = [strip for track in data.nla_tracks for strip in track.strips]
+    why = why_unread(owner, strips) if strips else MUTED if unseen else None
+    if why is None:
+        return NoAction(owner.name)
+    return UnreadStrips(owner.name, tuple(strip.name for strip in strips or unseen), why)
 
 
 def require_unstarred(owner: bpy.types.Object) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...solver.arrays import FloatArray
 from ..accessors import armature_data, current_scene, pose_of
+from ..action_slots import all_curves
 
 
 @dataclass(frozen=True)
@@ -73,14 +74,17 @@ def sample(armature: bpy.types.Object, frames: FloatArray) -> Poses:
 def evaluated(objects: Iterable[bpy.types.Object]) -> Iterator[None]:
     """Context in which Blender evaluates objects, and the poses of armatures.
 
-    It skips what is hidden, excluded or at rest. On exit these and the scene's frame are what
-    they were.
+    It skips what is hidden, excluded or at rest, also where keys or drivers hide it. On exit these
+    and the scene's frame are what they were.
     """
     scene = current_scene()
     with ExitStack() as undo:
         undo.callback(scene.frame_set, scene.frame_current, subframe=scene.frame_subframe)
         for thing in objects:
             undo.callback(setattr, thing, "hide_viewport", thing.hide_viewport)
+            for curve in _hiding(thing):
+                undo.callback(setattr, curve, "mute", curve.mute)
+                curve.mute = True
             thing.hide_viewport = False
             if isinstance(thing.data, bpy.types.Armature):
                 undo.callback(setattr, thing.data, "pose_position", thing.data.pose_position)
@@ -89,6 +93,17 @@ def evaluated(objects: Iterable[bpy.types.Object]) -> Iterator[None]:
                 scene.collection.objects.link(thing)
                 undo.callback(scene.collection.objects.unlink, thing)
         yield
+
+
+def _hiding(thing: bpy.types.Object) -> list[bpy.types.FCurve]:
+    """The curves and drivers that hide an object at some frames."""
+    data = thing.animation_data
+    if data is None:
+        return []
+    strips = [strip.action for track in data.nla_tracks for strip in track.strips]
+    actions = dict.fromkeys(each for each in (data.action, *strips) if each is not None)
+    curves = [*data.drivers, *(curve for each in actions for curve in all_curves(each))]
+    return [curve for curve in curves if curve.data_path == "hide_viewport"]
 
 
 def _parents_first(armature: bpy.types.Object) -> list[bpy.types.Bone]:

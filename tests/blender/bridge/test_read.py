@@ -95,6 +95,23 @@ def test_reads_the_hidden_and_the_resting_alike_and_leaves_the_scene() -> None:
     assert list(armature.users_collection) == [collection]
 
 
+@pytest.mark.parametrize("how", ["keys", "driver"])
+def test_reads_what_keys_or_a_driver_hide(how: str) -> None:
+    armature = animated_rig()
+    shown = read_recording(armature)
+    armature.hide_viewport = True
+    if how == "keys":
+        armature.keyframe_insert("hide_viewport", frame=1)
+        curves = list(curves_of(armature))
+    else:
+        armature.driver_add("hide_viewport").driver.expression = "True"
+        curves = list(armature.animation_data.drivers)
+    bpy.context.scene.frame_set(2)
+    np.testing.assert_array_equal(read_recording(armature).rotations, shown.rotations)
+    assert armature.hide_viewport
+    assert not any(curve.mute for curve in curves)
+
+
 def test_reads_a_single_frame() -> None:
     armature = rigs.make_armature()
     armature.pose.bones["hips"].keyframe_insert("rotation_quaternion", frame=5)

@@ -91,6 +91,13 @@ def blended_over_a_strip(armature: bpy.types.Object) -> None:
     data.action_influence = 0.8
 
 
+def muted_strip(armature: bpy.types.Object) -> None:
+    data = armature.animation_data
+    track = data.nla_tracks.new()
+    track.strips.new("Take", 1, data.action)
+    track.mute, data.action = True, None
+
+
 def snapshot_curve(armature: bpy.types.Object) -> bpy.types.FCurve:
     return next(c for c in curves_of(armature) if "LeftUpLeg" in c.data_path)
 
@@ -112,6 +119,10 @@ def assert_refused(operator: Callable[[], set[str]], armature: bpy.types.Object,
         (another_object, "“Cube” is or holds no armature"),
         (no_action, "has no keyframes"),
         (empty_action, "has no keyframes"),
+        (
+            muted_strip,
+            "cannot be read: Take play nothing, for all are muted. Leave one strip unmuted",
+        ),
         (edit_mode, "Leave edit mode first"),
         (too_short, "Only 0.08 s of the recording"),
         (bad_scale, "must be the same, and above zero"),
@@ -202,6 +213,10 @@ def no_contacts(armature: bpy.types.Object) -> None:
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [
+        (
+            muted_strip,
+            "cannot be read: Take play nothing, for all are muted. Leave one strip unmuted",
+        ),
         (edit_mode, "Leave edit mode first"),
         (no_contacts, "Press Analyze first"),
         (contradiction, "contradict each other by"),
