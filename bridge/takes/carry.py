@@ -11,7 +11,7 @@ from ...solver.data.recording import PoseTrack
 from ...solver.data.stance_move import StanceMove
 from ...solver.numerics.rotations import axis_rotation
 
-_STANDING = 0.02  # of the mean speed, which the way back also has while the take stands still
+_STANDING = 0.02  # of the mean speed, which the way back also has while something stands
 
 
 def carried(take: PoseTrack, move: StanceMove, shares: FloatArray) -> PoseTrack:
@@ -26,17 +26,19 @@ def carried(take: PoseTrack, move: StanceMove, shares: FloatArray) -> PoseTrack:
     )
 
 
-def shares_of_return(take: PoseTrack, first: float, last: float) -> FloatArray:
-    """Shares (T,) of a move at the take's frames: all at `first`, none from `last` on.
+def shares_of_return(
+    frames: FloatArray, places: FloatArray, first: float, last: float
+) -> FloatArray:
+    """Shares (T,) of a move at a take's frames: all at `first`, none from `last` on.
 
-    The way back is made where the take itself travels, so that feet which stand slide little. Its
-    speed is zero at both ends.
+    places: (T, B, 3) of bodies in the take. The way back is made where all of them travel, that is
+    in flight, or as a foot rolls: as fast as the slowest does, for a foot that stands would slide.
+    Its speed is zero at both ends.
     """
-    frames = take.frames
     within = (frames >= first) & (frames <= last)
-    speeds = np.linalg.norm(np.gradient(take.root_head[:, :2], frames, axis=0), axis=1)
+    speeds = np.linalg.norm(np.gradient(places[..., :2], frames, axis=0), axis=2)
     window = np.sin(np.pi * np.clip((frames - first) / (last - first), 0.0, 1.0)) ** 2
-    pace = window * (speeds + _STANDING * speeds[within].mean() + 1e-9)
+    pace = window * (speeds.min(axis=1) + _STANDING * speeds[within].mean() + 1e-9)
     steps = 0.5 * (pace[1:] + pace[:-1]) * np.diff(frames)
     way = np.concatenate([[0.0], np.cumsum(steps)])
     shares = 1.0 - way / way[-1]

@@ -72,7 +72,8 @@ def write_take(
     later = None
     if len(plan.rest_frames):
         if rig is None:
-            later = plain_poses(armature, curves, carrying, plan.rest_frames)
+            looked_at = carrying if plan.back is None else bones
+            later = plain_poses(armature, curves, looked_at, plan.rest_frames)
         if later is None:
             later = yield from sample_incrementally(armature, plan.rest_frames, showing)
     body, rest = _tracks(poses, later, plan, motion, carrying)
@@ -174,7 +175,7 @@ def _tracks(
     rest = None
     if later is not None:
         rest = _take_of(later, carrying, plan.rest_frames)
-    shares = _shares(take, rest, plan)
+    shares = _shares(poses, later, plan, motion.track.bones)
     following = _frames_from(take, span.last)
     count = len(following.frames)
     after = _rows(_carried(following, plan.moved, shares[:count]), slice(1, None))
@@ -189,15 +190,23 @@ def _tracks(
     return whole, rest
 
 
-def _shares(take: PoseTrack, rest: PoseTrack | None, plan: Plan) -> FloatArray:
+def _shares(poses: Poses, later: Poses | None, plan: Plan, bodies: tuple[str, ...]) -> FloatArray:
     """Shares of the stance's move from the last adapted frame on, (T,)."""
-    parts = [_frames_from(take, plan.span.last), *([rest] if rest is not None else [])]
-    pelvis = _concatenated(
-        [replace(part, bones=part.bones[:1], rotations=part.rotations[:, :1]) for part in parts]
-    )
+    following = plan.body_frames >= plan.span.last
+    frames = np.concatenate([plan.body_frames[following], plan.rest_frames])
     if plan.back is None:
-        return np.ones(len(pelvis.frames))
-    return shares_of_return(pelvis, plan.span.last, plan.back)
+        return np.ones(len(frames))
+    places = [_places(poses, bodies)[following]]
+    if later is not None:
+        places.append(_places(later, bodies))
+    return shares_of_return(frames, np.concatenate(places), plan.span.last, plan.back)
+
+
+def _places(poses: Poses, bodies: tuple[str, ...]) -> FloatArray:
+    """(T, B, 3) heads of bodies in the world."""
+    columns = [poses.bones.index(body) for body in bodies]
+    heads = poses.object_to_world[:, None] @ poses.matrices[:, columns, :, 3:]
+    return np.asarray(heads[..., :3, 0])
 
 
 def _carried(track: PoseTrack, move: StanceMove | None, shares: FloatArray) -> PoseTrack:
