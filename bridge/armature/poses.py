@@ -81,18 +81,24 @@ def evaluated(objects: Iterable[bpy.types.Object]) -> Iterator[None]:
     with ExitStack() as undo:
         undo.callback(scene.frame_set, scene.frame_current, subframe=scene.frame_subframe)
         for thing in objects:
-            undo.callback(setattr, thing, "hide_viewport", thing.hide_viewport)
             for curve in _hiding(thing):
-                undo.callback(setattr, curve, "mute", curve.mute)
-                curve.mute = True
-            thing.hide_viewport = False
+                _set(undo, curve, "mute", value=True)
+            _set(undo, thing, "hide_viewport", value=False)
             if isinstance(thing.data, bpy.types.Armature):
-                undo.callback(setattr, thing.data, "pose_position", thing.data.pose_position)
-                thing.data.pose_position = "POSE"
+                _set(undo, thing.data, "pose_position", value="POSE")
             if thing.name not in scene.collection.objects:
                 scene.collection.objects.link(thing)
                 undo.callback(scene.collection.objects.unlink, thing)
         yield
+
+
+def _set(undo: ExitStack, owner: bpy.types.bpy_struct, name: str, *, value: object) -> None:
+    """Give a property a value until `undo`; where it has it already Blender is not told, which
+    would copy all keys of the scene anew."""
+    before = getattr(owner, name)
+    if before != value:
+        undo.callback(setattr, owner, name, before)
+        setattr(owner, name, value)
 
 
 def _hiding(thing: bpy.types.Object) -> list[bpy.types.FCurve]:

@@ -10,6 +10,7 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs the bpy module")
 
 from hangtime.bridge.armature import fcurves
+from hangtime.bridge.armature.poses import evaluated
 from hangtime.bridge.armature.read import read_recording
 from hangtime.solver.data.faults import (
     BadScale,
@@ -110,6 +111,19 @@ def test_reads_what_keys_or_a_driver_hide(how: str) -> None:
     np.testing.assert_array_equal(read_recording(armature).rotations, shown.rotations)
     assert armature.hide_viewport
     assert not any(curve.mute for curve in curves)
+
+
+def test_what_is_seen_already_is_not_told_so_again() -> None:
+    """Blender would copy all of its keys anew, at each of the thousand slices of a long take."""
+
+    class Seen:
+        name, hide_viewport, data, animation_data = animated_rig().name, False, None, None
+
+        def __setattr__(self, name: str, value: object) -> None:
+            raise AssertionError(f"{name} was set to {value}")
+
+    with evaluated([Seen()]):
+        pass
 
 
 def test_reads_a_single_frame() -> None:
