@@ -283,18 +283,17 @@ def test_legs_that_are_pulled_from_outside_the_armature_are_refused_before_a_sol
         bpy.ops.hangtime.analyze()
 
 
-def test_knees_that_turn_towards_what_is_outside_the_armature_are_refused_likewise(
+def test_a_knee_that_turns_towards_what_is_outside_the_armature_is_refused_likewise(
     jump: bpy.types.Object,
 ) -> None:
+    """Alone: what pulls the legs follows a bone."""
     for target in pulled_legs(jump):
         followed = target.constraints.new("ARMATURE").targets.new()
         followed.target, followed.subtarget = jump, "Hips"
-    with pytest.raises(RuntimeError, match=r"LeftLeg.* follow constraints, and no bone"):
-        bpy.ops.hangtime.analyze()
     pole = bpy.data.objects.new("Knee", None)
     bpy.context.scene.collection.objects.link(pole)
     jump.pose.bones["LeftLeg"].constraints[0].pole_target = pole
-    with pytest.raises(RuntimeError, match="LeftLeg are pulled towards Knee"):
+    with pytest.raises(RuntimeError, match="The bones LeftLeg are pulled towards Knee by"):
         bpy.ops.hangtime.analyze()
 
 
