@@ -34,9 +34,12 @@ STALL_WINDOW = 6  # steps in which the violation has to halve
 MAX_CREEPING = 3  # steps in a row that are shorter than a tenth: such solves arrive nowhere
 NEARLY_FEASIBLE = 200.0  # times the tolerances: the end of a solve, which restoration finishes
 RECOVERED = 0.9  # of the violation before a watched step, which the one after it must reach
-# Times the tolerances: from further off steps that keep guards may lead astray; and once more,
-# nearer, for what joins where all the rest holds costs steps of its own.
-GUARDS_JOIN = (1e2, 1e1)
+# Times the tolerances: from further off guards join where a step leads; once more this near, for
+# what joins where all the rest holds costs steps of its own.
+GUARDS_JOIN = 10.0
+
+Wider = Callable[["FeasibleSet", FloatArray], "FeasibleSet"]
+"""A set with the guard rows that unknowns (K, n_block) call for as well, or the very same."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +163,7 @@ def restore(
     enough: float = 1.0,
     max_turn: float = np.inf,
     progress: Progress | None = None,
-    wider: Callable[[FeasibleSet, FloatArray], FeasibleSet] | None = None,
+    wider: Wider | None = None,
 ) -> Outcome:
     """Feasibility restoration: minimum-norm steps until all rows hold (thesis 4.4).
 
@@ -170,20 +173,19 @@ def restore(
     taken back (the watchdog technique of Chamberlain, Powell, Lemarechal and Pedersen 1982). While
     steps gain an order of magnitude, the next one uses the same Jacobian and factor, which costs a
     third of a new one (chord steps). enough: the violation at which it ends, of a motion that other
-    steps go on from. max_turn: rad, of a joint in one step. wider: asked twice where the rows
-    nearly hold, and where they hold, for a set with more guard rows to go on in, or the same; with
-    more rows the next step has a new Jacobian.
+    steps go on from. max_turn: rad, of a joint in one step. wider: asked where a step with a new
+    Jacobian would lead, where the rows nearly hold, and where they hold, for a set with more guard
+    rows to go on in. Those that join ahead of a step cost it no new factor, and what they ask for
+    is in one step with all else.
     """
-    iterate = _ChordIterate(feasible, metric, x, max_turn)
-    join, asked = [enough, *reversed(GUARDS_JOIN)], None  # asked: x, where nothing new can join
+    iterate = _ChordIterate(feasible, metric, x, max_turn, wider)
+    join, asked = [enough, GUARDS_JOIN], None  # asked: x, where nothing new can join
     steps: list[Step] = []
     status = Status.TOO_MANY_STEPS
     while True:
-        if wider is not None and iterate.x is not asked and iterate.violation <= join[-1]:
-            before, feasible, asked = feasible, wider(feasible, iterate.x), iterate.x
-            join = join[: max(len(join) - 1, 1)]
-            if feasible is not before:
-                iterate.widen(feasible)
+        if iterate.x is not asked and iterate.violation <= join[-1]:
+            asked, join = iterate.x, join[:1]
+            iterate.widen(iterate.x)
         if iterate.violation <= enough:
             status = Status.SOLVED
             break
@@ -194,29 +196,35 @@ def restore(
             continue
         steps.append(step)
         if progress is not None:
-            progress(step, feasible.motion(iterate.kept))
+            progress(step, iterate.feasible.motion(iterate.kept))
         if iterate.violation > enough and (step.length == 0.0 or _stagnant(steps)):
             status = Status.STALLED
             break
     if status is not Status.SOLVED:
         iterate.take_back()
-    return feasible.outcome(iterate.x, status, steps, iterate.violation)
+    return iterate.feasible.outcome(iterate.x, status, steps, iterate.violation)
 
 
 class _ChordIterate:
     """Unknowns x on their way to the feasible set; keeps Jacobian and factor while they serve."""
 
     def __init__(
-        self, feasible: FeasibleSet, metric: BlockBanded, x: FloatArray, max_turn: float
+        self,
+        feasible: FeasibleSet,
+        metric: BlockBanded,
+        x: FloatArray,
+        max_turn: float,
+        wider: Wider | None,
     ) -> None:
-        self._feasible, self._metric, self._max_turn = feasible, metric, max_turn
+        self.feasible, self._metric, self._max_turn = feasible, metric, max_turn
+        self._wider = wider
         rows = feasible.rows(x)
         self.x, self.violation = x, worst_violation(rows)
         self._value = rows.value
-        self._rows: Rows | None = rows  # at x with their Jacobian, where that is known
+        self._rows: Rows | None = rows  # with their Jacobian, until the first step
         self._linearised: LinearisedProblem | None = None
         self._before = np.inf  # violation before the last step
-        self._stale = self._chord = False
+        self._stale = self._chord = self._renewing = False
         self._watched: _Watched | None = None
         self._watching = True
         self._guards = int(rows.guards.sum())  # which are the last
@@ -225,26 +233,28 @@ class _ChordIterate:
         """Takes a step; None where a chord step was shortened, so that a new Jacobian is due, or
         where steps were taken back."""
         slow = self._linearised is None or not self._gains()
-        known = self._rows is not None and not self._nearly_there()
-        fresh = slow or self._stale or known
+        fresh = slow or self._stale or (self._renewing and not self._nearly_there())
         linearised = self._linearise() if fresh or self._linearised is None else self._linearised
+        d, longest = self._step(linearised)
+        ahead = fresh and longest == 1.0 and self._watched is None
+        if ahead and self.violation > GUARDS_JOIN and self.widen(self.x + d):
+            assert self._linearised is not None
+            linearised = self._linearised
+            d, longest = self._step(linearised)
         before, worst = self.violation, linearised.worst_owner(self._value)
-        d = linearised.step(self._value).d
-        turn = float(np.abs(d[:, self._feasible.transcription.layout.angles]).max())
-        longest = self._max_turn / turn if turn > self._max_turn else 1.0
         watched = fresh and longest == 1.0 and self._watching and self._watched is None
         start = _Watched(self.x, self._value, before, self._before)
         trial = _shorten(
-            self._feasible,
+            self.feasible,
             linearised,
             self.x,
             d,
             self._value,
             longest=longest,
-            with_jacobian=slow,
             watched=watched,
         )
-        self.x, self._value, self._rows = trial.x, trial.value, trial.rows
+        self.x, self._value = trial.x, trial.value
+        self._renewing = slow and trial.length == longest
         self.violation = linearised.violation(trial.value)
         if self._watched is not None:
             if not self.violation < RECOVERED * self._watched.violation:
@@ -259,6 +269,12 @@ class _ChordIterate:
         self._before, self._chord = before, not fresh
         return Step(stage, before, trial.length, worst)
 
+    def _step(self, linearised: LinearisedProblem) -> tuple[FloatArray, float]:
+        """The step (K, n_block), and how much of it turns no joint too far."""
+        d = linearised.step(self._value).d
+        turn = float(np.abs(d[:, self.feasible.transcription.layout.angles]).max())
+        return d, self._max_turn / turn if turn > self._max_turn else 1.0
+
     @property
     def kept(self) -> FloatArray:
         """(K, n_block) unknowns that stay if no step follows."""
@@ -270,7 +286,7 @@ class _ChordIterate:
             return
         back, self._watched, self._watching = self._watched, None, False
         self.x, self._value, self.violation = back.x, back.value, back.violation
-        self._before, self._rows, self._stale = back.before, None, True
+        self._before, self._stale = back.before, True
 
     def _gains(self) -> bool:
         """Whether the last step gained so much that the next may keep its Jacobian: for many more,
@@ -285,27 +301,30 @@ class _ChordIterate:
         that its own step, Newton's, left."""
         return 2.0 * self.violation**2 < MAX_CHORD_REST * self._before
 
-    def widen(self, feasible: FeasibleSet) -> None:
-        """Goes on in a set with other guard rows, and with a new Jacobian where one that joins asks
-        for a long way: the steps before tell how well the old one serves near by."""
-        t, self._feasible = feasible.transcription, feasible
+    def widen(self, x: FloatArray) -> bool:
+        """Goes on with the guard rows that x (K, n_block) calls for, if there are new ones, and
+        with a new Jacobian where one that joins asks for a long way: the steps before tell how well
+        the old one serves near by."""
+        feasible = self.feasible if self._wider is None else self._wider(self.feasible, x)
+        if feasible is self.feasible:
+            return False
+        t, self.feasible = feasible.transcription, feasible
         guards = t.guard_rows(self.x)
         if self._linearised is not None:
             self._linearised = self._linearised.widened(t, guards)
-        if self._rows is not None:
-            self._rows = Rows.join([self._rows.unguarded, guards])
         kept = np.arange(len(self._value)) < len(self._value) - self._guards
         self._value = np.concatenate([self._value[kept], guards.value])
         joined = worst_violation(guards)
         self._guards, self._stale = len(guards.value), joined > MAX_CHORD_GUARDED
-        self._watched = None  # these rows are others
+        self._rows = self._watched = None  # these rows are others
         self.violation, self._before = max(self.violation, joined), np.inf
+        return True
 
     def _linearise(self) -> LinearisedProblem:
-        rows = self._feasible.rows(self.x) if self._rows is None else self._rows
+        rows, self._rows = self._rows or self.feasible.rows(self.x), None
         last = None if self._linearised is None else self._linearised.remains
         self._linearised = None  # as large as all else together: not two at a time
-        self._linearised = self._feasible.linearise(rows, self._metric, last)
+        self._linearised = self.feasible.linearise(rows, self._metric, last)
         return self._linearised
 
 
@@ -331,13 +350,12 @@ class _Watched:
 
 @dataclass(frozen=True)
 class _Trial:
-    """Trial point: unknowns, the rows' values, step length, and the rows if they are known.
+    """Trial point: unknowns, the rows' values, and step length.
     raises: whether it is no better than where it began."""
 
     x: FloatArray
     value: FloatArray
     length: float
-    rows: Rows | None
     raises: bool = False
 
 
@@ -349,31 +367,28 @@ def _shorten(
     value: FloatArray,
     *,
     longest: float,
-    with_jacobian: bool,
     watched: bool,
 ) -> _Trial:
     """Backtracking line search on the summed squared violation; length 0 if nothing lowers it.
 
     Near the end, where what is left of different rows has different units, lowering the worst
-    violation counts as well. longest: the first length. with_jacobian: whether the next step will
-    want it there, so that the longest step is tried with it. watched: whether a whole step near
-    the end may lower nothing.
+    violation counts as well. longest: the first length. watched: whether a whole step near the
+    end may lower nothing.
     """
     before, worst = linearised.merit(value), linearised.violation(value)
     length = longest
     while length > MIN_RESTORATION_LENGTH:
         trial = x + length * d
-        rows = feasible.rows(trial) if with_jacobian and length == longest else None
-        left = feasible.values(trial) if rows is None else rows.value
+        left = feasible.values(trial)
         enough = 1.0 - 0.1 * length
         near = worst < NEARLY_FEASIBLE and linearised.violation(left) < enough * worst
         if near or linearised.merit(left) < enough * before:
-            return _Trial(trial, left, length, rows)
+            return _Trial(trial, left, length)
         if (
             watched
             and length == longest
             and max(worst, linearised.violation(left)) < NEARLY_FEASIBLE
         ):
-            return _Trial(trial, left, length, rows, raises=True)
+            return _Trial(trial, left, length, raises=True)
         length *= 0.5
-    return _Trial(x, value, 0.0, None)
+    return _Trial(x, value, 0.0)
