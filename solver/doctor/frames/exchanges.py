@@ -19,6 +19,7 @@ from ..limbs import Partners, partners
 from ..local_poses import spans
 from ..repairs import Repairs
 from ..slack import SPARSE
+from .sides import are_wrong
 from .steps import AROUND
 
 # The clavicles go with the trunk.
@@ -73,6 +74,10 @@ def _exchange(
         straight, crossed = (np.linalg.norm(_off(ways, then), axis=2) for then in (ways, other))
         where = _frames(straight, crossed, clearer)
         if where is not None:
+            if are_wrong(recording, pair, limbs, ~where) and not are_wrong(
+                recording, pair, limbs, where
+            ):
+                where = ~where
             told.append((float(crossed[np.diff(where)].max()), pair, where))
     return min(told, key=lambda each: each[0])[1:] if told else None
 
@@ -80,7 +85,7 @@ def _exchange(
 def _frames(straight: FloatArray, crossed: FloatArray, clearer: float) -> BoolArray | None:
     """(T,) that are exchanged, by how far steps (T - 1, 2) of both limbs are off as they are, and
     as if the limbs were exchanged at them. Whether that is so of what begins and ends at the same
-    steps, or of all else, no step tells: it is the fewer. None where they tell nothing."""
+    steps, or of all else, no step tells: it is the fewer. None where steps tell nothing."""
     ratio = np.linalg.norm(straight, axis=1) / np.maximum(np.linalg.norm(crossed, axis=1), 1e-9)
     likelier, leaps = np.minimum(straight, crossed), np.zeros(len(ratio), bool)
     for t in np.flatnonzero((straight > LEAP).all(axis=1) & (ratio > clearer)):

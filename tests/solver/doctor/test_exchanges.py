@@ -102,6 +102,20 @@ def test_what_lasts_to_an_end_is_the_shorter_part() -> None:
         assert found.frames == ((frames[where][0], frames[where][-1]),)
 
 
+@pytest.mark.parametrize("limbs", LIMBS)
+@pytest.mark.parametrize("share", [0.6, 0.8])
+def test_where_most_is_exchanged_limbs_that_point_inwards_tell_it(
+    limbs: Mend, share: float
+) -> None:
+    """Of a walk and a hop: steps alone say that the rest is."""
+    pair, count = partners(hop(), figure_of(hop()), LIMBS[limbs])[0], len(hop().frames)
+    first = (count - round(share * count)) // 2
+    where = (np.arange(count) >= first) & (np.arange(count) < first + share * count)
+    found = find_exchange(pair.exchanged(hop(), where), figure_of(hop()), limbs)
+    assert found is not None
+    assert found.frames == ((hop().frames[where][0], hop().frames[where][-1]),)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("rate", [30.0, 60.0])
 def test_arms_are_told_in_the_noise_of_video(rate: float) -> None:
