@@ -30,6 +30,7 @@ OFF = 0.12  # of a scale of time; a run's short flights are 5 % off in honest re
 USUAL_NEAR, PRECISE_FALL = 0.035, 0.35  # a fall of 0.35 s tells the rate to 3.5 %, half of it 7 %
 # A wrong size is mostly a wrong unit: metres, centimetres, millimetres, inches, feet.
 UNITS = (1.0, 0.01, 0.001, 0.0254, 0.3048)  # m
+WRITTEN = (0.01, 0.001, 0.0254)  # m; units in which files are, whose numbers are taken for metres
 UNIT_RATIOS = tuple(
     sorted({float(f"{one / other:.12g}") for one in UNITS for other in UNITS if one != other})
 )
@@ -126,8 +127,10 @@ def _acceleration(clock: FloatArray, path: FloatArray) -> float:
 
 
 def person_factor(height: float) -> float:
-    """What makes a figure of so many m as tall as persons are; 1 where it is."""
-    return 1.0 if HEIGHTS[0] < height < HEIGHTS[1] else USUAL_HEIGHT / height
+    """What makes a figure of so many m as tall as persons are; 1 where it is, and a unit's length
+    where its numbers, in that unit, are a person's: children have not the usual height."""
+    fitting = (unit for unit in WRITTEN if HEIGHTS[0] < unit * height < HEIGHTS[1])
+    return next(fitting, USUAL_HEIGHT / height)
 
 
 def find_scale(performance: Performance, trusted: Trusted = ALL) -> Finding | None:
@@ -137,7 +140,7 @@ def find_scale(performance: Performance, trusted: Trusted = ALL) -> Finding | No
     if falls is None:
         if person:
             return None
-        remedy = Repairs(scale=USUAL_HEIGHT / height)
+        remedy = Repairs(scale=person_factor(height))
         return Finding(FindingKind.SIZE, height, "m", remedy=remedy)
     clock = float(np.sqrt(falls.acceleration / STANDARD_GRAVITY))  # durations times this are right
     if abs(np.log(clock)) < np.log1p(OFF) and person:
@@ -148,7 +151,7 @@ def find_scale(performance: Performance, trusted: Trusted = ALL) -> Finding | No
         g = falls.acceleration
         return Finding(FindingKind.TIME_SCALE, g, "m/s²", falls.frames, "", timed, sized)
     if not HEIGHTS[0] < height * sized.scale < HEIGHTS[1]:
-        sized = Repairs(scale=USUAL_HEIGHT / height)  # the clock is wrong too
+        sized = Repairs(scale=person_factor(height))  # the clock is wrong too
     return Finding(FindingKind.SIZE, height, "m", falls.frames, "", sized, timed)
 
 

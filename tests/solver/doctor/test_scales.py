@@ -38,6 +38,18 @@ def test_an_import_without_scale_and_frame_rate_has_two_remedies(played: float) 
     assert kinds(diagnose(repaired(recording, found.repairs))) == []
 
 
+@pytest.mark.parametrize("unit", [0.0254, 0.01])
+def test_a_child_in_a_files_own_units_stays_a_child(unit: float) -> None:
+    """At a grown person's height it would seem to fall as at 100 frames a second."""
+    child = load_recording("fair1_jumping.bvh")
+    found = diagnose(
+        slowed(RATE / 24.0).of(sized(1.0 / unit, "size").of(child).recording).recording
+    )
+    assert kinds(found) == ["size", "time scale"]
+    assert found.repairs.scale == pytest.approx(unit, rel=1e-6)
+    assert found.repairs.time_scale == pytest.approx(24.0 / RATE, rel=2e-3)
+
+
 @pytest.mark.parametrize("factor", [0.01, UNSCALED, 100.0])
 def test_limits_in_metres_are_those_of_persons(factor: float) -> None:
     assert kinds(diagnose(sizes(factor))) == ["size"]
