@@ -18,6 +18,7 @@ from ...solver.data.reports.recording import Origin
 from ...solver.doctor.examination.repair import (
     check_trim,
     filled,
+    grounded,
     left_after,
     mended,
     placed,
@@ -91,6 +92,7 @@ def read_clip(
     recording = placed(
         mended(recording, mend, problem.bones), Repairs(drift=mend.drift, rise=mend.rise)
     )
+    recording = grounded(recording, mend.mend, problem.bones)
     return ReadClip(recording, origin, problem, metres, axis)
 
 

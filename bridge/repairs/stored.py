@@ -11,9 +11,9 @@ import bpy
 
 from ...solver.data.problem import Mend
 from ...solver.doctor.examination.diagnose import Diagnosis
-from ...solver.doctor.feet import FootFault, FootFaultKind
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import MOST_MISSING, MissingFrames, Repairs, UpAxis
+from ...solver.doctor.stance.feet import FootFault, FootFaultKind
 from ...solver.doctor.stretch import CUTTING, Span, belonging, is_clear
 from ..accessors import current_scene, source_of
 from ..armature.actions import recorded_action

@@ -249,6 +249,39 @@ def rising(speed: float) -> Damage:
     return Damage(f"rise {speed:g} m/s", FindingKind.RISING, do)
 
 
+def ragged(frames: int) -> Damage:
+    """An arm off by 60°, each time elsewhere, on the last frames, where capture loses it."""
+
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        local, bone = LocalPoses.of(recording), _bone(recording, Part.UPPER_ARM)
+        axes = rng.normal(size=(frames, 3))
+        turns = np.radians(60.0) * axes / np.linalg.norm(axes, axis=1, keepdims=True)
+        local.rotations[-frames:, bone] = local.rotations[-frames:, bone] @ rotation_matrix(turns)
+        return Damaged(local.posed(recording), recording)
+
+    return Damage(f"the last {frames} frames ragged", FindingKind.JUMP, do)
+
+
+def floating(metres: float, seconds: float) -> Damage:
+    """The whole body floats up and down by so much, over and over, as capture by one camera has
+    it."""
+    return _swaying(f"floats ±{100 * metres:g} cm in {seconds:g} s", metres, seconds, (0, 0, 1))
+
+
+def swaying(metres: float, seconds: float) -> Damage:
+    """Its feet slide to and fro by so much."""
+    return _swaying(f"sways ±{100 * metres:g} cm in {seconds:g} s", metres, seconds, (0.8, 0.6, 0))
+
+
+def _swaying(name: str, metres: float, seconds: float, way: tuple[float, float, float]) -> Damage:
+    def do(recording: Recording, rng: np.random.Generator) -> Damaged:
+        turns = 2.0 * np.pi * (recording.times / seconds + rng.uniform())
+        away = metres * np.sin(turns)[:, None] * np.array(way)
+        return Damaged(replace(recording, heads=recording.heads + away[:, None]), recording)
+
+    return Damage(name, FindingKind.FLOATING, do)
+
+
 def raised(metres: float) -> Damage:
     """Off the floor, or in it."""
 
@@ -341,6 +374,7 @@ DAMAGES = (
     *map(spiked, (20.0, 45.0, 120.0)),
     *map(burst, (2, 5)),
     *map(joined, (0.1, 0.4)),
+    ragged(8),
     *(exchanged(frames, limbs) for limbs in (Mend.LEGS, Mend.ARMS) for frames in (5, 15, 30)),
     exchanged(30, Mend.LEGS, last=True),
     exchanged(30, Mend.LEGS, angles=True),
@@ -350,8 +384,11 @@ DAMAGES = (
     *map(dropped, (1, 4)),
     *map(gap, (3, 6)),
     gap(2, 2),
-    *map(sliding, (0.2, 0.5)),
+    *map(sliding, (0.05, 0.1, 0.2, 0.5)),
     rising(0.1),
+    floating(0.05, 2.0),
+    floating(0.15, 3.0),
+    swaying(0.1, 3.0),
     *map(raised, (-0.2, -0.05, 0.1, 0.5)),
     levelled(),
     noisy(3.0, 1.0),

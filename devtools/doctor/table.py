@@ -30,7 +30,8 @@ Time and size are told from gravity in the flights, no nearer than the clip itse
 A run's flights of 0.1 s do not tell enough, but where the frame rate that they tell is near a usual
 one, that one is taken, and all clips here were recorded at a usual one. So is the ratio of two
 units that is near for a size; size × 1.6 is none. Drift cannot be told from runs, whose feet stand
-still for no more than moments.
+still for no more than moments, and how a body floats not from hops on the balls of the feet either:
+it takes feet that stand flat for a third of a second. Between stances it is reckoned, not seen.
 """
 COLUMNS = (
     *("damage", "clips", "found", "other findings", "off before (cm)", "after (cm)"),

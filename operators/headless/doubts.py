@@ -14,7 +14,7 @@ from ...solver.worker.pipeline import Subject
 from ..words.doubt_text import damage_doubts, doubts_of, file_doubts, floor_doubts, up_doubts
 
 # What objects of the scene may explain: a box to stand on, a train, a belt.
-ABOUT_GROUND = (FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING)
+ABOUT_GROUND = (FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING, FindingKind.FLOATING)
 
 
 def doubts_about(

@@ -4,9 +4,9 @@ from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
 from ...solver.analysis.analyse import MIN_CLIP_DURATION
 from ...solver.doctor.examination.diagnose import Diagnosis
-from ...solver.doctor.feet import FootFault
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs
+from ...solver.doctor.stance.feet import FootFault
 
 MOST_PLACES = 6
 HEALTHY = "Nothing is wrong with the recording."
@@ -45,6 +45,8 @@ SENTENCES = {
     FindingKind.FLOOR: "The feet stand at a height of {n:.2f} m, not on the floor at 0.",
     FindingKind.RISING: "The whole body drifts {way} at {speed:.2f} m/s while it stands.",
     FindingKind.SLIDING: "The whole body slides along the floor at {n:.2f} m/s while it stands.",
+    FindingKind.FLOATING: "The whole body floats about: feet that stand flat move by up to "
+    "{n:.0f} cm, as capture by one camera has it.",
     FindingKind.FLICKER: "{part} and others leave the floor for moments and come back {where}.",
     FindingKind.UNSEEN_SUPPORT: "Nothing touches, yet the body does not fall {where}: something "
     "carries it that the recording does not show.",
@@ -77,6 +79,7 @@ REMEDIES = {
     FindingKind.FLOOR: "Put on the Floor",
     FindingKind.RISING: "Hold Level",
     FindingKind.SLIDING: "Hold Still",
+    FindingKind.FLOATING: "Hold to the Ground",
 }
 REPAIR = "Repair"
 

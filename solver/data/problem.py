@@ -23,7 +23,7 @@ class Unseen(Enum):
 
 
 class Mend(Enum):
-    """A repair of poses. Its value is the word in recipes."""
+    """A repair of poses, or of how the body stands. Its value is the word in recipes."""
 
     LEGS = "exchanged legs"
     ARMS = "exchanged arms"
@@ -32,6 +32,7 @@ class Mend(Enum):
     HELD_FRAMES = "held frames"
     BONE_LENGTHS = "bone lengths"
     NOISE = "noise"
+    FLOATING = "floating"
 
 
 class OffsetAxes(Enum):

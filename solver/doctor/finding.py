@@ -31,6 +31,7 @@ class FindingKind(Enum):
     FLOOR = "floor"
     RISING = "rising"
     SLIDING = "sliding"
+    FLOATING = "floating"
     FLICKER = "flicker"
     UNSEEN_SUPPORT = "unseen support"
     BEGINS_IN_AIR = "begins in the air"

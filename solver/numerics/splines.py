@@ -23,6 +23,16 @@ THIRD_DERIVATIVE_WEIGHT = 1e-9  # regularises splines through samples that jump 
 
 
 @dataclass(frozen=True)
+class SplineTerm:
+    """Of a sum of squares at T instants: a spline's derivative by s, how much each weighs (T,), and
+    the samples (T, n) that it is compared with."""
+
+    derivative: int
+    weights: FloatArray
+    samples: FloatArray
+
+
+@dataclass(frozen=True)
 class SplineBasis:
     """Cubic B-spline basis over [breaks[0], breaks[-1]] s, clamped at both ends.
 
@@ -116,6 +126,19 @@ class SplineBasis:
         right = np.zeros((self.n_coefficients, samples.shape[1]))
         columns = self.first_coefficient[spans][:, None] + np.arange(ORDER)
         np.add.at(right, columns, values[..., None] * samples[:, None])
+        return _solve(self.first_coefficient, squares, right)
+
+    def least_squares(self, times: FloatArray, terms: Sequence[SplineTerm]) -> FloatArray:
+        """(n_coefficients, n) that make the sum of these terms at times (T,), s, least."""
+        spans = self.spans(times)
+        columns = self.first_coefficient[spans][:, None] + np.arange(ORDER)
+        squares = np.zeros((self.n_spans, ORDER, ORDER))
+        right = np.zeros((self.n_coefficients, terms[0].samples.shape[1]))
+        for term in terms:
+            values = self.evaluate(times, term.derivative, spans)
+            weighted = term.weights[:, None] * values
+            np.add.at(squares, spans, weighted[:, :, None] * values[:, None])
+            np.add.at(right, columns, weighted[..., None] * term.samples[:, None])
         return _solve(self.first_coefficient, squares, right)
 
     def insert_knots(self, finer: "SplineBasis", coefficients: FloatArray) -> FloatArray:

@@ -41,7 +41,7 @@ from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
 from ..doctor.examination.mistaken_support import with_cause
-from ..doctor.examination.repair import as_asked
+from ..doctor.examination.repair import as_asked, floated
 from ..fitting.fit import Fit
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
@@ -94,7 +94,8 @@ class Subject:
     """An analysed recording and the problem to solve on it, both at the stated stature.
 
     height: m, as recorded. factor: the stated stature over that one. cycle: of a motion that shall
-    repeat, whose frames were analysed; None of others.
+    repeat, whose frames were analysed; None of others. floated: (3,) m, how far the recording is at
+    its end from where it is held to the ground, in its own lengths.
     """
 
     analysis: Analysis
@@ -102,6 +103,7 @@ class Subject:
     height: float
     factor: float
     cycle: Cycle | None = None
+    floated: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     @property
     def recording(self) -> Recording:
@@ -136,11 +138,11 @@ class Subject:
 
     @property
     def drifted(self) -> tuple[float, float, float]:
-        """How far, m, the recording is at its end from where it is without drift,
-        in its own lengths."""
+        """How far, m, the recording is at its end from where it is without drift and held to the
+        ground, in its own lengths."""
         (x, y), z = self.problem.drift, self.problem.rise
-        seconds = float(self.recording.times[-1])
-        return x * seconds, y * seconds, z * seconds
+        (a, b, c), seconds = self.floated, float(self.recording.times[-1])
+        return a + x * seconds, b + y * seconds, c + z * seconds
 
     @property
     def shape_changes(self) -> ShapeChanges:
@@ -234,10 +236,11 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
 
     Raises what `analyse`, `find_cycle` and `check_loop` do.
     """
-    recording = as_asked(recording, problem)
+    made, recording = recording, as_asked(recording, problem)
     if problem.height is None:
         analysis, cycle = _analysed(recording, problem)
-        return Subject(analysis, problem, analysis.performance.character.height, 1.0, cycle)
+        away = floated(made, problem, float(analysis.performance.recording.frames[-1]))
+        return Subject(analysis, problem, analysis.performance.character.height, 1.0, cycle, away)
     # Before any contact is sought: at a wrong scale none would be found.
     height = build_figure(recording, problem)[1].height
     factor = problem.height / height
@@ -247,7 +250,8 @@ def measure(recording: Recording, problem: MotionProblem) -> Subject:
     except UnseenSupport as fault:
         raise _unscaled(fault, factor) from None
     unseen = tuple(_unscaled(each, factor) for each in analysis.unseen)
-    return Subject(replace(analysis, unseen=unseen), problem, height, factor, cycle)
+    away = floated(made, problem, float(analysis.performance.recording.frames[-1]))
+    return Subject(replace(analysis, unseen=unseen), problem, height, factor, cycle, away)
 
 
 def _unscaled(fault: UnseenSupport | Treadmill, factor: float) -> UnseenSupport | Treadmill:

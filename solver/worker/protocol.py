@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from ..data.stance_move import StanceMove
     from ..data.traces import Traces
     from ..doctor.examination.diagnose import Diagnosis
-    from ..doctor.feet import FootFault
     from ..doctor.repairs import Repairs
+    from ..doctor.stance.feet import FootFault
 
 PROTOCOL = 8
 LARGEST = 1 << 30  # bytes; a longer message is not one

@@ -18,8 +18,8 @@ from ..data.scene import SceneObject
 from ..doctor.examination.diagnose import diagnose
 from ..doctor.examination.ground import as_stood
 from ..doctor.examination.repair import as_asked, unplaced, unplaced_skin
-from ..doctor.feet import find_feet
 from ..doctor.repairs import Repairs
+from ..doctor.stance.feet import find_feet
 from ..fitting.fit import Fit
 from ..optimisation.sqp import Step, Stopped
 from ..results.report import fit_quality

@@ -21,7 +21,6 @@ from ...skeleton.bind_pose import bind_frames
 from ..falls import FEWEST, LEAP_WINDOW, Spans, Trusted, find_leaps, person_factor
 from ..figure import figure_of
 from ..finding import Finding, FindingKind
-from ..footing import find_footing, find_rise
 from ..frames.exchanges import KINDS, LIMBS, find_exchange
 from ..frames.flips import find_flips
 from ..frames.jumps import find_jumps
@@ -30,8 +29,10 @@ from ..frames.spikes import find_spikes
 from ..lengths import find_lengths
 from ..noise import find_noise, reach
 from ..repairs import Repairs
+from ..stance.footing import find_footing
 from ..stretch import CUTTING, Span, longest_stretch
 from ..upright import find_level_hips, find_up
+from .drifts import find_drifts
 from .ground import as_stood
 from .repair import placed_skin, repaired
 from .scales import find_scales
@@ -117,7 +118,7 @@ def diagnose(
 
     @cache
     def performed(repairs: Repairs) -> Performance:
-        mended = repaired(recording, repairs)
+        mended = repaired(recording, repairs, chosen)
         character = build_character(mended, chosen=chosen)
         return perform(mended, character, placed_skin(skin, repairs))
 
@@ -143,10 +144,9 @@ def diagnose(
         performed.cache_clear()
         touched.cache_clear()
         performance = performed(placed)
-    rise = find_rise(as_stood(performance, scene))
-    if rise is not None:
-        found.append(rise)
-        placed = placed.joined(_remedy(rise))
+    drifts = find_drifts(lambda repairs: as_stood(performed(repairs), scene), figure, placed)
+    found += drifts
+    placed = reduce(Repairs.joined, map(_remedy, drifts), placed)
     found += find_footing(as_stood(performed(placed), scene), touched(placed))
     fitting = None
     if mass is not None and not (MASS_BY_SQUARE[0] < mass / height**2 < MASS_BY_SQUARE[1]):

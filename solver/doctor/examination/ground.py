@@ -9,8 +9,8 @@ import numpy as np
 from ...analysis.performance import Performance, perform
 from ...data.scene import SceneObject
 from ...scene.support import Heights, StandingGround
-from ..footing import FLOOR_OFF, standing
 from ..repairs import Repairs
+from ..stance.footing import FLOOR_OFF, standing
 from .repair import placed, placed_skin
 
 

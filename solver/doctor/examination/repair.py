@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from ..lengths import kept_lengths
 from ..local_poses import LocalPoses
 from ..noise import smoothed
 from ..repairs import MissingFrames, Repairs
+from ..stance.floating import held_to_the_ground
 from ..upright import turn_upright
 
 
@@ -34,12 +35,31 @@ def repaired(
     Raises MissingPart, NotBetweenFrames, NothingLeft.
     """
     whole = filled(turned(recording, repairs), repairs.missing)
-    return placed(mended(trimmed(whole, repairs), repairs, chosen), repairs)
+    still = placed(mended(trimmed(whole, repairs), repairs, chosen), repairs)
+    return grounded(still, repairs.mend, chosen)
 
 
 def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
     """The recording with what a problem asks to be mended, in its own lengths, without drift from
-    the problem's first frame on, and mirrored. Raises MissingPart, NotMirrored."""
+    the problem's first frame on, held to the ground, and mirrored. Raises MissingPart,
+    NotMirrored."""
+    still = grounded(_without_drift_as_asked(recording, problem), problem.mend, problem.bones)
+    first = float(recording.frames[0]) if problem.frames is None else problem.frames[0]
+    return mirrored(still, first) if problem.mirrored else still
+
+
+def floated(recording: Recording, problem: MotionProblem, frame: float) -> tuple[float, ...]:
+    """(3,) m, how far the recording is at a frame from where it is held to the ground."""
+    if Mend.FLOATING not in problem.mend:
+        return 0.0, 0.0, 0.0
+    before = _without_drift_as_asked(recording, problem)
+    after = grounded(before, problem.mend, problem.bones)
+    at = int(np.argmin(np.abs(before.frames - frame)))
+    return tuple((before.heads[at, 0] - after.heads[at, 0]).tolist())
+
+
+def _without_drift_as_asked(recording: Recording, problem: MotionProblem) -> Recording:
+    """With its poses mended, and without drift."""
     if problem.mend:
         held = bind_frames(recording)  # else the jump from the rest pose is smoothed into the rest
         if problem.frames is None or recording.frames[held] <= problem.frames[0]:
@@ -50,7 +70,17 @@ def as_asked(recording: Recording, problem: MotionProblem) -> Recording:
     if any(velocity):
         begins = float(np.interp(first, recording.frames, recording.times))
         recording = _without_drift(recording, recording.times - begins, velocity)
-    return mirrored(recording, first) if problem.mirrored else recording
+    return recording
+
+
+def grounded(
+    recording: Recording, mend: Collection[Mend], chosen: Mapping[str, str] | None
+) -> Recording:
+    """Held to the ground, where that is among what is to be mended. recording: in its right size
+    and time, and without drift. Raises MissingPart."""
+    if Mend.FLOATING not in mend:
+        return recording
+    return held_to_the_ground(recording, figure_of(recording, chosen))
 
 
 def _without_drift(
@@ -138,13 +168,13 @@ def left_after(
 def mended(
     recording: Recording, repairs: Repairs, chosen: Mapping[str, str] | None = None
 ) -> Recording:
-    """With its poses mended; frames, clock and lengths stay. Raises MissingPart."""
-    if not repairs.mend:
-        return recording
-    figure = figure_of(recording, chosen)
-    for mend in Mend:
-        if mend in repairs.mend:
-            recording = _with(mend, recording, figure)
+    """With its poses mended; frames, clock and lengths stay, and so does how it floats. Raises
+    MissingPart."""
+    poses = [mend for mend in Mend if mend in repairs.mend and mend is not Mend.FLOATING]
+    figure = figure_of(recording, chosen) if poses else None
+    for mend in poses:
+        assert figure is not None
+        recording = _with(mend, recording, figure)
     return recording
 
 

@@ -11,8 +11,8 @@ from ...data.constants import STANDARD_GRAVITY
 from ...data.contacts import ContactSchedule
 from ..falls import Trusted, find_scale, refined
 from ..finding import Finding, FindingKind
-from ..footing import spans_of
 from ..repairs import Repairs
+from ..stance.footing import spans_of
 
 
 def find_scales(

@@ -9,8 +9,9 @@ from ...body.anatomy import Part
 from ...data.recording import Recording
 from ..figure import Figure
 from ..finding import Finding, FindingKind
-from ..local_poses import LocalPoses
+from ..local_poses import LocalPoses, runs
 from ..slack import slack
+from .ragged import ragged_ends
 from .steps import around, moved_steps, turned_steps
 
 # Beyond the mean of the steps beside it. In honest recordings of 30 Hz and more the root's are
@@ -23,7 +24,8 @@ FEWEST = 5  # frames
 
 
 def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
-    """Where two takes were joined, capture mistook something, or many frames are missing."""
+    """Where two takes were joined, capture mistook something, or many frames are missing; and the
+    clip's ends where a bone jumps about."""
     if len(recording.frames) < FEWEST:
         return None
     local, root = LocalPoses.of(recording), figure.bones[0]
@@ -32,12 +34,16 @@ def find_jumps(recording: Recording, figure: Figure) -> Finding | None:
     turns = []
     for bone in (b for b, part in figure.parts if part not in STRIKE and b != root):
         turned, name = np.degrees(turned_steps(local, bone)), recording.bones[bone].name
-        turns += [(float(turned[t]), name, t) for t in _jumps(turned, TURN * wider)]
+        first, last = ragged_ends(local, bone, wider, recording.rate)
+        ragged = [*range(first), *range(len(turned) - last, len(turned))]
+        turns += [(float(turned[t]), name, t) for t in [*_jumps(turned, TURN * wider), *ragged]]
     if not places and not turns:
         return None
     amount, part, _ = max(places or turns)  # of the whole body where it jumps, else of a bone
-    steps = sorted({t for *_, t in places + turns})
-    frames = tuple((float(recording.frames[t]), float(recording.frames[t + 1])) for t in steps)
+    steps = np.isin(np.arange(len(moved)), [t for *_, t in places + turns])
+    frames = tuple(
+        (float(recording.frames[a]), float(recording.frames[b + 1])) for a, b in runs(steps)
+    )
     return Finding(FindingKind.JUMP, amount, "cm" if places else "°", frames, part)
 
 

@@ -30,8 +30,8 @@ from hangtime.bridge.rows.phases import unseen_frames
 from hangtime.operators.timeline.timeline_bars import rows_of
 from hangtime.solver.data.problem import Mend
 from hangtime.solver.doctor.examination.repair import as_asked, unplaced
-from hangtime.solver.doctor.feet import FootFaultKind
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.stance.feet import FootFaultKind
 from hangtime.tests.blender.helpers import rigs
 from hangtime.tests.blender.helpers.solids import add_row
 from hangtime.tests.helpers.clips import JUMP, JUMP_FRAMES, begun_at_rest, mocap_path

@@ -12,7 +12,7 @@ from hangtime.solver.data.recording import Recording
 from hangtime.solver.data.scene import SceneObject
 from hangtime.solver.doctor.examination.diagnose import diagnose
 from hangtime.solver.doctor.examination.ground import as_stood
-from hangtime.solver.doctor.feet import find_feet
+from hangtime.solver.doctor.stance.feet import find_feet
 from hangtime.solver.numerics.rotations import axis_rotation
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.moving import keyed

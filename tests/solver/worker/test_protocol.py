@@ -60,9 +60,9 @@ from hangtime.solver.data.stance_move import StanceMove
 from hangtime.solver.data.status import DragStatus, Durations, Status
 from hangtime.solver.data.traces import FlightParabola, Traces
 from hangtime.solver.doctor.examination.diagnose import Diagnosis
-from hangtime.solver.doctor.feet import FootFault, FootFaultKind
 from hangtime.solver.doctor.finding import Finding, FindingKind
 from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.stance.feet import FootFault, FootFaultKind
 from hangtime.solver.worker.protocol import (
     LARGEST,
     PROTOCOL,

@@ -7,11 +7,11 @@ from enum import Enum
 
 import numpy as np
 
-from ..analysis.performance import Performance, contact_points
-from ..arrays import BoolArray, FloatArray
-from ..data.contacts import ContactPoint, PointKind
+from ...analysis.performance import Performance, contact_points
+from ...arrays import BoolArray, FloatArray
+from ...data.contacts import ContactPoint, PointKind
+from ..local_poses import runs
 from .footing import DRIFT, FLOOR_OFF, LOW, SLOW
-from .local_poses import runs
 
 SHORTEST = 0.1  # s; what is over sooner is a step's own unrest
 LEAST_SLID = 0.02  # m from its place; soles that roll do less

@@ -8,26 +8,32 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..analysis.performance import Performance, contact_points, find_contacts
-from ..arrays import FloatArray
-from ..body.anatomy import Part, Side
-from ..data.contacts import ContactSchedule, Interval, PointKind
-from .falls import Spans
-from .finding import Finding, FindingKind
-from .repairs import Repairs
+from ...analysis.performance import Performance, contact_points, find_contacts
+from ...arrays import FloatArray
+from ...data.contacts import ContactSchedule, Interval, PointKind
+from ...data.recording import Recording
+from ..falls import Spans
+from ..figure import Figure
+from ..finding import Finding, FindingKind
+from ..repairs import Repairs
+from .flat_feet import SLOW as FLAT_SLOW
+from .flat_feet import FlatSamples
 
 FLOOR_OFF = 0.03  # m, from the world's 0
 LOW = 0.03  # m above the floor: a foot that stands
 SLOW = 0.15  # m/s, up or down
 ROUNDS = 8  # of narrowing the speeds to the half that agree best
 DRIFT = 0.12  # m/s; feet that roll over in runs leave 0.1
+FLAT_FAST = 0.8 * FLAT_SLOW  # m/s, of which feet that stand flat no longer tell
+FLAT_DRIFT = 0.04  # m/s, of feet that stand flat; honest ones leave 0.014
 ALIKE = 0.75  # of the drift, by which half of all speeds differ from it at most; noise leaves more
 LEAST_STANCE, LEAST_STANDING = 0.3, 12  # s, and frames: half of fewer slide alike by chance
 LEAST_SHARE = 0.1  # of a clip, in which something stands, likewise: a dance's few moments turn feet
-RISE = 0.06  # m/s, of feet that stand; 0.3 s and more of honest ones leave 0.04
+RISE = 0.04  # m/s, of feet that stand; half a second and more of honest ones leaves 0.01
 LEAST_LEVEL = 0.3  # s of feet that stand flat, of which so much can be told
-FLAT = 0.06  # m/s, by which both ends of a foot that stands flat differ
 ALIKE_RISE = 0.5  # of the rise, likewise
+STEADY = 0.5  # of the speed, by which those of half a clip may differ
+LEVELLED = 0.5  # of how much their heights differ, that is left without the rise
 FLICKER_GAP = 0.12  # s; a foot cannot leave its place and come back in less
 FLICKER_PLACE = 0.03  # m
 FLICKERS = 3
@@ -36,13 +42,13 @@ FLICKERS = 3
 def find_footing(
     performance: Performance, schedule: ContactSchedule | None = None
 ) -> list[Finding]:
-    """Floor, sliding, flicker, unseen support, and a clip that begins or ends in the air.
+    """Floor, flicker, unseen support, and a clip that begins or ends in the air.
 
     performance: as seen from what it stands on. schedule: its contacts, with the scene's ground;
     None for those with the floor alone.
     """
     schedule = find_contacts(performance) if schedule is None else schedule
-    found = [_floor(performance), _sliding(performance), _flicker(performance, schedule)]
+    found = [_floor(performance), _flicker(performance, schedule)]
     notes = [
         (FindingKind.UNSEEN_SUPPORT, schedule.unseen),
         (FindingKind.BEGINS_IN_AIR, tuple(f for f in schedule.flights if f.start == 0.0)),
@@ -63,56 +69,58 @@ def _floor(performance: Performance) -> Finding | None:
     return Finding(FindingKind.FLOOR, floor, "m", remedy=Repairs(floor=floor))
 
 
-def _sliding(performance: Performance) -> Finding | None:
-    """Feet that all slide the same way at the same speed: the whole body drifts."""
-    speeds = _standing_speeds(performance)
+def find_sliding(performance: Performance, figure: Figure) -> Finding | None:
+    """Feet that all slide the same way at the same speed: the whole body drifts. By the lowest
+    points of feet, or by feet that stand flat, which tell less of a drift.
+
+    performance: as seen from what it stands on, in its right size and time.
+    """
+    flat = FlatSamples.of(performance.recording, figure).velocities[:, :2]
+    lowest = standing(performance).velocities[:, :2]
     rate, share = performance.recording.rate, LEAST_SHARE * len(performance.times)
-    if len(speeds) < max(LEAST_STANCE * rate, share, LEAST_STANDING):
+    least = max(LEAST_STANCE * rate, share, LEAST_STANDING)
+    told = _drift(flat, FLAT_DRIFT) if len(flat) >= least else None
+    if told is None and len(lowest) >= least:
+        slowest = FLAT_FAST if len(flat) >= least else DRIFT
+        told = _drift(lowest, slowest)
+    if told is None:
         return None
+    x, y = told
+    return Finding(FindingKind.SLIDING, float(np.hypot(x, y)), "m/s", remedy=Repairs(drift=told))
+
+
+def _drift(speeds: FloatArray, slowest: float) -> tuple[float, float] | None:
+    """M/s, along the floor, that nearly all speeds (N, 2) have, in their order."""
     middle, differ = _agreed(speeds)
     speed = float(np.linalg.norm(middle))
-    if speed < DRIFT or differ > ALIKE * speed:
+    if speed < slowest or differ > ALIKE * speed or not _is_steady(speeds):
         return None
     x, y = map(float, middle)
-    return Finding(FindingKind.SLIDING, speed, "m/s", remedy=Repairs(drift=(x, y)))
+    return x, y
 
 
-def find_rise(performance: Performance) -> Finding | None:
+def find_rise(recording: Recording, figure: Figure) -> Finding | None:
     """Feet that all rise, or sink, at the same speed while they stand: the whole body drifts. Who
-    climbs has feet that stand still. performance: in its right size and time."""
-    speeds = _flat_speeds(performance)
-    if len(speeds) < LEAST_LEVEL * performance.recording.rate:
+    climbs has feet that stand still. recording: in its right size and time."""
+    feet = FlatSamples.of(recording, figure)
+    if len(feet.times) < LEAST_LEVEL * recording.rate:
         return None
-    (rise,), differ = _agreed(speeds[:, None])
-    if abs(rise) < RISE or differ > ALIKE_RISE * abs(rise):
+    speeds = feet.velocities[:, 2:]
+    (rise,), differ = _agreed(speeds)
+    if abs(rise) < RISE or differ > ALIKE_RISE * abs(rise) or not _is_steady(speeds):
+        return None
+    heights = feet.places[:, 2]
+    if np.std(heights - rise * feet.times) > LEVELLED * np.std(heights):
         return None
     return Finding(FindingKind.RISING, float(rise), "m/s", remedy=Repairs(rise=float(rise)))
 
 
-def _flat_speeds(performance: Performance) -> FloatArray:
-    """(N,) m/s, upwards, of feet while they neither turn nor go. By their joints: where contact
-    points are hangs on the floor, and of one that rises no height is known."""
-    found = []
-    for side in (Side.LEFT, Side.RIGHT):
-        ankle, ball = (
-            np.gradient(track, performance.times, axis=0) for track in _ends(performance, side)
-        )
-        middle = 0.5 * (ankle + ball)
-        flat = np.linalg.norm(ankle - ball, axis=1) < FLAT
-        flat &= np.linalg.norm(middle[:, :2], axis=1) < SLOW
-        found.append(middle[flat, 2])
-    return np.concatenate(found)
-
-
-def _ends(performance: Performance, side: Side) -> tuple[FloatArray, FloatArray]:
-    """(T, 3) m each, of a foot's ankle and ball; of one without toes of its bone's end."""
-    character, centres = performance.character, performance.centres
-    foot, toe = (character.body(part, side) for part in (Part.FOOT, Part.TOE))
-    assert foot is not None
-    if toe is not None:
-        return centres[:, foot], centres[:, toe]
-    tip = performance.rotations[:, foot] @ character.bodies[foot].tip
-    return centres[:, foot], centres[:, foot] + tip
+def _is_steady(speeds: FloatArray) -> bool:
+    """Whether speeds (N, D), m/s, in their order, are alike in both halves: what floats to and fro
+    goes elsewhere in one of them."""
+    middle = np.median(speeds, axis=0)
+    apart = [np.median(half, axis=0) - middle for half in np.array_split(speeds, 2)]
+    return bool(max(np.linalg.norm(apart, axis=1)) < STEADY * np.linalg.norm(middle))
 
 
 def _agreed(speeds: FloatArray) -> tuple[FloatArray, float]:
@@ -124,11 +132,6 @@ def _agreed(speeds: FloatArray) -> tuple[FloatArray, float]:
         nearest = np.argsort(apart, kind="stable")[: (len(speeds) + 1) // 2]
         middle = np.median(speeds[nearest], axis=0)
     return middle, float(np.median(np.linalg.norm(speeds - middle, axis=1)))
-
-
-def _standing_speeds(performance: Performance) -> FloatArray:
-    """(N, 2) m/s, along the floor, of the lowest point of the feet while it stands."""
-    return standing(performance).velocities[:, :2]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,84 @@
+"""Feet that stand flat: by their joints, for where contact points are hangs on the floor, and of
+one that floats no height is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import BoolArray, FloatArray
+from ...data.recording import Recording
+from ...skeleton.parts import SIDES, Part, Side
+from ..figure import Figure
+from ..local_poses import runs
+
+FLAT = 0.06  # m/s, by which both ends of a foot that stands flat differ
+SLOW = 0.3  # m/s, along the floor; a foot that is lifted or set down goes faster
+SLOW_UP = 0.45  # m/s; who falls is as slow for 0.09 s, which is no stance
+LEAST_STANCE = 0.1  # s
+
+
+@dataclass(frozen=True)
+class FlatFoot:
+    """A foot's middle (T, 3), m, its velocities (T, 3), m/s, and where it is flat and slow (T,)."""
+
+    track: FloatArray
+    velocity: FloatArray
+    flat: BoolArray
+
+    def stances(self, rate: float) -> list[slice]:
+        """Frames, of so many a second, in which it stands flat for long enough to tell."""
+        least = max(LEAST_STANCE * rate, 2.0)
+        return [slice(a, b + 1) for a, b in runs(self.flat) if b - a >= least]
+
+    def stands(self, rate: float) -> BoolArray:
+        """(T,) whether it is in one of these."""
+        found = np.zeros(len(self.flat), bool)
+        for stance in self.stances(rate):
+            found[stance] = True
+        return found
+
+
+def flat_feet(recording: Recording, figure: Figure) -> Iterator[FlatFoot]:
+    """The left one, then the right one. recording: in its right size and time."""
+    for side in SIDES:
+        ends = _ends(recording, figure, side)
+        ankle, ball = (np.gradient(track, recording.times, axis=0) for track in ends)
+        velocity = 0.5 * (ankle + ball)
+        flat = np.linalg.norm(ankle - ball, axis=1) < FLAT
+        flat &= np.linalg.norm(velocity[:, :2], axis=1) < SLOW
+        flat &= np.abs(velocity[:, 2]) < SLOW_UP
+        yield FlatFoot(0.5 * (ends[0] + ends[1]), velocity, flat)
+
+
+@dataclass(frozen=True)
+class FlatSamples:
+    """Of both feet while they neither turn nor go, N samples: s, in order, m and m/s."""
+
+    times: FloatArray
+    places: FloatArray
+    velocities: FloatArray
+
+    @staticmethod
+    def of(recording: Recording, figure: Figure) -> FlatSamples:
+        """recording: in its right size and time."""
+        feet = list(flat_feet(recording, figure))
+        times = np.concatenate([recording.times[foot.flat] for foot in feet])
+        order = np.argsort(times, kind="stable")
+        places, velocities = (
+            np.concatenate([track[foot.flat] for foot, track in zip(feet, each, strict=True)])
+            for each in ([f.track for f in feet], [f.velocity for f in feet])
+        )
+        return FlatSamples(times[order], places[order], velocities[order])
+
+
+def _ends(recording: Recording, figure: Figure, side: Side) -> tuple[FloatArray, FloatArray]:
+    """(T, 3) m each, of a foot's ankle and ball; of one without toes of its bone's end."""
+    foot, toe = figure.sided[Part.FOOT, side], figure.sided.get((Part.TOE, side))
+    ankle = recording.heads[:, foot]
+    if toe is not None:
+        return ankle, recording.heads[:, toe]
+    bone = recording.bones[foot]
+    return ankle, ankle + recording.rotations[:, foot] @ (bone.rotation.T @ (bone.tail - bone.head))

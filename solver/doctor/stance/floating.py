@@ -1,0 +1,128 @@
+"""The whole body floats about, slowly, while its feet stand: as capture by one camera has it, which
+sees neither depth nor the floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ...arrays import BoolArray, FloatArray
+from ...data.problem import Mend
+from ...data.recording import Recording
+from ...numerics.splines import SplineBasis, SplineTerm
+from ..figure import Figure
+from ..finding import Finding, FindingKind
+from ..local_poses import runs
+from ..repairs import Repairs
+from .flat_feet import flat_feet
+
+# Heights of feet that stand differ, from the tenth lowest to the tenth highest of a hundred: those
+# of honest feet by 1.5 cm; and how fast they move, where those on stairs stand still.
+RISES, RISES_BY = 0.03, 0.03  # m, and m/s
+STAIRS = 0.4  # m; of heights that differ by more the floor is not one
+OUTER = 10.0, 90.0  # %
+SLIDES = 0.06  # m along the floor, of a foot in one stance; honest ones move by 2 to 4 cm
+SLIDE_SHARE = 1.0 / 3.0  # of the time in which feet stand; one may be drawn along the floor
+LEAST_STANDING = 0.3  # s
+LIFTED = 0.03  # m, above the other foot, whether that is flat or not
+STILL = 0.1  # m/s; of two feet that differ by more one is drawn along the floor
+# Of the way that is taken out: feet tell its velocities to 2 cm/s and its heights to 1 cm; where
+# none does, what floats is likely within 10 cm and as fast as 15 cm/s.
+KNOT = 0.25  # s; what floats takes a second or more
+STIFF = 0.1**4  # s⁴, of the velocities' second derivative, against what they miss the feet's by
+LEVEL = (0.02 / 0.01) ** 2  # 1/s², of heights, likewise
+NEAR, SLOW = (0.02 / 0.1) ** 2, (0.02 / 0.15) ** 2  # 1/s², of places, and of velocities
+
+
+def find_floating(recording: Recording, figure: Figure) -> Finding | None:
+    """Feet that stand flat move, up and down or along the floor, and more than feet do.
+
+    recording: in its right size and time, and without drift of one speed.
+    """
+    ground = _Ground.of(recording, figure)
+    far = max(ground.rises(), ground.slides())
+    if far == 0.0:
+        return None
+    return Finding(FindingKind.FLOATING, 100.0 * far, "cm", remedy=Repairs(mend=(Mend.FLOATING,)))
+
+
+def held_to_the_ground(recording: Recording, figure: Figure) -> Recording:
+    """With the whole body moved, slowly, so that feet that stand flat and rise are on one floor, at
+    the middle of their heights, and those that slide stay where they are; others as they are."""
+    ground = _Ground.of(recording, figure)
+    moves = np.array([ground.slides() > 0.0, ground.slides() > 0.0, ground.rises() > 0.0])
+    if not moves.any():
+        return recording
+    way = np.where(moves, ground.way(recording.times - recording.times[0]), 0.0)
+    return replace(recording, heads=recording.heads - way[:, None])
+
+
+@dataclass(frozen=True)
+class _Ground:
+    """What flat feet tell of the ground's way: its velocity (T, 3), m/s, and its height (T,), m,
+    both 0 where none does, and where one does (T,). rate: frames a second."""
+
+    velocity: FloatArray
+    height: FloatArray
+    tells: BoolArray
+    rate: float
+
+    @staticmethod
+    def of(recording: Recording, figure: Figure) -> _Ground:
+        """By the mean of both feet, or by the one that stands: the lower one, or the stiller."""
+        feet, rate = list(flat_feet(recording, figure)), recording.rate
+        heights = np.stack([foot.track[:, 2] for foot in feet])
+        stands = np.array([foot.stands(rate) for foot in feet])
+        stands &= heights < heights.min(axis=0) + LIFTED
+        velocities = np.stack([foot.velocity for foot in feet])
+        speeds = np.where(stands, np.linalg.norm(velocities, axis=2), np.inf)
+        stands &= speeds < speeds.min(axis=0) + STILL
+        share = stands / np.maximum(stands.sum(axis=0), 1)
+        velocity = np.einsum("ft,fti->ti", share, velocities)
+        height = np.asarray(np.sum(share * heights, axis=0))
+        return _Ground(velocity, height, stands.any(axis=0), rate)
+
+    def rises(self) -> float:
+        """How far, m, the heights of feet that stand differ that are of one floor; 0 where they do
+        not, or where these feet stand still."""
+        seconds = float(self.tells.sum()) / self.rate
+        if seconds < LEAST_STANDING:
+            return 0.0
+        low, high = np.percentile(self.height[self.tells], OUTER)
+        climbed = sum(float(np.ptp(way[:, 2])) for way in self._stances)
+        floats = RISES < high - low < STAIRS and climbed > RISES_BY * seconds
+        return float(high - low) if floats else 0.0
+
+    def slides(self) -> float:
+        """How far, m, feet slide in a stance at most; 0 where most do not."""
+        ways, frames = self._stances, float(self.tells.sum())
+        slid = [float(np.linalg.norm(np.ptp(way[:, :2], axis=0))) for way in ways]
+        sliding = sum(len(way) for way, far in zip(ways, slid, strict=True) if far > SLIDES)
+        floats = frames >= LEAST_STANDING * self.rate and sliding > SLIDE_SHARE * frames
+        return max(slid) if floats else 0.0
+
+    @cached_property
+    def _stances(self) -> list[FloatArray]:
+        """(n, 3) m, the ground's way in each part in which it is told."""
+        parts = (self.velocity[first : last + 1] for first, last in runs(self.tells))
+        return [np.cumsum(part, axis=0) / self.rate for part in parts]
+
+    def way(self, times: FloatArray) -> FloatArray:
+        """(T, 3) m, at times (T,) s from 0 on, the way with these velocities and heights: least
+        squares of a spline with its third derivative (a P-spline, Eilers and Marx 1996)."""
+        breaks = np.linspace(0.0, times[-1], max(round(times[-1] / KNOT), 1) + 1)
+        basis = SplineBasis(breaks, np.zeros(len(breaks), bool))
+        one, nothing = np.ones(len(times)), 0.0 * self.velocity
+        terms = [
+            SplineTerm(0, NEAR * one, nothing),
+            SplineTerm(1, np.where(self.tells, one, SLOW), self.velocity),
+            SplineTerm(3, STIFF * one, nothing),
+        ]
+        floor = np.median(self.height[self.tells])
+        above = np.repeat((self.height - floor)[:, None], 3, axis=1)
+        level = SplineTerm(0, LEVEL * self.tells, above)
+        along = basis.least_squares(times, terms)[:, :2]
+        upwards = basis.least_squares(times, [*terms, level])[:, 2:]
+        return basis.combine(np.hstack([along, upwards]), times)

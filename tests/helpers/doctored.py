@@ -1,0 +1,68 @@
+"""A jump, what its poses tell, and ways in which it is spoilt."""
+
+from dataclasses import replace
+from functools import cache, partial
+
+import numpy as np
+from hangtime.solver.body.character import Character, build_character
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.figure import Figure, figure_of
+from hangtime.solver.doctor.finding import Finding
+from hangtime.solver.doctor.frames.exchanges import LIMBS, find_exchange
+from hangtime.solver.doctor.frames.flips import find_flips
+from hangtime.solver.doctor.frames.jumps import find_jumps
+from hangtime.solver.doctor.frames.missing import find_dropped, find_held
+from hangtime.solver.doctor.frames.spikes import find_spikes
+from hangtime.solver.doctor.lengths import find_lengths
+from hangtime.solver.doctor.noise import find_noise
+from hangtime.solver.doctor.repairs import Repairs
+from hangtime.tests.helpers.clips import JUMP, load_recording
+
+STANDING = 73, 325  # frames, from standing to standing
+
+
+@cache
+def jump() -> Recording:
+    return load_recording(JUMP).window(*STANDING)
+
+
+@cache
+def figure() -> Figure:
+    return figure_of(jump())
+
+
+@cache
+def character() -> Character:
+    return build_character(jump())
+
+
+def of_poses(recording: Recording) -> list[Finding]:
+    """What the poses alone tell, each as the remedies before leave them."""
+    found = []
+    for find in (
+        *(partial(find_exchange, figure=figure(), limbs=each) for each in LIMBS),
+        *(partial(each, figure=figure()) for each in (find_flips, find_spikes)),
+        *(find_held, find_dropped),
+        partial(find_jumps, figure=figure()),
+        *(partial(each, figure=figure()) for each in (find_lengths, find_noise)),
+    ):
+        if (finding := find(recording)) is not None:
+            found.append(finding)
+            recording = repaired(recording, finding.remedy or Repairs())
+    return found
+
+
+def sparse(recording: Recording, every: int, first: int = 0) -> Recording:
+    """Every so many frames of it."""
+    part = recording.part(slice(first, None, every))
+    count = np.arange(len(part.frames))
+    return replace(part, frames=1.0 + count, times=count * every / recording.rate)
+
+
+def moved_from(*at: int) -> Recording:
+    """The jump, elsewhere by 0.3 m from each of these indices of frames on."""
+    heads = jump().heads.copy()
+    for index in at:
+        heads[index:] += [0.24, 0.18, 0.0]
+    return replace(jump(), heads=heads)

@@ -1,0 +1,116 @@
+"""Clock and size are told by falls, where these are falls."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages import (
+    levelled,
+    sized,
+    slowed,
+)
+from hangtime.solver.analysis.performance import perform
+from hangtime.solver.body.anatomy import Part
+from hangtime.solver.body.character import build_character
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.falls import find_scale
+from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.repairs import Repairs
+from hangtime.solver.doctor.upright import find_level_hips
+from hangtime.tests.helpers.clips import JUMP, load_recording
+from hangtime.tests.helpers.doctored import character, figure, jump
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.8, 1.25, 2.0])
+def test_a_clock_that_is_wrong_is_told_by_the_fall(factor: float) -> None:
+    damaged = slowed(factor).of(jump()).recording
+    found = find_scale(perform(damaged, character()))
+    assert found is not None
+    assert found.kind is FindingKind.TIME_SCALE
+    assert found.remedy is not None
+    assert found.remedy.time_scale * factor == pytest.approx(1.0, abs=1e-9)  # 120 Hz is usual
+    assert found.alternative is not None
+    assert found.alternative.scale == pytest.approx(factor**2, rel=0.05)
+
+
+@pytest.mark.parametrize("factor", [1.6, 0.01, 2.54])
+def test_a_size_that_is_nobodys_is_told_by_the_fall(factor: float) -> None:
+    damaged = sized(factor, "size").of(jump()).recording
+    found = find_scale(perform(damaged, build_character(damaged)))
+    assert found is not None
+    assert found.kind is FindingKind.SIZE
+    assert found.remedy is not None
+    assert found.remedy.scale * factor == pytest.approx(1.0, rel=0.04)
+
+
+def test_a_clock_is_not_told_by_falls_in_which_frames_are_held() -> None:
+    """Two frames doubled in a flight of 0.2 s make it longer, as a slower clock would."""
+    hop = load_recording("131_03_hop.bvh")
+    aloft = np.searchsorted(hop.times, [1.70, 1.76])
+    rows = np.sort(np.append(np.arange(len(hop.frames)), aloft))
+    at = np.arange(len(rows))
+    doubled = replace(
+        hop,
+        frames=hop.frames[0] + at,
+        times=at / hop.rate,
+        heads=hop.heads[rows],
+        rotations=hop.rotations[rows],
+    )
+    kinds = [finding.kind for finding in diagnose(doubled).findings if not finding.kind.note]
+    assert kinds == [FindingKind.HELD_FRAMES]
+
+
+@pytest.mark.parametrize(("height", "seconds"), [(0.045, 0.6), (0.09, 0.8)])
+def test_falls_that_disagree_tell_no_clock(height: float, seconds: float) -> None:
+    """A hop as on the moon, of which half is in the air, beside a jump that falls as it should: as
+    where legs are exchanged, and none of them touches."""
+    u = (jump().times - jump().times[15]) / seconds
+    lifted = 4.0 * height * np.maximum(u * (1.0 - u), 0.0)
+    heads = jump().heads + lifted[:, None, None] * np.array([0.0, 0.0, 1.0])
+    hovering = replace(jump(), heads=heads)
+    assert find_scale(perform(hovering, character())) is None
+    many = load_recording("hops_in_place.bvh")  # of whose falls one is at 6.7 m/s²
+    found = find_scale(perform(slowed(1.25).of(many).recording, build_character(many)))
+    assert found is not None
+    assert found.remedy == Repairs(time_scale=pytest.approx(0.8))
+
+
+@pytest.mark.parametrize("name", [JUMP, "run_1.bvh", "hops_in_place.bvh"])
+def test_hips_whose_height_was_left_out_are_told_and_no_clock(name: str) -> None:
+    damaged = levelled().of(load_recording(name)).recording
+    assert [finding.kind for finding in diagnose(damaged).findings] == [FindingKind.LEVEL_HIPS]
+
+
+def test_who_sits_may_keep_the_hips_level() -> None:
+    seated = levelled().of(jump()).recording
+    assert find_level_hips(seated, figure()) is not None
+    seated.heads[:, figure().of(Part.FOOT), 2] += 0.4
+    assert find_level_hips(seated, figure()) is None
+
+
+def test_what_is_carried_unseen_tells_no_clock() -> None:
+    """Hips that are held at nearly one height: what legs do then makes parabolas of 1.3 m/s²."""
+    hop = load_recording("hop_01_01.bvh")
+    heads = hop.heads.copy()
+    heads[:, :, 2] += 0.98 * (hop.heads[:, :1, 2].mean() - hop.heads[:, :1, 2])
+    kinds = {finding.kind for finding in diagnose(replace(hop, heads=heads)).findings}
+    assert FindingKind.UNSEEN_SUPPORT in kinds
+    assert FindingKind.TIME_SCALE not in kinds
+
+
+@pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
+def test_a_runs_short_flights_tell_a_size(name: str) -> None:
+    """A parabola through them is up to 6 % off, for the centre of mass wanders by millimetres."""
+    recording = load_recording(name)
+    size = 1.6 * build_character(recording).height
+    (found,) = [f for f in diagnose(sized(1.6, "").of(recording).recording).findings if f.remedy]
+    assert found.kind is FindingKind.SIZE
+    assert found.amount == pytest.approx(size, rel=0.01)
+    assert found.remedy is not None
+    assert found.remedy.scale * 1.6 == pytest.approx(1.0, rel=0.04)
+
+
+def test_a_mass_that_does_not_go_with_the_size_is_told() -> None:
+    diagnosis = diagnose(jump(), mass=700.0)
+    assert [finding.kind for finding in diagnosis.findings] == [FindingKind.MASS]
+    assert diagnosis.mass == pytest.approx(63.0, abs=8.0)

@@ -1,0 +1,115 @@
+"""The floor, drift at one speed, and feet that stand as no foot can."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages import (
+    Damage,
+    noisy,
+    raised,
+    rising,
+    sliding,
+)
+from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.analysis.performance import perform
+from hangtime.solver.body.character import build_character
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.stance.feet import FootFaultKind, find_feet
+from hangtime.solver.doctor.stance.footing import find_footing, find_rise, find_sliding
+from hangtime.tests.helpers.clips import load_recording
+from hangtime.tests.helpers.doctored import character, figure, jump
+
+
+@pytest.mark.parametrize(
+    ("damage", "metres"),
+    [
+        (raised(0.1), 0.015),
+        (raised(-0.2), 0.015),
+        *((sliding(each), 0.02) for each in (0.1, 0.3)),
+    ],
+)
+def test_height_and_drift_are_told_and_taken_out(damage: Damage, metres: float) -> None:
+    damaged = damage.of(jump())
+    performance = perform(damaged.recording, character())
+    sliding = find_sliding(performance, figure())
+    (found,) = [*([] if sliding is None else [sliding]), *find_footing(performance)]
+    assert found.kind is damage.kind
+    assert found.remedy is not None
+    assert apart(repaired(damaged.recording, found.remedy), damaged.original) < metres
+
+
+@pytest.mark.parametrize("speed", [0.05, 0.1, -0.1])
+def test_a_floor_that_rises_is_told_as_drift_and_held_level(speed: float) -> None:
+    """Without the note of unseen support that the feet leave behind, and at the true heights."""
+    damaged = rising(speed).of(jump())
+    diagnosis = diagnose(damaged.recording)
+    (found,) = diagnosis.findings
+    assert found.kind is FindingKind.RISING
+    assert found.amount == pytest.approx(speed, abs=0.015)
+    assert apart(repaired(damaged.recording, diagnosis.repairs), damaged.original) < 0.02
+
+
+def test_who_steps_up_does_not_drift() -> None:
+    """The feet stand still below, and above."""
+    up = np.clip((jump().times - jump().times[100]) / 0.6, 0.0, 1.0) * np.array(
+        [[0.0], [0.0], [0.4]]
+    )
+    stepped = replace(jump(), heads=jump().heads + up.T[:, None])
+    assert find_rise(stepped, figure()) is None
+
+
+@pytest.mark.parametrize("name", ["run_1.bvh", "run_3.bvh"])
+def test_a_run_on_a_treadmill_stands_on_the_floor(name: str) -> None:
+    """Feet that go with the belt are not slow; those that turn back in the air are."""
+    recording = load_recording(name)
+    com = perform(recording, build_character(recording)).com
+    pace = (com[-1] - com[0]) / recording.times[-1] * np.array([1.0, 1.0, 0.0])
+    heads = recording.heads - (recording.times[:, None] * pace)[:, None]
+    kinds = {f.kind for f in diagnose(replace(recording, heads=heads)).findings}
+    assert FindingKind.SLIDING in kinds
+    assert FindingKind.FLOOR not in kinds
+
+
+@pytest.mark.parametrize("seed", [4, 5])
+def test_noise_of_a_runs_short_stances_is_no_drift(seed: int) -> None:
+    """Half of a dozen frames may slide alike by chance; its remedy moved the body by 0.7 m."""
+    damaged = noisy(6.0, 2.0).do(load_recording("run_3.bvh"), np.random.default_rng(100 + seed))
+    kinds = [finding.kind for finding in diagnose(damaged.recording).findings]
+    assert FindingKind.NOISE in kinds
+    assert FindingKind.SLIDING not in kinds
+
+
+def test_how_a_figure_stands_is_told_of_what_is_kept() -> None:
+    """A dancer of whom capture loses the floor for all but the first 12 frames: they hid that the
+    feet are centimetres above it, and had all else called unseen support."""
+    dance = load_recording("rokoko_jesse_dance.bvh")
+    diagnosis = diagnose(dance)
+    kinds = [finding.kind for finding in diagnosis.findings if not finding.kind.note]
+    assert kinds == [FindingKind.LEAP, FindingKind.FLOOR]
+    mended = diagnose(repaired(dance, diagnosis.repairs))
+    assert [finding for finding in mended.findings if not finding.kind.note] == []
+    notes = {finding.kind: finding.frames for finding in diagnosis.findings if finding.kind.note}
+    assert {finding.kind: finding.frames for finding in mended.findings} == notes
+
+
+@pytest.mark.parametrize("first", [14.0, 20.0])
+def test_a_dance_of_which_little_stands_does_not_slide(first: float) -> None:
+    """A third of a second out of five; its drift would move the body by 2 m."""
+    dance = load_recording("rokoko_jesse_dance.bvh")
+    kinds = {finding.kind for finding in diagnose(dance.window(first, 500.0)).findings}
+    assert FindingKind.SLIDING not in kinds
+
+
+def test_feet_that_float_sink_or_slide_are_told_by_point_and_frames() -> None:
+    assert find_feet(perform(jump(), character())) == ()
+    for height, kind in ((0.2, FootFaultKind.FLOATS), (-0.2, FootFaultKind.SINKS)):
+        heads = jump().heads + np.array([0.0, 0.0, height])
+        found = find_feet(perform(replace(jump(), heads=heads), character()))
+        assert {fault.kind for fault in found} == {kind}
+        assert {fault.point for fault in found} >= {"Left heel", "Right toe"}
+        assert max(fault.amount for fault in found) > 0.15
+    slid = sliding(0.3).of(jump()).recording
+    assert FootFaultKind.SLIDES in {f.kind for f in find_feet(perform(slid, character()))}

@@ -1,0 +1,87 @@
+"""Frames that are missing are counted, and put in."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages import (
+    gap,
+)
+from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.data.faults import (
+    NotBetweenFrames,
+)
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.repair import filled, repaired
+from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.frames.missing import find_dropped
+from hangtime.solver.doctor.repairs import MissingFrames, Repairs
+from hangtime.tests.helpers.doctored import jump, moved_from
+
+
+def test_frames_that_are_missing_in_a_row_are_counted_and_no_other_fault_is_told() -> None:
+    """The body's leap over them is what they are told by."""
+    recording = jump()
+    keep = np.delete(np.arange(len(recording.frames)), slice(98, 104))  # in the push
+    frames, times = (each[: len(keep)] for each in (recording.frames, recording.times))
+    heads, rotations = recording.heads[keep], recording.rotations[keep]
+    less = replace(recording, frames=frames, times=times, heads=heads, rotations=rotations)
+    (found,) = diagnose(less, mass=70.0).findings
+    assert found.kind is FindingKind.DROPPED_FRAMES
+    assert found.amount == pytest.approx(6.0, abs=1.0)
+    assert found.frames[0][0] <= frames[98] <= found.frames[0][1]
+    assert found.remedy is not None
+    (missing,) = found.remedy.missing
+    assert missing.after == frames[97]
+
+
+def test_frames_missing_side_by_side_are_each_counted() -> None:
+    """Frames 40, 42 and 43: a frame is left between them, both steps to which are too long."""
+    keep = np.delete(np.arange(len(jump().frames)), [100, 102, 103])
+    size, first = len(keep), jump().frames[0]
+    less = replace(
+        jump(),
+        frames=jump().frames[:size],
+        times=jump().times[:size],
+        heads=jump().heads[keep],
+        rotations=jump().rotations[keep],
+    )
+    found = find_dropped(less)
+    assert found is not None
+    assert found.remedy == Repairs(
+        missing=(MissingFrames(round(first + 99), 1), MissingFrames(round(first + 100), 2))
+    )
+    assert apart(repaired(less, found.remedy), jump()) < 1e-4
+
+
+def test_frames_that_are_put_in_make_what_follows_later() -> None:
+    less, first = gap(6).of(jump()).recording, round(jump().frames[0])
+    longer = filled(less, (MissingFrames(first + 20, 2), MissingFrames(first + 50, 4)))
+    np.testing.assert_allclose(longer.frames, jump().frames)
+    np.testing.assert_allclose(longer.times, jump().times)
+    np.testing.assert_allclose(longer.heads[:21], less.heads[:21], atol=1e-12)
+    np.testing.assert_allclose(longer.heads[23:53], less.heads[21:51], atol=1e-12)
+    np.testing.assert_allclose(longer.heads[57:], less.heads[51:], atol=1e-12)
+
+
+def test_frames_after_the_last_one_are_not_missing() -> None:
+    last = round(jump().frames[-1])
+    with pytest.raises(NotBetweenFrames):
+        filled(jump(), (MissingFrames(last, 2),))
+
+
+def test_frames_are_not_put_in_where_they_are_left_out() -> None:
+    """They would count among those that are, which then were too few."""
+    whole = moved_from(180)
+    keep = np.delete(np.arange(len(whole.frames)), [200])
+    less = replace(
+        whole,
+        frames=whole.frames[:-1],
+        times=whole.times[:-1],
+        heads=whole.heads[keep],
+        rotations=whole.rotations[keep],
+    )
+    diagnosis = diagnose(less)
+    kinds = [finding.kind for finding in diagnosis.findings if not finding.kind.note]
+    assert kinds == [FindingKind.DROPPED_FRAMES, FindingKind.JUMP]
+    np.testing.assert_array_equal(repaired(less, diagnosis.repairs).frames, jump().frames[:180])

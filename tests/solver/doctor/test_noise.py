@@ -1,0 +1,37 @@
+"""Noise of video capture is smoothed."""
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages import (
+    at_rate,
+    noisy,
+)
+from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.data.problem import Mend
+from hangtime.solver.data.recording import Recording
+from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.noise import find_noise
+from hangtime.solver.doctor.repairs import Repairs
+from hangtime.tests.helpers.doctored import figure, jump
+
+
+@pytest.mark.parametrize(("rate", "left"), [(30.0, 0.6), (60.0, 0.5), (120.0, 0.4)])
+def test_noise_of_video_capture_is_smoothed(rate: float, left: float) -> None:
+    """The more frames a second, the better; by what is left at the body's joints."""
+    damaged = noisy(3.0, 1.0, rate).of(jump())
+    found = find_noise(damaged.recording, figure())
+    assert found is not None
+    assert found.remedy is not None
+    smooth = repaired(damaged.recording, found.remedy)
+
+    def off(recording: Recording) -> float:
+        away = (recording.heads - damaged.original.heads)[:, figure().bones]
+        return float(np.sqrt(np.mean(np.sum(away**2, axis=-1))))
+
+    assert off(smooth) < left * off(damaged.recording)
+
+
+@pytest.mark.parametrize("rate", [30.0, 120.0])
+def test_smoothing_leaves_what_is_smooth(rate: float) -> None:
+    clean = at_rate(jump(), rate)
+    assert apart(repaired(clean, Repairs(mend=(Mend.NOISE,))), clean) < 0.005

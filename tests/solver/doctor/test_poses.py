@@ -1,0 +1,151 @@
+"""Damage of poses is named, alone, and mended."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages import (
+    Damage,
+    begun_at_rest,
+    burst,
+    dropped,
+    exchanged,
+    flipped,
+    gap,
+    held,
+    joined,
+    lain,
+    noisy,
+    raised,
+    slowed,
+    spiked,
+    stretched,
+)
+from hangtime.devtools.doctor.measure import apart
+from hangtime.solver.data.problem import Mend
+from hangtime.solver.doctor.examination.diagnose import diagnose
+from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.finding import FindingKind
+from hangtime.solver.doctor.frames.spikes import find_spikes
+from hangtime.solver.doctor.repairs import Repairs, UpAxis
+from hangtime.solver.doctor.upright import find_up
+from hangtime.tests.helpers.doctored import figure, jump, of_poses, sparse
+
+
+@pytest.mark.parametrize("every", [4, 5, 8])
+@pytest.mark.parametrize("damage", [spiked(120.0), joined(0.4)], ids=lambda damage: damage.name)
+def test_what_no_body_can_do_is_told_of_few_frames_too(damage: Damage, every: int) -> None:
+    damaged = damage.of(sparse(jump(), every)).recording
+    assert damage.kind in [finding.kind for finding in of_poses(damaged)]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        *map(spiked, (20.0, 120.0)),
+        *map(burst, (2, 5)),
+        joined(0.1),
+        exchanged(15, Mend.LEGS),
+        exchanged(30, Mend.ARMS),
+        exchanged(40, Mend.LEGS, last=True),
+        exchanged(30, Mend.LEGS, Mend.ARMS),
+        held(6),
+        stretched(0.05),
+        noisy(3.0, 1.0),
+        dropped(2),
+        *map(gap, (3, 6)),
+        gap(2, 2),
+        gap(3, 2),
+    ],
+    ids=lambda damage: damage.name,
+)
+def test_damage_of_poses_is_named_and_nothing_else(damage: Damage) -> None:
+    damaged = damage.of(jump())
+    assert [finding.kind for finding in of_poses(damaged.recording)] == [
+        *(damage.kind, *damage.also)
+    ]
+
+
+def test_a_spike_is_told_with_its_bone_and_frame() -> None:
+    local = jump().rotations.copy()
+    bone = jump().index("LeftArm")
+    turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    local[50, bone] = local[50, bone] @ turned
+    found = find_spikes(replace(jump(), rotations=local), figure())
+    assert found is not None
+    frame = jump().frames[50]
+    assert found.frames == ((frame, frame),)
+    assert found.part in ("LeftArm", "LeftForeArm")
+
+
+def test_a_spike_of_the_whole_body_is_told_by_how_far_it_is_away() -> None:
+    heads = jump().heads.copy()
+    heads[50] += [0.0, 0.4, 0.0]
+    found = find_spikes(replace(jump(), heads=heads), figure())
+    assert found is not None
+    assert (round(found.amount), found.unit) == (40, "cm")
+    frame = jump().frames[50]
+    assert found.frames == ((frame, frame),)
+
+
+@pytest.mark.parametrize(
+    ("damage", "cm"),
+    [
+        (spiked(120.0), 0.05),
+        (burst(5), 0.1),
+        (exchanged(30, Mend.LEGS), 1.5),  # each bone is 5° off
+        (exchanged(30, Mend.ARMS), 1.5),
+        (flipped(12), 0.1),
+        (held(6), 0.05),
+        (stretched(0.15), 0.15),
+        (gap(1), 0.01),
+        (gap(6), 0.1),
+        (gap(2, 2), 0.01),
+    ],
+    ids=[
+        "spikes",
+        "a burst",
+        "exchanged legs",
+        "exchanged arms",
+        "flips",
+        "held frames",
+        "bone lengths",
+        "a missing frame",
+        "a gap",
+        "two gaps",
+    ],
+)
+def test_the_remedy_brings_the_original_back(damage: Damage, cm: float) -> None:
+    damaged = damage.of(jump())
+    remedies = [finding.remedy for finding in of_poses(damaged.recording)]
+    repairs = Repairs()
+    for remedy in remedies:
+        assert remedy is not None
+        repairs = repairs.joined(remedy)
+    assert 100.0 * apart(repaired(damaged.recording, repairs), damaged.original) < cm
+
+
+def test_the_rest_pose_is_left_out_before_all_else() -> None:
+    damaged = begun_at_rest(3).of(jump())
+    diagnosis = diagnose(damaged.recording)
+    assert [finding.kind for finding in diagnosis.findings] == [FindingKind.BIND_POSE]
+    assert diagnosis.repairs == Repairs(trim=3)
+
+
+def test_several_damages_are_mended_together() -> None:
+    damaged = spiked(90.0).of(slowed(1.25).of(raised(0.3).of(jump()).recording).recording)
+    diagnosis = diagnose(damaged.recording)
+    kinds = [FindingKind.SPIKE, FindingKind.TIME_SCALE, FindingKind.FLOOR]
+    assert [finding.kind for finding in diagnosis.findings] == kinds
+    mended = repaired(damaged.recording, diagnosis.repairs)
+    assert mended.rate == pytest.approx(jump().rate)
+    assert apart(mended, jump()) < 0.015
+
+
+@pytest.mark.parametrize("up", [UpAxis.Y, UpAxis.X])
+def test_a_figure_that_lies_is_set_upright(up: UpAxis) -> None:
+    damaged = lain(up).of(jump())
+    found = find_up(damaged.recording, figure())
+    assert found is not None
+    assert found.remedy == Repairs(up=up)
+    assert apart(repaired(damaged.recording, found.remedy), damaged.original) < 1e-9

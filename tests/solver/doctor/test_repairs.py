@@ -1,0 +1,43 @@
+"""Repairs as they are asked for, one by one."""
+
+import numpy as np
+import pytest
+from hangtime.devtools.doctor.damages import (
+    rising,
+    sliding,
+)
+from hangtime.solver.data.faults import (
+    NothingLeft,
+)
+from hangtime.solver.data.problem import Mend, MotionProblem
+from hangtime.solver.doctor.examination.repair import as_asked, repaired
+from hangtime.solver.doctor.repairs import Repairs
+from hangtime.tests.helpers.doctored import jump
+
+
+@pytest.mark.parametrize("more", [0, 1000])
+def test_leaving_out_every_frame_is_refused(more: int) -> None:
+    frames = len(jump().frames)
+    assert len(repaired(jump(), Repairs(trim=frames - 1)).frames) == 1
+    with pytest.raises(NothingLeft) as told:
+        repaired(jump(), Repairs(trim=frames + more))
+    assert told.value.frames == frames
+
+
+def test_drift_is_taken_out_from_the_first_frame_that_is_asked_for_on() -> None:
+    first, last = jump().frames[[0, -1]].tolist()
+    asked = MotionProblem(frames=(first + 60.0, last), drift=(0.24, 0.18), rise=0.1)
+    slid = rising(0.1).of(sliding(0.3).of(jump()).recording).recording
+    without = as_asked(slid, asked)
+    apart = without.heads - jump().heads
+    np.testing.assert_allclose(apart, np.broadcast_to(apart[0], apart.shape), atol=1e-9)
+    np.testing.assert_allclose(without.heads[60], slid.heads[60], atol=1e-9)
+
+
+def test_repairs_are_left_out_one_by_one() -> None:
+    both = Repairs(mend=(Mend.FLIPS, Mend.NOISE), scale=2.0)
+    one = Repairs(mend=(Mend.NOISE,))
+    assert both.includes(one)
+    assert both.without(one) == Repairs(mend=(Mend.FLIPS,), scale=2.0)
+    assert not both.without(one).includes(one)
+    assert both.without(Repairs(scale=3.0)) == Repairs(mend=(Mend.FLIPS, Mend.NOISE))
