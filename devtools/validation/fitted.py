@@ -62,7 +62,7 @@ def fit_trial(trial: Trial) -> FittedTrial:
     loaded = load(Clip(trial.bvh, unit=UNIT, up="Y"), problem, stages)
     fitted = fit_subject(loaded.subject, stages)
     if not fitted.solved:
-        raise no_fit(fitted)
+        raise no_fit(loaded.subject, fitted)
     start = (float(loaded.subject.recording.frames[0]) - 1.0) / loaded.subject.recording.rate
     return FittedTrial(trial, fitted, start, stages.done[-1].seconds)
 

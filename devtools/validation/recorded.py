@@ -37,7 +37,8 @@ RECORDINGS: Mapping[str, Recorded] = {
 def fit_recording(recorded: Recorded) -> Fit:
     """Finds the contacts and fits. Raises SetUpError, every Fault that a clip can have, NoFit."""
     problem = MotionProblem(frames=recorded.frames)
-    fitted = fit_subject(measure(read(find(recorded.file)), problem), StageClock())
+    subject = measure(read(find(recorded.file)), problem)
+    fitted = fit_subject(subject, StageClock())
     if not fitted.solved:
-        raise no_fit(fitted)
+        raise no_fit(subject, fitted)
     return fitted

@@ -3,6 +3,7 @@
 from ...bridge.recipe.recording import RECORDING
 from ...bridge.recipe_syntax.toml_text import entries
 from ...solver.analysis.analyse import MIN_CLIP_DURATION
+from ...solver.data.faults import Damage
 from ...solver.doctor.examination.diagnose import Diagnosis
 from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs
@@ -18,7 +19,7 @@ EXCHANGED = (
 
 # {n}: the number, {speed} and {way}: of it, without its sign, and upwards or downwards, {amount}:
 # with its unit, {part}, {where}: "at frame 12" or "in frames 3 to 9, 40"; "" without frames.
-# {clock}: how the recording is played.
+# {clock}: how the recording is played. {end}: what hangs on the part and leaves its place.
 SENTENCES = {
     FindingKind.UP_AXIS: "The figure lies: another axis than Z points from its feet to its head.",
     FindingKind.BIND_POSE: "The rest pose is held {where}, and the motion jumps from it.",
@@ -28,7 +29,7 @@ SENTENCES = {
     FindingKind.SPIKE: "Frames are far from those around them, {part} by {amount}: {where}.",
     FindingKind.HELD_FRAMES: "The pose of the frame before is held amid a movement {where}.",
     FindingKind.DROPPED_FRAMES: "About {n:.0f} frames are missing: the whole body jumps {where}.",
-    FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}.",
+    FindingKind.BONE_LENGTH: "{part} changes its length by up to {n:.1f} cm {where}{end}.",
     FindingKind.NOISE: "The joints tremble by {n:.1f} mm from frame to frame, {part} most.",
     FindingKind.LEVEL_HIPS: "The hips keep one height, though the legs below them stretch and bend "
     "by {n:.0f} % of their length: how the body rises and sinks was left out, so nothing it does "
@@ -109,10 +110,23 @@ def finding_sentence(finding: Finding) -> str:
         part=finding.part or "the whole body",
         where=_where(finding),
         clock=_clock(finding),
+        end=f": {finding.end} leaves its place on it" if finding.end else "",
     )
     advice = ADVICE.get(finding.kind, "") if finding.remedy is None else ""
     named = finding.part and sentence.startswith("{part}")  # a bone is called as it is
     return f"{told if named else told[0].upper() + told[1:]}{advice}"
+
+
+def damage_sentence(damage: Damage) -> str:
+    """What is wrong with a recording that cannot be held, and how its poses are mended."""
+    kind = FindingKind(damage.kind)
+    remedy = Repairs(mend=damage.mend, time_scale=damage.time_scale)
+    about = damage.amount, damage.unit, damage.frames, damage.part
+    told = finding_sentence(Finding(kind, *about, remedy, end=damage.end))
+    if not damage.mend:
+        return told
+    key = remedy_text(Repairs(mend=damage.mend))
+    return f"{told} “{REMEDIES[kind]}”, or {key} in a recipe, mends it."
 
 
 def amount_text(finding: Finding) -> str:

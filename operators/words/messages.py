@@ -9,9 +9,19 @@ from ...solver.data import faults
 from ...solver.data.faults import Fault
 from ...solver.data.row_kinds import RowKind, Violation
 from ...solver.data.status import Status
-from .templates import AT_ITS_END, MISSED, OUTCOMES, PLACES, TEMPLATES
+from .doctor_text import damage_sentence
+from .templates import (
+    AT_ITS_END,
+    DAMAGED,
+    MISSED,
+    MORE_DAMAGES,
+    OUTCOMES,
+    PLACES,
+    TEMPLATES,
+)
 
 Translate = Callable[[str], str]
+MOST_DAMAGES = 2  # told with a failure; the doctor tells all
 
 
 def sentence(fault: Fault, translate: Translate = str) -> str:
@@ -106,6 +116,8 @@ class _Formatter(Formatter):
                 return value if value.endswith("?") else f"{value}."
             case "outcome":
                 return outcome(value, self._translate)
+            case "damages":
+                return _damages(value, self._translate)
             case "missed":
                 return "; ".join(self.missed(each) for each in value)
         return super().format_field(value, format_spec)
@@ -115,6 +127,17 @@ class _Formatter(Formatter):
         at_end = violation.kind is RowKind.RANGE and violation.amount == 0.0
         template = AT_ITS_END if at_end else MISSED[violation.kind]
         return self.format(self._translate(template), violation)
+
+
+def _damages(found: Sequence[faults.Damage], translate: Translate) -> str:
+    """What is wrong with a recording that may be why it cannot be held, and what to do about it,
+    after a sentence; nothing of none."""
+    if not found:
+        return ""
+    told = " ".join(damage_sentence(each) for each in found[:MOST_DAMAGES])
+    more = len(found) - MOST_DAMAGES
+    rest = translate(MORE_DAMAGES).format(more) if more > 0 else ""
+    return f" {translate(DAMAGED).format(told)}{rest}"
 
 
 def length(metres: float) -> str:

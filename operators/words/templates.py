@@ -148,20 +148,22 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.ContradictoryPins: "“{first}” and “{second}” contradict each other by {metres:length}; "
     "no pose holds both, so move one of them or move them together.",
     faults.NoSolution: (
-        "{reason:outcome}",
-        "{reason:outcome} Furthest off: {worst:missed}.",
-        "{reason:outcome} The best found goes {reached:percent} of the way; furthest off: "
-        "{worst:missed}.",
+        "{reason:outcome}{damages:damages}",
+        "{reason:outcome}{damages:damages} Furthest off: {worst:missed}.",
+        "{reason:outcome}{damages:damages} The best found goes {reached:percent} of the way; "
+        "furthest off: {worst:missed}.",
     ),
     faults.NoFit: (
-        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
-        "that begin earlier and end later, or correct the contacts' frames.",
-        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
-        "that begin earlier and end later, or correct the contacts' frames. Furthest off: "
+        "The recording's own contacts cannot be held by a motion that obeys physics."
+        "{damages:damages} Choose frames that begin earlier and end later, or correct the "
+        "contacts' frames.",
+        "The recording's own contacts cannot be held by a motion that obeys physics."
+        "{damages:damages} Choose frames that begin earlier and end later, or correct the "
+        "contacts' frames. Furthest off: {worst:missed}.",
+        "The recording's own contacts cannot be held by a motion that obeys physics."
+        "{damages:damages} Choose frames that begin earlier and end later, or correct the "
+        "contacts' frames. The best found goes {reached:percent} of the way; furthest off: "
         "{worst:missed}.",
-        "The recording's own contacts cannot be held by a motion that obeys physics. Choose frames "
-        "that begin earlier and end later, or correct the contacts' frames. The best found goes "
-        "{reached:percent} of the way; furthest off: {worst:missed}.",
     ),
     faults.UnseenSupport: (
         "From frame {first:g} to {last:g} neither foot touches the ground, yet the body does not "
@@ -322,6 +324,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.ObjectGone: "“{thing}” is not in the scene any more; remove it from the list in the "
     "panel World, or switch it off.",
 }
+DAMAGED = "The recording is damaged, which may be why, and Examine tells what mends it: {}"
+MORE_DAMAGES = " And {} more."
+
 PLACES = ("Recipe {path}", "Recipe {path}, line {line}")
 
 ANGLE_MISSED = "“{name}” is missed by {amount:.3g}°"

@@ -53,6 +53,7 @@ class Finding:
     frames: (first, last) scene frames of each place, in order; none where it is the whole clip.
     part: the bone that shows it most, or the contact point; "" where it is the whole body. amount:
     in `unit`, at its worst. alternative: another remedy, where the recording cannot tell which.
+    end: the bone that leaves its place on the part, where its length changes.
     """
 
     kind: FindingKind
@@ -62,6 +63,7 @@ class Finding:
     part: str = ""
     remedy: Repairs | None = None
     alternative: Repairs | None = None
+    end: str = ""
 
     def touches(self, first: float, last: float) -> bool:
         """Whether a place of it is among scene frames."""

@@ -33,6 +33,7 @@ def find_lengths(recording: Recording, figure: Figure) -> Finding | None:
         spans(recording, changed.any(axis=1)),
         recording.bones[recording.bones[bones[worst]].parent].name,
         Repairs(mend=(Mend.BONE_LENGTHS,)),
+        end=recording.bones[bones[worst]].name,
     )
 
 

@@ -23,7 +23,7 @@ from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule, gaps
-from ..data.faults import NoFit, NoSolution, Treadmill, UnseenSupport, computable
+from ..data.faults import Damage, NoFit, NoSolution, Treadmill, UnseenSupport, computable
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
@@ -42,6 +42,7 @@ from ..data.stance_move import StanceMove
 from ..data.traces import Traces, scaled_traces
 from ..doctor.examination.mistaken_support import with_cause
 from ..doctor.examination.repair import as_asked, floated
+from ..doctor.examination.suspects import damages_of
 from ..fitting.fit import Fit
 from ..loops.find_cycle import check_loop, find_cycle
 from ..loops.loop_report import loop_report
@@ -296,13 +297,15 @@ def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationRes
     """Adapts the subject's fit to its problem. Raises what `adapt` and `on_fit` do, and
     NotComputable."""
     if not fitted.solved:
-        return AdaptationResult(subject, unadapted(fitted), no_fit(fitted))
+        return AdaptationResult(subject, unadapted(fitted), no_fit(subject, fitted))
     subject = on_fit(subject, fitted)
     with clock.stage(ADAPTING), computable():
         adaptation = adapt(fitted, subject.problem, progress=clock.step)
         clock.ended(adaptation.outcome.violation)
-    fault = None if adaptation.solved else _unsolved(NoSolution, adaptation, subject.problem)
-    return AdaptationResult(subject, adaptation, fault)
+    if adaptation.solved:
+        return AdaptationResult(subject, adaptation, None)
+    fault = _unsolved(NoSolution, adaptation, subject.problem)
+    return AdaptationResult(subject, adaptation, replace(fault, damages=_damages(subject)))
 
 
 def on_fit(subject: Subject, fitted: Fit) -> Subject:
@@ -350,10 +353,19 @@ def solve(
     return adapt_fit(subject, fitted_by(subject, clock), clock)
 
 
-def no_fit(fitted: Fit) -> NoSolution:
-    """The fault of a fit that failed."""
+def no_fit(subject: Subject, fitted: Fit) -> NoSolution:
+    """The fault of a fit that failed, with what is wrong with the recording."""
     fault = _unsolved(NoFit, unadapted(fitted), MotionProblem())
-    return replace(fault, sound=_sound(fitted)) if isinstance(fault, NoFit) else fault
+    if not isinstance(fault, NoFit):
+        return fault
+    return replace(fault, sound=_sound(fitted), damages=_damages(subject))
+
+
+def _damages(subject: Subject) -> tuple[Damage, ...]:
+    """What is wrong with the recording, in its own lengths."""
+    recording = scaled_recording(subject.recording, 1.0 / subject.factor)
+    scene = scaled_problem(subject.problem, 1.0 / subject.factor).scene
+    return damages_of(recording, subject.problem.bones, scene)
 
 
 def _sound(failed: Fit) -> tuple[int, int] | None:

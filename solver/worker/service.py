@@ -119,7 +119,7 @@ class Service:
         if request.kind is RequestKind.FOLLOW and fitted.solved:
             return self._followed(request.id, subject, fitted)
         if not fitted.solved:
-            raise no_fit(fitted)
+            raise no_fit(subject, fitted)
         traces = subject.motion_traces(fitted.motion, fitted.schedule, subject.shape_changes)
         seconds, needs = watch.done[-1].seconds, fit_needs(fitted)
         return Fitted(request.id, fit_quality(fitted), seconds, traces, needs)

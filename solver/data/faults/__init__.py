@@ -105,6 +105,7 @@ from .scenes import TooSteep as TooSteep
 from .scenes import UnknownObject as UnknownObject
 from .solving import BadRecipe as BadRecipe
 from .solving import ContradictoryPins as ContradictoryPins
+from .solving import Damage as Damage
 from .solving import NoFit as NoFit
 from .solving import NoSolution as NoSolution
 from .solving import NotComputable as NotComputable

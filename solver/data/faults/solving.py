@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..problem import Mend
 from ..row_kinds import Violation
 from ..status import Status
 from .base import Fault
@@ -37,16 +38,35 @@ class ContradictoryPins(Fault):
     metres: float
 
 
+@dataclass(frozen=True)
+class Damage:
+    """What is wrong with a recording: the kind of finding by its word, its amount in `unit`, the
+    bone that shows it most, first and last scene frames of its places, the bone that leaves its
+    place where a length changes, what mends it if that is of the poses, and what durations times
+    it are right by."""
+
+    kind: str
+    amount: float
+    unit: str
+    frames: tuple[tuple[float, float], ...]
+    part: str
+    end: str
+    mend: tuple[Mend, ...] = ()
+    time_scale: float = 1.0
+
+
 @dataclass
 class NoSolution(Fault):
     """The solver ended without meeting every constraint; worst first.
 
-    reached: the share of the way that the best motion found goes.
+    reached: the share of the way that the best motion found goes. damages: of the recording, which
+    may be the cause.
     """
 
     reason: Status
     worst: tuple[Violation, ...] = ()
     reached: float = 0.0
+    damages: tuple[Damage, ...] = ()
 
 
 @dataclass

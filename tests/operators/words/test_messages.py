@@ -10,13 +10,16 @@ from typing import get_type_hints
 
 import hangtime.solver
 import pytest
+from hangtime.devtools.doctor.damages import stretched
 from hangtime.operators.words import templates
 from hangtime.operators.words.messages import sentence, together
 from hangtime.operators.words.templates import MISSED, OUTCOMES, TEMPLATES
 from hangtime.solver.data.faults import (
     BadRecipe,
+    Damage,
     Fault,
     MissingPart,
+    NoFit,
     NoSolution,
     RequestFault,
     SceneFault,
@@ -26,6 +29,9 @@ from hangtime.solver.data.faults import (
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scene import SupportBox
 from hangtime.solver.data.status import Status
+from hangtime.solver.doctor.examination.suspects import damages_of
+from hangtime.solver.doctor.finding import FindingKind
+from hangtime.tests.helpers.clips import JUMP, load_recording
 
 
 def all_faults() -> list[type[Fault]]:
@@ -48,6 +54,8 @@ def filled(hint: object) -> object:
     text = str(hint)
     if hint is Status:
         return Status.STALLED
+    if "Damage" in text:
+        return ()
     if "Violation" in text:
         return (Violation("Landing: Left heel 2", RowKind.PIN, 12.0),)
     if "SupportBox" in text:
@@ -128,6 +136,29 @@ def test_a_failed_solve_names_what_is_off() -> None:
     fault = NoSolution(Status.STALLED, (pin, Violation("flight 1", RowKind.BALANCE, 0.1)))
     assert "“Landing: Left heel 2” stays 12.3 mm from its place" in sentence(fault)
     assert "in flight 1" in sentence(fault)
+
+
+def test_a_failed_solve_names_what_is_wrong_with_the_recording_and_what_mends_it() -> None:
+    """A shank that grows by 5 %, unrepaired."""
+    clip = stretched(0.05).of(load_recording(JUMP)).recording
+    damages = damages_of(clip, {}, ())
+    for fault in (
+        NoFit(Status.STALLED, damages=damages),
+        NoSolution(Status.STALLED, (), 0.0, damages),
+    ):
+        words = sentence(fault)
+        assert "LeftLeg changes its length by up to 2.2 cm in frames" in words
+        assert "LeftFoot leaves its place on it" in words
+        assert '“Hold Lengths”, or repair = ["bone lengths"] in a recipe, mends it.' in words
+    assert damages_of(load_recording(JUMP), {}, ()) == ()
+
+
+@pytest.mark.parametrize("kind", FindingKind)
+def test_of_many_damages_two_are_told_and_the_others_counted(kind: FindingKind) -> None:
+    damage = Damage(kind.value, 1.0, "", ((3.0, 9.0),), "Knee", "", (), 0.8)
+    words = sentence(NoFit(Status.STALLED, damages=(damage,) * 5))
+    assert "{" not in words
+    assert "And 3 more." in words
 
 
 @pytest.mark.parametrize("kind", RowKind)
