@@ -13,6 +13,7 @@
   pairs [CLIP:FIRST-LAST ...] [--out DIR] adapt real jumps to each other's landings, and compare
   reach [--out DIR]                       how the body shares a reach, joint by joint
   solid [NAMES...] [--out DIR]            how solid the world is and how human the body, by MuJoCo
+  survey [NAMES...] [--out DIR]           every kind of edit on every jump: solved, told, how long
   rigs [NAMES...] [--out DIR]             map skeletons of all conventions, adapt one jump on each
   keys [--out DIR]                        what reduced keys leave of adapted jumps, in Blender
   loop [--out DIR]                        runs made loops: the seam in Blender, and by MuJoCo
@@ -54,6 +55,7 @@ COMMANDS: dict[str, tuple[str, list[str], bool | Requirements]] = {
     "figures": ("devtools.figures.main", [], True),
     "gallery": ("devtools.gallery.main", [], True),
     "pairs": ("devtools.pairs.main", [], True),
+    "survey": ("devtools.survey.main", [], False),
     "rigs": ("devtools.rigs.main", [], True),
     "reach": ("devtools.reach.main", [], False),
     "solid": ("devtools.solid.main", [], True),

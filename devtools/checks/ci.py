@@ -86,6 +86,7 @@ def shared_checks() -> Iterator[Check]:
     yield measure("recordings damaged, diagnosed and repaired", "doctor --table --quick")
     yield measure("reduced keys", "keys")
     yield measure("nothing goes through anything", "solid --quick")
+    yield measure("every kind of edit on a jump", "survey --quick")
     yield measure("seams of loops", "loop")
     yield measure("build", "build")
 

@@ -1,0 +1,1 @@
+"""A survey as an artist would make it: every kind of edit on every jump; never in the zip."""
