@@ -41,6 +41,8 @@ class OpenBlas:
         self._gemm, self._trmm = library.scipy_cblas_dgemm, library.scipy_cblas_dtrmm
         self._potrf = library.scipy_LAPACKE_dpotrf_work
         self._trtri = library.scipy_LAPACKE_dtrtri_work
+        self._potrs = library.scipy_LAPACKE_dpotrs_work
+        self._potri = library.scipy_LAPACKE_dpotri_work
         int_, char = ctypes.c_int, ctypes.c_char
         matrix: list[Any] = [ctypes.c_void_p, int_]
         scaled: list[Any] = [ctypes.c_double, *matrix]
@@ -48,6 +50,8 @@ class OpenBlas:
         self._trmm.argtypes = [*[int_] * 7, *scaled, *matrix]
         self._potrf.argtypes = [int_, char, int_, *matrix]
         self._trtri.argtypes = [int_, char, char, int_, *matrix]
+        self._potrs.argtypes = [int_, char, int_, int_, *matrix, *matrix]
+        self._potri.argtypes = [int_, char, int_, *matrix]
 
     def product(self, a: FloatArray, b: FloatArray) -> FloatArray:
         """a @ b (m, n), of a (m, k) and b (k, n) whose rows or columns are contiguous."""
@@ -102,6 +106,24 @@ class OpenBlas:
             row, rest = panel + j * block, (band - j) * n
             square = (Blas.ROWS, Blas.PLAIN, Blas.TRANSPOSED, rest, n, n, -1.0, row, n, row, n)
             self._gemm(*square, 1.0, diagonal + (1 + j) * step, n)
+
+    def factor(self, matrix: FloatArray) -> None:
+        """The Cholesky factor L of a matrix (n, n), contiguous, in its lower triangle. Raises
+        numpy.linalg.LinAlgError if it is not positive definite."""
+        n = len(matrix)
+        if self._potrf(Blas.COLUMNS, b"U", n, matrix.ctypes.data, n) != 0:
+            raise np.linalg.LinAlgError("the matrix is not positive definite")
+
+    def solve(self, factor: FloatArray, x: FloatArray) -> None:
+        """L^-T L^-1 x by such a factor L (n, n), in place. x: (n,), contiguous."""
+        n = len(factor)
+        self._potrs(Blas.COLUMNS, b"U", n, 1, factor.ctypes.data, n, x.ctypes.data, n)
+
+    def invert(self, factor: FloatArray) -> None:
+        """The lower triangle of L^-T L^-1 in place of such a factor's."""
+        n = len(factor)
+        if self._potri(Blas.COLUMNS, b"U", n, factor.ctypes.data, n) != 0:
+            raise np.linalg.LinAlgError("the factor has a zero on its diagonal")
 
     def forward(self, columns: FloatArray, x: FloatArray) -> None:
         """Forward substitution by columns that were eliminated, in place.

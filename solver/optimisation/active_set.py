@@ -6,18 +6,21 @@ A working set of rows is at its bounds. The row that is beyond its own the farth
 while those of the set stay where they are; a row whose multiplier comes to nothing on the way
 leaves the set, and the pushed one joins it. The dual's value grows with each change, so that no set
 comes twice. It begins with any set: from the last program's few changes are left, where a solver
-that begins with none makes hundreds.
+that begins with none makes hundreds. Where many are left, an interior-point method tells the set.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
+from ..numerics.dense_cholesky import DenseCholesky
+from .interior_point import predicted_sides
 
 ROUNDING = 1e-10  # of the farthest row's way, that a row may be beyond its bound
 MOST_CHANGES = 10  # times the rows; programs from nothing take one to four
 FRESH = 50  # changes, after which the set's inverse is made anew, for each leaves it some rounding
+PATIENCE = 100  # changes, which cost as much as the interior-point method that tells the rest
 DEPENDENT = 1e-9  # of a row's own stiffness: less is rounding, as every row gives by more
 
 
@@ -37,8 +40,13 @@ def multipliers_by_active_set(
     if not (program.farthest < np.inf and np.isfinite(program.stiffness).all()):
         raise np.linalg.LinAlgError("rows or bounds are not finite")
     working = _WorkingSet.of(program, guess)
-    changes = 0
+    changes, predicted = 0, bool(program.fixed.any())  # whose rows have no interior
     while not working.settled and changes < MOST_CHANGES * len(scale):
+        if changes >= PATIENCE and not predicted:
+            predicted = True
+            sides = predicted_sides(program.stiffness, program.lower, program.upper)
+            working = _WorkingSet.of(program, working.u if sides is None else sides)
+            continue
         more = working.change(FRESH)
         if not more:
             return None
@@ -72,14 +80,16 @@ class _Program:
 
 @dataclass
 class _WorkingSet:
-    """rows: (n,) that are at their bounds. inverse: (n, n) of their stiffness. u: (m,) multipliers.
-    reached: (m,) values of all rows, -S u. Both are of the bounds exactly until it changes."""
+    """rows: (n,) that are at their bounds. own: (n, n) their stiffness. u: (m,) multipliers.
+    reached: (m,) values of all rows, -S u. All are of the bounds exactly until it changes. inverse:
+    (n, n) of the rows' stiffness, once it is to change."""
 
     program: _Program
     rows: IntArray
-    inverse: FloatArray
+    own: FloatArray
     u: FloatArray
     reached: FloatArray
+    inverse: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @staticmethod
     def of(program: _Program, guess: FloatArray) -> "_WorkingSet":
@@ -97,7 +107,7 @@ class _WorkingSet:
         u = np.zeros(len(side))
         u[rows] = push
         reached = -push @ program.stiffness[rows]  # which is symmetric; rows lie together
-        return _WorkingSet(program, rows, np.linalg.inv(own), u, reached)
+        return _WorkingSet(program, rows, own, u, reached)
 
     @property
     def settled(self) -> bool:
@@ -115,7 +125,7 @@ class _WorkingSet:
     def change(self, enough: int) -> int:
         """Changes the set until it is settled, or has changed often enough, or rounding has taken
         over; how often it has."""
-        changes = 0
+        changes, self.inverse = 0, DenseCholesky.of(self.own).inverse()
         while changes < enough:
             row, beyond = self._worst()
             if beyond <= 0.0:
@@ -150,7 +160,9 @@ class _WorkingSet:
                 push = float(until[first])
             self.u[rows] -= sign * push * share
             self.u[row] += sign * push
-            self.reached -= sign * push * (column - share @ program.stiffness[rows])
+            given = np.zeros(len(column))
+            given[rows] = share
+            self.reached -= sign * push * (column - program.stiffness @ given)
             changes += 1
             if first < 0:
                 self._join(row, share, own)
