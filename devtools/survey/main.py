@@ -21,7 +21,7 @@ from ..recordings import find
 from .result import EditEnding, EditResult
 from .solve import RESULTS
 from .table import line, table
-from .windows import MOST, QUICK, edits, held, recordings
+from .windows import LONGEST_EDITS, MOST, QUICK, edits, held, recordings
 
 SOLVE = "devtools.survey.solve"
 LONGEST = 30.0  # s, that an edit may take on the average of a recording, on a busy machine too
@@ -34,7 +34,7 @@ def main(argv: list[str]) -> int:
     )
     parser.add_argument("--edits", nargs="+", metavar="EDIT", help="kinds of edits; default: all")
     parser.add_argument("--out", type=Path, default=Path("out"), metavar="DIR")
-    parser.add_argument("--quick", action="store_true", help="one jump alone")
+    parser.add_argument("--quick", action="store_true", help="one jump, without limp legs")
     options = parser.parse_args(argv)
     wrong = [edit for edit in options.edits or () if edit not in edits()]
     if wrong:
@@ -48,11 +48,16 @@ def main(argv: list[str]) -> int:
     began, results, failed = time.perf_counter(), list[EditResult](), list[str]()
     for name, path in clips.items():
         print(f"{name} ...", flush=True)
-        found, said = surveyed(path, options.edits or [*edits()])
+        found, said = surveyed(path, options.edits or kinds(options.quick))
         print(*map(line, found), sep="\n", flush=True)
         results += found
         failed += [f"{name}: {said}"] if said else []
     return tell(results, failed, time.perf_counter() - began, options.out)
+
+
+def kinds(quick: bool) -> list[str]:
+    """Names of the edits."""
+    return [name for name in edits() if not quick or name not in LONGEST_EDITS]
 
 
 def chosen(names: Sequence[str]) -> dict[str, Path]:

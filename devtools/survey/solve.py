@@ -84,5 +84,5 @@ def judged(result: AdaptationResult) -> tuple[EditEnding, str]:
         lines = map(str.strip, headline(report))
         near = nearness(report.fit_to_recording)  # of all edits the same
         return EditEnding.SOLVED, " | ".join(line for line in lines if line != near)
-    no_body = result.fault.status is Status.NO_BODY
+    no_body = result.adaptation.outcome.status is Status.NO_BODY
     return EditEnding.IMPOSSIBLE if no_body else EditEnding.MISSED, sentence(result.fault)
