@@ -49,7 +49,7 @@ def survey(name: str, recording: Recording, edits: Sequence[str]) -> Iterator[Ed
             _ = fitted.metric  # part of the stored fit
             ending, said = EditEnding.SOLVED, ""
             if not fitted.solved:
-                ending, said = EditEnding.MISSED, sentence(no_fit(fitted))
+                ending, said = EditEnding.MISSED, sentence(no_fit(jump.subject, fitted))
             seconds = time.process_time() - began
             steps = sum(len(outcome.steps) for outcome in fitted.outcomes)
             yield EditResult(name, frames, FIT, ending, seconds, steps, said)

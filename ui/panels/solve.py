@@ -185,7 +185,7 @@ def shown_warning(armature: bpy.types.Object) -> str:
     result = result_of(armature)
     if result is None or current_action(performer_of(armature)) != result:
         return ""
-    return action_settings(result).warning
+    return str(action_settings(result).warning)
 
 
 def beside_warning(armature: bpy.types.Object) -> list[str]:
