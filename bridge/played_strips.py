@@ -17,7 +17,8 @@ from .action_slots import span_of
 _SAME = 1e-4  # frames
 
 SEVERAL = "are several, and what they make together has no keys of its own"
-MUTED = "play nothing, for all are muted"
+MUTED, ALL_MUTED = "is muted", "are all muted"
+UNUSED = "would play if the nonlinear animation were not switched off"
 STARRED = "plays on a starred track, which would hide every result, so take the star off"
 
 

@@ -124,7 +124,7 @@ def check_cell(
     told = tuple(finding_sentence(each) for each in found)
     counted = {"findings": float(len(found))}
     if not fitted.solved:
-        return Done(told, counted, no_fit(loaded.subject, fitted))
+        return Done(told, counted, no_fit(loaded.subject, fitted, examined=True))
     quality = fit_quality(fitted)
     return Done((nearness(quality), *told), counted | fit_figures(quality))
 

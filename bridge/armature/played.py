@@ -12,8 +12,10 @@ from ...solver.data.faults import BlendedAction, Fault, NoAction, UnreadStrips
 from ..accessors import IN_STRIP, assigned_action, mapped_strip, take_strips
 from ..action_slots import all_curves, alone
 from ..played_strips import (
+    ALL_MUTED,
     MUTED,
     STARRED,
+    UNUSED,
     StripTime,
     played_strip,
     time_of,
@@ -38,7 +40,10 @@ def why_no_action(owner: bpy.types.Object) -> Fault:
     if data is None or data.action is not None:
         return NoAction(owner.name)
     unseen = [strip for track in data.nla_tracks for strip in track.strips]
-    why = why_unread(owner, strips) if strips else MUTED if unseen else None
+    if not strips and not unseen:
+        return NoAction(owner.name)
+    silent = UNUSED if not data.use_nla else MUTED if len(unseen) == 1 else ALL_MUTED
+    why = why_unread(owner, strips) if strips else silent
     if why is None:
         return NoAction(owner.name)
     return UnreadStrips(owner.name, tuple(strip.name for strip in strips or unseen), why)

@@ -106,8 +106,11 @@ def _hiding(thing: bpy.types.Object) -> list[bpy.types.FCurve]:
     data = thing.animation_data
     if data is None:
         return []
-    strips = [strip.action for track in data.nla_tracks for strip in track.strips]
-    actions = dict.fromkeys(each for each in (data.action, *strips) if each is not None)
+    strips = [strip for track in data.nla_tracks for strip in track.strips]
+    for strip in strips:  # which grows by what is in meta strips
+        strips += strip.strips
+    played = (data.action, *(strip.action for strip in strips))
+    actions = dict.fromkeys(each for each in played if each is not None)
     curves = [*data.drivers, *(curve for each in actions for curve in all_curves(each))]
     return [curve for curve in curves if curve.data_path == "hide_viewport"]
 

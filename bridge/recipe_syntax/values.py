@@ -41,7 +41,8 @@ def _no_toml(text: str, path: str, why: str) -> BadRecipe:
         return BadRecipe(path, text.count("\n") + 1, f"not TOML ({message}); correct the line")
     line, column = int(told[1]), int(told[2])
     there = text.split("\n")[line - 1][column - 1 :].strip()
-    hint = next((f" ({hint})" for begins, hint in _HINTS if begins.match(there)), "")
+    hints = _HINTS if message == "Invalid value" else ()
+    hint = next((f" ({hint})" for begins, hint in hints if begins.match(there)), "")
     at = f" at “{there[:40]}”" if there else ""
     return BadRecipe(path, line, f"not TOML{at} ({message}); correct it{hint}")
 

@@ -24,7 +24,7 @@ from .table import line, table
 from .windows import LONGEST_EDITS, MOST, QUICK, edits, held, recordings
 
 SOLVE = "devtools.survey.solve"
-LONGEST = 30.0  # s, that an edit may take on the average of a recording, on a busy machine too
+LONGEST = 120.0  # s, that an edit, a fit or the reading may take on average, on a busy machine too
 
 
 def main(argv: list[str]) -> int:
@@ -80,7 +80,7 @@ def surveyed(clip: Path, names: Sequence[str]) -> tuple[list[EditResult], str | 
     """All edits of a recording in a process of its own, for a crash is its own too; and why there
     are no more of them."""
     with tempfile.TemporaryDirectory() as folder:
-        said = run_module(SOLVE, [str(clip), folder, *names], MOST * LONGEST * len(names))
+        said = run_module(SOLVE, [str(clip), folder, *names], MOST * LONGEST * (len(names) + 2))
         path = Path(folder) / RESULTS
         found: list[EditResult] = undump(path) if path.is_file() else []
     return found, said

@@ -17,8 +17,9 @@ class EditEnding(Enum):
 
 @dataclass(frozen=True)
 class EditResult:
-    """One edit of a window. seconds: of the processor for the adaptation, without the fit; the
-    clock's where nothing else runs. steps: of the optimiser. said: the headline, or the fault."""
+    """One edit of a window. seconds: of the processor for the adaptation, without the fit, and for
+    the look at the recording where it failed; the clock's where nothing else runs. steps: of the
+    optimiser. said: the headline, or the fault."""
 
     recording: str
     frames: tuple[float, float]

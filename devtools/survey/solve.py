@@ -39,24 +39,35 @@ def main(argv: list[str]) -> int:
 
 def survey(name: str, recording: Recording, edits: Sequence[str]) -> Iterator[EditResult]:
     """Of each jump the fit, and where there is one its edits."""
-    frames = float(recording.frames[0]), float(recording.frames[-1])
+    whole = float(recording.frames[0]), float(recording.frames[-1])
     try:
-        for frames in jumps(recording):
+        found = jumps(recording)
+    except Fault as fault:
+        yield refused(name, whole, fault)
+        return
+    for frames in found:
+        try:
             if (jump := window(recording, frames)) is None:
                 continue
             began = time.process_time()
             fitted = fit_subject(jump.subject, StageClock())
             _ = fitted.metric  # part of the stored fit
-            ending, said = EditEnding.SOLVED, ""
-            if not fitted.solved:
-                ending, said = EditEnding.MISSED, sentence(no_fit(jump.subject, fitted))
             seconds = time.process_time() - began
-            steps = sum(len(outcome.steps) for outcome in fitted.outcomes)
-            yield EditResult(name, frames, FIT, ending, seconds, steps, said)
-            if fitted.solved:
-                yield from (edited(name, jump, fitted, edit) for edit in edits)
-    except Fault as fault:
-        yield EditResult(name, frames, FIT, EditEnding.IMPOSSIBLE, 0.0, 0, sentence(fault))
+        except Fault as fault:
+            yield refused(name, frames, fault)
+            continue
+        ending, said = EditEnding.SOLVED, ""
+        if not fitted.solved:
+            ending, said = EditEnding.MISSED, sentence(no_fit(jump.subject, fitted))
+        steps = sum(len(outcome.steps) for outcome in fitted.outcomes)
+        yield EditResult(name, frames, FIT, ending, seconds, steps, said)
+        if fitted.solved:
+            yield from (edited(name, jump, fitted, edit) for edit in edits)
+
+
+def refused(name: str, frames: tuple[float, float], fault: Fault) -> EditResult:
+    """Of frames that are not even fitted."""
+    return EditResult(name, frames, FIT, EditEnding.IMPOSSIBLE, 0.0, 0, sentence(fault))
 
 
 def edited(recording: str, window: Window, fitted: Fit, name: str) -> EditResult:

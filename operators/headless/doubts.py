@@ -5,16 +5,12 @@ from __future__ import annotations
 from ...solver.data.problem import MotionProblem
 from ...solver.data.reports.recording import Origin
 from ...solver.data.scaling import scaled_recording
-from ...solver.doctor.examination.diagnose import diagnose
+from ...solver.doctor.examination.suspects import faults_of
 from ...solver.doctor.figure import figure_of
-from ...solver.doctor.finding import Finding, FindingKind
 from ...solver.doctor.repairs import Repairs
 from ...solver.doctor.upright import find_up
 from ...solver.worker.pipeline import Subject
 from ..words.doubt_text import damage_doubts, doubts_of, file_doubts, floor_doubts, up_doubts
-
-# What objects of the scene may explain: a box to stand on, a train, a belt.
-ABOUT_GROUND = (FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING, FindingKind.FLOATING)
 
 
 def doubts_about(
@@ -25,24 +21,11 @@ def doubts_about(
     doubts = file_doubts(origin) + doubts_of(
         problem, subject.height, frames[:0] if problem.loop else frames
     )
-    doubts += damage_doubts(_damages(problem, subject))
+    unscaled = scaled_recording(subject.recording, 1.0 / subject.factor)
+    doubts += damage_doubts(faults_of(unscaled, problem))
     if repairs is None:
         return doubts
     lies = find_up(subject.recording, figure_of(subject.recording, problem.bones)) is not None
     doubts += up_doubts(repairs.up, lies=lies)
     feet, on_objects = subject.schedule.floor_m, bool(subject.stood_on)
     return doubts + floor_doubts(repairs.floor, feet, on_objects=on_objects)
-
-
-def _damages(problem: MotionProblem, subject: Subject) -> list[Finding]:
-    """What the doctor finds of the recording as it is solved, repairs included."""
-    recording = subject.recording
-    if subject.factor != 1.0:
-        recording = scaled_recording(recording, 1.0 / subject.factor)
-    found = diagnose(recording, problem.bones, None).findings
-    elsewhere = bool(problem.scene) or problem.loop
-    return [
-        each
-        for each in found
-        if not each.kind.note and not (elsewhere and each.kind in ABOUT_GROUND)
-    ]

@@ -82,7 +82,7 @@ class Solving:
 
     @property
     def has_result(self) -> bool:
-        """Whether it has changed what stays though it is ended: a step to undo."""
+        """Whether what it has changed stays when it is ended: a step to undo."""
         return self.analysed or self.state is SolveState.PREPARING
 
     @property

@@ -43,7 +43,7 @@ class TaskOperator(ReadyOperator, FaultyOperator):
     """Mixin: `task` does the work; waits for it in scripts, looks now and then in the interface."""
 
     def task(self, context: bpy.types.Context) -> Task:
-        """The work. Raises any Fault, having changed nothing."""
+        """The work. Raises any Fault, having changed nothing but what `Solving.analysed` tells."""
         raise NotImplementedError
 
     def run(self, context: bpy.types.Context) -> OperatorResult:

@@ -120,7 +120,8 @@ def finding_sentence(finding: Finding) -> str:
 def damage_sentence(damage: Damage) -> str:
     """What is wrong with a recording that cannot be held, and how its poses are mended."""
     kind = FindingKind(damage.kind)
-    remedy = Repairs(mend=damage.mend, time_scale=damage.time_scale)
+    mends = Repairs(mend=damage.mend, time_scale=damage.time_scale)
+    remedy = None if mends == Repairs() else mends
     about = damage.amount, damage.unit, damage.frames, damage.part
     told = finding_sentence(Finding(kind, *about, remedy, end=damage.end))
     if not damage.mend:

@@ -324,7 +324,9 @@ TEMPLATES: dict[type[Fault], str | tuple[str, ...]] = {
     faults.ObjectGone: "“{thing}” is not in the scene any more; remove it from the list in the "
     "panel World, or switch it off.",
 }
-DAMAGED = "The recording is damaged, which may be why, and Examine tells what mends it: {}"
+DAMAGED = (
+    "The recording is damaged, which may be why; Examine, or the command doctor, tells more: {}"
+)
 MORE_DAMAGES = " And {} more."
 
 PLACES = ("Recipe {path}", "Recipe {path}, line {line}")

@@ -30,7 +30,7 @@ OFF = 0.12  # of a scale of time; a run's short flights are 5 % off in honest re
 USUAL_NEAR, PRECISE_FALL = 0.035, 0.35  # a fall of 0.35 s tells the rate to 3.5 %, half of it 7 %
 # A wrong size is mostly a wrong unit: metres, centimetres, millimetres, inches, feet.
 UNITS = (1.0, 0.01, 0.001, 0.0254, 0.3048)  # m
-WRITTEN = (0.01, 0.001, 0.0254)  # m; units in which files are, whose numbers are taken for metres
+WRITTEN = (1.0, 0.01, 0.001, 0.0254)  # m; units in which files are, taken for metres
 UNIT_RATIOS = tuple(
     sorted({float(f"{one / other:.12g}") for one in UNITS for other in UNITS if one != other})
 )

@@ -47,7 +47,10 @@ def multipliers_by_active_set(
             sides = predicted_sides(program.stiffness, program.lower, program.upper)
             working = _WorkingSet.of(program, working.u if sides is None else sides)
             continue
-        more = working.change(FRESH)
+        try:
+            more = working.change(FRESH)
+        except np.linalg.LinAlgError:  # by rounding the set's rows depend on each other
+            return None
         if not more:
             return None
         changes += more

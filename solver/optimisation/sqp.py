@@ -236,7 +236,7 @@ class _ChordIterate:
         fresh = slow or self._stale or (self._renewing and not self._nearly_there())
         linearised = self._linearise() if fresh or self._linearised is None else self._linearised
         d, longest = self._step(linearised)
-        ahead = fresh and longest == 1.0 and self._watched is None
+        ahead = fresh and longest == 1.0 and self._watched is None and np.isfinite(d).all()
         if ahead and self.violation > GUARDS_JOIN and self.widen(self.x + d):
             assert self._linearised is not None
             linearised = self._linearised

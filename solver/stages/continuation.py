@@ -1,6 +1,7 @@
 """Continuation: a far edit's pins and bounds move in several steps (Allgower & Georg 1990).
 
-Guards join at the end of each step; what they hold back goes on without them, if it must.
+Guards join within each step, ahead of what would break them; what they hold back goes on without
+them, if it must.
 """
 
 from collections.abc import Sequence
@@ -76,7 +77,7 @@ def _restored(
     progress: Progress | None,
     ways: Sequence[tuple[Guard, ...]],
 ) -> Outcome:
-    """A continuation step; the guards join in at its end, in the first of `ways` that helps."""
+    """A continuation step; the guards join within it, in the first of `ways` that helps."""
     attempt = partial(
         restore,
         feasible,

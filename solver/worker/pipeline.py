@@ -23,7 +23,7 @@ from ..analysis.pinned_places import chosen_contacts, phase_of
 from ..body.inverse_dynamics import InverseDynamics
 from ..constraints.bone_names import check_bones
 from ..data.contacts import ContactSchedule, gaps
-from ..data.faults import Damage, NoFit, NoSolution, Treadmill, UnseenSupport, computable
+from ..data.faults import NoFit, NoSolution, Treadmill, UnseenSupport, computable
 from ..data.loop import Cycle
 from ..data.problem import MotionProblem
 from ..data.recording import PoseTrack, Recording
@@ -39,6 +39,7 @@ from ..data.scaling import (
 )
 from ..data.scene import SceneObject
 from ..data.stance_move import StanceMove
+from ..data.status import Status
 from ..data.traces import Traces, scaled_traces
 from ..doctor.examination.mistaken_support import with_cause
 from ..doctor.examination.repair import as_asked, floated
@@ -305,7 +306,7 @@ def adapt_fit(subject: Subject, fitted: Fit, clock: StageClock) -> AdaptationRes
     if adaptation.solved:
         return AdaptationResult(subject, adaptation, None)
     fault = _unsolved(NoSolution, adaptation, subject.problem)
-    return AdaptationResult(subject, adaptation, replace(fault, damages=_damages(subject)))
+    return AdaptationResult(subject, adaptation, _explained(fault, subject))
 
 
 def on_fit(subject: Subject, fitted: Fit) -> Subject:
@@ -353,19 +354,23 @@ def solve(
     return adapt_fit(subject, fitted_by(subject, clock), clock)
 
 
-def no_fit(subject: Subject, fitted: Fit) -> NoSolution:
-    """The fault of a fit that failed, with what is wrong with the recording."""
+def no_fit(subject: Subject, fitted: Fit, *, examined: bool = False) -> NoSolution:
+    """The fault of a fit that failed, with what is wrong with the recording unless that is
+    examined already."""
     fault = _unsolved(NoFit, unadapted(fitted), MotionProblem())
     if not isinstance(fault, NoFit):
         return fault
-    return replace(fault, sound=_sound(fitted), damages=_damages(subject))
+    fault = replace(fault, sound=_sound(fitted))
+    return fault if examined else _explained(fault, subject)
 
 
-def _damages(subject: Subject) -> tuple[Damage, ...]:
-    """What is wrong with the recording, in its own lengths."""
+def _explained(fault: NoSolution, subject: Subject) -> NoSolution:
+    """With what is wrong with the recording, in its own lengths, where that may be the cause: not
+    of a solve that the artist stopped, nor where all that is asked for holds."""
+    if fault.reason in (Status.STOPPED, Status.NO_BODY):
+        return fault
     recording = scaled_recording(subject.recording, 1.0 / subject.factor)
-    scene = scaled_problem(subject.problem, 1.0 / subject.factor).scene
-    return damages_of(recording, subject.problem.bones, scene)
+    return replace(fault, damages=damages_of(recording, subject.problem))
 
 
 def _sound(failed: Fit) -> tuple[int, int] | None:

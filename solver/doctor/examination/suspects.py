@@ -1,27 +1,37 @@
-"""What is wrong with a recording whose fit failed: it may be the cause."""
+"""What is wrong with a recording that is to be solved: told before, and where its solve failed, for
+it may be the cause."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-
-from ...data.faults import Damage, Fault
+from ...data.faults import Damage
+from ...data.problem import MotionProblem
 from ...data.recording import Recording
-from ...data.scene import SceneObject
-from ..finding import Finding
+from ..finding import Finding, FindingKind
 from ..repairs import Repairs
 from .diagnose import diagnose
 
+# What objects of the scene may explain: a box to stand on, a train, a belt.
+ABOUT_GROUND = (FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING, FindingKind.FLOATING)
 
-def damages_of(
-    recording: Recording, chosen: Mapping[str, str], scene: Sequence[SceneObject]
-) -> tuple[Damage, ...]:
-    """All that the doctor finds but notes; none where it cannot look, which then is no cause.
-    chosen: bones by parts of the body, as in a problem. scene: what it may stand on."""
+
+def faults_of(recording: Recording, problem: MotionProblem) -> list[Finding]:
+    """All that the doctor finds but notes, and what the problem explains: its scene, a treadmill's
+    loop, a stature that it states. recording: in its own lengths."""
+    explained = set(ABOUT_GROUND) if problem.scene or problem.loop else set[FindingKind]()
+    if problem.height is not None:
+        explained.add(FindingKind.SIZE)
+    found = diagnose(recording, problem.bones, None).findings
+    return [each for each in found if not each.kind.note and each.kind not in explained]
+
+
+def damages_of(recording: Recording, problem: MotionProblem) -> tuple[Damage, ...]:
+    """What may be why a solve failed; none where the doctor cannot look. A fit finds the floor's
+    height by itself."""
     try:
-        found = diagnose(recording, chosen, scene=scene).findings
-    except Fault:
+        found = faults_of(recording, problem)
+    except Exception:  # noqa: BLE001 - it only explains, and must not hide the fault itself
         return ()
-    return tuple(_damage(each) for each in found if not each.kind.note)
+    return tuple(_damage(each) for each in found if each.kind is not FindingKind.FLOOR)
 
 
 def _damage(finding: Finding) -> Damage:

@@ -27,6 +27,7 @@ SLIDES = 0.06  # m along the floor, of a foot in one stance; honest ones move by
 SLIDE_SHARE = 1.0 / 3.0  # of the time in which feet stand; one may be drawn along the floor
 LEAST_STANDING = 0.3  # s
 LIFTED = 0.03  # m, above the other foot, whether that is flat or not
+FEWEST = 3  # frames, of which velocities can be told
 STILL = 0.1  # m/s; of two feet that differ by more one is drawn along the floor
 # Of the way that is taken out: feet tell its velocities to 2 cm/s and its heights to 1 cm; where
 # none does, what floats is likely within 10 cm and as fast as 15 cm/s.
@@ -51,6 +52,8 @@ def find_floating(recording: Recording, figure: Figure) -> Finding | None:
 def held_to_the_ground(recording: Recording, figure: Figure) -> Recording:
     """With the whole body moved, slowly, so that feet that stand flat and rise are on one floor, at
     the middle of their heights, and those that slide stay where they are; others as they are."""
+    if len(recording.frames) < FEWEST:
+        return recording
     ground = _Ground.of(recording, figure)
     moves = np.array([ground.slides() > 0.0, ground.slides() > 0.0, ground.rises() > 0.0])
     if not moves.any():
@@ -96,7 +99,8 @@ class _Ground:
         return float(high - low) if floats else 0.0
 
     def slides(self) -> float:
-        """How far, m, feet slide in a stance at most; 0 where most do not."""
+        """How far, m, feet slide in a stance at most; 0 where they do so for less than a third of
+        the time in which they stand."""
         ways, frames = self._stances, float(self.tells.sum())
         slid = [float(np.linalg.norm(np.ptp(way[:, :2], axis=0))) for way in ways]
         sliding = sum(len(way) for way, far in zip(ways, slid, strict=True) if far > SLIDES)

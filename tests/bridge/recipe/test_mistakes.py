@@ -117,6 +117,10 @@ def test_what_is_no_toml_is_quoted_with_what_was_probably_meant(line: str, told:
     assert (fault.line, told in fault.problem) == (3, True)
 
 
+def test_nothing_is_guessed_of_what_stands_behind_a_value() -> None:
+    assert refused("frames = [1, 9] m").problem.endswith("correct it")
+
+
 @pytest.mark.parametrize(("old", "new"), WRONG)
 def test_what_is_wrong_is_named_with_its_line(old: str, new: str) -> None:
     assert FULL.count(old) == 1

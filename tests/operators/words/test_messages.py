@@ -26,9 +26,11 @@ from hangtime.solver.data.faults import (
     TextCure,
     UnseenSupport,
 )
+from hangtime.solver.data.problem import MotionProblem
 from hangtime.solver.data.row_kinds import RowKind, Violation
 from hangtime.solver.data.scene import SupportBox
 from hangtime.solver.data.status import Status
+from hangtime.solver.doctor.examination import suspects
 from hangtime.solver.doctor.examination.suspects import damages_of
 from hangtime.solver.doctor.finding import FindingKind
 from hangtime.tests.helpers.clips import JUMP, load_recording
@@ -141,7 +143,7 @@ def test_a_failed_solve_names_what_is_off() -> None:
 def test_a_failed_solve_names_what_is_wrong_with_the_recording_and_what_mends_it() -> None:
     """A shank that grows by 5 %, unrepaired."""
     clip = stretched(0.05).of(load_recording(JUMP)).recording
-    damages = damages_of(clip, {}, ())
+    damages = damages_of(clip, MotionProblem())
     for fault in (
         NoFit(Status.STALLED, damages=damages),
         NoSolution(Status.STALLED, (), 0.0, damages),
@@ -150,7 +152,17 @@ def test_a_failed_solve_names_what_is_wrong_with_the_recording_and_what_mends_it
         assert "LeftLeg changes its length by up to 2.2 cm in frames" in words
         assert "LeftFoot leaves its place on it" in words
         assert '“Hold Lengths”, or repair = ["bone lengths"] in a recipe, mends it.' in words
-    assert damages_of(load_recording(JUMP), {}, ()) == ()
+    assert damages_of(load_recording(JUMP), MotionProblem()) == ()
+
+
+def test_what_goes_wrong_in_looking_for_a_cause_hides_no_fault(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def broken(*_: object) -> None:
+        raise ValueError
+
+    monkeypatch.setattr(suspects, "diagnose", broken)
+    assert damages_of(load_recording(JUMP), MotionProblem()) == ()
 
 
 @pytest.mark.parametrize("kind", FindingKind)

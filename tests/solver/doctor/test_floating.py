@@ -15,7 +15,7 @@ from hangtime.solver.doctor.finding import FindingKind
 from hangtime.solver.doctor.local_poses import runs
 from hangtime.solver.doctor.repairs import Repairs
 from hangtime.solver.doctor.stance.flat_feet import flat_feet
-from hangtime.solver.doctor.stance.floating import find_floating
+from hangtime.solver.doctor.stance.floating import find_floating, held_to_the_ground
 from hangtime.tests.helpers.clips import JUMP, load_recording
 from hangtime.tests.helpers.doctored import figure, jump
 
@@ -86,3 +86,8 @@ def test_the_problem_that_asks_for_it_is_held_and_tells_how_far_it_floated() -> 
     away = damaged.heads[-1, 0] - held.heads[-1, 0]
     assert floated(damaged, asked, last) == pytest.approx(tuple(away))
     assert floated(damaged, MotionProblem(), last) == (0.0, 0.0, 0.0)
+
+
+def test_a_frame_alone_floats_nowhere() -> None:
+    alone = jump().part(slice(0, 1))
+    assert held_to_the_ground(alone, figure()) is alone

@@ -7,6 +7,7 @@ from hangtime.devtools.doctor.damages import joined, sized, slowed
 from hangtime.solver.data.recording import Recording
 from hangtime.solver.doctor.examination.diagnose import Diagnosis, diagnose
 from hangtime.solver.doctor.examination.repair import repaired
+from hangtime.solver.doctor.falls import person_factor
 from hangtime.tests.helpers.clips import JUMP, load_recording
 
 RATE = 120.0  # Hz
@@ -20,6 +21,12 @@ def jump() -> Recording:
 
 def sizes(factor: float) -> Recording:
     return sized(factor, "size").of(jump()).recording
+
+
+@pytest.mark.parametrize("height", [1.2, 1.5, 1.9])
+def test_a_person_keeps_the_height_that_they_have(height: float) -> None:
+    assert person_factor(height) == 1.0
+    assert person_factor(height / 0.0254) == 0.0254  # in inches
 
 
 def kinds(diagnosis: Diagnosis) -> list[str]:

@@ -126,7 +126,8 @@ def test_keys_that_miss_what_was_solved_are_told_first(
     assert (out / "report.txt").read_text(encoding="utf-8").startswith(told)
     assert f"\n{told}" in capsys.readouterr().out.split("Solved")[0]
     report = json.loads((out / "report.json").read_text(encoding="utf-8"))
-    assert report["missed_contacts"] == [{"name": "Left toe 2", "mm": 9.0, "frame": 243.0}]
+    expected = {"name": "Left toe 2", "mm": 9.0, "frame": 243.0, "scaled": []}
+    assert report["missed_contacts"] == [expected]
 
 
 def sliced(found: tuple[MissedContact, ...]) -> Incremental[tuple[MissedContact, ...]]:

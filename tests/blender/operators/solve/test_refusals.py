@@ -98,6 +98,12 @@ def muted_strip(armature: bpy.types.Object) -> None:
     track.mute, data.action = True, None
 
 
+def unused_strip(armature: bpy.types.Object) -> None:
+    muted_strip(armature)
+    data = armature.animation_data
+    data.nla_tracks[0].mute = data.use_nla = False
+
+
 def snapshot_curve(armature: bpy.types.Object) -> bpy.types.FCurve:
     return next(c for c in curves_of(armature) if "LeftUpLeg" in c.data_path)
 
@@ -119,10 +125,8 @@ def assert_refused(operator: Callable[[], set[str]], armature: bpy.types.Object,
         (another_object, "“Cube” is or holds no armature"),
         (no_action, "has no keyframes"),
         (empty_action, "has no keyframes"),
-        (
-            muted_strip,
-            "cannot be read: Take play nothing, for all are muted. Leave one strip unmuted",
-        ),
+        (muted_strip, "cannot be read: Take is muted. Leave one strip unmuted"),
+        (unused_strip, "cannot be read: Take would play if the nonlinear animation were not"),
         (edit_mode, "Leave edit mode first"),
         (too_short, "Only 0.08 s of the recording"),
         (bad_scale, "must be the same, and above zero"),
@@ -213,10 +217,7 @@ def no_contacts(armature: bpy.types.Object) -> None:
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [
-        (
-            muted_strip,
-            "cannot be read: Take play nothing, for all are muted. Leave one strip unmuted",
-        ),
+        (muted_strip, "cannot be read: Take is muted. Leave one strip unmuted"),
         (edit_mode, "Leave edit mode first"),
         (no_contacts, "Press Analyze first"),
         (contradiction, "contradict each other by"),
