@@ -3,7 +3,9 @@ it may be the cause."""
 
 from __future__ import annotations
 
-from ...data.faults import Damage
+import logging
+
+from ...data.faults import Damage, Fault
 from ...data.problem import MotionProblem
 from ...data.recording import Recording
 from ..finding import Finding, FindingKind
@@ -15,8 +17,8 @@ ABOUT_GROUND = (FindingKind.FLOOR, FindingKind.SLIDING, FindingKind.RISING, Find
 
 
 def faults_of(recording: Recording, problem: MotionProblem) -> list[Finding]:
-    """All that the doctor finds but notes, and what the problem explains: its scene, a treadmill's
-    loop, a stature that it states. recording: in its own lengths."""
+    """All that the doctor finds, without its notes and without what the problem explains: by its
+    scene, a treadmill's loop, a stature that it states. recording: in its own lengths."""
     explained = set(ABOUT_GROUND) if problem.scene or problem.loop else set[FindingKind]()
     if problem.height is not None:
         explained.add(FindingKind.SIZE)
@@ -25,11 +27,14 @@ def faults_of(recording: Recording, problem: MotionProblem) -> list[Finding]:
 
 
 def damages_of(recording: Recording, problem: MotionProblem) -> tuple[Damage, ...]:
-    """What may be why a solve failed; none where the doctor cannot look. A fit finds the floor's
-    height by itself."""
+    """What may be why a solve failed; none where the doctor cannot look, of which a mistake of its
+    own is logged. A fit finds the floor's height by itself."""
     try:
         found = faults_of(recording, problem)
-    except Exception:  # noqa: BLE001 - it only explains, and must not hide the fault itself
+    except Fault:
+        return ()
+    except Exception:  # it only explains, and must not hide the fault itself
+        logging.getLogger(__name__).exception("The doctor failed on the recording")
         return ()
     return tuple(_damage(each) for each in found if each.kind is not FindingKind.FLOOR)
 

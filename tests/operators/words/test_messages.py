@@ -156,13 +156,14 @@ def test_a_failed_solve_names_what_is_wrong_with_the_recording_and_what_mends_it
 
 
 def test_what_goes_wrong_in_looking_for_a_cause_hides_no_fault(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def broken(*_: object) -> None:
         raise ValueError
 
     monkeypatch.setattr(suspects, "diagnose", broken)
     assert damages_of(load_recording(JUMP), MotionProblem()) == ()
+    assert [record.exc_info[0] for record in caplog.records if record.exc_info] == [ValueError]
 
 
 @pytest.mark.parametrize("kind", FindingKind)
