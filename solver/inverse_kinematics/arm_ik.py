@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..body.anatomy import Part
-from ..body.kinematics import BodyPoint, forward_kinematics
+from ..body.kinematics import forward_kinematics
 from ..numerics.splines import THIRD_DERIVATIVE_WEIGHT, dense_instants
 from ..transcription.contact_pins import PointContact
 from ..transcription.motion import Motion
@@ -54,17 +54,18 @@ def _turn_arm(
     moved = angles[during]
     pelvis = forward_kinematics(character, moved).centres[:, 0] + motion.com(times[during])
     chain = _chain(motion, point.body)
+    owner, left = character.body_of_angle[chain], np.arange(len(during))
     for _ in range(IK_ITERATIONS):
-        posed = forward_kinematics(character, moved)
-        at = posed.points([point])[:, 0] - posed.centres[:, 0] + pelvis
-        pelvis_jacobian = posed.point_jacobian([BodyPoint(0, np.zeros(3))])
-        jacobian = (posed.point_jacobian([point]) - pelvis_jacobian)[:, 0]
-        jacobian = jacobian[:, :, chain]
-        square = jacobian @ np.swapaxes(jacobian, 1, 2) + IK_DAMPING * np.eye(3)
-        turn = np.swapaxes(jacobian, 1, 2) @ np.linalg.solve(square, (place - at)[..., None])
+        posed = forward_kinematics(character, moved[left])
+        at = posed.points([point])
+        off = place - (at[:, 0] - posed.centres[:, 0] + pelvis[left])
+        columns = np.cross(posed.axes[:, chain], at - posed.centres[:, owner])  # (T, n, 3)
+        square = np.swapaxes(columns, 1, 2) @ columns + IK_DAMPING * np.eye(3)
+        turn = columns @ np.linalg.solve(square, off[..., None])
         step = np.clip(turn[..., 0], -MAX_ANGLE_STEP, MAX_ANGLE_STEP)
-        moved[:, chain] += step
-        if np.abs(step).max() < SETTLED:
+        moved[np.ix_(left, chain)] += step
+        left = left[np.abs(step).max(axis=1) >= SETTLED]
+        if not len(left):
             break
     share = np.clip((times[during] - start) / EASE_IN, 0.0, 1.0)[:, None]
     share = share**2 * (3.0 - 2.0 * share)

@@ -13,7 +13,7 @@ from ..arrays import FloatArray, IntArray
 from .openblas import openblas, product
 
 BANDWIDTH = 3
-NEGLIGIBLE = 1e-8  # of a column's length
+NEGLIGIBLE = 1e-6  # of a column's length
 LOOK = 8  # blocks, after which a substitution looks whether it may end
 REACH = 64  # blocks that there is room for at once; most substitutions need as many
 
