@@ -7,6 +7,7 @@ redundant rows (two feet planted, pins on one rigid foot) without choosing among
 a small quadratic program (bounded_qp.py).
 """
 
+from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass
 
@@ -30,7 +31,9 @@ PENALTY = 2e4
 MAX_SWEEPS = 8
 SWEEP_REDUCTION = 1e-3  # of the equality residual, at which sweeps end
 SWEEP_REST = 0.25  # of a tolerance, at which sweeps end too: closer, weak rows cost long ways
-RIDGE = 1e-8  # of the diagonal
+# Of the diagonal, from a rounding on as little as will do: what steps cost along weak directions is
+# a rounding of it as well, and a ridge of 1e-8 turned toes by 26 rad.
+RIDGES = tuple(10.0**k for k in range(-14, -7))
 AT_ONCE = 1000  # rows that are sorted; all at once would be a copy of them all
 MERIT_DEAD_BAND = 0.5  # of a bound's tolerance, which the merit function ignores
 
@@ -160,14 +163,16 @@ class LinearisedProblem:
         return system
 
     def _factored(self) -> CholeskyFactor:
-        """The matrix's factor, which takes its place; far from any motion rounding can spoil it,
-        and a small ridge mends that."""
-        try:
-            return self._matrix.factor(overwrite=True)
-        except np.linalg.LinAlgError:
-            self._matrix = self._system()
-            self._matrix.add_diagonal(RIDGE * np.diagonal(self._matrix.lower[0], axis1=1, axis2=2))
-            return self._matrix.factor(overwrite=True)
+        """The matrix's factor, which takes its place; rounding can spoil it, and the least ridge
+        that does mends that. Raises numpy.linalg.LinAlgError where none does."""
+        for ridge in (0.0, *RIDGES):
+            if ridge:
+                self._matrix = self._system(self._matrix)
+                diagonal = np.diagonal(self._matrix.lower[0], axis1=1, axis2=2)
+                self._matrix.add_diagonal(ridge * diagonal)
+            with suppress(np.linalg.LinAlgError):
+                return self._matrix.factor(overwrite=True)
+        raise np.linalg.LinAlgError("the matrix is not positive definite")
 
     def widened(self, transcription: Transcription, guards: Rows) -> "LinearisedProblem":
         """The same with other guard rows, which are the last: they need no new factor."""
