@@ -32,6 +32,7 @@ class BoundedStep:
     """Bound corrections of steps on one factor of A, by row generation.
 
     columns(rows) gives G' of rows (m,). begins: (R,) block in which each row's column begins.
+    series: (R,) of rows that are one thing at many instants; of those only the peaks join.
     bounds: lower, upper (R,). tolerance: (R,). sides: (R,) initial working set, 1 for rows at their
     upper bounds, -1 at their lower ones, 0 between. multipliers: (R,), of the last correction.
     """
@@ -41,11 +42,13 @@ class BoundedStep:
         factor: Factor,
         columns: Callable[[IntArray], LocalColumns],
         begins: IntArray,
+        series: IntArray,
         bounds: tuple[FloatArray, FloatArray],
         tolerance: FloatArray,
         sides: FloatArray,
     ) -> None:
-        self._factor, self._columns, self._begins = factor, columns, begins
+        self._factor, self._columns = factor, columns
+        self._begins, self._series = begins, series
         self.lower, self.upper = bounds
         self._tolerance = STEP_TOLERANCE * tolerance
         self.multipliers = np.zeros(len(tolerance))
@@ -83,13 +86,25 @@ class BoundedStep:
             beyond = violation(reached, self.lower, self.upper)
             off = np.abs(beyond) / self._tolerance
             off[self._rows] = 0.0
-            worst = np.argsort(-off, kind="stable")[: MOST_ROWS - len(self._rows)]
-            more = np.sort(worst[off[worst] > 1.0])
+            more = self._peaks(np.flatnonzero(off > 1.0), off)
+            worst = np.argsort(-off[more], kind="stable")[: MOST_ROWS - len(self._rows)]
+            more = np.sort(more[worst])
             if not len(more):
                 break
             self._sides[more] = np.sign(beyond[more])
             self._add(more)
         return d, reached
+
+    def _peaks(self, rows: IntArray, off: FloatArray) -> IntArray:
+        """Those of rows (m,) that are no less far off than what is next to them in their series:
+        who brings an arm out of the trunk brings it out at the instants beside as well."""
+        rows = rows[np.lexsort((self._begins[rows], self._series[rows]))]
+        alike = self._series[rows[1:]] == self._series[rows[:-1]]
+        rises = off[rows[1:]] > off[rows[:-1]]
+        peaks = np.ones(len(rows), dtype=bool)
+        peaks[1:] &= ~alike | rises
+        peaks[:-1] &= ~(alike & rises)
+        return np.asarray(rows[peaks])
 
     def _add(self, rows: IntArray) -> None:
         groups = self._begins[rows] // GROUP

@@ -202,6 +202,7 @@ class LinearisedProblem:
             self._factor,
             bounds.columns,
             bounds.begins,
+            np.where(rows.guards, rows.owner, -1 - np.arange(len(rows.value)))[self._free],
             (self._scaled(rows.lower, self._free), self._scaled(rows.upper, self._free)),
             self._scaled(self._tolerance, self._free),
             was,

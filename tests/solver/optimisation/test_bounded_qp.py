@@ -152,11 +152,14 @@ class Problem:
     def columns(self, rows: IntArray) -> LocalColumns:
         return LocalColumns(0, np.moveaxis(self.G[rows], 0, 2))
 
-    def step(self, sides: FloatArray | None = None) -> BoundedStep:
+    def step(self, sides: FloatArray | None = None, series: int = 0) -> BoundedStep:
+        """series: how many the rows are of; 0 each is its own."""
+        each = np.arange(len(self.z))
         return BoundedStep(
             self.factor,
             self.columns,
             np.zeros(len(self.z), dtype=int),
+            each % series if series else each,
             (self.lower, self.upper),
             np.full(len(self.z), 1e-6),
             np.zeros(len(self.z)) if sides is None else sides,
@@ -220,6 +223,24 @@ def test_rows_to_begin_with_change_the_way_not_the_answer(seed: int) -> None:
     cold, warm = problem.step(), problem.step(np.ones(8))
     found = settled(problem, warm)
     assert settled(problem, cold) == pytest.approx(found, abs=1e-5 * (1.0 + np.abs(found).max()))
+
+
+@settings(max_examples=20, deadline=None)
+@given(SEED, st.integers(1, 3))
+def test_only_the_peaks_of_a_series_join_and_the_answer_is_the_same(seed: int, count: int) -> None:
+    problem, joined = Problem(seed, 6, 8), []
+
+    def columns(rows: IntArray) -> LocalColumns:
+        joined.append(len(rows))
+        return Problem.columns(problem, rows)
+
+    alone = settled(problem, problem.step())
+    problem.columns = columns  # type: ignore[method-assign]
+    found = settled(problem, problem.step(series=count))
+    assert found == pytest.approx(alone, abs=1e-5 * (1.0 + np.abs(alone).max()))
+    off = np.abs(violation(problem.z, problem.lower, problem.upper))
+    longest = -(-8 // count)
+    assert joined[:1] <= [min(np.count_nonzero(off), count * -(-longest // 2))]
 
 
 def test_a_step_within_its_bounds_is_left_alone() -> None:
